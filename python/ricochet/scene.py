@@ -120,6 +120,84 @@ class Camera(Thing):
     """
 
 
+class PointCloud(Thing):
+    """All at one point.
+
+    turning: How fast places turn about the parent, along the axis. Unit: rad/s. Default: [0, 0, 0].
+    pull: Acceleration towards its place of what has been pushed off it, for each metre that it is off. Unit: 1/s^2.
+        Default: 0.
+    damping: Acceleration against the velocity relative to its place, for each m/s. Unit: 1/s. Default: 0.
+    parent_ends: What the children do from their parent's end on. Default: "free".
+    center: Its centre. Unit: m. Default: [0, 0, 0].
+    """
+
+    _fixed = {"type": "point"}
+
+
+class DiskCloud(Thing):
+    """Uniform on a flat disk.
+
+    turning: How fast places turn about the parent, along the axis. Unit: rad/s. Default: [0, 0, 0].
+    pull: Acceleration towards its place of what has been pushed off it, for each metre that it is off. Unit: 1/s^2.
+        Default: 0.
+    damping: Acceleration against the velocity relative to its place, for each m/s. Unit: 1/s. Default: 0.
+    parent_ends: What the children do from their parent's end on. Default: "free".
+    center: Its centre. Unit: m. Default: [0, 0, 0].
+    normal: Normal of the disk, of any length. Required.
+    radius: Its radius. Unit: m. Required.
+    """
+
+    _fixed = {"type": "disk"}
+
+
+class BoxCloud(Thing):
+    """Uniform in a box along the axes.
+
+    turning: How fast places turn about the parent, along the axis. Unit: rad/s. Default: [0, 0, 0].
+    pull: Acceleration towards its place of what has been pushed off it, for each metre that it is off. Unit: 1/s^2.
+        Default: 0.
+    damping: Acceleration against the velocity relative to its place, for each m/s. Unit: 1/s. Default: 0.
+    parent_ends: What the children do from their parent's end on. Default: "free".
+    center: Its centre. Unit: m. Default: [0, 0, 0].
+    size: Full edge lengths. Unit: m. Required.
+    """
+
+    _fixed = {"type": "box"}
+
+
+class SphereCloud(Thing):
+    """Uniform in a ball, or on its surface.
+
+    turning: How fast places turn about the parent, along the axis. Unit: rad/s. Default: [0, 0, 0].
+    pull: Acceleration towards its place of what has been pushed off it, for each metre that it is off. Unit: 1/s^2.
+        Default: 0.
+    damping: Acceleration against the velocity relative to its place, for each m/s. Unit: 1/s. Default: 0.
+    parent_ends: What the children do from their parent's end on. Default: "free".
+    center: Its centre. Unit: m. Default: [0, 0, 0].
+    radius: Its radius. Unit: m. Required.
+    surface: true: only on the surface, launched outward. Default: false.
+    """
+
+    _fixed = {"type": "sphere"}
+
+
+class ConeCloud(Thing):
+    """Uniform in a cone, launched along the line from its tip.
+
+    turning: How fast places turn about the parent, along the axis. Unit: rad/s. Default: [0, 0, 0].
+    pull: Acceleration towards its place of what has been pushed off it, for each metre that it is off. Unit: 1/s^2.
+        Default: 0.
+    damping: Acceleration against the velocity relative to its place, for each m/s. Unit: 1/s. Default: 0.
+    parent_ends: What the children do from their parent's end on. Default: "free".
+    apex: Its tip. Unit: m. Default: [0, 0, 0].
+    axis: From the tip into the cone, of any length. Required.
+    angle: Between the axis and the side. Unit: degrees. Required.
+    height: Its height. Unit: m. Required.
+    """
+
+    _fixed = {"type": "cone"}
+
+
 class PlaneCollider(Thing):
     """An infinite plane.
 
@@ -575,7 +653,7 @@ class ChildEmitter(Thing):
     over_age: Factors over the age in s.
     parent: Name of the emitter whose particles are the parents. Required.
     on: When parents give birth. Default: "life".
-    count: Children of one death or impact, rounded to whole numbers. Default: 1.
+    count: Children of one death, impact or birth, rounded to whole numbers. Default: 1.
     threshold_impulse: Least impulse of an impact that gives birth. Unit: N s. Default: 0.
     share: true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share,
         radii follow at the same density, and `speed` says how fast they fly apart.
@@ -583,6 +661,7 @@ class ChildEmitter(Thing):
     inherit_velocity: Part of the parent's velocity that a child begins with; 1 when sharing. Default: 1.
     inherit_color: Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken.
         Default: 0.
+    cloud: The children go with their parent wherever it flies and bounces, each at a place of its own about it.
     """
 
     _fixed = {"type": "child"}

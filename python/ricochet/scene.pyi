@@ -101,6 +101,69 @@ class Camera(Thing):
         focus_distance: Optional[float] = ...,
     ) -> None: ...
 
+class PointCloud(Thing):
+    def __init__(
+        self,
+        *,
+        turning: Optional[Vector] = ...,
+        pull: Optional[float] = ...,
+        damping: Optional[float] = ...,
+        parent_ends: Optional[str] = ...,
+        center: Optional[Vector] = ...,
+    ) -> None: ...
+
+class DiskCloud(Thing):
+    def __init__(
+        self,
+        *,
+        turning: Optional[Vector] = ...,
+        pull: Optional[float] = ...,
+        damping: Optional[float] = ...,
+        parent_ends: Optional[str] = ...,
+        center: Optional[Vector] = ...,
+        normal: Vector,
+        radius: float,
+    ) -> None: ...
+
+class BoxCloud(Thing):
+    def __init__(
+        self,
+        *,
+        turning: Optional[Vector] = ...,
+        pull: Optional[float] = ...,
+        damping: Optional[float] = ...,
+        parent_ends: Optional[str] = ...,
+        center: Optional[Vector] = ...,
+        size: Vector,
+    ) -> None: ...
+
+class SphereCloud(Thing):
+    def __init__(
+        self,
+        *,
+        turning: Optional[Vector] = ...,
+        pull: Optional[float] = ...,
+        damping: Optional[float] = ...,
+        parent_ends: Optional[str] = ...,
+        center: Optional[Vector] = ...,
+        radius: float,
+        surface: Optional[bool] = ...,
+    ) -> None: ...
+
+class ConeCloud(Thing):
+    def __init__(
+        self,
+        *,
+        turning: Optional[Vector] = ...,
+        pull: Optional[float] = ...,
+        damping: Optional[float] = ...,
+        parent_ends: Optional[str] = ...,
+        apex: Optional[Vector] = ...,
+        axis: Vector,
+        angle: float,
+        height: float,
+    ) -> None: ...
+
 class PlaneCollider(Thing):
     def __init__(
         self,
@@ -492,6 +555,7 @@ class ChildEmitter(Thing):
         recursive: Optional[bool] = ...,
         inherit_velocity: Optional[float] = ...,
         inherit_color: Optional[float] = ...,
+        cloud: Any = ...,
     ) -> None: ...
 
 class UniformFlow(Thing):

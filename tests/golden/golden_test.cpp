@@ -81,6 +81,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"sandpile", "0.6"},
     {"hopper", "0.7"},
     {"avalanche", "1"},
+    {"swarms", "1.6"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -544,4 +544,14 @@ inline constexpr double kSameApproach = 1e-9;
 /// that lasts. Smaller: spheres leave their boxes by rounding, and are worked off twice. Larger: more candidates.
 inline constexpr double kPairBoxSlack = 1.0 + 0x1p-20;
 
+// Clouds that go with their parents
+
+/// Angle, rad, by which places of a cloud turn, or what is pulled back to them swings, in one piece of a path. Reason:
+/// the cubic of a piece is within angle^4 / 384 of the arc, 1e-5 of its radius, and ends on it. Smaller: more pieces.
+/// Larger: walls are met beside the arc.
+inline constexpr double kMostCloudTurn = 0.25;
+
+/// The same in one step of the run, beyond which a scene is refused. Reason: 64 pieces. Larger: steps without end.
+inline constexpr double kMostCloudTurnOfStep = 16.0;
+
 }  // namespace ricochet

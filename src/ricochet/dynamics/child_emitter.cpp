@@ -110,6 +110,25 @@ Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_
     return child;
 }
 
+std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal,
+                                           double time, const BirthTest& test) {
+    const std::uint64_t lineage = mixed_key(parent.origin.lineage, emitter.number(), ordinal);
+    const auto in_world = [&](Particle child) {
+        const Vec3 place = child.position;
+        child.position = parent.position + place;
+        child.velocity += parent.velocity + cross(emitter.description().parent->cloud->turning, place);
+        child.birth_time = time;
+        return child;
+    };
+    std::optional<Particle> drawn =
+        emitter.draw(lineage, 0, [&](const Particle& child) { return test(in_world(child)); });
+    if (!drawn) return std::nullopt;
+    CloudChild child{in_world(*drawn), drawn->position};
+    child.particle.origin = {emitter.number(), parent.origin.generation + 1, lineage, 0, 0};
+    inherit_attributes(emitter, parent, child.particle);
+    return child;
+}
+
 std::uint32_t most_fragments(double mass) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(mass / kSmallestMass), 1.0, kMostChildren));
 }

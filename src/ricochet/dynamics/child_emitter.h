@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "ricochet/dynamics/emitter.h"
@@ -36,6 +37,17 @@ struct LifeBirths {
 /// One child. parent: as it is at the birth. The child's position is the parent's, its velocity is its own launch plus
 /// the inherited part; attributes that the emitter does not name are the parent's.
 [[nodiscard]] Particle make_child(const Emitter& emitter, const Particle& parent, std::uint32_t ordinal, double time);
+
+/// A child of a cloud.
+struct CloudChild {
+    Particle particle;
+    Vec3 place;  ///< m, about the parent
+};
+
+/// One child of a cloud, at its place about the parent, with the velocity of that place besides its own launch. What
+/// the test does not like is given another place, see Emitter::draw(); nothing where it refuses all.
+[[nodiscard]] std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particle& parent,
+                                                         std::uint32_t ordinal, double time, const BirthTest& test);
 
 /// Into how many fragments a mass, kg, can be shared out, so that none is below kSmallestMass; at least one.
 [[nodiscard]] std::uint32_t most_fragments(double mass);

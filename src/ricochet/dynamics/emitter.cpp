@@ -50,14 +50,29 @@ void require(bool condition, const EmitterDescription& emitter, const char* what
 
 bool is_spread(const MeanSpread& pair) { return std::isfinite(pair.spread) && pair.spread >= 0.0; }
 
+void check_cloud(const EmitterDescription& emitter, const ParentRule& rule) {
+    const CloudRule& cloud = *rule.cloud;
+    require(!rule.share && rule.on != BirthEvent::death, emitter, "a cloud needs a parent that lives on");
+    require(rule.inherit_velocity == 1.0, emitter, "what goes with its parent has all of its velocity");
+    require(is_finite(cloud.turning), emitter, "the turning of the cloud must be finite");
+    require(std::isfinite(cloud.pull) && cloud.pull >= 0.0, emitter, "the pull of the cloud must be finite and >= 0");
+    require(std::isfinite(cloud.damping) && cloud.damping >= 0.0, emitter,
+            "the damping of the cloud must be finite and >= 0");
+    require(cloud.end == CloudEnd::free || cloud.end == CloudEnd::die, emitter,
+            "the end of the cloud must be free or die");
+}
+
 void check(const EmitterDescription& emitter, const ParentRule& rule) {
-    require(rule.on == BirthEvent::life || rule.on == BirthEvent::death || rule.on == BirthEvent::impact, emitter,
-            "births must be at life, death or impact");
+    require(rule.on == BirthEvent::life || rule.on == BirthEvent::death || rule.on == BirthEvent::impact ||
+                rule.on == BirthEvent::birth,
+            emitter, "births must be at life, death, impact or birth");
     require(std::isfinite(rule.count.mean) && is_spread(rule.count), emitter, "the count must be finite");
     require(rule.threshold_impulse >= 0.0, emitter, "the threshold impulse must be >= 0 N s");
     require(std::isfinite(rule.inherit_velocity), emitter, "the inherited part of the velocity must be finite");
     require(rule.inherit_color >= 0.0 && rule.inherit_color <= 1.0, emitter, "the inherited colour must be 0 to 1");
-    require(!rule.share || rule.on != BirthEvent::life, emitter, "a parent that lives on cannot be shared out");
+    require(!rule.share || (rule.on != BirthEvent::life && rule.on != BirthEvent::birth), emitter,
+            "a parent that lives on cannot be shared out");
+    if (rule.cloud) check_cloud(emitter, rule);
 }
 
 void check(const EmitterDescription& emitter) {
@@ -267,14 +282,28 @@ std::optional<Particle> Emitter::make_particle(std::uint64_t number, double time
         {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},
         {static_cast<std::uint32_t>(seed_), static_cast<std::uint32_t>(seed_ >> 32)});
     drawn.particle.origin.lineage = (std::uint64_t{bits[0]} << 32) | bits[1];
+    return place_by(test, random, drawn, [&](const Particle& particle) {
+        return description_.frames ? launched_from(*description_.frames, description_.frame, particle) : particle;
+    });
+}
+
+// made(particle): what the test sees and what is born.
+template <class Made>
+std::optional<Particle> Emitter::place_by(const BirthTest& test, RandomSequence& random, Draw& drawn,
+                                          const Made& made) const {
     const int redraws = std::holds_alternative<PointShape>(description_.shape) ? 0 : kMostRedraws;
     for (int k = 0;; ++k) {
-        Particle born = drawn.particle;
-        if (description_.frames) born = launched_from(*description_.frames, description_.frame, born);
+        Particle born = made(drawn.particle);
         if (!test || test(born)) return born;
         if (k == redraws) return std::nullopt;
         place(random, drawn);
     }
+}
+
+std::optional<Particle> Emitter::draw(std::uint64_t seed, std::uint64_t number, const BirthTest& test) const {
+    RandomSequence random(seed, kBirthStream | stream_, number);
+    Draw drawn = draw(random, seed, number);
+    return place_by(test, random, drawn, [](const Particle& particle) { return particle; });
 }
 
 Particle Emitter::draw(std::uint64_t seed, std::uint64_t number) const {

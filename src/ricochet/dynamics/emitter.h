@@ -40,6 +40,24 @@ enum class BirthEvent {
     life,    ///< all its life long, at a rate
     death,   ///< at the end of its lifetime, or when a surface absorbs it
     impact,  ///< at an impact whose impulse reaches the threshold
+    birth,   ///< when it is born itself
+};
+
+/// What becomes of the children of a cloud when their parent ends.
+enum class CloudEnd {
+    free,  ///< from then on they fly by themselves
+    die,   ///< they end with it
+};
+
+/// Children that go with their parent wherever it flies and bounces. Each has a place about it, which the emitter's
+/// shape says in coordinates about the parent, and is given what the parent is given: its acceleration, and its changes
+/// of velocity at impacts. Forces of the scene act by way of the parent alone. What surfaces do to a child is its own:
+/// it goes on with that relative to the parent.
+struct CloudRule {
+    Vec3 turning;          ///< rad/s, by which places turn about the parent
+    double pull = 0.0;     ///< 1/s^2, >= 0: acceleration towards its place, over the distance from it
+    double damping = 0.0;  ///< 1/s, >= 0: acceleration against its velocity relative to its place, over that
+    CloudEnd end = CloudEnd::free;
 };
 
 /// The rule by which an emitter's particles come from other particles.
@@ -47,13 +65,15 @@ struct ParentRule {
     std::uint32_t emitter = 0;  ///< whose particles are the parents, as its number in the scene
     bool recursive = false;     ///< the children are parents too, in turn
     BirthEvent on = BirthEvent::life;
-    MeanSpread count{1.0, 0.0};      ///< children of a death or impact; rounded, negative draws count as 0
+    MeanSpread count{1.0, 0.0};      ///< children of a death, impact or birth; rounded, negative draws count as 0
     double threshold_impulse = 0.0;  ///< N s, >= 0: least impulse of an impact that gives birth
     /// The parent ends and its children share its mass and momentum: description.mass is the weight of a share,
     /// radii follow from masses at the parent's density. Not for life.
     bool share = false;
     double inherit_velocity = 1.0;  ///< part of the parent's velocity that a child begins with; 1 when sharing
     double inherit_color = 0.0;     ///< 0..1, part of the parent's colour in the child's own
+    /// Not for death, nor when sharing; with it a child inherits all of the parent's velocity.
+    std::optional<CloudRule> cloud = std::nullopt;
 };
 
 // Attributes that change with a particle's age: factors keyed over its life, worked out when a state is shown and
@@ -221,8 +241,14 @@ struct EmitterDescription {
     std::vector<AttributeSpread> attributes;  ///< colours and opacities are clamped to 0..1, sizes to >= 0
     std::vector<LifeCurve> curves;            ///< factors for attributes over life, where a state is shown
     std::optional<std::uint64_t> seed;        ///< nothing: the scene's seed and the emitter's index in the scene
-    std::optional<ParentRule> parent;         ///< particles give birth here; shape, burst, start and stop are not used
+    /// Particles give birth here; burst, start and stop are not used, and the shape only for the places of a cloud.
+    std::optional<ParentRule> parent;
 };
+
+/// True when its particles go with their parents.
+[[nodiscard]] inline bool is_cloud(const EmitterDescription& emitter) {
+    return emitter.parent && emitter.parent->cloud.has_value();
+}
 
 /// What of its scene an emitter needs.
 struct EmitterSurroundings {
@@ -270,6 +296,8 @@ public:
     /// The particle that the random numbers of (seed, number) make, born at time 0: a pure function. Every
     /// attribute that the description does not name is missing_attribute().
     [[nodiscard]] Particle draw(std::uint64_t seed, std::uint64_t number) const;
+    /// The same, given other positions as births() does until the test likes it; nothing where it refuses all.
+    [[nodiscard]] std::optional<Particle> draw(std::uint64_t seed, std::uint64_t number, const BirthTest& test) const;
     /// A uniform number in [mean - spread, mean + spread) from a stream of its own, for draws that are about no
     /// single particle. purpose: 0..255.
     [[nodiscard]] double draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanSpread& pair) const;
@@ -292,6 +320,9 @@ private:
     [[nodiscard]] Draw draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 draw_place(RandomSequence& random, Particle& particle) const;
     void place(RandomSequence& random, Draw& drawn) const;
+    template <class Made>
+    [[nodiscard]] std::optional<Particle> place_by(const BirthTest& test, RandomSequence& random, Draw& drawn,
+                                                   const Made& made) const;
     void set_rate(const EmitterSurroundings& surroundings);
     [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;

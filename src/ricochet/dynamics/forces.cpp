@@ -130,6 +130,7 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_cou
 Vec3 ForceField::acceleration(const ForceInput& input) const {
     if (input.whole_radius > 0.0) return acceleration(whole(input));
     Vec3 sum = input.coupling != nullptr && adds_coupling_ ? input.coupling->acceleration(input) : Vec3{};
+    if (input.coupling != nullptr && adds_coupling_ && input.coupling->replaces_forces()) return sum;
     for (const auto& force : forces_) sum += force->acceleration(input);
     return sum;
 }

@@ -41,6 +41,8 @@ public:
     [[nodiscard]] virtual Vec3 acceleration(const ForceInput& input) const = 0;
     /// True when it depends on position, velocity or time.
     [[nodiscard]] virtual bool varies() const = 0;
+    /// True when it stands for all forces, which are not added.
+    [[nodiscard]] virtual bool replaces_forces() const { return false; }
 };
 
 /// One force on particles. Implementations are pure: same input, same bits, from any thread.
@@ -99,7 +101,8 @@ public:
     [[nodiscard]] bool is_uniform() const { return uniform_; }
     /// The same for one particle, with what others do to it.
     [[nodiscard]] bool is_uniform_for(const ForceInput& input) const {
-        return uniform_ && (input.coupling == nullptr || !input.coupling->varies());
+        if (input.coupling == nullptr) return uniform_;
+        return !input.coupling->varies() && (uniform_ || input.coupling->replaces_forces());
     }
     /// The acceleration where it is the same for all particles, everywhere and always, m/s^2: that of acceleration(),
     /// with the same bits, for particles that nothing couples.

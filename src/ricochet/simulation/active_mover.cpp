@@ -10,6 +10,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/rollback.h"
+#include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/heat_stage.h"
 #include "ricochet/simulation/sleeping_piles.h"
 
@@ -72,22 +73,25 @@ void ActiveMover::move_block(std::span<const std::uint32_t> active, const TimeSp
     prepare(scratch);
     for (std::size_t k = 0; k < active.size(); ++k) {
         prefetch(active, k);
+        if (clouds_ != nullptr && clouds_->leads(active[k])) continue;
         move_one(active[k], step, scratch, record);
     }
     record_lists(scratch, record);
 }
 
-void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record) {
+void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
+                           const Lead* lead) {
     const TimeSpan life = life_in(i, step);
     if (life.end <= life.begin) return;
     grow_core(i, life.begin);
     MovingParticle particle = load(i, life.begin);
+    if (lead != nullptr) particle.planned = &lead->flight, particle.state.coupling = &lead->pull;
     particle.step_end = life.end;
     scratch.segments.clear();
     const std::size_t first_record = scratch.records.size();
     const std::size_t first_hit = scratch.hits.size();
     const std::size_t first_load = scratch.loads.size();
-    const Flight* const plan = parts_.coupled.flight_of(i);
+    const Flight* const plan = lead != nullptr ? &lead->flight : parts_.coupled.flight_of(i);
     // A planned flight's duration need not be the difference of the clock's times to the last bit.
     const bool as_planned = plan != nullptr && life.begin == step.begin && life.end == step.end;
     const double duration = as_planned ? plan->path.duration : life.end - life.begin;
@@ -109,7 +113,16 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
         scratch.records[k].radius = particle.state.whole_radius;
     }
     if (i < bounces_.size()) bounces_[i] += outcome.bounces;
-    take_over(i, particle, outcome, life.end, record);
+    take_over(i, particle, outcome, life.end, record, lead != nullptr);
+}
+
+void ActiveMover::kick(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
+                       MoveScratch& scratch) {
+    MovingParticle particle = load(i, time);
+    particle.state.coupling = &pull;
+    parts_.response.take_up(particle, change, duration, scratch);
+    parts_.store.particles().velocity[i] = particle.state.velocity;
+    parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
 /// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces, as
@@ -259,23 +272,24 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
 }
 
 void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                            BlockRecord& record) {
+                            BlockRecord& record, bool is_pulled) {
     Particles& particles = parts_.store.particles();
     const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
     const bool was_fast = is_fast();
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
-    parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i));
+    parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i) && !is_pulled);
     if (!was_fast && is_fast()) record.note_runaway(i, outcome.bounces > 0);
     if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
     if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
-    schedule_query(i, moved, outcome, until);
+    schedule_query(i, moved, outcome, until, is_pulled);
     record.add(outcome);
 }
 
-void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until) {
+void ActiveMover::schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                                 bool is_pulled) {
     if (parts_.store.is_fixed(i) || parts_.store.is_asleep(i)) {
         parts_.schedule.leave_alone(i);
-    } else if (!flies_on(moved, outcome) || parts_.coupled.is_active() || parts_.store.cores().has(i)) {
+    } else if (!flies_on(moved, outcome) || parts_.coupled.is_active() || is_pulled || parts_.store.cores().has(i)) {
         parts_.schedule.forget(i);
     } else {
         FreeFlightForecast forecast;

@@ -20,6 +20,7 @@
 
 namespace ricochet {
 
+class CloudMotion;
 class FrictionMeter;
 class SleepingPiles;
 
@@ -99,6 +100,23 @@ public:
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
     /// Moves every particle of the set for itself, by all threads; one record a block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);
+    /// The path of a particle that others lead, for a part of the step, and what they do to it where it leaves that.
+    struct Lead {
+        const Flight& flight;
+        const Coupling& pull;
+    };
+    /// Moves one particle in a part of the step, as it is led where `lead` says how.
+    void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
+                  const Lead* lead = nullptr);
+    /// Gives a led particle a change of velocity, m/s, at a time, s, as if it had been a part of the forces in the
+    /// `duration` seconds before it; surfaces that hold it take their part.
+    void kick(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
+              MoveScratch& scratch);
+    /// Hands over what particles have done since prepare().
+    void record_lists(const MoveScratch& scratch, BlockRecord& record);
+    /// Whose particles move() leaves alone; it must outlive the mover.
+    void set_clouds(const CloudMotion* clouds) { clouds_ = clouds; }
+
     /// Moves the particles of the range as one system that goes back together: see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
@@ -136,7 +154,6 @@ public:
 
 private:
     void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
-    void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record);
     [[nodiscard]] bool is_near_yielding(const ForceInput& state, double duration) const;
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
     void note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
@@ -145,16 +162,18 @@ private:
     [[nodiscard]] static Vec3 pushed_since(std::size_t first_hit, const MoveScratch& scratch);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
+    /// is_pulled: others lead it, so that it neither sleeps nor flies by what is known of forces.
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                   BlockRecord& record);
-    void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until);
-    void record_lists(const MoveScratch& scratch, BlockRecord& record);
+                   BlockRecord& record, bool is_pulled = false);
+    void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                        bool is_pulled);
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
     void prefetch_triangles(std::size_t i) const;
     void prefetch_vertices(std::size_t i) const;
 
     MoverParts parts_;
     const SleepingPiles* piles_ = nullptr;
+    const CloudMotion* clouds_ = nullptr;
     std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); of those behind its end nothing
 };
 

@@ -137,6 +137,7 @@ void Simulation::Impl::archive(Archive& a) {
     expect(a, options.time_step, "the state belongs to another time step");
     archive_statistics(a, recorder.statistics());
     store.archive(a);
+    if (clouds) clouds->archive(a, store.size());
     recorder.totals().archive(a);
     for (ColliderTotals& load : recorder.loads()) a(load.hits), a(load.impulse), a(load.moment), a(load.work);
     coupled.archive(a);
@@ -167,6 +168,7 @@ void Simulation::Impl::require_sound_state() const {
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
         require(!pairs || pairs->has_material(i), "a particle of no material");
+        require(!clouds || clouds->is_sound(i, store.next_id()), "a particle of a cloud that there is not");
     }
     for (const DrivenBody& body : driven.bodies()) {
         require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),

@@ -15,6 +15,7 @@
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/birth_room.h"
+#include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
@@ -81,6 +82,8 @@ struct Simulation::Impl {
     [[nodiscard]] BirthTest birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const;
     [[nodiscard]] BirthRoom room_among_spheres(const TimeSpan& step) const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
+    /// Where children may be born beside their parents: nothing is between them, and spheres overlap nothing.
+    [[nodiscard]] PlaceTest place_test() const;
     /// Of its frame; of a mesh that deforms, which is in none, that of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
     void inherit_sides(std::size_t i, const Child& child);
@@ -149,7 +152,8 @@ struct Simulation::Impl {
     std::vector<BirthRecord> birth_records;  ///< of the step, where there is offspring
     FreeFlights free_flights;
     ActiveMover mover;
-    std::unique_ptr<PairMotion> pairs;  ///< null where spheres do not meet each other
+    std::unique_ptr<CloudMotion> clouds;  ///< null where no particles go with others
+    std::unique_ptr<PairMotion> pairs;    ///< null where spheres do not meet each other
     Retirement retirement;
     ContactCallback callback;       ///< of on_contact(); may be empty
     bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error

@@ -17,6 +17,7 @@ constexpr double kProgram = 12e6;             // libraries, threads
 constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value while it is born
 constexpr double kAttributeComponent = 32.0;  // of it the same
 constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
+constexpr double kCloudParticle = 300.0;      // with clouds: whom it goes with, and what it has flown where it leads
 constexpr double kSide = 16.0;                // what penalty and its like remember of a collider
 constexpr double kVerifiedParticle = 90.0;    // by options.verify
 constexpr double kMeetingParticle = 1500.0;   // of spheres that meet: boxes, pairs, islands, contacts, as counted
@@ -211,6 +212,7 @@ void require_memory(const SimulationSetup& setup) {
 double bytes_per_particle(const SimulationSetup& setup) {
     double bytes = kParticle + kAttributeComponent * columns_of(setup);
     if (has_children(setup)) bytes += kFamily;
+    if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) bytes += kCloudParticle;
     if (setup.options.verify) bytes += kVerifiedParticle;
     if (setup.options.particle_contacts) bytes += kMeetingParticle;
     if (!setup.particles_forces.empty()) bytes += kCoupledParticle;

@@ -11,7 +11,9 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/simulation/clear_segment.h"
+#include "ricochet/simulation/cloud_motion.h"
+#include "ricochet/simulation/flight_knots.h"
 #include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
@@ -20,24 +22,11 @@ namespace {
 /// Parents per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-// Exact: no surface intersects the closed segment.
-bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to) {
-    const SurfaceGeometry geometry(world, scratch.plane_cache);
-    const Path path = line_path(from, to - from, 1.0);
-    const ContactQueryResult found = find_first_contact(geometry, {path, 0.0}, scratch);
-    return !found.contact && found.near.is_free(from, to);
-}
-
 }  // namespace
 
 /// What one particle did in one pass: flights between knots.
 struct Offspring::Trajectory {
-    struct Knot {
-        double time;
-        Vec3 position;
-        Vec3 before;  ///< velocity with which it arrives
-        Vec3 after;
-    };
+    using Knot = FlightKnot;
     Particle particle;      ///< with the last state
     std::size_t entry = 0;  ///< from first_ on
     std::vector<Knot> knots;
@@ -58,22 +47,17 @@ Particle Offspring::Trajectory::at(const Knot& knot, const Vec3& velocity) const
     return parent;
 }
 
-// The cubic through both ends of the flight with their velocities: exact for a steady acceleration.
 Particle Offspring::Trajectory::at(double time, const CollisionWorld& world, ContactScratch& scratch) const {
     std::size_t k = 0;
     while (k + 2 < knots.size() && knots[k + 1].time <= time) ++k;
     const Knot& a = knots[k];
     if (k + 1 == knots.size()) return at(a, a.after);
     const Knot& b = knots[k + 1];
-    const double duration = b.time - a.time;
-    if (!(duration > 0.0)) return at(a, a.after);
-    const double s = std::clamp((time - a.time) / duration, 0.0, 1.0);
-    const Vec3 chord = b.position - a.position;
-    const Vec3 begin = duration * a.after - chord;
-    const Vec3 end = chord - duration * b.before;
+    if (!(b.time > a.time)) return at(a, a.after);
+    const PhaseState state = state_between(a, b, time);
     Particle parent = particle;
-    parent.position = flush_tiny(a.position + s * (chord + (1.0 - s) * ((1.0 - s) * begin + s * end)));
-    parent.velocity = (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration;
+    parent.position = state.position;
+    parent.velocity = state.velocity;
     if (is_clear(world, scratch, a.position, parent.position)) return parent;
     if (is_clear(world, scratch, b.position, parent.position)) return parent;
     return at(a, a.after);
@@ -130,20 +114,15 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     trajectory.particle = particles.at(i);
     trajectory.entry = i - first_;
     trajectory.records = records;
-    const double begin = std::max(from, trajectory.particle.birth_time);
+    const PhaseState start{positions_[i - first_], velocities_[i - first_]};
+    if (clouds_ != nullptr) {
+        const auto known = clouds_->knots_of(particles.id[i]);  // those of what goes with a parent have its impacts too
+        trajectory.knots.assign(known.begin(), known.end());
+    }
+    if (trajectory.knots.empty()) trajectory.knots = flight_knots(particles, i, start, from, to, records);
     const double death = trajectory.particle.birth_time + trajectory.particle.lifetime;
-    trajectory.knots.push_back({begin, positions_[i - first_], velocities_[i - first_], velocities_[i - first_]});
-    for (const ContactRecord& record : records) {
-        trajectory.knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
-    }
-    const bool absorbed = particles.absorbed[i] != 0;
     trajectory.shattered = particles.absorbed[i] == kShattered;
-    trajectory.died = !trajectory.shattered && (absorbed || death <= to);
-    if (!absorbed) {
-        const double end = std::max(begin, std::min(to, death));
-        trajectory.knots.push_back(
-            {end, trajectory.particle.position, trajectory.particle.velocity, trajectory.particle.velocity});
-    }
+    trajectory.died = !trajectory.shattered && (particles.absorbed[i] != 0 || death <= to);
     return trajectory;
 }
 
@@ -198,19 +177,19 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
                        trajectory.at(last, absorbed && !rule.share ? last.before : last.after), trajectory.entry});
 }
 
+void Offspring::add_birth(const Emitter& emitter, const Trajectory& trajectory,
+                          std::vector<SpawnBatch>& batches) const {
+    const std::uint64_t count =
+        std::min<std::uint64_t>(children_of_event(emitter, trajectory.particle, 0), emitter.description().limit);
+    const Trajectory::Knot& first = trajectory.knots.front();
+    batches.push_back({first.time, emitter.number(), 0, static_cast<std::uint32_t>(count), false,
+                       trajectory.at(first, first.after), trajectory.entry});
+}
+
 std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
                                          std::vector<ContactRecord> records, const RankShare& share,
                                          OffspringCounts& counts) const {
-    std::stable_sort(records.begin(), records.end(),
-                     [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
-    const auto records_of = [&](std::uint64_t id) {
-        const auto first =
-            std::lower_bound(records.begin(), records.end(), id,
-                             [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
-        auto last = first;
-        while (last != records.end() && last->particle == id) ++last;
-        return std::span<const ContactRecord>(first, last);
-    };
+    const RecordsByParticle sorted(std::move(records));
     const std::size_t count = positions_.size();
     std::vector<std::vector<SpawnBatch>> blocks((count + kBlock - 1) / kBlock);
     const std::uint64_t room = room_below(limits_.most_particles, share.living(particles.size()));
@@ -222,7 +201,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
             Origin& origin = particles.origin[i];
             if (particles.frozen[i] != 0 || origin.emitter == kNoEmitter || children_of_[origin.emitter].empty())
                 continue;
-            const Trajectory trajectory = trajectory_of(particles, i, from, to, records_of(particles.id[i]));
+            const Trajectory trajectory = trajectory_of(particles, i, from, to, sorted.of(particles.id[i]));
             for (const std::uint32_t child : children_of_[origin.emitter]) {
                 const Emitter& emitter = emitters_[child];
                 const BirthEvent on = emitter.description().parent->on;
@@ -231,6 +210,9 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
                 }
                 if (on == BirthEvent::impact) add_impacts(emitter, trajectory, origin, blocks[block]);
                 if (on == BirthEvent::death) add_death(emitter, trajectory, blocks[block]);
+                if (on == BirthEvent::birth && trajectory.particle.birth_time >= from) {
+                    add_birth(emitter, trajectory, blocks[block]);
+                }
             }
             // A batch takes no more memory than the particle that it makes.
             const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
@@ -301,7 +283,21 @@ Child Offspring::child_of(const SpawnBatch& batch, Particle&& particle, std::uin
     const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
     const auto sides = std::span(sides_).subspan(batch.entry * colliders, colliders);
     const bool is_fragment = batch.share && emitters_[batch.emitter].description().parent->on == BirthEvent::impact;
-    return {std::move(particle), positions_[batch.entry], sides, is_fragment, number};
+    return {std::move(particle), positions_[batch.entry], sides, is_fragment, number, std::nullopt};
+}
+
+/// What finds no place keeps its number.
+void Offspring::add_cloud_child(const SpawnBatch& batch, std::uint32_t ordinal, std::uint64_t number,
+                                std::vector<Child>& children, OffspringCounts& counts) const {
+    const auto has_place = [&](const Particle& child) { return !place_test_ || place_test_(batch.parent, child); };
+    std::optional<CloudChild> made =
+        make_cloud_child(emitters_[batch.emitter], batch.parent, ordinal, batch.time, has_place);
+    if (!made) {
+        ++counts.refused_by_overlap;
+        return;
+    }
+    children.push_back(child_of(batch, std::move(made->particle), number));
+    children.back().cloud = CloudPlace{batch.parent.id, made->place};
 }
 
 std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t here, const RankShare& share,
@@ -334,6 +330,10 @@ std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_
             continue;
         }
         for (std::uint32_t k = 0; k < claim.allowed; ++k) {
+            if (emitter.description().parent->cloud) {
+                add_cloud_child(batch, batch.first_ordinal + k, number++, children, counts);
+                continue;
+            }
             Particle child = make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time);
             children.push_back(child_of(batch, std::move(child), number++));
         }

@@ -4,13 +4,16 @@
 /// Children spawn only at positions of their parent's trajectory: where it is at an impact or at its end, or, in
 /// between, at a position on the cubic through both ends of a flight that a straight segment joins to one of these ends
 /// without meeting a surface (decided exactly); otherwise at that end itself. So no child begins behind a wall that its
-/// parent is in front of.
+/// parent is in front of. Those of a cloud spawn beside it, where nothing is in the way from it to there.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
@@ -33,6 +36,17 @@ struct OffspringLimits {
     std::uint64_t most_particles = kDefaultMostParticles;  ///< living at a time
 };
 
+class CloudMotion;
+
+/// Whom a particle goes with, and its place there.
+struct CloudPlace {
+    std::uint64_t parent = 0;  ///< id
+    Vec3 place;                ///< m, about the parent, at the child's birth
+};
+
+/// Whether a child may be born where it is, away from its parent.
+using PlaceTest = std::function<bool(const Particle& parent, const Particle& child)>;
+
 /// A particle spawned by another.
 struct Child {
     Particle particle;
@@ -40,6 +54,7 @@ struct Child {
     std::span<const SideMemory> parent_sides;  ///< its sides there; valid until the next before_move()
     bool goes_on = false;                      ///< a fragment: what its parent touches it is in contact with already
     std::uint64_t number = 0;                  ///< among all children of the pass, those of other ranks too
+    std::optional<CloudPlace> cloud = std::nullopt;  ///< of one that goes with its parent
 };
 
 /// What a pass has spawned and refused.
@@ -47,6 +62,7 @@ struct OffspringCounts {
     std::uint64_t children = 0;
     std::uint64_t refused_by_depth = 0;
     std::uint64_t refused_by_population = 0;
+    std::uint64_t refused_by_overlap = 0;  ///< of the children
 };
 
 /// Spawns the children of a simulation's particles.
@@ -62,6 +78,11 @@ public:
     void set_memory(std::uint64_t most_that_fit, double bytes_each) {
         most_that_fit_ = most_that_fit;
         bytes_each_ = bytes_each;
+    }
+    /// clouds: they know what parents have flown, and must outlive it. test: of each child of a cloud.
+    void set_clouds(const CloudMotion* clouds, PlaceTest test) {
+        clouds_ = clouds;
+        place_test_ = std::move(test);
     }
     /// N s: the impact that ends particle i; infinity when none does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
@@ -110,6 +131,9 @@ private:
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                      std::vector<SpawnBatch>& batches) const;
     void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
+    void add_birth(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
+    void add_cloud_child(const SpawnBatch& batch, std::uint32_t ordinal, std::uint64_t number,
+                         std::vector<Child>& children, OffspringCounts& counts) const;
     [[nodiscard]] static std::vector<Claim> claims_of(const std::vector<SpawnBatch>& batches);
     void allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                OffspringCounts& counts) const;
@@ -124,6 +148,8 @@ private:
     std::uint64_t most_that_fit_ = std::numeric_limits<std::uint64_t>::max();
     double bytes_each_ = 0.0;
     std::vector<std::vector<std::uint32_t>> children_of_;  // emitters by the emitter of their parents
+    const CloudMotion* clouds_ = nullptr;
+    PlaceTest place_test_;
     bool empty_ = true;
     std::size_t first_ = 0;
     std::vector<Vec3> positions_;

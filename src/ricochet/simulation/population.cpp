@@ -12,6 +12,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/clear_segment.h"
 #include "ricochet/simulation/impl.h"
 #include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/retirement.h"
@@ -68,13 +69,15 @@ std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& st
                                               share, counts)) {
         store.set_next_id(first_id + child.number);
         add(std::move(child.particle));
+        if (child.cloud) clouds->join(store.size() - 1, *child.cloud);
         if (response->keeps_sides()) inherit_sides(store.size() - 1, child);
     }
     store.set_next_id(first_id + counts.children);
     share.add_births(counts.children);
     if (share.is_first()) {
         SimulationStatistics& statistics = recorder.statistics();
-        statistics.children += counts.children;
+        statistics.children += counts.children - counts.refused_by_overlap;
+        statistics.births_refused_by_overlap += counts.refused_by_overlap;
         statistics.births_refused_by_depth += counts.refused_by_depth;
         statistics.births_refused_by_population += counts.refused_by_population;
     }
@@ -136,6 +139,13 @@ std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) co
     return deepest_overlap(world, bodies.get(), position, particle.radius, particle.birth_time);
 }
 
+PlaceTest Simulation::Impl::place_test() const {
+    return [this](const Particle& parent, const Particle& child) {
+        const Vec3 position = flush_tiny(child.position);
+        return is_clear_at(world, bodies.get(), child.birth_time, parent.position, position) && !overlap_of(child);
+    };
+}
+
 const CollisionWorld& Simulation::Impl::world_of(std::size_t collider) const {
     const bool is_framed = bodies && !bodies->deforming().is_mesh(collider);
     return is_framed ? bodies->world(bodies->body_of_collider(collider)) : world;
@@ -160,6 +170,7 @@ void Simulation::Impl::add(Particle&& particle) {
     schedule.append(particle.pinned);
     free_flights.append();
     store.append(std::move(particle));
+    if (clouds) clouds->append();
     const std::size_t i = store.size() - 1;
     if (offspring && inside_step) birth_records.push_back({particles().id[i], particles().origin[i]});
     if (!response->keeps_sides()) {

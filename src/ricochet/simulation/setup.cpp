@@ -137,6 +137,15 @@ std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, 
     return offspring;
 }
 
+/// Null where no particles go with others.
+std::unique_ptr<CloudMotion> make_clouds(const std::vector<Emitter>& emitters, const MoverParts& parts,
+                                         ActiveMover& mover) {
+    if (std::none_of(emitters.begin(), emitters.end(), [](const Emitter& e) { return is_cloud(e.description()); })) {
+        return nullptr;
+    }
+    return std::make_unique<CloudMotion>(emitters, parts, mover);
+}
+
 /// Null where spheres do not meet.
 std::unique_ptr<PairMotion> make_pairs(const SimulationOptions& options, ParticleStore& store, QuerySchedule& schedule,
                                        ActiveMover& mover, const Response& response, const CoupledMotion& coupled) {
@@ -273,6 +282,10 @@ Simulation::Impl::Impl(SimulationSetup setup)
       free_flights(store, schedule, forces, options.integrator, check.get()),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
              heat ? heat->meter() : nullptr}),
+      clouds(make_clouds(
+          emitters,
+          {store, schedule, recorder, *response, coupled, offspring.get(), check.get(), heat ? heat->meter() : nullptr},
+          mover)),
       pairs(make_pairs(options, store, schedule, mover, *response, coupled)),
       retirement(store, schedule, bounds) {
     world.set_culling(acceleration.culling);
@@ -280,6 +293,10 @@ Simulation::Impl::Impl(SimulationSetup setup)
         bodies->set_culling(acceleration.culling);
         if (driven.is_active()) driven.plan(0.0, options.time_step, 0.0);
         bodies->begin_step(0.0, options.time_step);
+    }
+    if (clouds) {
+        mover.set_clouds(clouds.get());
+        offspring->set_clouds(clouds.get(), place_test());
     }
     reserve(setup.particles.size());
     for (Particle& particle : setup.particles) add(std::move(particle));

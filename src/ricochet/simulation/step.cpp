@@ -91,6 +91,7 @@ TimeSpan Simulation::Impl::begin_step() {
     recorder.begin_step();
     birth_records.clear();
     schedule.begin_step(recorder.statistics().steps);
+    if (clouds) clouds->begin_step();
     const TimeSpan step = clock.span_of(recorder.statistics().steps);
     if (driven.is_active()) driven.begin_step();
     if (driven.is_active()) driven.plan(step.begin, step.end, oldest_position());
@@ -105,6 +106,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
     if ((driven.is_active() || coupled.is_active()) && batch.begin == 0) mover.begin_step();
     if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
     if (heat) heat->before_move(particles(), batch, step);
+    if (clouds) clouds->before_move(batch);
     std::vector<HeatGain> gains;
     for (double now = step.begin; now < step.end;) {
         const TimeSpan part = plan_part(batch, {now, step.end});
@@ -225,6 +227,7 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     ActiveSet active = free_flights.advance(batch, part, blocks);
     order_active_set(active);
     mover.move(active, part, blocks);
+    if (clouds) clouds->move(batch, part, blocks);
     if (!pairs) return;
     pairs->take_over(part, blocks);
     SimulationStatistics& statistics = recorder.statistics();
@@ -283,6 +286,7 @@ std::string Simulation::Impl::runaway_message(const std::vector<BlockRecord>& bl
 }
 
 void Simulation::Impl::retire_particles(double time) {
+    if (clouds && bounds) clouds->part_from_leavers(retirement, time);
     const EndOfStepCounts counts = retirement.count(time);
     if (counts.leaving > 0) remove_leavers(time);
     SimulationStatistics& statistics = recorder.statistics();
@@ -311,6 +315,7 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
     schedule.compact(keep);
     free_flights.compact(keep);
     store.compact(keep);
+    if (clouds) clouds->compact(keep);
     if (check) check->compact(keep);
     if (coupled.is_active()) coupled.bind(particles());
 }

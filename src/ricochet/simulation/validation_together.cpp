@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/cloud.h"
 #include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 
@@ -123,6 +126,35 @@ void validate_bodies(const SimulationSetup& setup) {
     }
 }
 
+/// Children that go with their parents, which are moved before them, each by itself.
+void validate_clouds(const SimulationSetup& setup) {
+    const auto found = std::find_if(setup.emitters.begin(), setup.emitters.end(), is_cloud);
+    if (found == setup.emitters.end()) return;
+    const Subject first("emitter", static_cast<std::size_t>(found - setup.emitters.begin()), found->name);
+    const auto refuse = [&](std::string_view what, std::string_view expected) {
+        first.refuse(what, "a cloud, whose particles go with their parents", expected);
+    };
+    if (setup.options.response != ResponseKind::exact) refuse("response", "one beside the response exact");
+    if (setup.options.flow) refuse("motion", "one beside motion by forces");
+    if (setup.options.particle_contacts) refuse("particle_contacts", "one where spheres do not meet each other");
+    if (!setup.springs.empty() || setup.solver) refuse("springs", "one beside particles without springs");
+    if (!setup.particles_forces.empty()) refuse("particle_forces", "one beside particles without forces between them");
+    if (!setup.bodies.empty()) refuse("bodies", "one beside colliders that impulses do not move");
+    if (setup.ranks && setup.ranks->size() > 1) refuse("ranks", "one in a run of one process, with threads");
+    if (std::any_of(setup.colliders.begin(), setup.colliders.end(), is_deforming)) {
+        refuse("colliders", "one beside colliders that do not deform");
+    }
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        if (!is_cloud(setup.emitters[k])) continue;
+        const double turn = cloud_turn(*setup.emitters[k].parent->cloud, setup.options.time_step);
+        if (turn <= kMostCloudTurnOfStep) continue;
+        Subject("emitter", k, setup.emitters[k].name)
+            .refuse("cloud", fmt::format("{:.3g} rad in a time step of {:g} s", turn, setup.options.time_step),
+                    fmt::format("at most {:g}, by turning, pull (its root) and damping: take a shorter time step",
+                                kMostCloudTurnOfStep));
+    }
+}
+
 /// What one process must do alone.
 void validate_ranks(const SimulationSetup& setup) {
     if (!setup.ranks || setup.ranks->size() < 2) return;
@@ -142,6 +174,7 @@ void validate_ranks(const SimulationSetup& setup) {
 
 void validate_together(const SimulationSetup& setup) {
     validate_ranks(setup);
+    validate_clouds(setup);
     validate_moving_colliders(setup);
     validate_bodies(setup);
     validate_particle_contacts(setup);

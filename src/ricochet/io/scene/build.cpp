@@ -328,6 +328,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_springs(context, scene.setup);
     check_particle_contacts(context, scene.setup);
     build_particle_forces(context, scene.setup);
+    check_clouds(context, scene.setup);
     build_heat(context, forces, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();

@@ -223,6 +223,19 @@ void build_attributes(const SceneContext& context, SimulationSetup& setup);
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
 /// In setup.frames.
 void build_emitters(SceneContext& context, SimulationSetup& setup);
+/// The shapes of emitters that need no file: keys and values. One that was refused is a point.
+[[nodiscard]] std::vector<Variant> simple_shapes();
+[[nodiscard]] EmitterShape simple_shape_of(const ObjectView& view);
+/// The key "cloud" of an emitter of type child.
+[[nodiscard]] const ObjectSpec& cloud_spec();
+/// Emitters whose particles are born of particles: their keys, their rule (the parent's number is found when all are
+/// known), and what shows when they are.
+[[nodiscard]] Variant child_variant();
+[[nodiscard]] ParentRule rule_of(const SceneContext& context, const ObjectView& view,
+                                 const EmitterDescription& emitter);
+void check_parents(const SceneContext& context, SimulationSetup& setup);
+/// After all else of the setup: refuses what does not go together with clouds.
+void check_clouds(const SceneContext& context, const SimulationSetup& setup);
 /// Sets an emitter's attributes and curves; reports those that are not declared or have other components.
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);

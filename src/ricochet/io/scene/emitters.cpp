@@ -24,11 +24,6 @@ struct MeshKeys {
     bool volume = false;
 };
 
-// What an emitter of type child says; its parent's number is found when all emitters are known.
-struct ChildKeys : ParentRule {
-    std::string parent;
-};
-
 constexpr Range kRate = between(0.0, 1e12);
 
 Fields<EmitterDescription> schedule_fields() {
@@ -73,15 +68,6 @@ Field<Unbound> emitter_name() {
             Without{"made from type and index in the list"}};
 }
 
-template <class Shape>
-Field<Shape> center() {
-    return {"center", &Shape::center, kCoordinate, "m", "Its centre."};
-}
-template <class Shape>
-Field<Shape> radius() {
-    return {"radius", &Shape::radius, kLength, "m", "Its radius.", kRequired};
-}
-
 Variant mesh_variant() {
     return variant(
         "mesh",
@@ -97,61 +83,11 @@ Variant mesh_variant() {
         {"file", "collider"});
 }
 
-Variant cone_variant() {
-    using C = ConeShape;
-    return variant<C>(
-        "cone", "Uniform in a cone, launched along the line from its tip.",
-        {{"apex", &C::apex, kCoordinate, "m", "Its tip."},
-         {"axis", &C::axis, kCoordinate, "", "From the tip into the cone, of any length.", kRequired, kNotZero},
-         {"angle", &C::angle_degrees, between(0.0, 89.9), "degrees", "Between the axis and the side.", kRequired},
-         {"height", &C::height, kLength, "m", "Its height.", kRequired}});
-}
-
-Variant child_variant() {
-    using C = ChildKeys;
-    using On = BirthEvent;
-    return variant<C>(
-        "child",
-        "Where another emitter's particles are, launched from their position and velocity; `burst`, `start`, `stop`, "
-        "`rate_per_frame` and `rate_per_area` do not apply.",
-        {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
-         {"on", &C::on, "When parents give birth.",
-          Choices{choice(On::life, "life", "all their life long, `rate` a second, one draw for each parent"),
-                  choice(On::death, "death", "at the end of their lifetime, or absorbed by a surface"),
-                  choice(On::impact, "impact", "at impacts of at least `threshold_impulse`")}},
-         {"count", &C::count, between(0.0, 1e6), "", "Children of one death or impact, rounded to whole numbers."},
-         {"threshold_impulse", &C::threshold_impulse, kNotNegative, "N s",
-          "Least impulse of an impact that gives birth."},
-         {"share", &C::share,
-          "true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share, "
-          "radii follow at the same density, and `speed` says how fast they fly apart.",
-          Without{"true for impact, false otherwise"}},
-         {"recursive", &C::recursive, "true: the children are parents too, in turn, up to `simulation.max_depth`."},
-         {"inherit_velocity", &C::inherit_velocity, kCoordinate, "",
-          "Part of the parent's velocity that a child begins with; 1 when sharing."},
-         {"inherit_color", &C::inherit_color, kFraction, "",
-          "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken."}});
-}
-
 std::vector<Variant> shapes() {
-    using Disk = DiskShape;
-    using Ball = SphereShape;
-    return {variant<PointShape>("point", "All at one point.", {center<PointShape>()}),
-            variant<Disk>(
-                "disk", "Uniform on a flat disk.",
-                {center<Disk>(),
-                 {"normal", &Disk::normal, kCoordinate, "", "Normal of the disk, of any length.", kRequired, kNotZero},
-                 radius<Disk>()}),
-            variant<BoxShape>(
-                "box", "Uniform in a box along the axes.",
-                {center<BoxShape>(), {"size", &BoxShape::size, kLengthOrZero, "m", "Full edge lengths.", kRequired}}),
-            variant<Ball>("sphere", "Uniform in a ball, or on its surface.",
-                          {center<Ball>(),
-                           radius<Ball>(),
-                           {"surface", &Ball::surface, "true: only on the surface, launched outward."}}),
-            mesh_variant(),
-            cone_variant(),
-            child_variant()};
+    std::vector<Variant> all = simple_shapes();
+    all.insert(all.end() - 1, mesh_variant());
+    all.push_back(child_variant());
+    return all;
 }
 
 const MeshShape* mesh_collider(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view) {
@@ -193,12 +129,8 @@ std::shared_ptr<const TriangleMesh> surface_of(SceneContext& context, const Simu
 }
 
 EmitterShape shape_of(SceneContext& context, const SimulationSetup& setup, const ObjectView& view) {
-    if (view.type() == "point") return view.read<PointShape>();
-    if (view.type() == "disk") return view.read<DiskShape>();
-    if (view.type() == "box") return view.read<BoxShape>();
-    if (view.type() == "sphere") return view.read<SphereShape>();
-    if (view.type() == "cone") return view.read<ConeShape>();
-    if (view.type() != "mesh") return PointShape{};  // of a child, or refused
+    if (view.type() == "child") return view.has("cloud") ? simple_shape_of(view.object("cloud")) : PointShape{};
+    if (view.type() != "mesh") return simple_shape_of(view);
     const auto surface = surface_of(context, setup, view);
     if (view.read<MeshKeys>().volume) return MeshVolumeShape{surface};
     return MeshSurfaceShape{surface};
@@ -239,7 +171,9 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
         return;
     }
     if (view.type() == "child") {
-        context.error(view, "frame", "children are born where their parents are, expected an emitter of another kind");
+        context.error(view, "frame",
+                      "children are born where their parents are, expected an emitter of another kind, or a \"cloud\", "
+                      "which goes with its parent");
         return;
     }
     if (!is_frame_named(context, view, *setup.frames)) return;
@@ -312,74 +246,6 @@ void check_volume(const SceneContext& context, const ObjectView& view, const Emi
     }
 }
 
-// The rule of an emitter of type child. The parent's number is found when all emitters are known.
-ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
-    ParentRule rule = view.read<ChildKeys>();
-    if (!view.has("share")) rule.share = rule.on == BirthEvent::impact;
-    for (const char* const key : {"burst", "start", "stop", "rate_per_frame", "rate_per_area"}) {
-        if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
-    }
-    if (rule.share && rule.on == BirthEvent::life) {
-        context.error(view, "share",
-                      "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
-    }
-    if (rule.share && view.has("particle_radius")) {
-        context.error(view, "particle_radius", "radii follow from the parent's when it is shared out, leave it out");
-    }
-    if (rule.on != BirthEvent::life && view.has("rate")) {
-        context.error(view, "rate", "only goes together with \"on\": \"life\"; expected \"count\"");
-    }
-    if (rule.on == BirthEvent::life && most_of(emitter.rate) == 0.0) {
-        context.warn(view, "emits nothing: it has no rate");
-    }
-    return rule;
-}
-
-void find_parents(const SceneContext& context, SimulationSetup& setup) {
-    const std::vector<ObjectView> views = context.objects("emitters");
-    std::vector<std::string_view> names;
-    for (const EmitterDescription& emitter : setup.emitters) names.push_back(emitter.name);
-    for (std::size_t k = 0; k < views.size(); ++k) {
-        if (!setup.emitters[k].parent || !views[k].has("parent")) continue;
-        const std::string name = views[k].text("parent");
-        const auto found = std::find(names.begin(), names.end(), name);
-        if (found == names.end()) {
-            context.error(views[k], "parent", unknown_name("emitter", name, names));
-        } else {
-            setup.emitters[k].parent->emitter = static_cast<std::uint32_t>(found - names.begin());
-        }
-    }
-}
-
-// Children whose ancestors lead back to themselves wait for each other for ever.
-void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
-    const std::vector<ObjectView> views = context.objects("emitters");
-    for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
-        std::size_t ancestor = k;
-        for (std::size_t n = 0; n < views.size() && setup.emitters[ancestor].parent; ++n) {
-            ancestor = setup.emitters[ancestor].parent->emitter;
-            if (ancestor != k) continue;
-            context.warn(views[k], "parent", "leads back to this emitter, which no other begins: nothing is born here");
-            break;
-        }
-    }
-}
-
-// Two emitters cannot have the same parents to share out.
-void check_shares(const SceneContext& context, const SimulationSetup& setup) {
-    const std::vector<ObjectView> views = context.objects("emitters");
-    std::set<std::pair<std::uint32_t, BirthEvent>> taken;
-    for (std::size_t k = 0; k < views.size(); ++k) {
-        const auto& rule = setup.emitters[k].parent;
-        if (!rule || !rule->share) continue;
-        bool free = taken.insert({rule->emitter, rule->on}).second;
-        if (rule->recursive) free = taken.insert({static_cast<std::uint32_t>(k), rule->on}).second && free;
-        if (!free) {
-            context.error(views[k], "parent", "another emitter shares out the same parents at the same event");
-        }
-    }
-}
-
 }  // namespace
 
 const ObjectSpec& emitter_spec() {
@@ -416,9 +282,7 @@ void build_emitters(SceneContext& context, SimulationSetup& setup) {
         }
         setup.emitters.push_back(std::move(emitter));
     }
-    find_parents(context, setup);
-    warn_of_circles(context, setup);
-    check_shares(context, setup);
+    check_parents(context, setup);
 }
 
 }  // namespace ricochet::detail

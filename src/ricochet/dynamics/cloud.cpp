@@ -1,0 +1,94 @@
+#include "ricochet/dynamics/cloud.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/portable_math.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kTwoPi = 6.28318530717958647692;
+
+/// Decay of what is pulled back and damped: d(t) = c d0 + s (v0 + g d0) and d'(t) = c v0 - s (g v0 + pull d0), with g
+/// half of the damping.
+struct Decay {
+    double c = 1.0;
+    double s = 0.0;
+};
+
+/// sin(x) / x or sinh(x) / x near 0, by x^2 with its sign; the next term is below rounding.
+double near_zero(double square) { return 1.0 + square / 6.0 * (1.0 + square / 20.0); }
+
+Decay decay_of(const CloudRule& rule, double t) {
+    constexpr double kSmallSquare = 1e-6;
+    const double half = 0.5 * rule.damping;
+    const double square = half * half - rule.pull;  // of the rate, where it is overdamped
+    const double fading = portable_exp(-half * t);
+    if (square < 0.0) {
+        const double turns = std::sqrt(-square) * t / kTwoPi;
+        const double sine =
+            -square * t * t < kSmallSquare ? t * near_zero(square * t * t) : sine_of_turns(turns) / std::sqrt(-square);
+        return {fading * sine_of_turns(turns + 0.25), fading * sine};
+    }
+    const double rate = std::sqrt(square);
+    const double slow = portable_exp((rate - half) * t);
+    const double fast = portable_exp((-rate - half) * t);
+    const double sine =
+        square * t * t < kSmallSquare ? fading * t * near_zero(square * t * t) : (slow - fast) / (2.0 * rate);
+    return {0.5 * (slow + fast), sine};
+}
+
+}  // namespace
+
+PhaseState turned_place(const CloudRule& rule, const Vec3& place, double age) {
+    if (rule.turning == Vec3{}) return {place, {}};
+    const double rate = length(rule.turning);
+    const Vec3 axis = rule.turning / rate;
+    const double turns = rate * age / kTwoPi;
+    const Vec3 along = dot(axis, place) * axis;
+    const Vec3 across = place - along;
+    const Vec3 now = along + sine_of_turns(turns + 0.25) * across + sine_of_turns(turns) * cross(axis, place);
+    return {now, cross(rule.turning, now)};
+}
+
+double cloud_turn(const CloudRule& rule, double duration) {
+    return duration * std::max({length(rule.turning), std::sqrt(rule.pull), rule.damping});
+}
+
+PhaseState CloudMember::place_at(double time) const {
+    const PhaseState about = turned_place(rule_, place_, time - birth_time_);
+    const double s = std::clamp(time - begin_, 0.0, parent_.duration);
+    return {parent_.position(s) + about.position, parent_.velocity(s) + about.velocity};
+}
+
+PhaseState CloudMember::after(const PhaseState& state, double from, double to) const {
+    const PhaseState old_place = place_at(from);
+    const PhaseState new_place = place_at(to);
+    const Vec3 off = state.position - old_place.position;
+    const Vec3 speed = state.velocity - old_place.velocity;
+    const double duration = to - from;
+    if (rule_.pull == 0.0 && rule_.damping == 0.0) {
+        return {flush_tiny(new_place.position + (off + duration * speed)), new_place.velocity + speed};
+    }
+    const Decay decay = decay_of(rule_, duration);
+    const double half = 0.5 * rule_.damping;
+    const Vec3 off_then = decay.c * off + decay.s * (speed + half * off);
+    const Vec3 speed_then = decay.c * speed - decay.s * (half * speed + rule_.pull * off);
+    return {flush_tiny(new_place.position + off_then), new_place.velocity + speed_then};
+}
+
+Vec3 CloudMember::acceleration(const ForceInput& input) const {
+    const double s = std::clamp(input.time - begin_, 0.0, parent_.duration);
+    Vec3 sum = 2.0 * parent_.c[2] + (6.0 * s) * parent_.c[3];
+    if (rule_.turning != Vec3{}) {
+        const PhaseState about = turned_place(rule_, place_, input.time - birth_time_);
+        sum += cross(rule_.turning, about.velocity);
+    }
+    if (rule_.pull == 0.0 && rule_.damping == 0.0) return sum;
+    const PhaseState place = place_at(input.time);
+    return sum - rule_.pull * (input.position - place.position) - rule_.damping * (input.velocity - place.velocity);
+}
+
+}  // namespace ricochet

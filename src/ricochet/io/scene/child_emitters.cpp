@@ -1,0 +1,232 @@
+// Emitters of the type child: particles that are born of particles, and clouds that go with them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/cloud.h"
+#include "ricochet/io/scene/context.h"
+
+namespace ricochet::detail {
+namespace {
+
+// What an emitter of type child says; its parent's number is found when all emitters are known.
+struct ChildKeys : ParentRule {
+    std::string parent;
+};
+
+template <class Shape>
+Field<Shape> center() {
+    return {"center", &Shape::center, kCoordinate, "m", "Its centre."};
+}
+template <class Shape>
+Field<Shape> radius() {
+    return {"radius", &Shape::radius, kLength, "m", "Its radius.", kRequired};
+}
+
+Variant cone_variant() {
+    using C = ConeShape;
+    return variant<C>(
+        "cone", "Uniform in a cone, launched along the line from its tip.",
+        {{"apex", &C::apex, kCoordinate, "m", "Its tip."},
+         {"axis", &C::axis, kCoordinate, "", "From the tip into the cone, of any length.", kRequired, kNotZero},
+         {"angle", &C::angle_degrees, between(0.0, 89.9), "degrees", "Between the axis and the side.", kRequired},
+         {"height", &C::height, kLength, "m", "Its height.", kRequired}});
+}
+
+void find_parents(const SceneContext& context, SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::vector<std::string_view> names;
+    for (const EmitterDescription& emitter : setup.emitters) names.push_back(emitter.name);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        if (!setup.emitters[k].parent || !views[k].has("parent")) continue;
+        const std::string name = views[k].text("parent");
+        const auto found = std::find(names.begin(), names.end(), name);
+        if (found == names.end()) {
+            context.error(views[k], "parent", unknown_name("emitter", name, names));
+        } else {
+            setup.emitters[k].parent->emitter = static_cast<std::uint32_t>(found - names.begin());
+        }
+    }
+}
+
+// Children whose ancestors lead back to themselves wait for each other for ever.
+void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
+        std::size_t ancestor = k;
+        for (std::size_t n = 0; n < views.size() && setup.emitters[ancestor].parent; ++n) {
+            ancestor = setup.emitters[ancestor].parent->emitter;
+            if (ancestor != k) continue;
+            context.warn(views[k], "parent", "leads back to this emitter, which no other begins: nothing is born here");
+            break;
+        }
+    }
+}
+
+// Two emitters cannot have the same parents to share out.
+void check_shares(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    std::set<std::pair<std::uint32_t, BirthEvent>> taken;
+    for (std::size_t k = 0; k < views.size(); ++k) {
+        const auto& rule = setup.emitters[k].parent;
+        if (!rule || !rule->share) continue;
+        bool free = taken.insert({rule->emitter, rule->on}).second;
+        if (rule->recursive) free = taken.insert({static_cast<std::uint32_t>(k), rule->on}).second && free;
+        if (!free) {
+            context.error(views[k], "parent", "another emitter shares out the same parents at the same event");
+        }
+    }
+}
+
+}  // namespace
+
+const ObjectSpec& cloud_spec() {
+    using C = CloudRule;
+    static const ObjectSpec spec = object<C>(
+        "cloud",
+        "Children that go with their parent. The shape, in coordinates about the parent, says where their places are.",
+        {{"turning", &C::turning, kCoordinate, "rad/s", "How fast places turn about the parent, along the axis."},
+         {"pull", &C::pull, kNotNegative, "1/s^2",
+          "Acceleration towards its place of what has been pushed off it, for each metre that it is off."},
+         {"damping", &C::damping, kNotNegative, "1/s",
+          "Acceleration against the velocity relative to its place, for each m/s."},
+         {"parent_ends", &C::end, "What the children do from their parent's end on.",
+          Choices{choice(CloudEnd::free, "free", "they fly on by themselves, as any particles"),
+                  choice(CloudEnd::die, "die", "they end with it")}}},
+        simple_shapes());
+    return spec;
+}
+
+std::vector<Variant> simple_shapes() {
+    using Disk = DiskShape;
+    using Ball = SphereShape;
+    return {variant<PointShape>("point", "All at one point.", {center<PointShape>()}),
+            variant<Disk>(
+                "disk", "Uniform on a flat disk.",
+                {center<Disk>(),
+                 {"normal", &Disk::normal, kCoordinate, "", "Normal of the disk, of any length.", kRequired, kNotZero},
+                 radius<Disk>()}),
+            variant<BoxShape>(
+                "box", "Uniform in a box along the axes.",
+                {center<BoxShape>(), {"size", &BoxShape::size, kLengthOrZero, "m", "Full edge lengths.", kRequired}}),
+            variant<Ball>("sphere", "Uniform in a ball, or on its surface.",
+                          {center<Ball>(),
+                           radius<Ball>(),
+                           {"surface", &Ball::surface, "true: only on the surface, launched outward."}}),
+            cone_variant()};
+}
+
+EmitterShape simple_shape_of(const ObjectView& view) {
+    if (view.type() == "disk") return view.read<DiskShape>();
+    if (view.type() == "box") return view.read<BoxShape>();
+    if (view.type() == "sphere") return view.read<SphereShape>();
+    if (view.type() == "cone") return view.read<ConeShape>();
+    if (view.type() == "point") return view.read<PointShape>();
+    return PointShape{};  // of one that was refused
+}
+
+Variant child_variant() {
+    using C = ChildKeys;
+    using On = BirthEvent;
+    return variant<C>(
+        "child",
+        "Where another emitter's particles are, launched from their position and velocity; `burst`, `start`, `stop`, "
+        "`rate_per_frame` and `rate_per_area` do not apply.",
+        {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
+         {"on", &C::on, "When parents give birth.",
+          Choices{choice(On::life, "life", "all their life long, `rate` a second, one draw for each parent"),
+                  choice(On::death, "death", "at the end of their lifetime, or absorbed by a surface"),
+                  choice(On::impact, "impact", "at impacts of at least `threshold_impulse`"),
+                  choice(On::birth, "birth", "when they are born themselves")}},
+         {"count", &C::count, between(0.0, 1e6), "",
+          "Children of one death, impact or birth, rounded to whole numbers."},
+         {"threshold_impulse", &C::threshold_impulse, kNotNegative, "N s",
+          "Least impulse of an impact that gives birth."},
+         {"share", &C::share,
+          "true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share, "
+          "radii follow at the same density, and `speed` says how fast they fly apart.",
+          Without{"true for impact, false otherwise"}},
+         {"recursive", &C::recursive, "true: the children are parents too, in turn, up to `simulation.max_depth`."},
+         {"inherit_velocity", &C::inherit_velocity, kCoordinate, "",
+          "Part of the parent's velocity that a child begins with; 1 when sharing."},
+         {"inherit_color", &C::inherit_color, kFraction, "",
+          "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken."},
+         {"cloud", &C::cloud,
+          "The children go with their parent wherever it flies and bounces, each at a place of its own about it.",
+          &cloud_spec(), Without{"they fly by themselves"}}});
+}
+
+// The rule of an emitter of type child. The parent's number is found when all emitters are known.
+ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
+    ParentRule rule = view.read<ChildKeys>();
+    if (!view.has("share")) rule.share = rule.on == BirthEvent::impact && !rule.cloud;
+    for (const char* const key : {"burst", "start", "stop", "rate_per_frame", "rate_per_area"}) {
+        if (view.has(key)) context.error(view, key, "is not for emitters of type \"child\", leave it out");
+    }
+    if (rule.share && (rule.on == BirthEvent::life || rule.on == BirthEvent::birth)) {
+        context.error(view, "share",
+                      "a parent that lives on cannot be shared out; expected \"on\": \"death\" or \"impact\"");
+    }
+    if (rule.share && view.has("particle_radius")) {
+        context.error(view, "particle_radius", "radii follow from the parent's when it is shared out, leave it out");
+    }
+    if (rule.on != BirthEvent::life && view.has("rate")) {
+        context.error(view, "rate", "only goes together with \"on\": \"life\"; expected \"count\"");
+    }
+    if (rule.cloud && (rule.share || rule.on == BirthEvent::death)) {
+        context.error(
+            view, "cloud",
+            "a parent that has ended leads no cloud; expected \"on\": \"birth\", \"life\" or \"impact\", and no "
+            "\"share\"");
+    }
+    if (rule.cloud && rule.inherit_velocity != 1.0) {
+        context.error(view, "inherit_velocity", "what goes with its parent has all of its velocity, leave it out");
+    }
+    if (rule.on == BirthEvent::life && emitter.rate.mean + emitter.rate.spread == 0.0) {
+        context.warn(view, "emits nothing: it has no rate");
+    }
+    return rule;
+}
+
+void check_parents(const SceneContext& context, SimulationSetup& setup) {
+    find_parents(context, setup);
+    warn_of_circles(context, setup);
+    check_shares(context, setup);
+}
+
+void check_clouds(const SceneContext& context, const SimulationSetup& setup) {
+    const std::vector<ObjectView> views = context.objects("emitters");
+    const SimulationOptions& options = setup.options;
+    for (std::size_t k = 0; k < views.size() && k < setup.emitters.size(); ++k) {
+        if (!is_cloud(setup.emitters[k])) continue;
+        const auto refuse = [&](bool refused, std::string_view what) {
+            if (refused) context.error(views[k], "cloud", fmt::format("does not go together with {}", what));
+        };
+        refuse(options.response != ResponseKind::exact,
+               fmt::format("the response \"{}\", expected \"exact\"", name_of(options.response)));
+        refuse(options.flow != nullptr, "a flow that carries the particles, expected \"motion\": \"forces\"");
+        refuse(options.particle_contacts.has_value(),
+               "\"particle_contacts\": spheres of clouds would have to push their parents; leave one of both out");
+        refuse(!setup.springs.empty() || !context.objects("particle_forces").empty(),
+               "springs and forces between particles, which would have to act on parents too; leave one of both out");
+        refuse(!setup.bodies.empty(),
+               "a frame's \"body\", which impulses move: give that frame \"motions\", or leave out the cloud");
+        refuse(std::any_of(setup.colliders.begin(), setup.colliders.end(), is_deforming),
+               "meshes that deform: give them a shape that stays, or leave out the cloud");
+        const double turn = cloud_turn(*setup.emitters[k].parent->cloud, options.time_step);
+        if (turn <= kMostCloudTurnOfStep) continue;
+        context.error(
+            views[k], "cloud",
+            fmt::format("turns or swings by {:.3g} rad in a time step of {:g} s (by turning, the root of pull, "
+                        "or damping), expected at most {:g}: take a shorter time step",
+                        turn, options.time_step, kMostCloudTurnOfStep));
+    }
+}
+
+}  // namespace ricochet::detail

@@ -1,0 +1,292 @@
+#include "ricochet/simulation/cloud_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/run_recorder.h"
+
+namespace ricochet {
+namespace {
+
+/// Places turn and what is pulled swings, whatever the run's own integrator makes of its forces: after a bounce the
+/// rest of a piece is a step of fourth order.
+std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
+    ResponseRules own = rules;
+    own.settings.integrator = IntegratorKind::rk4;
+    own.look_ahead = false;
+    return make_response(ResponseKind::exact, own);
+}
+
+MoverParts parts_with(const MoverParts& parts, const Response& response) {
+    return {parts.store,   parts.schedule,  parts.recorder, response,
+            parts.coupled, parts.offspring, parts.check,    parts.meter};
+}
+
+}  // namespace
+
+/// A child on its way through a step.
+struct CloudMotion::Journey {
+    std::size_t particle = 0;
+    double now = 0.0;    ///< s
+    double until = 0.0;  ///< s, of its life in the step
+    Track* track = nullptr;
+};
+
+CloudMotion::CloudMotion(const std::vector<Emitter>& emitters, const MoverParts& parts, ActiveMover& mover)
+    : emitters_(emitters),
+      store_(parts.store),
+      free_mover_(mover),
+      response_(response_of_clouds(parts.response.rules())),
+      mover_(parts_with(parts, *response_)),
+      has_children_(emitters.size(), 0) {
+    for (const Emitter& emitter : emitters) {
+        const auto& parent = emitter.description().parent;
+        if (!parent || !parent->cloud) continue;
+        has_children_[parent->emitter] = 1;
+        if (parent->recursive) has_children_[emitter.number()] = 1;
+    }
+}
+
+std::span<const FlightKnot> CloudMotion::knots_of(std::uint64_t id) const {
+    const auto found = tracks_.find(id);
+    return found == tracks_.end() ? std::span<const FlightKnot>() : found->second.knots;
+}
+
+const CloudRule& CloudMotion::rule_of(std::size_t i) const {
+    return *emitters_[store_.particles().origin[i].emitter].description().parent->cloud;
+}
+
+bool CloudMotion::is_parent(std::size_t i) const {
+    const std::uint32_t emitter = store_.particles().origin[i].emitter;
+    return emitter != kNoEmitter && has_children_[emitter] != 0;
+}
+
+bool CloudMotion::has_ended(std::size_t i, double time) const {
+    const Particles& p = store_.particles();
+    return p.absorbed[i] != 0 || p.birth_time[i] + p.lifetime[i] <= time;
+}
+
+bool CloudMotion::is_sound(std::size_t i, std::uint64_t next_id) const {
+    if (!leads(i)) return true;
+    const std::uint32_t emitter = store_.particles().origin[i].emitter;
+    if (emitter >= emitters_.size() || members_[i].parent >= next_id || !is_finite(members_[i].place)) return false;
+    const auto& parent = emitters_[emitter].description().parent;
+    return parent && parent->cloud;
+}
+
+void CloudMotion::compact(const std::vector<std::uint8_t>& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        if (keep[i] != 0) members_[kept++] = members_[i];
+    }
+    members_.resize(kept);
+}
+
+void CloudMotion::before_move(const ParticleRange& batch) {
+    const Particles& particles = store_.particles();
+    starts_.resize(batch.size());
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+        if (is_parent(i)) starts_[i - batch.begin] = {particles.position[i], particles.velocity[i]};
+    }
+}
+
+/// Of parents that go with nobody themselves.
+void CloudMotion::note_tracks(const ParticleRange& batch, const TimeSpan& step,
+                              const std::vector<BlockRecord>& blocks) {
+    std::vector<ContactRecord> all;
+    for (const BlockRecord& block : blocks) {
+        all.insert(all.end(), block.contact_records.begin(), block.contact_records.end());
+    }
+    const RecordsByParticle records(std::move(all));
+    const Particles& particles = store_.particles();
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+        if (!is_parent(i) || leads(i)) continue;
+        const std::uint64_t id = particles.id[i];
+        tracks_[id] = {flight_knots(particles, i, starts_[i - batch.begin], step.begin, step.end, records.of(id)),
+                       has_ended(i, step.end)};
+    }
+}
+
+/// The batch's children, those of each generation together.
+std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& batch) const {
+    std::vector<std::size_t> all;
+    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+        if (leads(i) && !store_.is_fixed(i)) all.push_back(i);
+    }
+    const auto generation = [&](std::size_t i) { return store_.particles().origin[i].generation; };
+    std::stable_sort(all.begin(), all.end(),
+                     [&](std::size_t a, std::size_t b) { return generation(a) < generation(b); });
+    std::vector<std::vector<std::size_t>> levels;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        if (k == 0 || generation(all[k]) != generation(all[k - 1])) levels.emplace_back();
+        levels.back().push_back(all[k]);
+    }
+    return levels;
+}
+
+void CloudMotion::move(const ParticleRange& batch, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    note_tracks(batch, step, blocks);
+    for (const std::vector<std::size_t>& level : levels_of(batch)) {
+        const std::size_t first = blocks.size();
+        blocks.resize(first + blocks_of(level.size()));
+        std::vector<Track> tracks(level.size());
+        parallel_for_blocks(level.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+            MoveScratch scratch;
+            mover_.prepare(scratch);
+            for (std::size_t k = begin; k < end; ++k) {
+                move_child(level[k], step, scratch, blocks[first + block], tracks[k]);
+            }
+            mover_.record_lists(scratch, blocks[first + block]);
+        });
+        for (std::size_t k = 0; k < level.size(); ++k) {
+            if (is_parent(level[k])) tracks_[store_.particles().id[level[k]]] = std::move(tracks[k]);
+        }
+    }
+}
+
+/// track: filled with what it has flown, where it leads others in turn.
+void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
+                             Track& track) {
+    Particles& particles = store_.particles();
+    const double death = particles.birth_time[i] + particles.lifetime[i];
+    Journey journey{i, std::max(step.begin, particles.birth_time[i]), std::min(step.end, death)};
+    if (is_parent(i)) {
+        journey.track = &track;
+        track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
+    }
+    const auto parent = tracks_.find(members_[i].parent);
+    const bool is_alone = parent == tracks_.end() || follow(journey, parent->second, scratch, record);
+    if (is_alone && particles.absorbed[i] == 0) {
+        part(i, journey.now);
+        const std::size_t first = scratch.records.size();
+        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !has_ended(i, journey.now)) {
+            free_mover_.move_one(i, {journey.now, journey.until}, scratch, record);
+            journey.now = journey.until;
+        }
+        if (journey.track != nullptr) {
+            const std::span<const ContactRecord> own(scratch.records.begin() + static_cast<std::ptrdiff_t>(first),
+                                                     scratch.records.end());
+            for (const ContactRecord& hit : own) {
+                track.knots.push_back({hit.time, hit.position, hit.velocity_before, hit.velocity_after});
+            }
+        }
+    }
+    if (journey.track == nullptr) return;
+    track.ends = has_ended(i, step.end);
+    if (particles.absorbed[i] != 0) return;
+    track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
+}
+
+/// Returns true where the parent has ended, and the child is alone from now on.
+bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record) {
+    const std::vector<FlightKnot>& knots = parent.knots;
+    for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+        const FlightKnot& from = knots[k];
+        const FlightKnot& to = knots[k + 1];
+        if (to.time < journey.now) continue;
+        if (!fly_along(journey, from, to, scratch, record)) return false;
+        const bool is_last = k + 2 == knots.size();  // what ends with an impact gives none of that to its children
+        if (!(is_last && parent.ends)) kick(journey, from, to, scratch);
+    }
+    return parent.ends && journey.now >= knots.back().time;
+}
+
+CloudMember CloudMotion::member_of(std::size_t i, const FlightKnot& from, const FlightKnot& to) const {
+    const double duration = to.time - from.time;
+    const Path path = duration > 0.0 ? hermite_path(from.position, from.after, to.position, to.before, duration)
+                                     : line_path(from.position, from.after, 0.0);
+    return {rule_of(i), path, from.time, members_[i].place, store_.particles().birth_time[i]};
+}
+
+/// Along one flight of the parent, whose end is an impact of it or the end of the step. False where the child's life in
+/// the step ends before.
+bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch,
+                            BlockRecord& record) {
+    const std::size_t i = journey.particle;
+    const CloudMember member = member_of(i, from, to);
+    const double begin = journey.now;
+    const double end = std::min(to.time, journey.until);
+    const double turn = cloud_turn(rule_of(i), std::max(0.0, end - begin));
+    const auto pieces = static_cast<int>(std::max(1.0, std::ceil(turn / kMostCloudTurn)));
+    for (int k = 1; k <= pieces && begin < end; ++k) {
+        fly_piece(journey, member, k == pieces ? end : begin + (end - begin) * k / pieces, scratch, record);
+        if (store_.is_fixed(i)) return false;
+    }
+    return end == to.time;
+}
+
+/// At the end of a flight of the parent: what its impact has changed its velocity by, its child's changes by too.
+void CloudMotion::kick(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch) {
+    const std::size_t i = journey.particle;
+    Particles& particles = store_.particles();
+    const Vec3 change = to.after - to.before;
+    if (change == Vec3{} || !(particles.birth_time[i] < to.time)) return;
+    const Vec3 before = particles.velocity[i];
+    if (particles.support[i][0] == kNoSupport) {
+        particles.velocity[i] += change;
+    } else {
+        const double held_for = to.time > from.time ? to.time - from.time : response_->rules().settings.time_step;
+        const CloudMember member = member_of(i, from, to);
+        mover_.kick(i, change, to.time, held_for, member, scratch);
+    }
+    if (journey.track == nullptr) return;
+    journey.track->knots.push_back({to.time, particles.position[i], before, particles.velocity[i]});
+}
+
+void CloudMotion::fly_piece(Journey& journey, const CloudMember& member, double until, MoveScratch& scratch,
+                            BlockRecord& record) {
+    const std::size_t i = journey.particle;
+    const Particles& particles = store_.particles();
+    const double begin = journey.now;
+    const PhaseState now{particles.position[i], particles.velocity[i]};
+    const PhaseState then = member.after(now, begin, until);
+    ForceInput start = store_.force_input(i, begin);
+    start.coupling = &member;
+    const Path path = hermite_path(now.position, now.velocity, then.position, then.velocity, until - begin);
+    const Flight plan{path, 2.0 * path.c[2], 0.0, start, then.velocity};
+    const std::size_t first = scratch.records.size();
+    const ActiveMover::Lead lead{plan, member};
+    mover_.move_one(i, {begin, until}, scratch, record, &lead);
+    journey.now = until;
+    if (journey.track == nullptr) return;
+    for (std::size_t k = first; k < scratch.records.size(); ++k) {
+        const ContactRecord& hit = scratch.records[k];
+        journey.track->knots.push_back({hit.time, hit.position, hit.velocity_before, hit.velocity_after});
+    }
+    if (particles.absorbed[i] != 0) return;
+    const Vec3& velocity = particles.velocity[i];
+    journey.track->knots.push_back({until, particles.position[i], velocity, velocity});
+}
+
+/// From a time, s, on it goes with nobody.
+void CloudMotion::part(std::size_t i, double time) {
+    Particles& particles = store_.particles();
+    const CloudEnd end = rule_of(i).end;
+    members_[i] = {};
+    if (end != CloudEnd::die) return;
+    double& lifetime = particles.lifetime[i];
+    const double birth = particles.birth_time[i];
+    lifetime = std::min(lifetime, std::max(0.0, time - birth));
+    while (lifetime > 0.0 && birth + lifetime > time) lifetime = std::nextafter(lifetime, 0.0);
+}
+
+void CloudMotion::part_from_leavers(const Retirement& retirement, double time) {
+    std::unordered_map<std::uint64_t, std::size_t> parents;
+    for (std::size_t i = 0; i < store_.size(); ++i) {
+        if (is_parent(i)) parents[store_.particles().id[i]] = i;
+    }
+    for (const std::vector<std::size_t>& level : levels_of({0, store_.size()})) {
+        for (const std::size_t i : level) {
+            const auto parent = parents.find(members_[i].parent);
+            const bool stays =
+                parent != parents.end() && retirement.departure_of(parent->second, time) == Departure::none;
+            if (!stays) part(i, time);
+        }
+    }
+}
+
+}  // namespace ricochet

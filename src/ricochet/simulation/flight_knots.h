@@ -1,0 +1,76 @@
+/// \file
+/// Private to the simulation: what a particle has flown in a step, as flights between knots.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ricochet/dynamics/flight.h"
+#include "ricochet/dynamics/particles.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/path.h"
+#include "ricochet/response/contact_record.h"
+
+namespace ricochet {
+
+/// A begin, an impact or an end.
+struct FlightKnot {
+    double time;    ///< s
+    Vec3 position;  ///< m
+    Vec3 before;    ///< m/s, velocity with which it arrives
+    Vec3 after;     ///< m/s
+};
+
+/// The cubic through both ends of a flight with their velocities, at a time, s, between them: exact for a steady
+/// acceleration.
+[[nodiscard]] inline PhaseState state_between(const FlightKnot& a, const FlightKnot& b, double time) {
+    const double duration = b.time - a.time;
+    if (!(duration > 0.0)) return {a.position, a.after};
+    const double s = std::clamp((time - a.time) / duration, 0.0, 1.0);
+    const Vec3 chord = b.position - a.position;
+    const Vec3 begin = duration * a.after - chord;
+    const Vec3 end = chord - duration * b.before;
+    return {flush_tiny(a.position + s * (chord + (1.0 - s) * ((1.0 - s) * begin + s * end))),
+            (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration};
+}
+
+/// Those of particle i, which began the step from..to, s, in the state `start` and now is where it has come to;
+/// records: of its impacts, in the order of time. What an impact has removed ends there.
+[[nodiscard]] inline std::vector<FlightKnot> flight_knots(const Particles& particles, std::size_t i,
+                                                          const PhaseState& start, double from, double to,
+                                                          std::span<const ContactRecord> records) {
+    const double begin = std::max(from, particles.birth_time[i]);
+    std::vector<FlightKnot> knots{{begin, start.position, start.velocity, start.velocity}};
+    for (const ContactRecord& record : records) {
+        knots.push_back({record.time, record.position, record.velocity_before, record.velocity_after});
+    }
+    if (particles.absorbed[i] != 0) return knots;
+    const double end = std::max(begin, std::min(to, particles.birth_time[i] + particles.lifetime[i]));
+    knots.push_back({end, particles.position[i], particles.velocity[i], particles.velocity[i]});
+    return knots;
+}
+
+/// Contact records by particle; those of one stay in their order.
+class RecordsByParticle {
+public:
+    explicit RecordsByParticle(std::vector<ContactRecord> records) : records_(std::move(records)) {
+        std::stable_sort(records_.begin(), records_.end(),
+                         [](const ContactRecord& a, const ContactRecord& b) { return a.particle < b.particle; });
+    }
+    [[nodiscard]] std::span<const ContactRecord> of(std::uint64_t id) const {
+        const auto first =
+            std::lower_bound(records_.begin(), records_.end(), id,
+                             [](const ContactRecord& record, std::uint64_t key) { return record.particle < key; });
+        auto last = first;
+        while (last != records_.end() && last->particle == id) ++last;
+        return {first, last};
+    }
+
+private:
+    std::vector<ContactRecord> records_;
+};
+
+}  // namespace ricochet

@@ -390,6 +390,17 @@ class CacheDeformation(Thing):
     _fixed = {"type": "cache"}
 
 
+class Drawing(Thing):
+    """What the particles of an emitter are drawn as, where that is not what all are.
+
+    particles: What particles are drawn as. Required.
+    sprite: A PNG file, with alpha or without: its longer edge is as long as the particle is thick.
+    mesh: A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.
+    turn: How sprites are turned.
+    turning: How fast sprites, and meshes of particles without a spin, turn on as they age. Unit: rad/s.
+    """
+
+
 class PointEmitter(Thing):
     """All at one point.
 
@@ -418,6 +429,7 @@ class PointEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -454,6 +466,7 @@ class DiskEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -492,6 +505,7 @@ class BoxEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -529,6 +543,7 @@ class SphereEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     center: Its centre. Unit: m. Default: [0, 0, 0].
@@ -567,6 +582,7 @@ class MeshEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     file: The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).
@@ -610,6 +626,7 @@ class ConeEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     apex: Its tip. Unit: m. Default: [0, 0, 0].
@@ -649,6 +666,7 @@ class ChildEmitter(Thing):
     particle_size: Radius that is drawn; collisions use particle_radius. Unit: m.
     attributes: Values of the scene's `attributes`, by name.
     material: Of which of `particle_contacts.materials` the particles are.
+    drawing: What its particles are drawn as.
     over_life: Factors over the lifetime; keys from 0 (birth) to 1 (end of life).
     over_age: Factors over the age in s.
     parent: Name of the emitter whose particles are the parents. Required.
@@ -1203,12 +1221,12 @@ class Picture(Thing):
     background: Red, green and blue behind everything, linear light.
     transparent: Nothing behind everything: an alpha channel in PNG files. Default: false.
     particles: What particles are drawn as.
-    shutter: How long it is open, up to the picture's time: moving particles blur. 0: not at all. Unit: s. Default:
-        0.
     sprite: A PNG file, with alpha or without: its longer edge is as long as the particle is thick.
     mesh: A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.
     turn: How sprites are turned.
     turning: How fast sprites, and meshes of particles without a spin, turn on as they age. Unit: rad/s.
+    shutter: How long it is open, up to the picture's time: moving particles blur. 0: not at all. Unit: s. Default:
+        0.
     black_body: Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as a
         white surface in the sun. Unit: K.
     stretch: Squash and stretch of spheres and meshes, at the same volume.

@@ -319,6 +319,17 @@ class CacheDeformation(Thing):
         start: Optional[float] = ...,
     ) -> None: ...
 
+class Drawing(Thing):
+    def __init__(
+        self,
+        *,
+        particles: str,
+        sprite: Optional[str] = ...,
+        mesh: Optional[str] = ...,
+        turn: Optional[str] = ...,
+        turning: Any = ...,
+    ) -> None: ...
+
 class PointEmitter(Thing):
     def __init__(
         self,
@@ -345,6 +356,7 @@ class PointEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -376,6 +388,7 @@ class DiskEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -409,6 +422,7 @@ class BoxEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -441,6 +455,7 @@ class SphereEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         center: Optional[Vector] = ...,
@@ -474,6 +489,7 @@ class MeshEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         file: Any = ...,
@@ -511,6 +527,7 @@ class ConeEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         apex: Optional[Vector] = ...,
@@ -545,6 +562,7 @@ class ChildEmitter(Thing):
         particle_size: Any = ...,
         attributes: Optional[Mapping[str, Any]] = ...,
         material: Optional[str] = ...,
+        drawing: Any = ...,
         over_life: Any = ...,
         over_age: Any = ...,
         parent: str,
@@ -1013,11 +1031,11 @@ class Picture(Thing):
         background: Optional[Vector] = ...,
         transparent: Optional[bool] = ...,
         particles: Optional[str] = ...,
-        shutter: Optional[float] = ...,
         sprite: Optional[str] = ...,
         mesh: Optional[str] = ...,
         turn: Optional[str] = ...,
         turning: Any = ...,
+        shutter: Optional[float] = ...,
         black_body: Optional[float] = ...,
         stretch: Any = ...,
         ground: Optional[float] = ...,

@@ -33,11 +33,7 @@ constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
                                                   {0.26, 0.19, 0.16},
                                                   {0.24, 0.26, 0.29}}};
 constexpr Vec3 kGlassColor{0.30, 0.36, 0.42};
-constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
-constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
 constexpr Vec3 kEmberColor{0.06, 0.055, 0.05};
-constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
-constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
 
 std::string known_arrays(const VtkPolyData& frame) {
     std::string names = kSpeed;
@@ -98,7 +94,10 @@ std::optional<ParticleDrawing> drawing_from_name(std::string_view name) {
 
 RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style,
                          double aspect)
-    : style_(std::move(style)), timeline_(folder) {
+    : style_(std::move(style)),
+      timeline_(folder),
+      colors_are_told_(!style_.color_by.empty()),
+      is_told_(style_.drawing != ParticleDrawing::automatic) {
     check_names("--hide", style_.hidden, folder);
     check_names("--glass", style_.glass, folder);
     choose_scenery(folder.info);
@@ -111,7 +110,7 @@ RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& 
     choose_camera(folder, aspect);
     find_hiding(folder, chosen);
     preview_.emplace(std::move(meshes_), planes_, camera_.target);
-    if (shape_mesh_) preview_->set_shape(*shape_mesh_);
+    if (!shapes_.empty()) preview_->set_shapes(shapes_);
 }
 
 void RunPictures::survey(const std::vector<FrameFile>& chosen) {
@@ -133,7 +132,9 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
 void RunPictures::choose_looks(const VtkPolyData& frame) {
     const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
     if (style_.color_by.empty()) {
-        plain_image_ = style_.drawing == ParticleDrawing::sprites && !has_colors;
+        plain_image_ = std::all_of(drawings_.begin(), drawings_.end(),
+                                   [](const Drawing& drawing) { return drawing.kind == ParticleDrawing::sprites; }) &&
+                       !has_colors;
         embers_ = style_.black_body && !plain_image_ && !has_colors;
         style_.color_by = has_colors ? std::string(kColorAttribute) : kSpeed;
     }
@@ -141,6 +142,7 @@ void RunPictures::choose_looks(const VtkPolyData& frame) {
     if (style_.drawing == ParticleDrawing::automatic) {
         const bool soft = find_array(frame.point_arrays, kOpacityAttribute) != nullptr;
         style_.drawing = soft ? ParticleDrawing::soft : ParticleDrawing::spheres;
+        drawings_[0].kind = style_.drawing;
     }
     const VtkArray* const sizes = find_array(frame.point_arrays, kSizeAttribute);
     if (sizes == nullptr) return;
@@ -245,84 +247,6 @@ std::vector<double> RunPictures::shown_radii(const VtkPolyData& frame) const {
     return radii;
 }
 
-// Particles at the ends of springs are shown by their threads and cloth, unless they are thicker.
-PreviewMoving RunPictures::moving(const Moment& moment) {
-    const VtkPolyData& frame = moment.frame;
-    const std::vector<Vec3> shown = colors(frame);
-    const std::vector<double> radii = shown_radii(frame);
-    const VtkArray* own = find_array(frame.point_arrays, "radius");
-    const std::vector<double> own_radii = own == nullptr ? std::vector<double>(radii.size(), 0.0) : scalar_values(*own);
-    std::vector<double> thread(frame.points.size(), 0.0);  // thickest one at the particle
-    PreviewMoving moving;
-    moving.lines.points = frame.points;
-    for (const auto& [a, b] : frame.lines) {
-        const bool have_size = own_radii[a] > 0.0 && own_radii[b] > 0.0;
-        const double radius = std::min(radii[a], radii[b]) * (have_size ? 1.0 : kThreadRadius);
-        moving.lines.ends.push_back({a, b});
-        moving.lines.radii.push_back(radius);
-        moving.lines.colors.push_back(kRopeColor);
-        if (!emissions_.empty()) moving.lines.emissions.emplace_back();
-        thread[a] = std::max(thread[a], radius);
-        thread[b] = std::max(thread[b], radius);
-    }
-    std::vector<bool> is_cloth(frame.points.size(), false);
-    for (const Triangle& triangle : frame.triangles) {
-        for (const std::uint32_t corner : triangle) is_cloth[corner] = true;
-    }
-    moving.cloth.mesh = {frame.points, frame.triangles};
-    moving.cloth.color = kClothColor;
-    std::vector<std::size_t> drawn;
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-        const bool is_thread = thread[i] > 0.0 && (own_radii[i] == 0.0 || radii[i] <= kBead * thread[i]);
-        if (is_thread || is_cloth[i]) continue;
-        drawn.push_back(i);
-        moving.spheres.centers.push_back(frame.points[i]);
-        moving.spheres.radii.push_back(radii[i]);
-        moving.spheres.colors.push_back(shown[i]);
-        if (!emissions_.empty()) moving.spheres.emissions.push_back(emissions_[i]);
-    }
-    if (!moment.paths.empty()) set_ways(moment.paths, drawn, moving);
-    if (draws_copies()) make_copies(moment, drawn, moving);
-    return moving;
-}
-
-// The spheres shown on their ways while the shutter is open; as streaks they become threads.
-void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
-                           PreviewMoving& moving) const {
-    PreviewSpheres& spheres = moving.spheres;
-    if (style_.drawing == ParticleDrawing::streaks) {
-        constexpr double kSagitta = 0.05;  // of a thread's radius
-        for (std::size_t k = 0; k < shown.size(); ++k) {
-            const std::vector<Vec3> points =
-                path_points(paths.nodes[shown[k]], paths.born[shown[k]], paths.close, kSagitta * spheres.radii[k]);
-            const auto first = static_cast<std::uint32_t>(moving.lines.points.size());
-            moving.lines.points.insert(moving.lines.points.end(), points.begin(), points.end());
-            for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
-                moving.lines.ends.push_back({first + i, first + i + 1});
-                moving.lines.radii.push_back(spheres.radii[k]);
-                moving.lines.colors.push_back(spheres.colors[k]);
-                if (!spheres.emissions.empty()) moving.lines.emissions.push_back(spheres.emissions[k]);
-            }
-        }
-        spheres = {};
-        return;
-    }
-    // Bends of gravity need few steps; the corner of an impact is cut by at most a step.
-    const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
-        return std::any_of(nodes.begin(), nodes.end(),
-                           [](const PathNode& node) { return node.velocity_before != node.velocity_after; });
-    });
-    const std::size_t steps = bends ? kMostWaySteps : kFewWaySteps;
-    spheres.ways.resize(shown.size());
-    for (std::size_t k = 0; k < shown.size(); ++k) {
-        for (std::size_t step = 0; step < steps; ++step) {
-            const double part = static_cast<double>(step) / static_cast<double>(steps - 1);
-            const double time = (1.0 - part) * paths.born[shown[k]] + part * paths.close;
-            spheres.ways[k].push_back(position_on_path(paths.nodes[shown[k]], time));
-        }
-    }
-}
-
 std::vector<Vec3> RunPictures::colors(const VtkPolyData& frame) const {
     if (plain_image_) return std::vector<Vec3>(frame.points.size(), Vec3{1, 1, 1});
     if (embers_) return std::vector<Vec3>(frame.points.size(), kEmberColor);
@@ -351,37 +275,12 @@ std::vector<Vec3> RunPictures::emissions(const VtkPolyData& frame) const {
 }
 
 // Discs and images have one colour for their own light and that which falls on them.
-std::vector<Vec3> RunPictures::sprite_colors(const VtkPolyData& frame) const {
+std::vector<Vec3> RunPictures::sprite_colors(const VtkPolyData& frame, ParticleDrawing kind) const {
     if (emissions_.empty()) return colors(frame);
-    if (style_.drawing == ParticleDrawing::glow) return emissions_;
+    if (kind == ParticleDrawing::glow) return emissions_;
     std::vector<Vec3> sum = colors(frame);
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += emissions_[i] / kSpriteDaylight;
     return sum;
-}
-
-Image RunPictures::picture(double time, const PictureOptions& options) {
-    Moment moment = timeline_.at(time, shutter());
-    const VtkPolyData& frame = moment.frame;
-    place_camera(frame);
-    emissions_ = emissions(frame);
-    PreviewMoving shown = moving(moment);
-    add_moving(std::move(moment.moving), shown);
-    if (!draws_sprites()) {
-        preview_->set_moving(std::move(shown));
-        return render_picture(*preview_, camera_, options);
-    }
-    shown.spheres = {};
-    preview_->set_moving(std::move(shown));
-    const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
-    std::vector<double> opacities =
-        own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
-    const bool glow = style_.drawing == ParticleDrawing::glow;
-    Sprites sprites{frame.points, shown_radii(frame), sprite_colors(frame), std::move(opacities), glow};
-    if (sprite_) {
-        sprites.image = sprite_;
-        sprites.angles = sprite_angles(frame);
-    }
-    return render_picture(*preview_, camera_, options, sprites);
 }
 
 }  // namespace ricochet::cli

@@ -1,6 +1,8 @@
 // Pictures and films of a run: its folder on one side, the renderer on the other.
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -26,6 +28,8 @@
 #include "ricochet/render/picture.h"
 #include "ricochet/render/preview.h"
 #include "ricochet/render/sprite_image.h"
+#include "ricochet/render/sprites.h"
+#include "ricochet/render/turning.h"
 
 namespace ricochet::cli {
 
@@ -84,6 +88,22 @@ struct ParticleShape {
     std::optional<StretchDescription> stretch;
 };
 
+/// What particles are drawn as, with all that this needs: those of an emitter, or all.
+struct Drawing {
+    ParticleDrawing kind = ParticleDrawing::automatic;
+    ParticleShape shape;
+    std::uint32_t mesh = 0;  ///< number of the mesh that they are copies of, from 1 on; 0: a ball
+    std::shared_ptr<const SpriteImage> sprite;
+
+    /// True for discs or images.
+    [[nodiscard]] bool is_flat() const {
+        return kind == ParticleDrawing::soft || kind == ParticleDrawing::glow || kind == ParticleDrawing::sprites;
+    }
+    [[nodiscard]] bool is_copy() const {
+        return kind == ParticleDrawing::meshes || (kind == ParticleDrawing::spheres && shape.stretch);
+    }
+};
+
 /// How a run is shown.
 struct PictureStyle {
     /// Array of the frames; speed is the length of velocity. Empty: the particles' own colours, or speed without.
@@ -131,10 +151,9 @@ public:
     /// True when the frames themselves say the colours.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
-    /// True when particles are discs or images.
+    /// True when particles are discs or images, some of them at least.
     [[nodiscard]] bool draws_sprites() const {
-        return style_.drawing == ParticleDrawing::soft || style_.drawing == ParticleDrawing::glow ||
-               style_.drawing == ParticleDrawing::sprites;
+        return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& d) { return d.is_flat(); });
     }
     /// True when sprites have the colours of their image alone.
     [[nodiscard]] bool shows_image_colors() const { return plain_image_; }
@@ -166,32 +185,51 @@ private:
     void choose_looks(const VtkPolyData& frame);
     [[nodiscard]] std::vector<Vec3> colors(const VtkPolyData& frame) const;
     [[nodiscard]] std::vector<Vec3> emissions(const VtkPolyData& frame) const;
-    [[nodiscard]] std::vector<Vec3> sprite_colors(const VtkPolyData& frame) const;
+    [[nodiscard]] std::vector<Vec3> sprite_colors(const VtkPolyData& frame, ParticleDrawing kind) const;
     [[nodiscard]] double visible_radius() const;
     [[nodiscard]] std::vector<double> shown_radii(const VtkPolyData& frame) const;
-    [[nodiscard]] PreviewMoving moving(const Moment& moment);
-    void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewMoving& moving) const;
     void place_camera(const VtkPolyData& frame);
     [[nodiscard]] Vec3 camera_place_in(const VtkPolyData& frame) const;
     void find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen);
     [[nodiscard]] bool hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const;
 
+    // How particles are drawn, run_particles.cpp.
+    /// Particles that are drawn alike, by their numbers in the frame.
+    struct Group {
+        const Drawing* drawing;
+        std::vector<std::size_t> shown;
+    };
+    [[nodiscard]] std::vector<Group> groups_of(const VtkPolyData& frame, const std::vector<bool>& left_out) const;
+    [[nodiscard]] std::vector<bool> add_springs(const VtkPolyData& frame, const std::vector<double>& radii,
+                                                PreviewMoving& moving) const;
+    [[nodiscard]] PreviewSpheres spheres_of(const Group& group, const VtkPolyData& frame,
+                                            const std::vector<Vec3>& colors, const std::vector<double>& radii) const;
+    void add_solid(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewMoving& moving);
+    void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    static void add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
+                            const PreviewSpheres& spheres, PreviewMoving& moving);
+    void add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const;
+
     // What particles are drawn as, run_shapes.cpp.
     void choose_shape(const RunFolder& folder);
+    void add_drawing(const RunFolder& folder, const ParticleDrawingDescription& own);
+    void load_drawing(Drawing& drawing, const std::filesystem::path& sprite, const std::filesystem::path& mesh);
     void widen_subject(const VtkPolyData& frame);
     void require_room_for_copies() const;
     [[nodiscard]] bool draws_copies() const;
-    void make_copies(const Moment& moment, const std::vector<std::size_t>& shown, PreviewMoving& moving);
-    [[nodiscard]] std::vector<AffineMap> turns_of(const VtkPolyData& frame, const std::vector<std::size_t>& shown);
-    void stretch_copies(const VtkPolyData& frame, const std::vector<std::size_t>& shown, PreviewMoving& moving);
-    [[nodiscard]] std::vector<double> sprite_angles(const VtkPolyData& frame) const;
+    void add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all);
+    [[nodiscard]] std::vector<AffineMap> turns_of(const VtkPolyData& frame, const Group& group) const;
+    void stretch_copies(const VtkPolyData& frame, const Group& group, const std::vector<double>& radii,
+                        PreviewCopies& copies);
+    [[nodiscard]] std::vector<double> sprite_angles(const VtkPolyData& frame, const Group& group) const;
 
     PictureStyle style_;
     RunTimeline timeline_;
     ViewSubject subject_;
     std::size_t most_particles_ = 0;
-    bool own_colors_ = false;  // colours are those of the frames
-    bool has_sizes_ = false;   // some particle has a size to be drawn with
+    bool own_colors_ = false;       // colours are those of the frames
+    bool colors_are_told_ = false;  // by the command line
+    bool has_sizes_ = false;        // some particle has a size to be drawn with
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;
@@ -201,9 +239,10 @@ private:
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
     std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them
     std::vector<PreviewPlane> planes_;
-    ParticleShape shape_;
-    std::optional<TriangleMesh> shape_mesh_;  // fitted into the ball of radius 1
-    std::shared_ptr<const SpriteImage> sprite_;
+    bool is_told_ = false;              // what particles are drawn as, by the command line
+    std::vector<Drawing> drawings_;     // the first: of those whose emitter says nothing
+    std::vector<TriangleMesh> shapes_;  // meshes that particles are copies of, fitted into the ball of radius 1
+    std::vector<Turn> turns_;           // of the particles of the frame that is drawn, where they spin
     bool plain_image_ = false;
     bool embers_ = false;
     std::vector<Vec3> emissions_;  // of the particles of the frame that is drawn; empty: none

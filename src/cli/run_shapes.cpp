@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -60,36 +61,63 @@ std::uint64_t id_of(const std::vector<std::int64_t>& ids, std::size_t i) {
 
 }  // namespace
 
+// What the command line says is for all particles.
 void RunPictures::choose_shape(const RunFolder& folder) {
     const std::filesystem::path own = folder.frames.front().path.parent_path();
+    Drawing common{style_.drawing, {}, 0, nullptr};
     if (const auto& picture = folder.info.picture) {
         if (style_.sprite.empty() && !picture->sprite.empty()) style_.sprite = own / picture->sprite;
         if (style_.mesh.empty() && !picture->mesh.empty()) style_.mesh = own / picture->mesh;
-        shape_ = {facing_of(picture->turn), picture->turning.value_or(MeanSpread{}), picture->stretch};
+        common.shape = {facing_of(picture->turn), picture->turning.value_or(MeanSpread{}), picture->stretch};
     }
-    if (style_.drawing == ParticleDrawing::sprites) {
-        if (style_.sprite.empty())
-            throw InputError("--draw sprites: the run has no sprite, expected --sprite FILE.png");
-        const Image image = read_png(style_.sprite);
-        require_memory(SpriteImage::bytes(static_cast<double>(image.rgb.size()) / 3.0), style_.sprite.string());
-        sprite_ = std::make_shared<const SpriteImage>(image);
+    load_drawing(common, style_.sprite, style_.mesh);
+    drawings_ = {common};
+    for (const ParticleDrawingDescription& drawing : folder.info.drawings) {
+        if (!is_told_) add_drawing(folder, drawing);
     }
-    if (style_.drawing == ParticleDrawing::meshes) {
-        if (style_.mesh.empty()) throw InputError("--draw meshes: the run has no mesh for it, expected --mesh FILE");
-        shape_mesh_ = fitted(read_mesh(style_.mesh, MeshContent::triangles).mesh, style_.mesh);
-        turning_ = RunTurning(folder.frames);
+    if (!shapes_.empty()) turning_ = RunTurning(folder.frames);
+}
+
+// Of the particles of some emitters.
+void RunPictures::add_drawing(const RunFolder& folder, const ParticleDrawingDescription& own) {
+    const std::filesystem::path files = folder.frames.front().path.parent_path();
+    const auto& picture = folder.info.picture;
+    Drawing drawing{drawing_from_name(own.particles).value_or(ParticleDrawing::spheres),
+                    {facing_of(own.turn), own.turning.value_or(MeanSpread{}),
+                     picture ? picture->stretch : std::optional<StretchDescription>{}},
+                    0,
+                    nullptr};
+    load_drawing(drawing, files / own.sprite, files / own.mesh);
+    drawings_.push_back(std::move(drawing));
+}
+
+void RunPictures::load_drawing(Drawing& drawing, const std::filesystem::path& sprite,
+                               const std::filesystem::path& mesh) {
+    if (drawing.kind == ParticleDrawing::sprites) {
+        if (sprite.empty()) throw InputError("--draw sprites: the run has no sprite, expected --sprite FILE.png");
+        const Image image = read_png(sprite);
+        require_memory(SpriteImage::bytes(static_cast<double>(image.rgb.size()) / 3.0), sprite.string());
+        drawing.sprite = std::make_shared<const SpriteImage>(image);
+    }
+    if (drawing.kind == ParticleDrawing::meshes) {
+        if (mesh.empty()) throw InputError("--draw meshes: the run has no mesh for it, expected --mesh FILE");
+        shapes_.push_back(fitted(read_mesh(mesh, MeshContent::triangles).mesh, mesh));
+        drawing.mesh = static_cast<std::uint32_t>(shapes_.size());
     }
 }
 
 bool RunPictures::draws_copies() const {
-    return style_.drawing == ParticleDrawing::meshes || (style_.drawing == ParticleDrawing::spheres && shape_.stretch);
+    return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& drawing) { return drawing.is_copy(); });
 }
 
 // Large ones reach further than their middles.
 void RunPictures::widen_subject(const VtkPolyData& frame) {
-    if (!sprite_ && !draws_copies()) return;
+    const bool has_images = std::any_of(drawings_.begin(), drawings_.end(),
+                                        [](const Drawing& drawing) { return drawing.sprite != nullptr; });
+    if (!has_images && !draws_copies()) return;
     const auto& radii = column<double>(frame, has_sizes_ ? kSizeAttribute : std::string_view("radius"));
-    const double longest = shape_.stretch && draws_copies() ? shape_.stretch->most : 1.0;
+    const auto& stretch = drawings_[0].shape.stretch;
+    const double longest = stretch && draws_copies() ? stretch->most : 1.0;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
         const double reach = style_.particle_radius.value_or(longest * value_of(radii, i, 0.0));
         if (!(reach > 0.0)) continue;
@@ -105,28 +133,29 @@ void RunPictures::require_room_for_copies() const {
     constexpr double kWayPoint = 300.0;  // twice as a point, and in the hierarchy
     constexpr double kTriangle = 400.0;
     const double ways = shutter() > 0.0 ? kWayPoint * (timeline_.knows_impacts() ? kMostWaySteps : kFewWaySteps) : 0.0;
-    const double triangles = shape_mesh_ ? static_cast<double>(shape_mesh_->triangles.size()) : 0.0;
+    double triangles = 0.0;
+    for (const TriangleMesh& shape : shapes_) triangles += static_cast<double>(shape.triangles.size());
     require_memory(static_cast<double>(most_particles_) * (kCopy + ways) + triangles * kTriangle,
                    fmt::format("a picture of {} particles as {}", most_particles_,
-                               shape_mesh_ ? "meshes" : "spheres that stretch"));
+                               shapes_.empty() ? "spheres that stretch" : "meshes"));
 }
 
-std::vector<AffineMap> RunPictures::turns_of(const VtkPolyData& frame, const std::vector<std::size_t>& shown) {
+std::vector<AffineMap> RunPictures::turns_of(const VtkPolyData& frame, const Group& group) const {
+    const std::vector<std::size_t>& shown = group.shown;
     std::vector<AffineMap> maps(shown.size());
-    if (!shape_mesh_) return maps;
-    const bool spins = find_array(frame.point_arrays, "spin") != nullptr;
-    const std::vector<Turn> turns = spins ? turning_.turns(frame) : std::vector<Turn>{};
+    if (group.drawing->mesh == 0) return maps;
     const auto& ids = column<std::int64_t>(frame, "id");
     const auto& ages = column<double>(frame, "age");
     const auto& radii = column<double>(frame, "radius");
+    const MeanSpread& turning = group.drawing->shape.turning;
     for (std::size_t k = 0; k < shown.size(); ++k) {
         const std::size_t i = shown[k];
-        if (spins && value_of(radii, i, 0.0) > 0.0) {
-            maps[k] = map_of(turns[i]);
+        if (!turns_.empty() && value_of(radii, i, 0.0) > 0.0) {
+            maps[k] = map_of(turns_[i]);
             continue;
         }
         const OwnTurning own = own_turning(id_of(ids, i));
-        const double rate = shape_.turning.mean + own.spread * shape_.turning.spread;
+        const double rate = turning.mean + own.spread * turning.spread;
         maps[k] = map_of(turned_on(random_turn(id_of(ids, i)), rate * own.axis, value_of(ages, i, 0.0)));
     }
     return maps;
@@ -134,9 +163,10 @@ std::vector<AffineMap> RunPictures::turns_of(const VtkPolyData& frame, const std
 
 // Along the velocity longer; near an impact flatter along its normal instead, and nearer to the surface by what the
 // flattening would leave between them.
-void RunPictures::stretch_copies(const VtkPolyData& frame, const std::vector<std::size_t>& shown,
-                                 PreviewMoving& moving) {
-    const StretchDescription& stretch = *shape_.stretch;
+void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, const std::vector<double>& radii,
+                                 PreviewCopies& copies) {
+    const StretchDescription& stretch = *group.drawing->shape.stretch;
+    const std::vector<std::size_t>& shown = group.shown;
     std::vector<NearImpact> impacts(frame.points.size());
     if (stretch.impact > 0.0) impacts = timeline_.impacts_near(frame, frame.time, 0.5 * stretch.time);
     const auto& velocities = column<Vec3>(frame, "velocity");
@@ -149,15 +179,15 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const std::vector<std
         const double speed = length(velocity);
         const double longer = std::min(stretch.most, 1.0 + stretch.speed * speed) - 1.0;
         if (longer > 0.0 && speed > 0.0) shape = stretch_along(velocity / speed, 1.0 + (1.0 - near) * longer);
-        AffineMap& place = moving.copies.places[k];
+        AffineMap& place = copies.places[k];
         if (near > 0.0) {
             const double flat = std::max(1.0 / stretch.most, 1.0 / (1.0 + stretch.impact * impact.speed));
             const double high = 1.0 - near * (1.0 - flat);
             shape = linear_product(stretch_along(impact.normal, high), shape);
-            const Vec3 shift = moving.spheres.radii[k] * (high - 1.0) * impact.normal;
+            const Vec3 shift = radii[k] * (high - 1.0) * impact.normal;
             place.translation += shift;
-            if (!moving.copies.ways.empty()) {
-                for (Vec3& point : moving.copies.ways[k]) point += shift;
+            if (!copies.ways.empty()) {
+                for (Vec3& point : copies.ways[k]) point += shift;
             }
         }
         const Vec3 translation = place.translation;
@@ -166,43 +196,47 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const std::vector<std
     }
 }
 
-// Spheres become copies.
-void RunPictures::make_copies(const Moment& moment, const std::vector<std::size_t>& shown, PreviewMoving& moving) {
-    PreviewSpheres& spheres = moving.spheres;
-    PreviewCopies& copies = moving.copies;
-    copies.places = turns_of(moment.frame, shown);
-    for (std::size_t k = 0; k < shown.size(); ++k) {
+// Spheres become copies, beside those that are there.
+void RunPictures::add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all) {
+    PreviewCopies copies;
+    copies.places = turns_of(moment.frame, group);
+    for (std::size_t k = 0; k < copies.places.size(); ++k) {
         AffineMap& place = copies.places[k];
         for (Vec3* const row : {&place.row_x, &place.row_y, &place.row_z}) *row = spheres.radii[k] * *row;
         place.translation = spheres.centers[k];
     }
     copies.ways = std::move(spheres.ways);
-    if (shape_.stretch) stretch_copies(moment.frame, shown, moving);
-    copies.colors = std::move(spheres.colors);
-    copies.emissions = std::move(spheres.emissions);
-    spheres = {};
+    if (group.drawing->shape.stretch) stretch_copies(moment.frame, group, spheres.radii, copies);
+    all.places.insert(all.places.end(), copies.places.begin(), copies.places.end());
+    all.ways.insert(all.ways.end(), std::make_move_iterator(copies.ways.begin()),
+                    std::make_move_iterator(copies.ways.end()));
+    all.colors.insert(all.colors.end(), spheres.colors.begin(), spheres.colors.end());
+    all.emissions.insert(all.emissions.end(), spheres.emissions.begin(), spheres.emissions.end());
+    all.shapes.resize(all.places.size(), group.drawing->mesh);
 }
 
-std::vector<double> RunPictures::sprite_angles(const VtkPolyData& frame) const {
+std::vector<double> RunPictures::sprite_angles(const VtkPolyData& frame, const Group& group) const {
     const auto& ids = column<std::int64_t>(frame, "id");
     const auto& ages = column<double>(frame, "age");
     const auto& velocities = column<Vec3>(frame, "velocity");
     const CameraFrame view = camera_frame(camera_);
-    std::vector<double> angles(frame.points.size(), 0.0);
-    for (std::size_t i = 0; i < angles.size(); ++i) {
+    const ParticleShape& shape = group.drawing->shape;
+    std::vector<double> angles(group.shown.size(), 0.0);
+    for (std::size_t k = 0; k < angles.size(); ++k) {
+        const std::size_t i = group.shown[k];
         const OwnTurning own = own_turning(id_of(ids, i));
-        if (shape_.facing == ParticleShape::Facing::random) {
-            angles[i] = own.angle;
-        } else if (shape_.facing == ParticleShape::Facing::velocity) {
+        if (shape.facing == ParticleShape::Facing::random) {
+            angles[k] = own.angle;
+        } else if (shape.facing == ParticleShape::Facing::velocity) {
             const Vec3 velocity = value_of(velocities, i, Vec3{});
             const Vec3 away = frame.points[i] - camera_.position;
             const double depth = dot(away, view.forward);
             const double nearer = dot(velocity, view.forward) / depth;
             const double right = dot(velocity, view.right) - dot(away, view.right) * nearer;
             const double up = dot(velocity, view.up) - dot(away, view.up) * nearer;
-            if (depth > 0.0 && std::hypot(right, up) > 0.0) angles[i] = std::atan2(-right, up);
+            if (depth > 0.0 && std::hypot(right, up) > 0.0) angles[k] = std::atan2(-right, up);
         }
-        angles[i] += (shape_.turning.mean + own.spread * shape_.turning.spread) * value_of(ages, i, 0.0);
+        angles[k] += (shape.turning.mean + own.spread * shape.turning.spread) * value_of(ages, i, 0.0);
     }
     return angles;
 }

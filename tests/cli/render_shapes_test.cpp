@@ -60,6 +60,7 @@ protected:
     }
     void SetUp() override {
         (void)folder_.write("shard.obj", kShard);
+        write_png(folder_.path("white.png"), {2, 2, std::vector<std::uint8_t>(12, 255), {}});
         write_png(folder_.path("dot.png"), {2, 1, {255, 0, 0, 0, 255, 0}, {255, 128}});
     }
     [[nodiscard]] std::string path(const std::string& name) const { return folder_.path(name).string(); }
@@ -214,6 +215,69 @@ TEST_F(Shapes, CollidersThatMoveHaveTheirLooksAndTheColoursOfTheirImpacts) {
     const std::string still = picture(run("still", ball + R"("position": [0, 0, 0]}])"), hits);
     EXPECT_TRUE(still == picture(run("moving", ball + moves + "}]"), hits));
     EXPECT_TRUE(still != picture(run("moving", ball + moves + "}]"), view));
+}
+
+// Two of them, far from each other: each picture looks at one. 16 pixels a metre.
+const std::string kTwoKinds = R"("emitters": [
+    {"name": "streaks", "type": "point", "burst": 1, "velocity": [5, 0, 0], "particle_radius": 0.25,
+     "drawing": {"particles": "streaks"}},
+    {"name": "shards", "type": "point", "center": [0, 0, 40], "burst": 1, "particle_radius": 1,
+     "drawing": {"particles": "meshes", "mesh": "flat.obj"}},
+    {"name": "pieces", "type": "child", "parent": "shards", "on": "birth", "count": 1, "velocity": [0, 0, 100],
+     "particle_radius": 1},
+    {"name": "balls", "type": "point", "center": [0, 0, -40], "burst": 1, "particle_radius": 1}],
+    "picture": {"shutter": 0.2})";
+
+std::string looking_at(double x, double z) {
+    return std::to_string(x) + ",-10," + std::to_string(z) + "," + std::to_string(x) + ",0," + std::to_string(z) +
+           ",22.6198649480404";
+}
+
+TEST_F(Shapes, EachEmittersParticlesAreDrawnAsItSays) {
+    // A needle along x and y that turns about nothing: its turn is its own, its reach one radius.
+    (void)folder_.write("flat.obj", "v 1 0 0\nv -1 0.02 0\nv -1 -0.02 0\nf 1 2 3\nf 3 2 1\n");
+    const std::string output = run("kinds", kTwoKinds);
+    const auto streak = extent(output, {"--camera", looking_at(1.5, 0)});
+    EXPECT_NEAR(streak.first, 16 * 1.5, 2);  // 0.2 s at 5 m/s, and two radii
+    EXPECT_NEAR(streak.second, 16 * 0.5, 2);
+    const auto ball = extent(output, {"--camera", looking_at(0, -40)});
+    EXPECT_NEAR(ball.first, 32, 2);
+    EXPECT_NEAR(ball.second, 32, 2);
+    const auto is_needle = [](const std::pair<int, int>& size) {
+        return size.first <= 34 && size.second <= 34 && (size.first < 30 || size.second < 30);
+    };
+    EXPECT_TRUE(is_needle(extent(output, {"--camera", looking_at(0, 40)})));
+    EXPECT_TRUE(is_needle(extent(output, {"--camera", looking_at(0, 80)}))) << "children are drawn as their parents";
+    const auto as_balls = extent(output, {"--camera", looking_at(0, 40), "--draw", "spheres", "--shutter", "0"});
+    EXPECT_NEAR(as_balls.first, 32, 2);
+    EXPECT_NEAR(as_balls.second, 32, 2);
+    std::filesystem::remove(folder_.path("flat.obj"));
+    EXPECT_TRUE(is_needle(extent(output, {"--camera", looking_at(0, 40)}))) << "the run keeps its own";
+}
+
+TEST_F(Shapes, FlatDrawingsOfSeveralKindsAreLaidOverWhatIsSolid) {
+    const std::string output = run("flat", R"("emitters": [
+        {"name": "glow", "type": "point", "center": [-2, 0, 0], "burst": 1, "particle_radius": 0.4, "color": [1, 0, 0],
+         "drawing": {"particles": "glow"}},
+        {"name": "soft", "type": "point", "center": [0, 0, 0], "burst": 1, "particle_radius": 0.4, "color": [0, 1, 0],
+         "drawing": {"particles": "soft"}},
+        {"name": "dots", "type": "point", "center": [2, 0, 0], "burst": 1, "particle_radius": 0.4, "color": [0, 0, 1],
+         "drawing": {"particles": "sprites", "sprite": "white.png"}},
+        {"name": "balls", "type": "point", "center": [0, 0, -1.2], "burst": 1, "particle_radius": 0.4,
+         "color": [1, 1, 1]}])");
+    (void)picture(output, {"--camera", looking_at(0, 0), "--background", "0,0,0", "--no-filter"});
+    const Image image = read_png(folder_.path("p.png"));
+    const auto at = [&](double x, double z) {
+        const auto column = static_cast<std::size_t>(48 + 16 * x);
+        const auto row = static_cast<std::size_t>(32 - 16 * z);
+        const std::uint8_t* pixel = &image.rgb[3 * (row * 96 + column)];
+        return std::vector<int>{pixel[0], pixel[1], pixel[2]};
+    };
+    const auto red = at(-2, 0), green = at(0, 0), blue = at(2, 0), ball = at(0, -1.2);
+    EXPECT_TRUE(red[0] > 2 * red[1] && red[0] > 2 * red[2]);
+    EXPECT_TRUE(green[1] > 2 * green[0] && green[1] > 2 * green[2]);
+    EXPECT_TRUE(blue[2] > 2 * blue[0] && blue[2] > 2 * blue[1]);
+    EXPECT_TRUE(ball[0] > 60 && ball[1] > 60 && ball[2] > 60);
 }
 
 }  // namespace

@@ -82,6 +82,7 @@ constexpr ShippedScene kShippedScenes[] = {
     {"hopper", "0.7"},
     {"avalanche", "1"},
     {"swarms", "1.6"},
+    {"quarry", "1.2"},
 };
 
 /// FNV-1a over the bits of numbers.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/camera_frames.h"
@@ -197,6 +198,45 @@ TEST_F(DrawnParticles, BlackBodiesNeedATemperature) {
 TEST_F(DrawnParticles, FilesOfPicturesAreNoPartOfTheFingerprint) {
     const std::uint64_t plain = read(R"("picture": {"light": "night"})").fingerprint;
     EXPECT_EQ(read(R"("picture": {"particles": "meshes", "mesh": "a.obj"})").fingerprint, plain);
+}
+
+std::string emitting(const std::string& keys) { return R"("emitters": [{"type": "point", "rate": 1, )" + keys + "}]"; }
+
+TEST(PictureScene, AnEmittersDrawingIsAnAttributeOfItsParticles) {
+    const auto scene = parsed(R"("emitters": [{"name": "a", "type": "point", "rate": 1},
+        {"name": "b", "type": "point", "rate": 1, "drawing": {"particles": "soft"}},
+        {"name": "c", "type": "point", "rate": 1, "drawing": {"particles": "glow"}}])");
+    ASSERT_EQ(scene.drawings.size(), 2U);
+    EXPECT_EQ(scene.drawings[1].particles, "glow");
+    EXPECT_TRUE(scene.setup.emitters[0].attributes.empty());
+    ASSERT_EQ(scene.setup.emitters[2].attributes.size(), 1U);
+    EXPECT_EQ(scene.setup.emitters[2].attributes[0].name, kDrawingAttribute);
+    EXPECT_EQ(scene.setup.emitters[2].attributes[0].mean.x, 2.0);
+    EXPECT_TRUE(parsed(emitting(R"("name": "d")")).setup.attributes.empty());
+}
+
+TEST(PictureScene, ADrawingThatCannotBeIsRefusedInOneLine) {
+    const std::vector<std::pair<std::string, std::string>> wrongs = {
+        {R"("drawing": {})", "emitters[0].drawing.particles: missing"},
+        {R"("drawing": {"particles": "mesh"})", R"(found "mesh")"},
+        {R"("drawing": {"particles": "meshes"})", "needs its file"},
+        {R"("drawing": {"particles": "soft", "mesh": "s.obj"})", R"(only goes together with "particles": "meshes")"},
+        {R"("drawing": {"particles": "sprites", "sprite": "none.png"})", "none.png"},
+        {R"("drawing": {"particles": "glow", "turn": "random"})", R"(only goes together with "particles": "sprites")"},
+        {R"("drawing": {"particles": "glow", "light": "day"})", "unknown key"},
+        {R"("drawing": "glow")", "expected an object"}};
+    for (const auto& [keys, message] : wrongs) {
+        EXPECT_NE(error_of(emitting(keys)).find(message), std::string::npos) << keys << '\n'
+                                                                             << error_of(emitting(keys));
+    }
+    const std::string taken = R"("attributes": {"drawing": {}}, )" + emitting(R"("drawing": {"particles": "glow"})");
+    EXPECT_NE(error_of(taken).find("expected another name"), std::string::npos);
+}
+
+TEST(PictureScene, StreaksWithoutAnOpenShutterAreWarnedOf) {
+    const std::string streaks = emitting(R"("drawing": {"particles": "streaks"})");
+    EXPECT_EQ(parsed(streaks).warnings.size(), 1U);
+    EXPECT_TRUE(parsed(streaks + R"(, "picture": {"shutter": 0.1})").warnings.empty());
 }
 
 }  // namespace

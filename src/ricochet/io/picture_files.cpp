@@ -40,14 +40,20 @@ std::optional<std::string> png_problem(const std::filesystem::path& path) {
     return fmt::format("{} is not a PNG file, expected one", path.string());
 }
 
-void keep_picture_files(const std::filesystem::path& folder, PictureDescription& picture) {
-    if (!picture.sprite.empty()) {
-        write_file(folder / kParticleSpriteFile, detail::read_bytes(picture.sprite, kLargestSpriteFile));
-        picture.sprite = kParticleSpriteFile;
+void keep_picture_files(const std::filesystem::path& folder, ParticleDrawingDescription& drawing, std::size_t number) {
+    const auto named = [&](const std::filesystem::path& file) {
+        if (number == 0) return file.string();
+        return fmt::format("{}_{}{}", file.stem().string(), number, file.extension().string());
+    };
+    if (!drawing.sprite.empty()) {
+        const std::string name = named(kParticleSpriteFile);
+        write_file(folder / name, detail::read_bytes(drawing.sprite, kLargestSpriteFile));
+        drawing.sprite = name;
     }
-    if (!picture.mesh.empty()) {
-        write_file(folder / kParticleMeshFile, obj_text(read_mesh(picture.mesh, MeshContent::triangles).mesh));
-        picture.mesh = kParticleMeshFile;
+    if (!drawing.mesh.empty()) {
+        const std::string name = named(kParticleMeshFile);
+        write_file(folder / name, obj_text(read_mesh(drawing.mesh, MeshContent::triangles).mesh));
+        drawing.mesh = name;
     }
 }
 

@@ -3,9 +3,12 @@
 /// its folder can be drawn wherever it is taken.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "ricochet/io/scene.h"
 
@@ -13,6 +16,9 @@ namespace ricochet {
 
 inline constexpr const char* kParticleSpriteFile = "particle_sprite.png";  ///< what sprites show
 inline constexpr const char* kParticleMeshFile = "particle_mesh.obj";      ///< what particles are copies of
+
+/// The column that says by which of the scene's drawings a particle is drawn, from 1 on; 0: as all others.
+inline constexpr std::string_view kDrawingAttribute = "drawing";
 
 /// Largest PNG file that sprites may have, bytes.
 inline constexpr std::uint64_t kLargestSpriteFile = std::uint64_t{64} << 20;
@@ -23,6 +29,8 @@ inline constexpr std::uint64_t kLargestSpriteFile = std::uint64_t{64} << 20;
 
 /// Copies the files that the picture names into a run's folder, and names the copies instead. Meshes become OBJ files.
 /// Throws InputError where one cannot be read, RunError where the disk does not take it.
-void keep_picture_files(const std::filesystem::path& folder, PictureDescription& picture);
+/// number: of one of the scene's drawings, from 1 on, which is put into the names; 0: of the picture itself.
+void keep_picture_files(const std::filesystem::path& folder, ParticleDrawingDescription& drawing,
+                        std::size_t number = 0);
 
 }  // namespace ricochet

@@ -38,37 +38,48 @@ StretchDescription stretch_of(const Json& json) {
             json.at("most").get<double>()};
 }
 
+ParticleDrawingDescription drawing_of(const Json& json) {
+    ParticleDrawingDescription drawing;
+    drawing.particles = json.value("particles", "");
+    drawing.sprite = json.value("sprite", "");
+    drawing.mesh = json.value("mesh", "");
+    drawing.turn = json.value("turn", "");
+    if (json.contains("turning")) {
+        drawing.turning = MeanSpread{json.at("turning").at(0).get<double>(), json.at("turning").at(1).get<double>()};
+    }
+    return drawing;
+}
+
 PictureDescription picture_of(const Json& json) {
     PictureDescription picture;
+    static_cast<ParticleDrawingDescription&>(picture) = drawing_of(json);
     picture.light = json.value("light", "");
     if (json.contains("background")) picture.background = vec3_of(json.at("background"));
     picture.transparent = json.value("transparent", false);
-    picture.particles = json.value("particles", "");
     picture.shutter = json.value("shutter", 0.0);
     if (json.contains("ground")) picture.ground = json.at("ground").get<double>();
-    picture.sprite = json.value("sprite", "");
-    picture.mesh = json.value("mesh", "");
-    picture.turn = json.value("turn", "");
-    if (json.contains("turning")) {
-        picture.turning = MeanSpread{json.at("turning").at(0).get<double>(), json.at("turning").at(1).get<double>()};
-    }
     if (json.contains("black_body")) picture.black_body = json.at("black_body").get<double>();
     if (json.contains("stretch")) picture.stretch = stretch_of(json.at("stretch"));
     return picture;
 }
 
-Json json_of(const PictureDescription& picture) {
+Json json_of(const ParticleDrawingDescription& drawing) {
     Json json = Json::object();
+    if (!drawing.particles.empty()) json["particles"] = drawing.particles;
+    if (!drawing.sprite.empty()) json["sprite"] = drawing.sprite;
+    if (!drawing.mesh.empty()) json["mesh"] = drawing.mesh;
+    if (!drawing.turn.empty()) json["turn"] = drawing.turn;
+    if (drawing.turning) json["turning"] = {drawing.turning->mean, drawing.turning->spread};
+    return json;
+}
+
+Json json_of(const PictureDescription& picture) {
+    Json json = json_of(static_cast<const ParticleDrawingDescription&>(picture));
     if (!picture.light.empty()) json["light"] = picture.light;
     if (picture.background) json["background"] = json_of(*picture.background);
     if (picture.transparent) json["transparent"] = true;
     if (picture.ground) json["ground"] = *picture.ground;
-    if (!picture.particles.empty()) json["particles"] = picture.particles;
     if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
-    if (!picture.sprite.empty()) json["sprite"] = picture.sprite;
-    if (!picture.mesh.empty()) json["mesh"] = picture.mesh;
-    if (!picture.turn.empty()) json["turn"] = picture.turn;
-    if (picture.turning) json["turning"] = {picture.turning->mean, picture.turning->spread};
     if (picture.black_body) json["black_body"] = *picture.black_body;
     if (const auto& stretch = picture.stretch) {
         json["stretch"] = {
@@ -110,6 +121,9 @@ RunInfo run_info_of(const Json& json) {
         info.camera->focus_distance = camera.value("focus_distance", 0.0);
     }
     if (json.contains("picture")) info.picture = picture_of(json.at("picture"));
+    if (json.contains("drawings")) {
+        for (const Json& drawing : json.at("drawings")) info.drawings.push_back(drawing_of(drawing));
+    }
     for (const Json& collider : json.at("colliders")) {
         info.colliders.push_back({collider.at("name").get<std::string>(),
                                   collider.at("type").get<std::string>(),
@@ -142,6 +156,7 @@ RunInfo run_info_of(const SceneDescription& scene) {
     info.up = upward_axis(scene.setup);
     info.camera = scene.camera;
     info.picture = scene.picture;
+    info.drawings = scene.drawings;
     info.looks = scene.looks;
     if (scene.camera && scene.camera->up) info.up = normalized(*scene.camera->up);
     return info;
@@ -163,6 +178,7 @@ std::string run_info_text(const RunInfo& info) {
         }
     }
     if (info.picture) json["picture"] = json_of(*info.picture);
+    for (const ParticleDrawingDescription& drawing : info.drawings) json["drawings"].push_back(json_of(drawing));
     json["colliders"] = Json::array();
     for (const ColliderInfo& collider : info.colliders) {
         json["colliders"].push_back({{"name", collider.name},

@@ -48,6 +48,7 @@ struct RunInfo {
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis
     std::optional<CameraDescription> camera;  ///< its `up` is the one above
     std::optional<PictureDescription> picture;
+    std::vector<ParticleDrawingDescription> drawings{};  ///< of the particles of some emitters
     std::vector<ColliderInfo> colliders;
     std::vector<ColliderLooks> looks{};  ///< of all colliders, before they are described
 };

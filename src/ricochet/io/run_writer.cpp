@@ -97,6 +97,7 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
         info_.colliders[i].looks = info_.looks[i];
     }
     if (info_.picture) keep_picture_files(folder_, *info_.picture);
+    for (std::size_t k = 0; k < info_.drawings.size(); ++k) keep_picture_files(folder_, info_.drawings[k], k + 1);
     write_file(folder_ / kRunInfoFile, run_info_text(info_));
     write_colliders(simulation);
     std::vector<PvdEntry> series;

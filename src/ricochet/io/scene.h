@@ -65,18 +65,22 @@ struct StretchDescription {
     friend bool operator==(const StretchDescription&, const StretchDescription&) = default;
 };
 
+/// What particles are drawn as.
+struct ParticleDrawingDescription {
+    std::string particles;                ///< by name; empty: the renderer's own
+    std::string sprite{};                 ///< PNG file that they are drawn with; in run.json: beside it
+    std::string mesh{};                   ///< mesh file that they are copies of; in run.json: beside it
+    std::string turn{};                   ///< how sprites are turned, by name; empty: upright
+    std::optional<MeanSpread> turning{};  ///< rad/s, by which sprites and meshes without a spin turn on
+};
+
 /// Light and surroundings of pictures, and what particles are drawn as.
-struct PictureDescription {
+struct PictureDescription : ParticleDrawingDescription {
     std::string light;                            ///< by name; empty: the renderer's own
     std::optional<Vec3> background;               ///< linear light; nothing: the light's sky
     bool transparent = false;                     ///< nothing behind everything
     std::optional<double> ground;                 ///< m along the upward axis: a level ground; nothing: none
-    std::string particles;                        ///< what they are drawn as, by name; empty: the renderer's own
     double shutter = 0.0;                         ///< s of the run that a picture shows, up to its own time
-    std::string sprite{};                         ///< PNG file that particles are drawn with; in run.json: beside it
-    std::string mesh{};                           ///< mesh file that they are copies of; in run.json: beside it
-    std::string turn{};                           ///< how sprites are turned, by name; empty: upright
-    std::optional<MeanSpread> turning{};          ///< rad/s, by which sprites and meshes without a spin turn on
     std::optional<StretchDescription> stretch{};  ///< nothing: they keep their shape
     /// K: particles shine by their attribute `temperature`, at this one as a white surface in the sun; nothing: no
     /// light.
@@ -89,6 +93,9 @@ struct SceneDescription {
     OutputOptions output;
     std::optional<CameraDescription> camera;
     std::optional<PictureDescription> picture;
+    /// What the particles of some emitters are drawn as: those whose attribute kDrawingAttribute is 1 as the first
+    /// says.
+    std::vector<ParticleDrawingDescription> drawings;
     std::vector<ColliderLooks> looks;          ///< of the setup's colliders, one each
     std::string file;                          ///< as it was named
     std::vector<std::string> warnings;         ///< one line each, with file and source location

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/parallel.h"
@@ -28,9 +30,34 @@ struct Sampled {
     std::vector<float> alpha;
 };
 
-Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptions& options, const Sprites& sprites) {
+// Of what glows.
+std::vector<Lamp> lamps_in(std::span<const Sprites> layers) {
     constexpr std::size_t kMostLamps = 48;
-    const Painter painter(preview, camera, options, sprites.glow ? lamps_of(sprites, kMostLamps) : std::vector<Lamp>{});
+    const auto glowing = std::find_if(layers.begin(), layers.end(), [](const Sprites& layer) { return layer.glow; });
+    return glowing == layers.end() ? std::vector<Lamp>{} : lamps_of(*glowing, kMostLamps);
+}
+
+// All layers as one; empty where nothing is drawn.
+SpriteLayer laid_over_each_other(std::span<const Sprites> layers, const Preview& preview, const Camera& camera,
+                                 const PictureOptions& options) {
+    SpriteLayer all;
+    for (const Sprites& sprites : layers) {
+        if (sprites.empty()) continue;
+        SpriteLayer next = draw_sprites(sprites, preview, camera, options.width, options.height);
+        if (all.light.empty()) {
+            all = std::move(next);
+            continue;
+        }
+        for (std::size_t i = 0; i < all.light.size(); ++i) {
+            all.light[i] = next.light[i] + next.transmittance[i] * all.light[i];
+            all.transmittance[i] *= next.transmittance[i];
+        }
+    }
+    return all;
+}
+
+Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps) {
+    const Painter painter(preview, camera, options, std::move(lamps));
     const std::size_t pixels = pixel_count(options);
     Sampled out{{options.width, options.height, std::vector<Float3>(pixels), std::vector<float>(pixels),
                  std::vector<PixelFeatures>(pixels)},
@@ -68,10 +95,9 @@ void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
 }  // namespace
 
 Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
-                     const Sprites& sprites) {
-    SpriteLayer layer;
-    if (!sprites.empty()) layer = draw_sprites(sprites, preview, camera, options.width, options.height);
-    Sampled all = sampled(preview, camera, options, sprites);
+                     std::span<const Sprites> layers) {
+    const SpriteLayer layer = laid_over_each_other(layers, preview, camera, options);
+    Sampled all = sampled(preview, camera, options, lamps_in(layers));
     if (options.filter && !options.quick) filter_noise(all.picture);
     const std::size_t pixels = pixel_count(options);
     Image image{options.width, options.height, {}, {}};
@@ -82,7 +108,7 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
             const Float3& shown = all.picture.light[i];
             Vec3 light{shown.x, shown.y, shown.z};
             double alpha = options.transparent ? all.alpha[i] : 1.0;
-            if (!sprites.empty()) {
+            if (!layer.light.empty()) {
                 const Vec3 laid_over = tone_mapped(options.exposure * layer.light[i]);
                 light = layer.transmittance[i] * light + laid_over;
                 alpha = std::max(1.0 - layer.transmittance[i] * (1.0 - alpha), std::min(1.0, luminance(laid_over)));

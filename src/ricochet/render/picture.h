@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/render/camera.h"
@@ -32,9 +33,14 @@ struct PictureOptions {
     std::function<void(double)> progress;
 };
 
-/// sprites: laid over the picture of everything else, brought to the display's range by themselves.
+/// sprites: laid over the picture of everything else, brought to the display's range by themselves; each layer over
+/// those before it. The first of those that glow lights what is around.
 [[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
-                                   const Sprites& sprites = {});
+                                   std::span<const Sprites> layers);
+[[nodiscard]] inline Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
+                                          const Sprites& sprites = {}) {
+    return render_picture(preview, camera, options, std::span(&sprites, 1));
+}
 
 /// Memory that render_picture() and packing as PNG need together at their peak, bytes, without what they show.
 [[nodiscard]] double picture_bytes(int width, int height, bool has_sprites);

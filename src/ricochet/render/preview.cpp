@@ -269,7 +269,9 @@ void Preview::Impl::add_copies(const PreviewCopies& source) {
     has_moving = true;
 }
 
-void Preview::set_shape(TriangleMesh shape) { impl_->copies.set_shape(impl_->device.get(), std::move(shape)); }
+void Preview::set_shapes(std::vector<TriangleMesh> shapes) {
+    impl_->copies.set_shapes(impl_->device.get(), std::move(shapes));
+}
 
 void Preview::set_spheres(const PreviewSpheres& spheres) { set_moving({spheres, {}, {}}); }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/transform.h"
@@ -52,13 +53,15 @@ struct PreviewLines {
     std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
 };
 
-/// Copies of the shape of Preview::set_shape(), or of a ball of radius 1 where none is set; all vectors have the same
-/// length, the last two may be empty.
+/// Copies of the shapes of Preview::set_shapes(), or of a ball of radius 1; all vectors have the same length, the last
+/// three may be empty.
 struct PreviewCopies {
     std::vector<AffineMap> places;  ///< into the world from the shape's own coordinates, when the shutter closes
     std::vector<Vec3> colors;
     std::vector<std::vector<Vec3>> ways{};  ///< of the shape's origin, as those of spheres; maps stay the same on them
     std::vector<Vec3> emissions{};          ///< light of their own
+    /// Which shape each is a copy of, from 1 on, or 0 for a ball; empty: the first one, or a ball where none is set.
+    std::vector<std::uint32_t> shapes{};
 };
 
 /// What moves: changes from picture to picture.
@@ -105,8 +108,10 @@ public:
     Preview(Preview&&) noexcept;
     Preview& operator=(Preview&&) noexcept;
 
-    /// What copies are copies of: a mesh all of which is at most 1 away from its origin. Not while rays are being shot.
-    void set_shape(TriangleMesh shape);
+    /// What copies are copies of: meshes all of which are at most 1 away from their origins. Not while rays are being
+    /// shot.
+    void set_shapes(std::vector<TriangleMesh> shapes);
+    void set_shape(TriangleMesh shape) { set_shapes({std::move(shape)}); }
     /// Replaces all that moves by spheres. Not while rays are being shot.
     void set_spheres(const PreviewSpheres& spheres);
     /// Replaces all that moves. Not while rays are being shot.

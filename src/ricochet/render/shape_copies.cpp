@@ -28,24 +28,29 @@ bool is_drawable(const AffineMap& map) {
 
 }  // namespace
 
-void ShapeCopies::set_shape(RTCDevice device, TriangleMesh shape) {
-    PreviewMesh source;
-    source.mesh = std::move(shape);
-    shape_ = drawn_mesh(std::move(source), kCreaseDegrees);
-    scene_ = embree::Scene(rtcNewScene(device));
-    rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-    RTCGeometry geometry = triangles_of(device, shape_.source.mesh, {});
-    rtcSetGeometryMask(geometry, 0xffffffffU);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_.get(), geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_.get());
-    embree::check_device(device, "building the shape of the particles");
+void ShapeCopies::set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes) {
+    shapes_.clear();
+    for (TriangleMesh& mesh : shapes) {
+        PreviewMesh source;
+        source.mesh = std::move(mesh);
+        Shape& shape = shapes_.emplace_back();
+        shape.mesh = drawn_mesh(std::move(source), kCreaseDegrees);
+        shape.scene = embree::Scene(rtcNewScene(device));
+        rtcSetSceneFlags(shape.scene.get(), RTC_SCENE_FLAG_ROBUST);
+        RTCGeometry geometry = triangles_of(device, shape.mesh.source.mesh, {});
+        rtcSetGeometryMask(geometry, 0xffffffffU);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(shape.scene.get(), geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(shape.scene.get());
+    }
+    embree::check_device(device, "building the shapes of the particles");
 }
 
 RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& copies, const Vec3& origin) {
     copies_.clear();
     ways_.clear();
+    const std::uint32_t common = shapes_.empty() ? 0 : 1;
     for (std::size_t i = 0; i < copies.places.size(); ++i) {
         const AffineMap& map = copies.places[i];
         const bool on_the_way =
@@ -55,7 +60,8 @@ RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& co
                            map.translation - origin,
                            {length(map.row_x), length(map.row_y), length(map.row_z)},
                            copies.colors[i],
-                           copies.emissions.empty() ? Vec3{} : copies.emissions[i]});
+                           copies.emissions.empty() ? Vec3{} : copies.emissions[i],
+                           copies.shapes.empty() ? common : copies.shapes[i]});
         if (copies.ways.empty()) continue;
         ways_.push_back(copies.ways[i]);
         for (Vec3& point : ways_.back()) point -= origin;
@@ -117,7 +123,8 @@ bool ShapeCopies::meet_ball(const LocalRay& local, const RTCRay& ray, float& dis
     return false;
 }
 
-bool ShapeCopies::meet_mesh(const LocalRay& local, const RTCRay& ray, float& distance, CopyHit& what) const {
+bool ShapeCopies::meet_mesh(const Shape& shape, const LocalRay& local, const RTCRay& ray, float& distance,
+                            CopyHit& what) {
     RTCRayHit query{};
     query.ray = ray;
     query.ray.org_x = static_cast<float>(local.origin.x);
@@ -129,7 +136,7 @@ bool ShapeCopies::meet_mesh(const LocalRay& local, const RTCRay& ray, float& dis
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     embree::QueryContext context;
     embree::init_context(context, nullptr);
-    embree::intersect1(scene_.get(), context, query);
+    embree::intersect1(shape.scene.get(), context, query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     distance = query.ray.tfar;
     what = {query.hit.primID, query.hit.u, query.hit.v};
@@ -138,7 +145,8 @@ bool ShapeCopies::meet_mesh(const LocalRay& local, const RTCRay& ray, float& dis
 
 bool ShapeCopies::meet(const RTCRay& ray, std::size_t copy, float& distance, CopyHit& what) const {
     const LocalRay local = local_ray(ray, copy);
-    return scene_.get() == nullptr ? meet_ball(local, ray, distance) : meet_mesh(local, ray, distance, what);
+    const std::uint32_t shape = copies_[copy].shape;
+    return shape == 0 ? meet_ball(local, ray, distance) : meet_mesh(shapes_[shape - 1], local, ray, distance, what);
 }
 
 // Rays are shot one by one: packets of one have the layout of a single ray.
@@ -181,16 +189,17 @@ PreviewHit ShapeCopies::hit(const RTCRayHit& hit, const CopyHit& copy_hit, const
     out.color = copies_[index].color;
     out.emission = copies_[index].emission;
     out.roughness = kSphereRoughness;
-    if (scene_.get() == nullptr) {
+    if (copies_[index].shape == 0) {
         out.face = towards(world_normal(index, local.origin + out.distance * local.direction), ray.direction);
         out.normal = out.face;
         return out;
     }
-    const TriangleMesh& mesh = shape_.source.mesh;
+    const DrawnMesh& drawn = shapes_[copies_[index].shape - 1].mesh;
+    const TriangleMesh& mesh = drawn.source.mesh;
     const auto [a, b, c] = mesh.triangles[copy_hit.triangle];
     const Vec3 across = cross(mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a]);
     const Vec3 face = towards(normalized(across), local.direction);
-    const MeshPoint seen = point_of(shape_, copy_hit.triangle, copy_hit.u, copy_hit.v, face);
+    const MeshPoint seen = point_of(drawn, copy_hit.triangle, copy_hit.u, copy_hit.v, face);
     out.face = world_normal(index, face);
     out.normal = world_normal(index, seen.normal);
     out.lift = inverse_of(copies_[index].shape_from_world).direction(seen.lift);

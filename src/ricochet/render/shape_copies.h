@@ -24,8 +24,8 @@ struct CopyHit {
 /// Stays where it is while Embree has its geometry.
 class ShapeCopies {
 public:
-    /// shape: all of it at most 1 away from its origin.
-    void set_shape(RTCDevice device, TriangleMesh shape);
+    /// shapes: all of each at most 1 away from its origin.
+    void set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes);
 
     /// The copies that can be drawn, about the origin; null pointer where there are none. Queries need a CopyHit.
     [[nodiscard]] RTCGeometry make_geometry(RTCDevice device, const PreviewCopies& copies, const Vec3& origin);
@@ -40,6 +40,11 @@ private:
         Vec3 half_size;              // of its box
         Vec3 color;
         Vec3 emission;
+        std::uint32_t shape;  // from 1 on; 0: a ball of radius 1
+    };
+    struct Shape {
+        DrawnMesh mesh;
+        embree::Scene scene;
     };
     // A ray in the shape's own coordinates; distances are those of the world's ray.
     struct LocalRay {
@@ -51,14 +56,14 @@ private:
     // How far a ray goes to the ball or the shape, and what it meets; false where it meets nothing nearer.
     [[nodiscard]] bool meet(const RTCRay& ray, std::size_t copy, float& distance, CopyHit& what) const;
     [[nodiscard]] bool meet_ball(const LocalRay& local, const RTCRay& ray, float& distance) const;
-    [[nodiscard]] bool meet_mesh(const LocalRay& local, const RTCRay& ray, float& distance, CopyHit& what) const;
+    [[nodiscard]] static bool meet_mesh(const Shape& shape, const LocalRay& local, const RTCRay& ray, float& distance,
+                                        CopyHit& what);
     [[nodiscard]] Vec3 world_normal(std::size_t copy, const Vec3& shape_normal) const;
     static void write_bounds(const RTCBoundsFunctionArguments* args);
     static void intersect(const RTCIntersectFunctionNArguments* args);
     static void occlude(const RTCOccludedFunctionNArguments* args);
 
-    DrawnMesh shape_;
-    embree::Scene scene_;  // of the shape; none: a ball of radius 1
+    std::vector<Shape> shapes_;
     std::vector<Copy> copies_;
     std::vector<std::vector<Vec3>> ways_;  // about the origin; empty without any
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/printable.h"
+#include "ricochet/io/picture_files.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -158,6 +159,22 @@ void declare_material(const SceneContext& context, SimulationSetup& setup) {
     setup.attributes.push_back({std::string(kMaterialAttribute), 1, {}});
 }
 
+/// Where emitters say what their particles are drawn as.
+void declare_drawing(const SceneContext& context, SimulationSetup& setup) {
+    const std::vector<ObjectView> emitters = context.objects("emitters");
+    if (std::none_of(emitters.begin(), emitters.end(), [](const ObjectView& view) { return view.has("drawing"); })) {
+        return;
+    }
+    if (find_declared(setup, kDrawingAttribute) != nullptr) {
+        context.error(
+            context.root(), "attributes",
+            "declares \"drawing\", which is the number of one of the emitters' drawings here, expected another "
+            "name");
+        return;
+    }
+    setup.attributes.push_back({std::string(kDrawingAttribute), 1, {}});
+}
+
 LifeCurve scalar_curve(const SceneContext& context, const ObjectView& view, std::string name, bool of_lifetime) {
     const KeyedCurve<double> curve = number_curve_of(view, context.diagnostics());
     std::vector<CurveKey<Vec3>> keys;
@@ -247,6 +264,8 @@ std::vector<KeySpec> emitter_look_keys() {
          Without{"their defaults"}},
         {"material", ValueType::text, "Of which of `particle_contacts.materials` the particles are.",
          Without{"the parent's, else the first"}},
+        {"drawing", ValueType::object, "What its particles are drawn as.", &drawing_spec(),
+         Without{"the parent's, else what `picture` says"}},
         {"over_life", ValueType::object, "Factors over the lifetime; keys from 0 (birth) to 1 (end of life).",
          &life_curves_spec(), Without{"none"}},
         {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
@@ -269,6 +288,7 @@ std::vector<KeySpec> particle_look_keys() {
 void build_attributes(const SceneContext& context, SimulationSetup& setup) {
     for (const NamedObject& named : context.root().named_objects("attributes")) build_declared(context, named, setup);
     declare_material(context, setup);
+    declare_drawing(context, setup);
     for (const ObjectView& view : context.objects("emitters")) {
         for (const Look& look : kEmitterLooks) declare_used(view, look, setup);
         for (const char* const key : {"over_life", "over_age"}) {
@@ -299,6 +319,10 @@ void read_looks(const SceneContext& context, const SimulationSetup& setup, const
     });
     if (const auto material = material_of(context, setup, view)) {
         emitter.attributes.push_back({std::string(kMaterialAttribute), *material, {}});
+    }
+    if (view.has("drawing")) {
+        const auto number = static_cast<double>(drawing_number(context, view));
+        emitter.attributes.push_back({std::string(kDrawingAttribute), {number, 0.0, 0.0}, {}});
     }
     read_curves(context, setup, view, "over_life", emitter);
     read_curves(context, setup, view, "over_age", emitter);

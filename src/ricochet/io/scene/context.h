@@ -260,7 +260,11 @@ void build_springs(SceneContext& context, SimulationSetup& setup);
 /// Sets what a run needs, and reports the part that asks for most where it is more than this process may have, and
 /// bursts that are larger than the population may be.
 void check_memory(const SceneContext& context, SceneDescription& scene);
-/// The camera and the picture's settings; after the frames.
+/// The key "drawing" of an emitter.
+[[nodiscard]] const ObjectSpec& drawing_spec();
+/// Which of the scene's drawings an emitter that has this key brings, from 1 on.
+[[nodiscard]] std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter);
+/// The camera, the picture's settings and the emitters' drawings; after the frames.
 void build_pictures(const SceneContext& context, SceneDescription& scene);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);

@@ -151,7 +151,7 @@ std::string picture_file(const SceneContext& context, const ObjectView& view, st
 }
 
 // What particles are drawn as, and the key without which they cannot be.
-void check_drawing(const SceneContext& context, const ObjectView& view, const PictureDescription& picture) {
+void check_drawing(const SceneContext& context, const ObjectView& view, const ParticleDrawingDescription& picture) {
     for (const auto& [drawing, key] : {std::pair{"sprites", "sprite"}, std::pair{"meshes", "mesh"}}) {
         const bool is_drawn = picture.particles == drawing;
         if (is_drawn && !view.has(key)) {
@@ -204,53 +204,67 @@ PictureDescription picture_of(const SceneContext& context, const ObjectView& vie
     return picture;
 }
 
+/// What particles are drawn as; the first line says which of the others go with it.
+template <class P, class... Options>
+Fields<P> drawing_fields(const Options&... options) {
+    return {
+        {"particles", &P::particles, "What particles are drawn as.",
+         Choices{{"spheres", "solid spheres"},
+                 {"streaks", "threads along the way that they went while the shutter was open, bent where they hit"},
+                 {"soft", "soft discs that cover what is behind by their opacity"},
+                 {"glow", "discs of light that adds up"},
+                 {"sprites", "the picture of `sprite`, which faces the camera"},
+                 {"meshes", "copies of `mesh`, turned by their spin"}},
+         options...},
+        {"sprite", &P::sprite,
+         "A PNG file, with alpha or without: its longer edge is as long as the particle is thick.", ValueType::file,
+         Without{"none"}},
+        {"mesh", &P::mesh, "A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.",
+         ValueType::file, Without{"none"}},
+        {"turn", &P::turn, "How sprites are turned.",
+         Choices{{"upright", "as the camera is"},
+                 {"random", "each by an angle of its own"},
+                 {"velocity", "their upper edge the way that the particle goes"}},
+         Without{"`upright`"}},
+        {"turning", &P::turning, kCoordinate, "rad/s",
+         "How fast sprites, and meshes of particles without a spin, turn on as they age.", Without{"not at all"}}};
+}
+
 }  // namespace
+
+const ObjectSpec& drawing_spec() {
+    static const ObjectSpec spec = object<ParticleDrawingDescription>(
+        "drawing", "What the particles of an emitter are drawn as, where that is not what all are.",
+        drawing_fields<ParticleDrawingDescription>(kRequired));
+    return spec;
+}
 
 const ObjectSpec& picture_spec() {
     using P = PictureDescription;
     static const ObjectSpec spec = object<P>(
         "picture", "Light and surroundings of `ricochet render`, unless it is told otherwise.",
-        {{"light", &P::light, "What lights it.",
-          Choices{{"day", "a sun at middling height behind the camera's left shoulder"},
-                  {"noon", "a high, white, hard sun"},
-                  {"overcast", "a bright grey sky without a sun"},
-                  {"night", "a little moonlight"},
-                  {"studio", "one large lamp, and a grey backdrop"}},
-          Without{"`day`"}},
-         {"background", &P::background, kFraction, "", "Red, green and blue behind everything, linear light.",
-          Without{"the light's sky"}},
-         {"transparent", &P::transparent, "Nothing behind everything: an alpha channel in PNG files."},
-         {"particles", &P::particles, "What particles are drawn as.",
-          Choices{{"spheres", "solid spheres"},
-                  {"streaks", "threads along the way that they went while the shutter was open, bent where they hit"},
-                  {"soft", "soft discs that cover what is behind by their opacity"},
-                  {"glow", "discs of light that adds up"},
-                  {"sprites", "the picture of `sprite`, which faces the camera"},
-                  {"meshes", "copies of `mesh`, turned by their spin"}},
-          Without{"soft discs where they have an opacity, spheres otherwise"}},
-         {"shutter", &P::shutter, kNotNegative, "s",
-          "How long it is open, up to the picture's time: moving particles blur. 0: not at all."},
-         {"sprite", &P::sprite,
-          "A PNG file, with alpha or without: its longer edge is as long as the particle is thick.", ValueType::file,
-          Without{"none"}},
-         {"mesh", &P::mesh,
-          "A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.", ValueType::file,
-          Without{"none"}},
-         {"turn", &P::turn, "How sprites are turned.",
-          Choices{{"upright", "as the camera is"},
-                  {"random", "each by an angle of its own"},
-                  {"velocity", "their upper edge the way that the particle goes"}},
-          Without{"`upright`"}},
-         {"turning", &P::turning, kCoordinate, "rad/s",
-          "How fast sprites, and meshes of particles without a spin, turn on as they age.", Without{"not at all"}},
-         {"black_body", &P::black_body, between(500.0, 20000.0), "K",
-          "Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as a white "
-          "surface in the sun.",
-          Without{"no light of their own"}},
-         {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
-          Without{"they keep their shape"}, &stretch_spec()},
-         {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
-          Without{"none"}}});
+        joined<P>({{{"light", &P::light, "What lights it.",
+                     Choices{{"day", "a sun at middling height behind the camera's left shoulder"},
+                             {"noon", "a high, white, hard sun"},
+                             {"overcast", "a bright grey sky without a sun"},
+                             {"night", "a little moonlight"},
+                             {"studio", "one large lamp, and a grey backdrop"}},
+                     Without{"`day`"}},
+                    {"background", &P::background, kFraction, "",
+                     "Red, green and blue behind everything, linear light.", Without{"the light's sky"}},
+                    {"transparent", &P::transparent, "Nothing behind everything: an alpha channel in PNG files."}},
+                   drawing_fields<P>(Without{"soft discs where they have an opacity, spheres otherwise"}),
+                   {{"shutter", &P::shutter, kNotNegative, "s",
+                     "How long it is open, up to the picture's time: moving particles blur. 0: not at all."},
+                    {"black_body", &P::black_body, between(500.0, 20000.0), "K",
+                     "Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as "
+                     "a white "
+                     "surface in the sun.",
+                     Without{"no light of their own"}},
+                    {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
+                     Without{"they keep their shape"}, &stretch_spec()},
+                    {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
+                     Without{"none"}}}}));
     return spec;
 }
 
@@ -265,13 +279,42 @@ const ObjectSpec& collider_looks_spec() {
     return spec;
 }
 
+std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter) {
+    std::size_t number = 0;
+    for (const ObjectView& view : context.objects("emitters")) {
+        number += view.has("drawing") ? 1 : 0;
+        if (view.path() == emitter.path()) break;
+    }
+    return number;
+}
+
+static void build_drawings(const SceneContext& context, SceneDescription& scene) {
+    for (const ObjectView& emitter : context.objects("emitters")) {
+        if (!emitter.has("drawing")) continue;
+        const ObjectView view = emitter.object("drawing");
+        auto drawing = view.read<ParticleDrawingDescription>();
+        check_drawing(context, view, drawing);
+        drawing.sprite = picture_file(context, view, "sprite");
+        drawing.mesh = picture_file(context, view, "mesh");
+        if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {
+            context.warn(
+                view, "particles",
+                "streaks are as long as the shutter is open, and \"picture\": {\"shutter\": ...} does not open "
+                "it: they are spheres, unless `ricochet render --shutter` says otherwise");
+        }
+        scene.drawings.push_back(std::move(drawing));
+    }
+}
+
 void build_pictures(const SceneContext& context, SceneDescription& scene) {
     for (const ObjectView& view : context.root().objects("colliders")) {
         scene.looks.push_back(view.object("looks").read<ColliderLooks>());
     }
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"), scene.setup);
-    if (!context.root().has("picture")) return;
-    scene.picture = picture_of(context, context.root().object("picture"), scene.setup);
+    if (context.root().has("picture")) {
+        scene.picture = picture_of(context, context.root().object("picture"), scene.setup);
+    }
+    build_drawings(context, scene);
 }
 
 }  // namespace ricochet::detail

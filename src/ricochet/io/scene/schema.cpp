@@ -399,6 +399,7 @@ std::string scene_reference() {
     text += object_section("motion of a collider (a list)", detail::key_pose_spec());
     text += object_section("deformation of a mesh", detail::deformation_spec());
     text += object_section("cloud of an emitter", detail::cloud_spec());
+    text += object_section("drawing of an emitter", detail::drawing_spec());
     text += object_section("curve", detail::number_curve_spec());
     text += object_section("vector curve", detail::vector_curve_spec());
     text += object_section("scale curve", detail::scale_curve_spec());

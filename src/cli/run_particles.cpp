@@ -186,13 +186,22 @@ void RunPictures::add_flat(const VtkPolyData& frame, const Group& group, std::ve
     append(same->opacities, std::move(sprites.opacities));
 }
 
+/// Of all particles; empty where none is a copy of a mesh.
+std::vector<Turn> RunPictures::turns_in(const VtkPolyData& frame) {
+    if (shapes_.empty()) return {};
+    std::vector<const Drawing*> drawing_of(frame.points.size(), &drawings_[0]);
+    for (const Group& group : groups_of(frame, std::vector<bool>(frame.points.size(), false))) {
+        for (const std::size_t i : group.shown) drawing_of[i] = group.drawing;
+    }
+    return turning_.shown_turns(frame, [&](std::size_t i) { return drawing_of[i]->shape.turning; });
+}
+
 Image RunPictures::picture(double time, const PictureOptions& options) {
     Moment moment = timeline_.at(time, shutter());
     const VtkPolyData& frame = moment.frame;
     place_camera(frame);
     emissions_ = emissions(frame);
-    const bool spins = !shapes_.empty() && find_array(frame.point_arrays, "spin") != nullptr;
-    turns_ = spins ? turning_.turns(frame) : std::vector<Turn>{};
+    turns_ = turns_in(frame);
     PreviewMoving moving;
     std::vector<Sprites> layers;
     const std::vector<double> radii = shown_radii(frame);

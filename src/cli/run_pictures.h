@@ -129,6 +129,10 @@ struct PictureStyle {
     std::filesystem::path mesh;        ///< file of the mesh that particles are copies of; empty: the run's own
 };
 
+/// A mesh that particles are copies of: the middle of its box in the origin, its farthest vertex 1 away. Throws
+/// InputError where the file has none.
+[[nodiscard]] TriangleMesh shape_from(const std::filesystem::path& file);
+
 /// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
 class RunPictures {
 public:
@@ -218,7 +222,8 @@ private:
     void require_room_for_copies() const;
     [[nodiscard]] bool draws_copies() const;
     void add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all);
-    [[nodiscard]] std::vector<AffineMap> turns_of(const VtkPolyData& frame, const Group& group) const;
+    [[nodiscard]] std::vector<AffineMap> turns_of(const Group& group) const;
+    [[nodiscard]] std::vector<Turn> turns_in(const VtkPolyData& frame);
     void stretch_copies(const VtkPolyData& frame, const Group& group, const std::vector<double>& radii,
                         PreviewCopies& copies);
     [[nodiscard]] std::vector<double> sprite_angles(const VtkPolyData& frame, const Group& group) const;

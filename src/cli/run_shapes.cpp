@@ -37,19 +37,6 @@ Value value_of(const std::vector<Value>& values, std::size_t i, Value otherwise)
     return i < values.size() ? values[i] : otherwise;
 }
 
-// The middle of its box in the origin, its farthest vertex 1 away.
-TriangleMesh fitted(TriangleMesh mesh, const std::filesystem::path& file) {
-    const Vec3 middle = bounds(mesh).center();
-    double reach = 0.0;
-    for (Vec3& v : mesh.vertices) {
-        v -= middle;
-        reach = std::max(reach, length(v));
-    }
-    if (!(reach > 0.0)) throw InputError(fmt::format("{}: has no size, expected a mesh to draw", file.string()));
-    for (Vec3& v : mesh.vertices) v = v / reach;
-    return mesh;
-}
-
 ParticleShape::Facing facing_of(const std::string& name) {
     if (name == "random") return ParticleShape::Facing::random;
     return name == "velocity" ? ParticleShape::Facing::velocity : ParticleShape::Facing::upright;
@@ -60,6 +47,19 @@ std::uint64_t id_of(const std::vector<std::int64_t>& ids, std::size_t i) {
 }
 
 }  // namespace
+
+TriangleMesh shape_from(const std::filesystem::path& file) {
+    TriangleMesh mesh = read_mesh(file, MeshContent::triangles).mesh;
+    const Vec3 middle = bounds(mesh).center();
+    double reach = 0.0;
+    for (Vec3& v : mesh.vertices) {
+        v -= middle;
+        reach = std::max(reach, length(v));
+    }
+    if (!(reach > 0.0)) throw InputError(fmt::format("{}: has no size, expected a mesh to draw", file.string()));
+    for (Vec3& v : mesh.vertices) v = v / reach;
+    return mesh;
+}
 
 // What the command line says is for all particles.
 void RunPictures::choose_shape(const RunFolder& folder) {
@@ -101,7 +101,7 @@ void RunPictures::load_drawing(Drawing& drawing, const std::filesystem::path& sp
     }
     if (drawing.kind == ParticleDrawing::meshes) {
         if (mesh.empty()) throw InputError("--draw meshes: the run has no mesh for it, expected --mesh FILE");
-        shapes_.push_back(fitted(read_mesh(mesh, MeshContent::triangles).mesh, mesh));
+        shapes_.push_back(shape_from(mesh));
         drawing.mesh = static_cast<std::uint32_t>(shapes_.size());
     }
 }
@@ -140,24 +140,10 @@ void RunPictures::require_room_for_copies() const {
                                shapes_.empty() ? "spheres that stretch" : "meshes"));
 }
 
-std::vector<AffineMap> RunPictures::turns_of(const VtkPolyData& frame, const Group& group) const {
-    const std::vector<std::size_t>& shown = group.shown;
-    std::vector<AffineMap> maps(shown.size());
+std::vector<AffineMap> RunPictures::turns_of(const Group& group) const {
+    std::vector<AffineMap> maps(group.shown.size());
     if (group.drawing->mesh == 0) return maps;
-    const auto& ids = column<std::int64_t>(frame, "id");
-    const auto& ages = column<double>(frame, "age");
-    const auto& radii = column<double>(frame, "radius");
-    const MeanSpread& turning = group.drawing->shape.turning;
-    for (std::size_t k = 0; k < shown.size(); ++k) {
-        const std::size_t i = shown[k];
-        if (!turns_.empty() && value_of(radii, i, 0.0) > 0.0) {
-            maps[k] = map_of(turns_[i]);
-            continue;
-        }
-        const OwnTurning own = own_turning(id_of(ids, i));
-        const double rate = turning.mean + own.spread * turning.spread;
-        maps[k] = map_of(turned_on(random_turn(id_of(ids, i)), rate * own.axis, value_of(ages, i, 0.0)));
-    }
+    for (std::size_t k = 0; k < maps.size(); ++k) maps[k] = map_of(turns_[group.shown[k]]);
     return maps;
 }
 
@@ -199,7 +185,7 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, c
 // Spheres become copies, beside those that are there.
 void RunPictures::add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all) {
     PreviewCopies copies;
-    copies.places = turns_of(moment.frame, group);
+    copies.places = turns_of(group);
     for (std::size_t k = 0; k < copies.places.size(); ++k) {
         AffineMap& place = copies.places[k];
         for (Vec3* const row : {&place.row_x, &place.row_y, &place.row_z}) *row = spheres.radii[k] * *row;

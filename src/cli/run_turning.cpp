@@ -64,4 +64,22 @@ std::vector<Turn> RunTurning::turns(const VtkPolyData& moment) {
     return turns;
 }
 
+std::vector<Turn> RunTurning::shown_turns(const VtkPolyData& moment,
+                                          const std::function<MeanSpread(std::size_t)>& turning_of) {
+    const bool spins = find_array(moment.point_arrays, "spin") != nullptr;
+    std::vector<Turn> all = spins ? turns(moment) : std::vector<Turn>(moment.points.size());
+    const auto* ids = column<std::int64_t>(moment, "id");
+    const auto* ages = column<double>(moment, "age");
+    const auto* radii = column<double>(moment, "radius");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (spins && radii != nullptr && (*radii)[i] > 0.0) continue;
+        const auto id = static_cast<std::uint64_t>(ids != nullptr ? (*ids)[i] : static_cast<std::int64_t>(i));
+        const OwnTurning own = own_turning(id);
+        const MeanSpread turning = turning_of(i);
+        const double rate = turning.mean + own.spread * turning.spread;
+        all[i] = turned_on(random_turn(id), rate * own.axis, ages != nullptr ? (*ages)[i] : 0.0);
+    }
+    return all;
+}
+
 }  // namespace ricochet::cli

@@ -2,12 +2,15 @@
 // frames.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <unordered_map>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/emitter.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/render/turning.h"
@@ -23,6 +26,10 @@ public:
     /// Of each particle of a moment that has spins: between two frames a spin changes evenly. Throws InputError for
     /// files that are not a run's.
     [[nodiscard]] std::vector<Turn> turns(const VtkPolyData& moment);
+    /// Of each particle of any moment: those without a spin turn about an axis of their own, at a rate, rad/s, of which
+    /// turning_of(i) says mean and spread.
+    [[nodiscard]] std::vector<Turn> shown_turns(const VtkPolyData& moment,
+                                                const std::function<MeanSpread(std::size_t)>& turning_of);
 
 private:
     struct Spinning {

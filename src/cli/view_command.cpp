@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cli/arguments.h"
+#include "cli/page_shapes.h"
 #include "cli/run_scene.h"
 #include "cli/terminal.h"
 #include "page/run_page.h"
@@ -108,6 +109,7 @@ int view(const ViewArguments& arguments) {
                                   .color_by = arguments.color_by,
                                   .map = *map,
                                   .version = RICOCHET_VERSION,
+                                  .shapes = cli::page_shapes(folder),
                                   .progress = progress_on(line, mutex)};
         report = write_run_page(folder, target, options);
     }

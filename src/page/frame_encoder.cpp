@@ -68,6 +68,18 @@ void add_colors(PageFrame& page, const VtkPolyData& frame, const std::vector<std
     for (Levels& channel : levels) page.channels.push_back(std::move(channel));
 }
 
+// Coordinates from -1 to 1.
+void add_turns(PageFrame& page, const std::vector<std::array<float, 3>>& turns, const std::vector<std::uint32_t>& rows,
+               int bits) {
+    const LevelScale scale = turn_scale(bits);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        Levels levels;
+        levels.reserve(rows.size());
+        for (const std::uint32_t row : rows) levels.push_back(scale.level(static_cast<double>(turns[row][axis])));
+        page.channels.push_back(std::move(levels));
+    }
+}
+
 // Springs of which an end is not in the page are not either.
 void add_springs(PageFrame& page, const VtkPolyData& frame, const std::vector<std::uint32_t>& rows) {
     if (frame.lines.empty() && frame.triangles.empty()) return;
@@ -117,6 +129,11 @@ LevelScale level_scale(const PageAttribute& attribute, int bits) {
     return scale;
 }
 
+LevelScale turn_scale(int bits) {
+    const auto largest = static_cast<std::uint16_t>((1U << static_cast<unsigned>(bits)) - 1U);
+    return {-1.0, 2.0 / largest, largest, false};
+}
+
 PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageDetail& detail,
                      const ColliderParts& colliders) {
     const VtkPolyData frame = read_vtp(file.path);
@@ -136,6 +153,7 @@ PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageD
         page.channels.push_back(std::move(levels));
     }
     if (survey.has_colors) add_colors(page, frame, rows, file);
+    if (!survey.turns.empty()) add_turns(page, survey.turns.at(file.step), rows, detail.value_bits);
     add_springs(page, frame, rows);
     page.moving = colliders.moving_frame(file);
     return page;
@@ -147,6 +165,7 @@ FrameEncoder::FrameEncoder(const RunSurvey& survey, const PageDetail& detail, co
         if (!is_constant(attribute)) channels_.emplace_back(detail.value_bits);
     }
     if (survey.has_colors) channels_.insert(channels_.end(), 3, ChannelEncoder(8));
+    if (!survey.turns.empty()) channels_.insert(channels_.end(), 3, ChannelEncoder(detail.value_bits));
 }
 
 void FrameEncoder::write_rows(const PageFrame& frame, ByteWriter& out) {

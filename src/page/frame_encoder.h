@@ -29,6 +29,8 @@ struct PageDetail {
 
 /// The levels that an attribute is told in.
 [[nodiscard]] LevelScale level_scale(const PageAttribute& attribute, int bits);
+/// The levels of a coordinate of turns.
+[[nodiscard]] LevelScale turn_scale(int bits);
 /// True where an attribute needs no bytes in the frames: every particle has the same value.
 [[nodiscard]] inline bool is_constant(const PageAttribute& attribute) {
     return attribute.low == attribute.high && !attribute.has_gaps && !attribute.is_cut;
@@ -37,7 +39,7 @@ struct PageDetail {
 /// One frame, as whole numbers.
 struct PageFrame {
     std::vector<std::int64_t> ids;
-    std::vector<Levels> channels;  ///< x, y, z; attributes that are not constant; red, green, blue in sRGB
+    std::vector<Levels> channels;  ///< x, y, z; attributes that are not constant; red, green, blue in sRGB; turns
     std::vector<VtkLine> lines;    ///< between rows
     std::vector<Triangle> triangles;
     MovingFrame moving;

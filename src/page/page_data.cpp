@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -10,6 +12,7 @@
 #include "page/page_budget.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace {
@@ -50,6 +53,20 @@ Camera page_camera(const RunFolder& folder, const RunSurvey& survey, const Colli
         }
     }
     return automatic_camera(subject, folder.info.up, 16.0 / 9.0);
+}
+
+// Frame by frame: each goes on from the one before.
+std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::vector<FrameFile>& frames,
+                                                                    const PageShapes& shapes) {
+    std::map<std::uint64_t, std::vector<std::array<float, 3>>> all;
+    for (const FrameFile& file : frames) {
+        std::vector<std::array<float, 3>>& turns = all[file.step];
+        for (const Turn& turn : shapes.turns(read_vtp(file.path))) {
+            const Vec3 v = turn.w < 0.0 ? -turn.v : turn.v;
+            turns.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
+        }
+    }
+    return all;
 }
 
 // Bytes that frames would take on the page, from a few of them.
@@ -113,10 +130,11 @@ std::optional<PageFrames> packed_frames(const PageSource& source, const PageDeta
 
 }  // namespace
 
-PageSource page_source(const RunFolder& folder, const std::function<void(double)>& progress) {
+PageSource page_source(const RunFolder& folder, const PageShapes& shapes, const std::function<void(double)>& progress) {
     std::vector<FrameFile> frames = complete_frames(folder);
     ColliderParts colliders(folder, frames);
     RunSurvey survey = survey_run(frames, colliders.box(), progress);
+    if (!shapes.meshes.empty()) survey.turns = turns_of(frames, shapes);
     const Camera camera = page_camera(folder, survey, colliders);
     return {folder, std::move(frames), std::move(colliders), std::move(survey), camera};
 }

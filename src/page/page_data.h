@@ -24,7 +24,8 @@ struct PageSource {
 };
 
 /// Reads a run, see write_run_page().
-[[nodiscard]] PageSource page_source(const RunFolder& folder, const std::function<void(double)>& progress);
+[[nodiscard]] PageSource page_source(const RunFolder& folder, const PageShapes& shapes,
+                                     const std::function<void(double)>& progress);
 
 /// Blocks of frames as the page holds them: packed, as text.
 struct PageFrames {

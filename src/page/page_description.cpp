@@ -50,6 +50,25 @@ ordered_json part_json(const ColliderPart& part, const Vec3& origin, int bits) {
     return json;
 }
 
+// Null where particles are spheres.
+ordered_json shapes_json(const PageShapes& shapes, int bits) {
+    if (shapes.meshes.empty()) return nullptr;
+    ordered_json meshes = ordered_json::array();
+    for (const TriangleMesh& mesh : shapes.meshes) {
+        ordered_json vertices = ordered_json::array();
+        ordered_json triangles = ordered_json::array();
+        for (const Vec3& v : mesh.vertices) {
+            for (int axis = 0; axis < 3; ++axis) vertices.push_back(std::round(1e5 * v[axis]) / 1e5);
+        }
+        for (const Triangle& triangle : mesh.triangles) {
+            for (const std::uint32_t corner : triangle) triangles.push_back(corner);
+        }
+        meshes.push_back({{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}});
+    }
+    const LevelScale scale = turn_scale(bits);
+    return {{"of", shapes.of}, {"turnLow", scale.low}, {"turnStep", scale.step}, {"meshes", std::move(meshes)}};
+}
+
 // A map as sRGB bytes in hexadecimal digits.
 std::string map_text(ColorMap map) {
     static constexpr std::string_view kDigits = "0123456789abcdef";
@@ -121,6 +140,7 @@ std::string page_description(const PageSource& source, const PageFrames& frames,
                          {"attributes", attributes},
                          {"colors", survey.has_colors},
                          {"springs", survey.has_springs},
+                         {"shapes", shapes_json(options.shapes, detail.value_bits)},
                          {"frames", frames_json(source, frames)},
                          {"parts", parts},
                          {"maps", maps},

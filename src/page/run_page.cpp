@@ -29,6 +29,7 @@ constexpr std::array kModules = {
     Module{"./blocks.js", "blocks.js"},
     Module{"./run.js", "run.js"},
     Module{"./colors.js", "colors.js"},
+    Module{"./copies.js", "copies.js"},
     Module{"./particles.js", "particles.js"},
     Module{"./bodies.js", "bodies.js"},
     Module{"./ribbons.js", "ribbons.js"},
@@ -81,6 +82,7 @@ std::vector<std::string> notes_of(const PageSource& source, const PageFrames& fr
         notes.push_back(fmt::format("{} frames lack the colliders that move and are left out",
                                     source.folder.frames.size() - source.frames.size()));
     }
+    notes.insert(notes.end(), options.shapes.notes.begin(), options.shapes.notes.end());
     return notes;
 }
 
@@ -118,7 +120,7 @@ void check_color(const PageSource& source, const PageOptions& options) {
 
 PageReport write_run_page(const RunFolder& folder, const std::filesystem::path& target, const PageOptions& options) {
     AtomicFile file(target);  // first: a name that cannot be written is told before the work
-    const PageSource source = page_source(folder, [&](double part) { options.progress(0.5 * part); });
+    const PageSource source = page_source(folder, options.shapes, [&](double part) { options.progress(0.5 * part); });
     check_color(source, options);
     const std::string modules = module_elements();
     const std::string parts = part_elements(source.colliders);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "page/page_shapes.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/render/color_map.h"
 
@@ -18,6 +19,7 @@ struct PageOptions {
     std::string color_by;  ///< attribute that colours the particles at first; empty: their own colours, or speed
     ColorMap map = ColorMap::plasma;
     std::string version;                                   ///< of the program
+    PageShapes shapes = {};                                ///< none: particles are spheres
     std::function<void(double)> progress = [](double) {};  ///< told the part that is done, from any thread
 };
 

@@ -2,8 +2,10 @@
 /// What a run's frames hold, found out before a page is made of them: where, how many, which numbers in which ranges.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,9 @@ struct RunSurvey {
     std::int64_t largest_id = 0;
     std::vector<std::int64_t> spring_ids;  ///< particles at the ends of springs, ascending
     std::vector<Vec3> sample;              ///< some of the particles over the run
+    /// Where particles are copies of meshes, by the step of a frame: the vector part of each particle's turn, whose
+    /// scalar part is not negative. Else empty.
+    std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns;
 
     /// Particles over all frames.
     [[nodiscard]] std::uint64_t total() const;

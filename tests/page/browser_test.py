@@ -39,6 +39,21 @@ LATE = {
 }
 
 
+# A cross that stands up, drawn by its emitter as a mesh; a ball beside it; a bar that spins once in the run.
+SHAPES = {
+    "ricochet": 1,
+    "simulation": {"time_step": 0.05, "duration": 2},
+    "camera": {"position": [0, -8, 0], "target": [0, 0, 0], "field_of_view": 40},
+    "output": {"every": 2},
+    "emitters": [
+        {"name": "bars", "type": "point", "center": [-1.5, 0, 0], "burst": 1, "particle_radius": 1,
+         "drawing": {"particles": "meshes", "mesh": "bar.obj"}},
+        {"name": "balls", "type": "point", "center": [1.5, 0, 0], "burst": 1, "particle_radius": 1}],
+    "particles": [{"position": [0, 0, -2], "radius": 0.5, "spin": [0, 3.14159, 0]}],
+}
+BAR = "v -1 -0.1 0\nv 1 -0.1 0\nv 1 0.1 0\nv -1 0.1 0\nf 1 2 3\nf 1 3 4\n"
+
+
 def check(what, is_true, *shown):
     """Ends the test with 1 where something is not as it should be."""
     if not is_true:
@@ -139,6 +154,39 @@ def look_at_late_one(browser, page):
     check("the empty ones can be shown", browser.run("show(0)") == 0)
 
 
+def bright_around(browser, png, row, radius):
+    """Part of the pixels of a square around a particle that are not the background's."""
+    width, _, channels, rows = pixels(png)
+    x, y = (int(v) for v in window_place(browser, row))
+    sky = rows[5][0:3]
+    inside = [rows[j][channels * i:channels * i + 3] for j in range(y - radius, y + radius)
+              for i in range(x - radius, x + radius)]
+    return sum(max(abs(one[k] - sky[k]) for k in range(3)) > 60 for one in inside) / len(inside)
+
+
+def look_at_shapes(browser, page, folder):
+    browser.open(page)
+    browser.run("ricochet.loaded")
+    browser.run("document.body.classList.add('bare'), ricochet.app.set_theme('light')")
+    browser.run("show(4)")
+    shapes = browser.run("ricochet.app.particles.copies.map((copies) => copies.geometry.instanceCount)")
+    check("one particle is a copy of the mesh", shapes == [1], shapes)
+    first = browser.screenshot(os.path.join(folder, "shapes.png"))
+    bar, ball = bright_around(browser, first, 1, 70), bright_around(browser, first, 2, 70)
+    check("a bar covers less than a ball", 0.01 < bar < 0.6 * ball, bar, ball)
+    check("frames have turns", browser.run("ricochet.app.run.frames[4].turns.length") == 3)
+    turns = browser.run("[1, 11].map((k) => ricochet.app.run.frames[k].turns.map((axis) => axis[0]))")
+    w = [(1 - sum(v * v for v in turn)) ** 0.5 if sum(v * v for v in turn) < 1 else 0 for turn in turns]
+    half = abs(sum(a * b for a, b in zip(*turns)) + w[0] * w[1])
+    check("a second's spin of half a turn turns by that", half < 0.02, turns, half)
+    browser.run("ricochet.app.change({drawing: 'soft'}), ricochet.app.stage.draw()")
+    browser.run("show(4)")
+    check("as discs all are round", not browser.run("ricochet.app.particles.copies[0].object.visible"))
+    browser.run("ricochet.app.change({drawing: 'spheres'})")
+    browser.run("show(4)")
+    check("and copies again as before", changed_part(first, browser.screenshot()) == 0)
+
+
 def view(program, scene_data, folder, name):
     """The page of a scene."""
     scene, page = os.path.join(folder, name + ".json"), os.path.join(folder, name + ".html")
@@ -156,13 +204,17 @@ def main():
         print("SKIPPED: there is no chromium here (apt install chromium)")
         sys.exit(77)
     os.makedirs(folder, exist_ok=True)
+    with open(os.path.join(folder, "bar.obj"), "w", encoding="utf-8") as stream:
+        stream.write(BAR)
     page, late = view(program, SCENE, folder, "page"), view(program, LATE, folder, "late")
+    shapes = view(program, SHAPES, folder, "shapes")
     browser = Browser(path)
     try:
         look(browser, page, folder)
         look_at_late_one(browser, late)
+        look_at_shapes(browser, shapes, folder)
         check("the console stays empty", browser.console == [], browser.console)
-        pages = ["file://" + os.path.abspath(one) for one in (page, late)]
+        pages = ["file://" + os.path.abspath(one) for one in (page, late, shapes)]
         outside = [url for url in browser.requests if not url.startswith(("blob:", *pages))]
         check("nothing is asked of anyone", outside == [], outside)
         check("no error", browser.run("ricochet.errors") == [])

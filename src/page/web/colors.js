@@ -34,6 +34,26 @@ export function number_text(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// Where a particle is, how large, and its colour.
+export const COLOR = /* glsl */ `
+  in vec4 place;  // levels of x, y, z and of the value
+  in float size;
+  in vec4 tint;
+  uniform vec3 lower;
+  uniform float grid_step;
+  uniform vec2 value_scale;  // low, step
+  uniform vec2 shown;
+  uniform float gap_level;   // from which on a level is no number
+  uniform sampler2D map;
+  uniform bool own_colors;
+  uniform float enlarge;
+  vec4 color_of() {
+    float t = (value_scale.x + value_scale.y * place.w - shown.x) / max(shown.y - shown.x, 1e-30);
+    vec3 mapped = place.w >= gap_level ? vec3(0.3) : texture(map, vec2(clamp(t, 0.0, 1.0) * 64.0 / 65.0 + 0.5 / 65.0, 0.5)).rgb;
+    return vec4(own_colors ? pow(tint.rgb, vec3(2.2)) : mapped, tint.a);
+  }
+`;
+
 // Everything that is drawn is lit by this: the sky, what the ground throws back, and a sun.
 export const LIGHT = /* glsl */ `
   uniform vec3 sun;

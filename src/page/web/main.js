@@ -30,11 +30,11 @@ class App {
     this.path = new Threads();
     this.marker = make_marker();
     const own = [this.particles, this.cloth, this.ropes, this.trails, this.path, this.marker];
-    for (const {object} of own) this.stage.add(object);
+    for (const {object} of [...own, ...this.particles.copies]) this.stage.add(object);
     this.stage.before_drawing = () => this.place_marker();
     const attribute = this.first_attribute(description);
     this.look = {attribute, map: description.map, shown: [0, 1], enlarge: 1, trails: false, trail_length: 12, body_map: '',
-      drawing: this.particles.opacity_attribute >= 0 ? 'glow' : 'spheres'};
+      drawing: this.particles.opacity_attribute >= 0 && !this.particles.has_shapes() ? 'glow' : 'spheres'};
     if (attribute >= 0) this.look.shown = description.attributes[attribute].shown.slice();
     const is_dark = this.look.drawing === 'glow' || matchMedia('(prefers-color-scheme: dark)').matches;
     this.set_theme(is_dark ? 'dark' : 'light');

@@ -1,20 +1,11 @@
 // Particles as spheres: a square for each that faces the eye, in which a ray meets the sphere itself.
 import * as THREE from 'three';
-import {LIGHT, light_uniforms} from './colors.js';
+import {COLOR, LIGHT, light_uniforms} from './colors.js';
+import {Copies} from './copies.js';
 
 const VERTEX = /* glsl */ `
-  in vec4 place;  // levels of x, y, z and of the value
-  in float size;
-  in vec4 tint;
-  uniform vec3 lower;
-  uniform float grid_step;
-  uniform vec2 value_scale;  // low, step
-  uniform vec2 shown;
-  uniform float gap_level;   // from which on a level is no number
-  uniform sampler2D map;
-  uniform bool own_colors;
+  ${COLOR}
   uniform float radius;      // of all; 0: their own
-  uniform float enlarge;
   uniform float pixel;       // of the picture, over its distance
   out vec3 at;
   flat out vec3 center;
@@ -31,9 +22,7 @@ const VERTEX = /* glsl */ `
     // The outline of a sphere is wider than the sphere.
     float wide = (ball + pixel * far) * far / sqrt(max(far * far - ball * ball, 1e-6 * far * far));
     at = center + wide * (position.x * right + position.y * over);
-    float t = (value_scale.x + value_scale.y * place.w - shown.x) / max(shown.y - shown.x, 1e-30);
-    vec3 mapped = place.w >= gap_level ? vec3(0.3) : texture(map, vec2(clamp(t, 0.0, 1.0) * 64.0 / 65.0 + 0.5 / 65.0, 0.5)).rgb;
-    color = vec4(own_colors ? pow(tint.rgb, vec3(2.2)) : mapped, tint.a);
+    color = color_of();
     gl_Position = ball > 0.0 && far > ball ? projectionMatrix * vec4(at, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
   }
 `;
@@ -72,6 +61,7 @@ export class Particles {
     this.radius_attribute = find('radius');
     if (find('size') >= 0) this.radius_attribute = find('size');
     this.opacity_attribute = find('opacity');
+    this.drawing_attribute = find('drawing');
     this.geometry = new THREE.InstancedBufferGeometry();
     this.geometry.setAttribute('position', new THREE.Float32BufferAttribute([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 3));
     this.geometry.setIndex([0, 1, 2, 0, 2, 3]);
@@ -101,6 +91,7 @@ export class Particles {
       this.uniforms.world_from_view.value.setFromMatrix4(camera.matrixWorld);
     };
     this.bound_radius = this.visible_radius();
+    this.copies = this.has_shapes() ? description.shapes.meshes.map((mesh) => new Copies(mesh, room, this.uniforms)) : [];
   }
 
   add_attribute(name, array, size, normalized) {
@@ -123,10 +114,13 @@ export class Particles {
     material.blending = drawing === 'glow' ? THREE.AdditiveBlending : THREE.NormalBlending;
     material.needsUpdate = true;
     this.object.renderOrder = is_soft ? 3 : 0;
+    for (const copies of this.copies) copies.object.visible = !is_soft;
+    if (this.copies.length > 0 && this.last !== undefined) this.show(...this.last);
   }
 
   varies(attribute) { return attribute >= 0 && !this.run.attributes[attribute].constant; }
-  has_sizes() { return this.varies(this.radius_attribute) || this.run.description.springs; }
+  has_shapes() { return this.run.description.shapes !== null; }
+  has_sizes() { return this.varies(this.radius_attribute) || this.run.description.springs || this.has_shapes(); }
   has_tint() { return this.run.description.colors || this.opacity_attribute >= 0; }
 
   // Points have no size: they get one that can be seen, the smaller the more there are.
@@ -162,6 +156,23 @@ export class Particles {
     this.uniforms.value_scale.value.set(scale.low, scale.constant ? 0 : scale.step);
     this.uniforms.gap_level.value = scale.gaps ? scale.largest + 0.5 : 1e9;
     this.geometry.instanceCount = count;
+    this.last = [frame, attribute];
+    if (this.drawing === 'spheres') this.show_copies(frame);
+  }
+
+  // What is a copy of a mesh is no sphere.
+  show_copies(frame) {
+    if (this.copies.length === 0) return;
+    const {of} = this.run.description.shapes;
+    const rows = this.copies.map(() => []);
+    for (let row = 0; row < frame.count; ++row) {
+      const drawing = this.drawing_attribute < 0 ? 0 : this.run.value(frame, this.drawing_attribute, row);
+      const shape = of[Math.round(drawing)] ?? -1;
+      if (shape >= 0 && this.size.array[row] > 0) rows[shape].push(row);
+    }
+    this.copies.forEach((copies, shape) => copies.show(this, frame.turns, rows[shape]));
+    for (const row of rows.flat()) this.size.array[row] = 0;
+    this.sent(this.size, frame.count);
   }
 
   sent(attribute, count) {

@@ -13,6 +13,7 @@ export class Run {
     this.axes = [0, 1, 2].map(() => new ChannelDecoder(description.positionBits));
     this.values = this.attributes.map((a) => a.constant ? null : new ChannelDecoder(description.valueBits));
     this.tints = description.colors ? [0, 1, 2].map(() => new ChannelDecoder(8)) : [];
+    this.turns = description.shapes === null ? [] : [0, 1, 2].map(() => new ChannelDecoder(description.valueBits));
     this.deforming = description.parts.filter((part) => part.motion === 'deforming').map((part) => (
       {part, rows: new RowHistory(), axes: [0, 1, 2].map(() => new ChannelDecoder(description.positionBits))}));
   }
@@ -40,7 +41,8 @@ export class Run {
   read_frame(reader) {
     const ids = this.read_ids(reader);
     const axes = this.axes.map((channel) => channel.decode(reader, this.rows));
-    const frame = {ids, count: ids.length, positions: new Uint16Array(3 * ids.length), values: [], tints: null};
+    const frame = {ids, count: ids.length, positions: new Uint16Array(3 * ids.length), values: [], tints: null,
+      turns: null};
     for (let axis = 0; axis < 3; ++axis) {
       for (let i = 0; i < ids.length; ++i) frame.positions[3 * i + axis] = axes[axis][i];
     }
@@ -53,6 +55,11 @@ export class Run {
       const tints = this.tints.map((channel) => channel.decode(reader, this.rows));
       frame.tints = new Uint8Array(3 * ids.length);
       for (let i = 0; i < frame.tints.length; ++i) frame.tints[i] = tints[i % 3][Math.floor(i / 3)];
+    }
+    if (this.turns.length > 0) {
+      const {turnLow, turnStep} = this.description.shapes;
+      frame.turns = this.turns.map((channel) =>
+        Float32Array.from(channel.decode(reader, this.rows), (level) => turnLow + turnStep * level));
     }
     this.read_springs(reader, frame);
     this.read_moving(reader, frame);

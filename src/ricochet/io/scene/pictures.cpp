@@ -294,8 +294,9 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
         const ObjectView view = emitter.object("drawing");
         auto drawing = view.read<ParticleDrawingDescription>();
         check_drawing(context, view, drawing);
-        drawing.sprite = picture_file(context, view, "sprite");
-        drawing.mesh = picture_file(context, view, "mesh");
+        // What does not go together has been reported.
+        drawing.sprite = drawing.particles == "sprites" ? picture_file(context, view, "sprite") : "";
+        drawing.mesh = drawing.particles == "meshes" ? picture_file(context, view, "mesh") : "";
         if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {
             context.warn(
                 view, "particles",

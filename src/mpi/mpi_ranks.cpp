@@ -84,6 +84,32 @@ public:
         return all;
     }
 
+    [[nodiscard]] std::vector<std::vector<std::byte>> exchange(
+        const std::vector<std::vector<std::byte>>& to_each) override {
+        std::vector<std::uint64_t> sent;
+        for (const std::vector<std::byte>& part : to_each) sent.push_back(part.size());
+        std::vector<std::uint64_t> sizes(size());
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ialltoall(sent.data(), 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD, &request);
+        wait_for(request);
+        std::vector<std::vector<std::byte>> received(size());
+        std::vector<MPI_Request> requests;
+        for (int rank = 0; rank < size_; ++rank) {
+            const auto k = static_cast<std::size_t>(rank);
+            received[k].resize(sizes[k]);
+            for_pieces(received[k].size(), [&](std::size_t first, int count) {
+                MPI_Irecv(received[k].data() + first, count, MPI_BYTE, rank, 0, MPI_COMM_WORLD,
+                          &requests.emplace_back());
+            });
+            for_pieces(to_each[k].size(), [&](std::size_t first, int count) {
+                MPI_Isend(to_each[k].data() + first, count, MPI_BYTE, rank, 0, MPI_COMM_WORLD,
+                          &requests.emplace_back());
+            });
+        }
+        for (MPI_Request& open : requests) wait_for(open);
+        return received;
+    }
+
 private:
     static void reduce(std::span<std::uint64_t> values, MPI_Op how) {
         MPI_Request request = MPI_REQUEST_NULL;

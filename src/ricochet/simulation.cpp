@@ -48,6 +48,7 @@ AttributeTable Simulation::shown_attributes() const {
     return shown;
 }
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
+RankBalance Simulation::rank_balance() const { return impl().balancer.balance(); }
 const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().world.colliders(); }
 std::span<const Material> Simulation::materials() const { return impl().materials; }

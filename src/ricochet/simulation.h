@@ -141,9 +141,18 @@ class CollisionWorld;
 
 /// What Simulation::show_whole() shows.
 enum class Shown {
-    contacts,   ///< contact_records()
-    particles,  ///< those, particles(), statistics(), collider_totals() and what is made of them
-    all,        ///< those, triangle_totals(), and what save() saves
+    contacts,           ///< contact_records()
+    counts,             ///< those, statistics() and collider_totals()
+    particles,          ///< those, particles() and what is made of them
+    all,                ///< those, triangle_totals(), and what save() saves
+    all_but_particles,  ///< the same without any particle: what save_particles() saves beside it
+};
+
+/// How evenly ranks that share a run are busy, by what their particles cost: counted, not measured.
+struct RankBalance {
+    std::uint64_t moved = 0;   ///< particles that have changed ranks
+    double busiest_now = 1.0;  ///< work of the busiest rank over the mean, in the last interval between two looks
+    double busiest = 1.0;      ///< the same of all intervals since the run began or went on, work of each added up
 };
 
 /// A particle that was born, by its id, and where it comes from.
@@ -203,11 +212,20 @@ public:
     void restore(const ByteSource& source);
 
     /// Where ranks share the run (SimulationSetup::ranks), each has particles of its own, and what they have done; the
-    /// bits are those of one process. The simulations of all ranks make the same calls of step(), advance(), restore()
-    /// and of this: while `show` runs, which it does on the first rank only, the simulation there has what all of them
+    /// bits are those of one process. Particles change ranks where one of those is behind, so that which a rank has is
+    /// not known beforehand. The simulations of all ranks make the same calls of step(), advance(), restore() and of
+    /// this: while `show` runs, which it does on the first rank only, the simulation there has what all of them
     /// have together. A state that it saves then can be restored by any number of ranks. Without ranks it just calls
     /// `show`. Throws what that throws.
     void show_whole(Shown what, const std::function<void()>& show);
+    /// Saves the particles that this rank has (all, without ranks), for restore_particles(): a part of the state whose
+    /// rest is what save() saves while show_whole() shows all_but_particles. Throws like save().
+    void save_particles(const ByteSink& sink) const;
+    /// Takes such a part in, after restore() of the rest: to be called once for each part, by every rank, which keeps
+    /// what is to live there. Any number of ranks, of whatever number the parts are from. Throws like restore().
+    void restore_particles(const ByteSource& source);
+    /// As of the last step; the same on all ranks. Without them nothing is counted.
+    [[nodiscard]] RankBalance rank_balance() const;
 
     // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
     // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended

@@ -34,19 +34,24 @@ struct Outcome {
     bool operator==(const Outcome&) const = default;
 };
 
+/// A state: all of it, or all but the particles and those of each rank.
+struct State {
+    Bytes rest;
+    std::vector<Bytes> particles;
+};
+
 Bytes saved(const Simulation& simulation) {
     Bytes bytes;
     simulation.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
     return bytes;
 }
 
-void restore(Simulation& simulation, const Bytes& bytes) {
-    std::size_t at = 0;
-    simulation.restore([&](std::span<std::byte> part) {
+ByteSource source_of(const Bytes& bytes) {
+    return [&bytes, at = std::size_t{0}](std::span<std::byte> part) mutable {
         if (bytes.size() - at < part.size()) throw InputError("the state ends too early");
         std::memcpy(part.data(), bytes.data() + at, part.size());
         at += part.size();
-    });
+    };
 }
 
 void add(StateHash& hash, const ContactRecord& record) {
@@ -57,13 +62,14 @@ void add(StateHash& hash, const ContactRecord& record) {
 using MakeSetup = std::function<SimulationSetup()>;
 
 /// Steps up to `until` steps; the outcome is that of the first rank.
-Outcome run(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks, const Bytes& from = {},
+Outcome run(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks, const State& from = {},
             std::uint64_t until = ~std::uint64_t{0}) {
     SimulationSetup setup = make();
     setup.options.record_contacts = true;
     setup.ranks = ranks;
     Simulation simulation(std::move(setup));
-    if (!from.empty()) restore(simulation, from);
+    if (!from.rest.empty()) simulation.restore(source_of(from.rest));
+    for (const Bytes& part : from.particles) simulation.restore_particles(source_of(part));
     Outcome outcome;
     StateHash contacts;
     while (!simulation.finished() && simulation.step_index() < until) {
@@ -84,7 +90,7 @@ Outcome run(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks, const By
     return outcome;
 }
 
-Outcome run_on(std::size_t count, const MakeSetup& make, const Bytes& from = {},
+Outcome run_on(std::size_t count, const MakeSetup& make, const State& from = {},
                std::uint64_t until = ~std::uint64_t{0}) {
     Outcome outcome;
     on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
@@ -92,6 +98,25 @@ Outcome run_on(std::size_t count, const MakeSetup& make, const Bytes& from = {},
         if (ranks->rank() == 0) outcome = mine;
     });
     return outcome;
+}
+
+/// After so many steps, as each of the ranks saves it.
+State saved_by_each(std::size_t count, const MakeSetup& make, std::uint64_t steps) {
+    State state;
+    state.particles.resize(count);
+    on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+        SimulationSetup setup = make();
+        setup.options.record_contacts = true;
+        setup.ranks = ranks;
+        Simulation simulation(std::move(setup));
+        simulation.advance(steps);
+        simulation.save_particles([&](std::span<const std::byte> bytes) {
+            Bytes& part = state.particles[ranks->rank()];
+            part.insert(part.end(), bytes.begin(), bytes.end());
+        });
+        simulation.show_whole(Shown::all_but_particles, [&] { state.rest = saved(simulation); });
+    });
+    return state;
 }
 
 /// What differs, in words: for a message.
@@ -160,7 +185,33 @@ SimulationSetup belt_setup() {
     return setup;
 }
 
-const std::vector<std::pair<const char*, SimulationSetup (*)()>> kSetups = {{"busy", busy_setup}, {"belt", belt_setup}};
+/// Children of few parents make up the run: they live where those live, which are on one of any number of ranks.
+SimulationSetup family_setup() {
+    Material soft;
+    soft.restitution = 0.5;
+    soft.friction = 0.4;
+    SimulationSetup setup = setup_of(0.01, 1.0, soft, {0, 0, -9.81});
+    setup.options.seed = 11;
+    setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
+    EmitterDescription pair;
+    pair.name = "parents";
+    pair.shape = DiskShape{{0, 0, 0.1}, {0, 0, -1}, 0.5};
+    pair.burst = 4;
+    pair.speed = {1.0, 0.2};
+    pair.lifetime = {0.5, 0.0};
+    setup.emitters.push_back(pair);
+    EmitterDescription children;
+    children.parent.emplace();
+    children.parent->on = BirthEvent::life;
+    children.rate = {300.0, 50.0};
+    children.speed = {0.3, 0.2};
+    children.radius = {0.005, 0.002};
+    setup.emitters.push_back(children);
+    return setup;
+}
+
+const std::vector<std::pair<const char*, SimulationSetup (*)()>> kSetups = {
+    {"busy", busy_setup}, {"belt", belt_setup}, {"family", family_setup}};
 
 TEST(SharedRun, HasTheBitsOfOneProcess) {
     for (const auto& [name, make] : kSetups) {
@@ -184,16 +235,44 @@ TEST(SharedRun, IsTriedWithChildrenLimitsAndLostTime) {
     EXPECT_GT(belt.collider_totals()[0].hits, 0U);
 }
 
+// With all of four parents on the first rank it would have twice, three and four times the mean.
+TEST(SharedRun, MovesParticlesFromRanksThatAreBehind) {
+    for (const std::size_t count : {2U, 3U, 4U}) {
+        RankBalance balance;
+        on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
+            SimulationSetup setup = family_setup();
+            setup.ranks = ranks;
+            Simulation simulation(std::move(setup));
+            while (!simulation.finished()) simulation.step();
+            if (ranks->rank() == 0) balance = simulation.rank_balance();
+        });
+        EXPECT_GT(balance.moved, 0U) << count << " ranks";
+        EXPECT_LT(balance.busiest_now, 1.1) << count << " ranks, once no more are born";
+        EXPECT_LT(balance.busiest, 1.3) << count << " ranks, the run's begin included";
+    }
+}
+
+TEST(SharedRun, GoesOnFromTheParticlesOfEachRank) {
+    for (const auto& [name, make] : kSetups) {
+        const Outcome alone = run(make, nullptr);
+        const State four = saved_by_each(4, make, 40);
+        EXPECT_EQ(run(make, nullptr, four).saved == alone.saved, true) << name << ", alone";
+        for (const std::size_t count : {2U, 3U, 5U}) {
+            EXPECT_EQ(run_on(count, make, four).saved == alone.saved, true) << name << ", " << count << " ranks";
+        }
+    }
+}
+
 TEST(SharedRun, GoesOnWithAnyNumberOfRanks) {
     for (const auto& [name, make] : kSetups) {
         const Outcome alone = run(make, nullptr);
         const Outcome four = run_on(4, make, {}, 20);
         EXPECT_EQ(difference(four, run(make, nullptr, {}, 20)), "none") << name;
-        const Outcome two = run_on(2, make, four.saved, 45);
-        const Outcome three = run_on(3, make, two.saved);
+        const Outcome two = run_on(2, make, {four.saved, {}}, 45);
+        const Outcome three = run_on(3, make, {two.saved, {}});
         EXPECT_EQ(three.state, alone.state) << name;
         EXPECT_EQ(three.saved == alone.saved, true) << name;
-        EXPECT_EQ(run(make, nullptr, two.saved).saved == alone.saved, true) << name;
+        EXPECT_EQ(run(make, nullptr, {two.saved, {}}).saved == alone.saved, true) << name;
     }
 }
 

@@ -20,10 +20,11 @@ namespace ricochet::testing {
 /// What the threads share.
 struct ThreadRanksBoard {
     explicit ThreadRanksBoard(std::size_t size)
-        : barrier(static_cast<std::ptrdiff_t>(size)), values(size), bytes(size) {}
+        : barrier(static_cast<std::ptrdiff_t>(size)), values(size), bytes(size), exchanged(size) {}
     std::barrier<> barrier;
     std::vector<std::vector<std::uint64_t>> values;
     std::vector<std::vector<std::byte>> bytes;
+    std::vector<std::vector<std::vector<std::byte>>> exchanged;  // by sender and receiver
 };
 
 class ThreadRanks final : public Ranks {
@@ -49,6 +50,16 @@ public:
         auto all = board_->bytes;
         board_->barrier.arrive_and_wait();
         return all;
+    }
+
+    [[nodiscard]] std::vector<std::vector<std::byte>> exchange(
+        const std::vector<std::vector<std::byte>>& to_each) override {
+        board_->exchanged[rank_] = to_each;
+        board_->barrier.arrive_and_wait();
+        std::vector<std::vector<std::byte>> received;
+        for (const auto& from : board_->exchanged) received.push_back(from[rank_]);
+        board_->barrier.arrive_and_wait();
+        return received;
     }
 
 private:

@@ -30,6 +30,9 @@ public:
     [[nodiscard]] virtual std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes) = 0;
     /// The bytes of all ranks, by rank, on each of them.
     [[nodiscard]] virtual std::vector<std::vector<std::byte>> gather_to_all(std::span<const std::byte> bytes) = 0;
+    /// Bytes for each rank, of any length, the own one too: those that each has sent to this one, by rank.
+    [[nodiscard]] virtual std::vector<std::vector<std::byte>> exchange(
+        const std::vector<std::vector<std::byte>>& to_each) = 0;
 };
 
 }  // namespace ricochet

@@ -311,7 +311,11 @@ std::string summary_text(const RunSummary& summary) {
     Json json;
     json["version"] = summary.version;
     json["scene"] = summary.scene;
-    if (summary.processes > 1) json["processes"] = summary.processes;
+    if (summary.processes > 1) {
+        json["processes"] = summary.processes;
+        json["busiest_process"] = summary.balance.busiest;
+        json["particles_moved"] = summary.balance.moved;
+    }
     json["threads"] = summary.threads;
     json["response"] = summary.response;
     json["seed"] = summary.seed;

@@ -76,6 +76,7 @@ struct RunSummary {
     std::string version;          ///< of ricochet
     std::string scene;            ///< the scene file as it was named
     std::uint64_t processes = 1;  ///< that shared the run
+    RankBalance balance{};        ///< of them
     int threads = 0;              ///< of all of them together
     std::string response;         ///< by which impacts were answered
     std::uint64_t seed = 0;

@@ -256,4 +256,34 @@ void Simulation::restore(const ByteSource& source) {
     impl().inside_step = false;
 }
 
+void Simulation::save_particles(const ByteSink& sink) const {
+    if (!sink) throw InputError("save_particles: found an empty function, expected one that takes the bytes");
+    if (impl().inside_step) {
+        throw RunError("save_particles: the last step or restore() of this simulation has ended with an error");
+    }
+    const std::vector<std::byte> bytes = Impl::bytes_of(impl().store);
+    sink(bytes);
+}
+
+void Simulation::restore_particles(const ByteSource& source) {
+    if (!source) throw InputError("restore_particles: found an empty function, expected one that gives the bytes");
+    impl().inside_step = true;  // until all is there
+    ParticleStore part = impl().store.empty_copy();
+    BinaryReader reader(source);
+    part.archive(reader);
+    const std::size_t count = part.size();
+    if (part.next_id() != impl().store.next_id()) throw InputError("the particles belong to another state");
+    std::vector<std::uint8_t> keep(count);
+    for (std::size_t i = 0; i < count; ++i) keep[i] = impl().share.has_place_for(part.particles().id[i]) ? 1 : 0;
+    if (!std::is_sorted(part.particles().id.begin(), part.particles().id.end())) {
+        throw InputError("the particles are damaged: they are not in the order of their ids");
+    }
+    part.compact(keep);
+    impl().take_in({Impl::bytes_of(part)});
+    impl().require_sound_state();
+    impl().share.add_births(count);
+    if (!impl().store.may_sleep()) impl().wake_all_sleepers();
+    impl().inside_step = false;
+}
+
 }  // namespace ricochet

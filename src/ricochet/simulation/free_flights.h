@@ -109,6 +109,7 @@ public:
     /// From now on particles in free flight stay where they are, and make several steps at once when they need a query.
     /// Only where nothing asks in between where they are. No effect where accelerations differ.
     void begin_deferring();
+    [[nodiscard]] bool is_deferring() const { return deferred_.has_value(); }
     /// All particles make the steps that they have deferred.
     void end_deferring();
     /// A particle that has slept takes part from the next step on.

@@ -2,6 +2,7 @@
 /// Private to the simulation: what a running simulation is made of, and the stages of its step.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -24,6 +25,7 @@
 #include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/particle_store.h"
 #include "ricochet/simulation/query_schedule.h"
+#include "ricochet/simulation/rank_balance.h"
 #include "ricochet/simulation/rank_share.h"
 #include "ricochet/simulation/retirement.h"
 #include "ricochet/simulation/run_recorder.h"
@@ -46,6 +48,11 @@ struct Simulation::Impl {
     // The stages of a step, see step.cpp.
     void step();
     [[nodiscard]] TimeSpan begin_step();
+    /// Particles change ranks where one of those is behind.
+    void balance_ranks();
+    void give_away(GiftChoice choice);
+    /// Particles of other stores, as bytes, come to those that are here.
+    void take_in(std::vector<std::vector<std::byte>> parts);
     void emit_particles(const TimeSpan& step);
     void move_batch(const ParticleRange& batch, const TimeSpan& step);
     [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
@@ -56,6 +63,8 @@ struct Simulation::Impl {
     [[nodiscard]] double oldest_position() const;
     void wake_sleepers(const TimeSpan& part);
     void move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks);
+    [[nodiscard]] WorkCounts work_of(const ParticleRange& batch, std::size_t queried,
+                                     const std::vector<BlockRecord>& blocks) const;
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
     [[nodiscard]] std::string runaway_message(const std::vector<BlockRecord>& blocks, std::size_t i, double time) const;
@@ -101,9 +110,12 @@ struct Simulation::Impl {
     void keep_share();
     /// What all ranks have together, on the first one. All call it.
     [[nodiscard]] WholeRun gather(Shown what);
+    /// A store like this one, whose next particle has the same id.
+    [[nodiscard]] ParticleStore no_particles() const;
     /// Puts it in the place of what this rank has itself, or back.
     void exchange(WholeRun& whole);
     void compact(const std::vector<std::uint8_t>& keep);
+    [[nodiscard]] static std::vector<std::byte> bytes_of(ParticleStore& particles);
 
     /// Lends the weight of sleeping particles to the totals of surfaces (sign 1), or takes it back (-1).
     void add_weights_of_sleepers(double sign);
@@ -126,6 +138,7 @@ struct Simulation::Impl {
     std::uint64_t most_that_fit = 0;  ///< particles that the memory holds: more end the run, they are not refused
     AccelerationSwitches acceleration;
     RankShare share;
+    RankBalancer balancer;
     StepClock clock;
     std::vector<std::string> warnings;
     bool has_spheres;

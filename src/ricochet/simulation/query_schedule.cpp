@@ -1,6 +1,7 @@
 #include "ricochet/simulation/query_schedule.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ricochet/core/algorithms.h"
 
@@ -45,6 +46,18 @@ void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
     }
     next_.resize(kept);
     candidates_.resize(kept);
+}
+
+void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {
+    std::vector<std::uint32_t> next(from.size(), kUnknown);
+    std::vector<ContactCandidates> candidates(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (from[i] == kNew) continue;
+        next[i] = next_[from[i]];
+        candidates[i] = candidates_[from[i]];
+    }
+    next_ = std::move(next);
+    candidates_ = std::move(candidates);
 }
 
 void QuerySchedule::reset(std::size_t count) {

@@ -105,6 +105,12 @@ public:
         for (std::size_t i = begin; i < end; ++i) count += is_active(next_[i], now_) ? 1 : 0;
         return count;
     }
+    /// How many of [begin, end) are left alone.
+    [[nodiscard]] std::size_t count_left_alone(std::size_t begin, std::size_t end) const {
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) count += is_left_alone(i) ? 1 : 0;
+        return count;
+    }
     /// Calls visit(i) for those of [begin, end) that need a query, in ascending order.
     template <class Visit>
     void visit_active(std::size_t begin, std::size_t end, const Visit& visit) const {
@@ -130,6 +136,10 @@ public:
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
+    /// Of a particle that was not here.
+    static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
+    /// Particle i is from now on the one that was from[i], or a new one, of which nothing is known.
+    void rearrange(const std::vector<std::size_t>& from);
     /// `count` particles, of none of which anything is known.
     void reset(std::size_t count);
 

@@ -66,6 +66,7 @@ bool Simulation::Impl::may_defer() const {
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
     const Raised stepping(is_stepping);
+    balance_ranks();
     emit_particles(step);
     std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
     do {
@@ -228,6 +229,7 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     order_active_set(active);
     mover.move(active, part, blocks);
     if (clouds) clouds->move(batch, part, blocks);
+    if (!share.is_alone()) balancer.note(work_of(batch, active.size(), blocks));
     if (!pairs) return;
     pairs->take_over(part, blocks);
     SimulationStatistics& statistics = recorder.statistics();
@@ -236,6 +238,16 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     recorder.add_pair_impacts(pairs->impacts());
     if (!check) return;
     recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), pairs->books()));
+}
+
+WorkCounts Simulation::Impl::work_of(const ParticleRange& batch, std::size_t queried,
+                                     const std::vector<BlockRecord>& blocks) const {
+    WorkCounts counts;
+    counts.queried = queried;
+    counts.idle = schedule.count_left_alone(batch.begin, batch.end);
+    counts.flying = batch.size() - std::min(batch.size(), counts.queried + counts.idle);
+    for (const BlockRecord& block : blocks) counts.contacts += block.contacts;
+    return counts;
 }
 
 void Simulation::Impl::check_spheres(double begin, double end) {

@@ -62,17 +62,17 @@ SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks,
 }
 
 template <class Archived>
-std::vector<std::byte> bytes_of(Archived& archived) {
+std::vector<std::byte> archived(Archived& what) {
     std::vector<std::byte> bytes;
     BinaryWriter writer([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
-    archived.archive(writer);
+    what.archive(writer);
     return bytes;
 }
 
 /// On the first rank.
 SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
     SurfaceTotals all(own.size());
-    for (const std::vector<std::byte>& part : ranks.gather(bytes_of(own))) {
+    for (const std::vector<std::byte>& part : ranks.gather(archived(own))) {
         SurfaceTotals of_rank(own.size());
         std::size_t at = 0;
         BinaryReader reader([&](std::span<std::byte> into) {
@@ -86,6 +86,8 @@ SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
 }
 
 }  // namespace
+
+std::vector<std::byte> Simulation::Impl::bytes_of(ParticleStore& particles) { return archived(particles); }
 
 void Simulation::Impl::keep_share() {
     std::vector<std::uint8_t> keep(store.size());
@@ -110,12 +112,16 @@ WholeRun Simulation::Impl::gather(Shown what) {
     if (what == Shown::contacts) return whole;
     share.add_up(*colliders);
     const auto statistics = gather_list(ranks, std::vector{recorder.statistics()});
-    const std::vector<std::vector<std::byte>> stores = ranks.gather(bytes_of(store));
-    if (what == Shown::all) whole.totals = gather_totals(ranks, recorder.totals());
+    const bool has_particles = what == Shown::particles || what == Shown::all;
+    const bool has_totals = what == Shown::all || what == Shown::all_but_particles;
+    const auto stores = has_particles ? ranks.gather(bytes_of(store)) : std::vector<std::vector<std::byte>>();
+    if (has_totals) whole.totals = gather_totals(ranks, recorder.totals());
     if (!share.is_first()) return {};
-    MergingReader reader(stores);
-    whole.store = store.empty_copy();
-    whole.store->archive(reader);
+    if (has_particles) {
+        MergingReader reader(stores);
+        whole.store = store.empty_copy();
+        whole.store->archive(reader);
+    }
     whole.statistics = together(statistics, share.unsimulated_time());
     whole.loads = share.loads();
     return whole;
@@ -129,10 +135,18 @@ void Simulation::Impl::exchange(WholeRun& whole) {
     if (whole.totals) std::swap(recorder.totals(), *whole.totals);
 }
 
+ParticleStore Simulation::Impl::no_particles() const {
+    ParticleStore none = store.empty_copy();
+    none.set_next_id(store.next_id());
+    return none;
+}
+
 void Simulation::show_whole(Shown what, const std::function<void()>& show) {
-    if (impl().share.is_alone()) return show();
-    WholeRun whole = impl().gather(what);
+    const bool is_alone = impl().share.is_alone();
+    if (is_alone && what != Shown::all_but_particles) return show();
+    WholeRun whole = is_alone ? WholeRun{} : impl().gather(what);
     if (!impl().share.is_first()) return;
+    if (what == Shown::all_but_particles) whole.store = impl().no_particles();
     impl().exchange(whole);
     try {
         show();

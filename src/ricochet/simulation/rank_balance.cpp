@@ -1,0 +1,159 @@
+#include "ricochet/simulation/rank_balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "ricochet/core/merging_reader.h"
+#include "ricochet/simulation/impl.h"
+
+namespace ricochet {
+namespace {
+
+/// Costs in tens of nanoseconds (docs/many-machines.md, "Balance"). Wrong ones leave ranks uneven, and change no bit.
+constexpr std::uint64_t kQueriedWork = 150;
+constexpr std::uint64_t kContactWork = 150;
+constexpr std::uint64_t kFlyingWork = 6;
+constexpr std::uint64_t kIdleWork = 1;
+
+/// Multiples of it, less their whole parts, fill the unit interval evenly, however many there are.
+constexpr double kGoldenPart = 0.6180339887498949;
+
+double most_of(const std::vector<std::uint64_t>& work) {
+    return static_cast<double>(*std::max_element(work.begin(), work.end()));
+}
+
+double mean_of(const std::vector<std::uint64_t>& work) {
+    return static_cast<double>(std::accumulate(work.begin(), work.end(), std::uint64_t{0})) /
+           static_cast<double>(work.size());
+}
+
+}  // namespace
+
+std::uint64_t WorkCounts::work() const {
+    return kQueriedWork * queried + kContactWork * contacts + kFlyingWork * flying + kIdleWork * idle;
+}
+
+RankGifts gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work) {
+    const double mean = mean_of(work);
+    RankGifts gifts(work.size(), 0.0);
+    std::size_t taker = 0;
+    double room = std::max(0.0, mean - static_cast<double>(work[0]));
+    for (std::size_t giver = 0; giver < work.size(); ++giver) {
+        double rest = static_cast<double>(work[giver]) - mean;
+        while (rest > 0.0 && taker < work.size()) {
+            const double gift = std::min(rest, room);
+            if (giver == rank) gifts[taker] += gift / static_cast<double>(work[giver]);
+            rest -= gift;
+            room -= gift;
+            if (room > 0.0) break;
+            if (++taker < work.size()) room = std::max(0.0, mean - static_cast<double>(work[taker]));
+        }
+    }
+    return gifts;
+}
+
+void RankBalancer::keep_account(const std::vector<std::uint64_t>& work) {
+    const double most = most_of(work);
+    const double mean = mean_of(work);
+    busiest_ += most;
+    mean_ += mean;
+    balance_.busiest_now = mean > 0.0 ? most / mean : 1.0;
+    balance_.busiest = mean_ > 0.0 ? busiest_ / mean_ : 1.0;
+}
+
+std::optional<RankGifts> RankBalancer::look(Ranks& ranks, std::size_t here) {
+    if (steps_++ < kSteps) return std::nullopt;
+    steps_ = 1;
+    std::vector<std::uint64_t> work(ranks.size() + 2, 0);
+    work[ranks.rank()] = std::exchange(work_, 0);
+    work[ranks.size()] = std::exchange(moved_here_, 0);
+    work[ranks.size() + 1] = here;
+    ranks.sum(work);
+    const double particles = static_cast<double>(work.back()) / static_cast<double>(ranks.size());
+    balance_.moved += work[ranks.size()];
+    work.resize(ranks.size());
+    keep_account(work);
+    if (looks_++ == 0) sum_.assign(ranks.size(), 0);
+    for (std::size_t rank = 0; rank < work.size(); ++rank) sum_[rank] += work[rank];
+    const double excess = most_of(sum_) - mean_of(sum_);
+    const bool is_behind = most_of(sum_) > kMostBusy * mean_of(sum_) && excess >= kLeastGift;
+    const bool pays = looks_ == kLooks || excess >= kMoveWork * particles;
+    if (looks_ == kLooks || (is_behind && pays)) looks_ = 0;
+    if (!is_behind || !pays) return std::nullopt;
+    return gifts_of(ranks.rank(), sum_);
+}
+
+std::uint32_t GiftChoice::next(Cost cost) {
+    if (cost == Cost::idle) return kStays;
+    const double turn = static_cast<double>(seen_[static_cast<std::size_t>(cost)]++) * kGoldenPart;
+    double left = turn - std::floor(turn);
+    for (std::size_t rank = 0; rank < gifts_.size(); ++rank) {
+        if (left < gifts_[rank]) return static_cast<std::uint32_t>(rank);
+        left -= gifts_[rank];
+    }
+    return kStays;
+}
+
+// Where particles are is asked for nowhere but here: they may go once what they have deferred is made up for.
+void Simulation::Impl::balance_ranks() {
+    if (share.is_alone()) return;
+    std::optional<RankGifts> gifts = balancer.look(share.ranks(), store.size());
+    if (!gifts) return;
+    const bool defers = free_flights.is_deferring();
+    free_flights.end_deferring();
+    give_away(GiftChoice(std::move(*gifts)));
+    if (defers) free_flights.begin_deferring();
+}
+
+void Simulation::Impl::give_away(GiftChoice choice) {
+    std::vector<std::uint32_t> goes_to(store.size());
+    std::vector<std::uint8_t> keep(store.size(), 1);
+    for (std::size_t i = 0; i < store.size(); ++i) {
+        const bool flies = schedule.is_in_free_flight(i);
+        const auto cost = schedule.is_left_alone(i) ? GiftChoice::Cost::idle
+                          : flies                   ? GiftChoice::Cost::flying
+                                                    : GiftChoice::Cost::queried;
+        goes_to[i] = choice.next(cost);
+        keep[i] = goes_to[i] == GiftChoice::kStays ? 1 : 0;
+    }
+    std::vector<std::vector<std::byte>> gifts(share.ranks().size());
+    for (std::uint32_t rank = 0; rank < gifts.size(); ++rank) {
+        if (std::find(goes_to.begin(), goes_to.end(), rank) == goes_to.end()) continue;
+        std::vector<std::uint8_t> given(store.size());
+        for (std::size_t i = 0; i < given.size(); ++i) given[i] = goes_to[i] == rank ? 1 : 0;
+        ParticleStore part = store;
+        part.compact(given);
+        gifts[rank] = bytes_of(part);
+    }
+    const std::size_t before = store.size();
+    compact(keep);
+    balancer.add_moved(before - store.size());
+    std::vector<std::vector<std::byte>> parts = share.ranks().exchange(gifts);
+    std::erase_if(parts, [](const auto& part) { return part.empty(); });
+    if (!parts.empty()) take_in(std::move(parts));
+}
+
+// In the order of their ids, as everywhere. What is known of the queries of those that are here is kept.
+void Simulation::Impl::take_in(std::vector<std::vector<std::byte>> parts) {
+    const std::vector<std::uint64_t> here = particles().id;
+    parts.insert(parts.begin(), bytes_of(store));
+    ParticleStore all = store.empty_copy();
+    MergingReader reader(parts);
+    all.archive(reader);
+    store = std::move(all);
+    std::vector<std::size_t> from(store.size(), QuerySchedule::kNew);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < from.size() && next < here.size(); ++i) {
+        if (particles().id[i] == here[next]) from[i] = next++;
+    }
+    schedule.rearrange(from);
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        if (from[i] != QuerySchedule::kNew) continue;
+        prepare_radius(particles().radius[i]);
+        if (store.is_fixed(i) || store.is_asleep(i)) schedule.leave_alone(i);
+    }
+}
+
+}  // namespace ricochet

@@ -57,9 +57,28 @@ def _array(data, at, kind, components, path):
     return values.reshape(-1, components) if components > 1 else values
 
 
+def read_frame(path):
+    """read_vtp() of a frame; of one in pieces (.pvtp) of all of them together, in the order of the ids."""
+    if not path.endswith(".pvtp"):
+        return read_vtp(path)
+    with open(path, encoding="utf-8") as file:
+        names = re.findall(r'<Piece Source="([^"/]*)"/>', file.read())
+    if not names:
+        raise ValueError(f"{path}: lists no pieces")
+    pieces = [read_vtp(os.path.join(os.path.dirname(path), name)) for name in names]
+    if len(pieces) == 1:
+        return pieces[0]
+    points = np.concatenate([piece["Points"]["Points"].reshape(-1, 3) for piece in pieces])
+    arrays = {name: [piece["PointData"][name] for piece in pieces if len(piece["PointData"][name])]
+              or [pieces[0]["PointData"][name]] for name in pieces[0]["PointData"]}
+    joined = {name: np.concatenate(values) for name, values in arrays.items()}
+    order = np.argsort(joined["id"], kind="stable")
+    return {"Points": {"Points": points[order]}, "PointData": {name: values[order] for name, values in joined.items()}}
+
+
 def numbered_files(folder, stem):
-    """Files STEM_NNNNNN.vtp of the folder in the order of their steps."""
-    pattern = re.compile(re.escape(stem) + r"_(\d+)\.vtp")
+    """Files STEM_NNNNNN.vtp or .pvtp of the folder in the order of their steps."""
+    pattern = re.compile(re.escape(stem) + r"_(\d+)\.p?vtp")
     found = [(int(match[1]), name) for name in os.listdir(folder) if (match := pattern.fullmatch(name))]
     return [os.path.join(folder, name) for _, name in sorted(found)]
 
@@ -82,7 +101,7 @@ def _set_attribute(mesh, name, values, domain):
 
 def fill_particles(mesh, path):
     """Makes the mesh the particles of the frame: a vertex each."""
-    sections = read_vtp(path)
+    sections = read_frame(path)
     points = sections["Points"]["Points"].reshape(-1, 3)
     mesh.clear_geometry()
     mesh.vertices.add(len(points))
@@ -231,7 +250,7 @@ def import_run(context, path, point_radius=0.0):
         _add_camera(context, run["camera"])
     particles = _add_mesh(context, "Particles", folder, "particles")
     if point_radius <= 0.0:
-        points = read_vtp(frames[-1])["Points"]["Points"].reshape(-1, 3)
+        points = read_frame(frames[-1])["Points"]["Points"].reshape(-1, 3)
         point_radius = 0.002 * float(np.linalg.norm(np.ptp(points, axis=0))) if len(points) > 1 else 0.01
     particles.data["ricochet_point_radius"] = point_radius
     modifier = particles.modifiers.new("Points", "NODES")

@@ -1146,6 +1146,8 @@ class Output(Thing):
     every: Steps from one frame to the next. The last state is always written. Default: 1.
     checkpoint_every: Steps from one checkpoint to the next, each made with the frame that follows. An interrupted
         run leaves one in any case; `ricochet run --resume` goes on from it. Default: 0.
+    pieces: Each process of a run that several share writes its own part of the frames, with a .pvtp index over
+        them, and of the checkpoints. Otherwise the first process gathers and writes them. Default: false.
     contacts: Write every impact, as points with their columns, once a frame. Default: false.
     """
 

@@ -961,6 +961,7 @@ class Output(Thing):
         format: Optional[str] = ...,
         every: Optional[int] = ...,
         checkpoint_every: Optional[int] = ...,
+        pieces: Optional[bool] = ...,
         contacts: Optional[bool] = ...,
     ) -> None: ...
 

@@ -21,6 +21,7 @@
 #include "cli/arguments.h"
 #include "cli/interrupts.h"
 #include "cli/run_messages.h"
+#include "cli/run_output.h"
 #include "cli/run_scene.h"
 #include "cli/shared_run.h"
 #include "cli/terminal.h"
@@ -128,18 +129,18 @@ private:
 // Steps to the end, to the end of the step in which a signal came (to its begin where it can be stopped), or to the one
 // that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
 // the guard lives from then on.
-std::optional<std::string> step_and_write(Simulation& simulation, std::optional<RunWriter>& writer, const RunPlan& plan,
+std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput& output, const RunPlan& plan,
                                           cli::RunProgress& progress, std::optional<InterruptGuard>& guard,
                                           LastState& last) {
-    simulation.show_whole(Shown::particles, [&] { writer->write_frame(simulation); });
+    output.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
         if (!guard) guard.emplace();
-        simulation.show_whole(Shown::contacts, [&] { writer->add_step(simulation); });
+        output.add_step(simulation);
         last.keep(simulation);
         const cli::RunCounts counts =
             plan.run->after_step({simulation.particles().size(), simulation.statistics().particle_steps});
-        progress.show(simulation, counts, plan.share(writer ? writer->output_seconds() : 0.0));
+        progress.show(simulation, counts, plan.share(output.seconds()));
         return plan.run->signal() == 0;
     };
     while (!simulation.finished() && plan.run->signal() == 0) {
@@ -154,19 +155,12 @@ std::optional<std::string> step_and_write(Simulation& simulation, std::optional<
         }
         const std::uint64_t step = simulation.step_index();
         if (step % plan.output.every != 0) continue;
-        simulation.show_whole(Shown::particles, [&] { writer->write_frame(simulation); });
+        output.write_frame(simulation);
         if (plan.output.checkpoint_every == 0 || step - last_checkpoint < plan.output.checkpoint_every) continue;
-        simulation.show_whole(Shown::all,
-                              [&] { writer->write_checkpoint(simulation, plan.fingerprint, plan.seconds()); });
+        output.write_checkpoint(simulation, plan.seconds());
         last_checkpoint = step;
     }
     return std::nullopt;
-}
-
-// What it takes to go on where a signal has ended the run.
-void leave_checkpoint(const Simulation& simulation, RunWriter& writer, const RunPlan& plan) {
-    writer.write_frame(simulation);
-    writer.write_checkpoint(simulation, plan.fingerprint, plan.seconds());
 }
 
 SceneDescription scene_of(const RunArguments& arguments) {
@@ -197,7 +191,8 @@ void add_options(cli::Command command, RunArguments& a) {
                      "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
 }
 
-// Everything that a run is made of. Where ranks share it, the first one alone has folder and writer.
+// Everything that a run is made of. Where ranks share it, the first one alone has a writer, and the folder unless all
+// write into it.
 struct PreparedRun {
     SceneDescription scene{};  // its setup is in the simulation
     RunInfo info{};
@@ -209,6 +204,7 @@ struct PreparedRun {
     std::optional<Simulation> simulation{};
     std::optional<OutputDirectory> folder{};
     std::optional<RunWriter> writer{};
+    cli::RunOutput out{};
 };
 
 // What can be said before a file of the folder is touched.
@@ -245,7 +241,10 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
     Simulation& simulation = *prepared.simulation;
     Checkpoint checkpoint = read_checkpoint(std::filesystem::path(arguments.output) / kCheckpointFile,
                                             prepared.plan.fingerprint, simulation);
-    if (prepared.folder) prepared.folder->remove_after(simulation.step_index());
+    if (prepared.folder) {
+        prepared.folder->remove_after(simulation.step_index());
+        prepared.folder->remove_checkpoint_parts(names_of(checkpoint.parts));
+    }
     prepared.plan.earlier_seconds = checkpoint.wall_seconds;
     return checkpoint;
 }
@@ -261,6 +260,7 @@ std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const Pr
     return {plan.fingerprint,
             plan.output.every,
             plan.output.checkpoint_every,
+            std::uint64_t{plan.output.pieces},
             std::uint64_t{prepared.simulation->options().record_contacts},
             prepared.simulation->step_count(),
             std::uint64_t{arguments.resume},
@@ -271,11 +271,36 @@ std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const Pr
 std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& prepared) {
     const std::optional<Checkpoint> resumed = resume(arguments, prepared);
     const Simulation& simulation = *prepared.simulation;
+    cli::RunOutput::Parts parts;
     if (prepared.folder) {
-        prepared.writer.emplace(prepared.folder->path(), prepared.info, simulation, prepared.region, resumed);
+        RunWriter& writer =
+            prepared.writer.emplace(prepared.folder->path(), prepared.info, simulation, prepared.region, resumed);
+        if (prepared.plan.output.pieces) writer.leave_particles_out();
+        parts.writer = &writer;
+        parts.folder = &*prepared.folder;
     }
+    parts.ranks = prepared.plan.run->ranks();
+    if (prepared.plan.output.pieces) {
+        parts.pieces = std::make_unique<PieceWriter>(arguments.output, prepared.info, parts.ranks, resumed);
+    }
+    if (resumed) parts.resumed_step = simulation.step_index();
+    parts.fingerprint = prepared.plan.fingerprint;
+    prepared.out = cli::RunOutput(std::move(parts));
     return {simulation.step_index(), std::bit_cast<std::uint64_t>(resumed ? resumed->wall_seconds : 0.0),
             std::bit_cast<std::uint64_t>(resumed ? resumed->output_seconds : 0.0)};
+}
+
+// The others come in once the first one is done with what was there.
+std::optional<int> share_folder(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
+    if (!run.ranks() || !prepared.plan.output.pieces) return std::nullopt;
+    if (const auto failed = run.together([&] {
+            if (prepared.folder) prepared.folder->share();
+        })) {
+        return failed;
+    }
+    return run.together([&] {
+        if (!prepared.folder) prepared.folder.emplace(arguments.output, OutputDirectory::Earlier::join);
+    });
 }
 
 // All of it; the exit code where another process could not do its part.
@@ -285,6 +310,7 @@ std::optional<int> prepare_together(const RunArguments& arguments, const cli::Sh
     if (const auto failed = run.together([&] { open_folder(arguments, prepared); })) return failed;
     std::vector<std::uint64_t> alike;
     if (const auto failed = run.together([&] { alike = begin(arguments, prepared); })) return failed;
+    if (const auto failed = share_folder(arguments, run, prepared)) return failed;
     if (const auto failed = run.require_alike(alike)) return failed;
     const Simulation& simulation = *prepared.simulation;
     if (arguments.resume && !arguments.quiet) {
@@ -300,7 +326,6 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     Simulation& simulation = *prepared.simulation;
     RunWriter& writer = *prepared.writer;
     const bool is_interrupted = !simulation.finished() && !diverged;
-    if (is_interrupted) leave_checkpoint(simulation, writer, prepared.plan);
     RunSummary summary = diverged ? writer.finish_diverged(simulation, *diverged) : writer.finish(simulation);
     if (!arguments.output_state.empty() && !diverged) {
         const Clock::time_point start = Clock::now();
@@ -319,7 +344,10 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     summary.interrupted = is_interrupted;
     writer.write_summary(summary);
     // Only now: until all is on disk the run can go on from there.
-    if (!diverged && !is_interrupted) writer.remove_checkpoint();
+    if (!diverged && !is_interrupted) {
+        writer.remove_checkpoint();
+        prepared.folder->remove_checkpoint_parts();
+    }
     return summary;
 }
 
@@ -345,8 +373,12 @@ int cli::run_scene(const RunArguments& arguments) {
     std::optional<std::string> diverged;
     {
         RunProgress progress(arguments.quiet, run.talks() ? prepared.progress : Progress::never);
-        diverged = step_and_write(simulation, prepared.writer, prepared.plan, progress, guard, *prepared.last);
+        diverged = step_and_write(simulation, prepared.out, prepared.plan, progress, guard, *prepared.last);
     }
+    if (!diverged) prepared.out.write_frame(simulation);
+    prepared.out.complete_frame();
+    // What it takes to go on where a signal has ended the run.
+    if (!diverged && !simulation.finished()) prepared.out.write_checkpoint(simulation, prepared.plan.seconds());
     const RunResources of_others = run.resources_of_others();
     std::optional<RunSummary> summary;
     simulation.show_whole(Shown::all, [&] { summary = write_the_end(arguments, prepared, of_others, diverged); });

@@ -14,6 +14,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/io/camera_frames.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 #include "ricochet/render/black_body.h"
@@ -116,7 +117,7 @@ RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& 
 void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     std::vector<double> values;
     for (const FrameFile& file : spread_sample(chosen)) {
-        const VtkPolyData frame = read_vtp(file.path);
+        const VtkPolyData frame = read_frame(file.path);
         choose_looks(frame);
         const std::vector<double> here = shown_values(frame);
         values.insert(values.end(), here.begin(), here.end());

@@ -11,8 +11,8 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/io/camera_frames.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/moving_meshes.h"
-#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
 
@@ -94,7 +94,7 @@ void RunPictures::find_hiding(const RunFolder& folder, const std::vector<FrameFi
     constexpr std::size_t kProbes = 32;
     const std::vector<FrameFile> sample = spread_sample(chosen);
     for (auto file = sample.rbegin(); file != sample.rend(); ++file) {
-        const VtkPolyData frame = read_vtp(file->path);
+        const VtkPolyData frame = read_frame(file->path);
         if (frame.points.empty()) continue;
         std::vector<Vec3> probes;
         const std::size_t stride = (frame.points.size() - 1) / kProbes + 1;

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <variant>
 
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 
@@ -111,7 +112,7 @@ RunTimeline::RunTimeline(const RunFolder& folder) : files_(folder.frames) {
 
 const VtkPolyData& RunTimeline::frame(std::size_t k) {
     auto& slot = loaded_[k];
-    if (!slot) slot = std::make_shared<const VtkPolyData>(read_vtp(files_[k].path));
+    if (!slot) slot = std::make_shared<const VtkPolyData>(read_frame(files_[k].path));
     return *slot;
 }
 

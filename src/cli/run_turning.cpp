@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/frame_reader.h"
 
 namespace ricochet::cli {
 namespace {
@@ -46,7 +46,7 @@ std::vector<Turn> RunTurning::turns(const VtkPolyData& moment) {
         next_time_.reset();
     }
     while (next_ < files_.size() && (!next_time_ || *next_time_ <= moment.time)) {
-        const VtkPolyData frame = read_vtp(files_[next_].path);
+        const VtkPolyData frame = read_frame(files_[next_].path);
         next_time_ = frame.time;
         if (frame.time > moment.time) break;
         go_on(frame);

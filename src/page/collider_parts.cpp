@@ -11,6 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
 
@@ -191,7 +192,7 @@ void ColliderParts::survey_motion(const std::vector<FrameFile>& frames) {
 
 // A collider with most of the particles inside would hide them.
 void ColliderParts::find_glass(const FrameFile& probe) {
-    const VtkPolyData frame = read_vtp(probe.path);
+    const VtkPolyData frame = read_frame(probe.path);
     std::vector<Vec3> points;
     const std::size_t stride = frame.points.size() / kProbes + 1;
     for (std::size_t i = 0; i < frame.points.size(); i += stride) points.push_back(frame.points[i]);

@@ -11,7 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/render/color_map.h"
 
 namespace ricochet {
@@ -136,7 +136,7 @@ LevelScale turn_scale(int bits) {
 
 PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageDetail& detail,
                      const ColliderParts& colliders) {
-    const VtkPolyData frame = read_vtp(file.path);
+    const VtkPolyData frame = read_frame(file.path);
     const std::vector<std::int64_t>& ids = frame_ids(frame, file);
     PageFrame page;
     const std::vector<std::uint32_t> rows = kept_rows(frame, ids, survey, detail.particles, page.left_out);

@@ -12,7 +12,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/frame_reader.h"
 
 namespace ricochet {
 namespace {
@@ -78,7 +78,7 @@ ArrayFacts array_facts(const std::vector<double>& values, bool is_sampled) {
 }
 
 FrameFacts frame_facts(const FrameFile& file, const std::vector<PageAttribute>& attributes, bool is_sampled) {
-    const VtkPolyData frame = read_vtp(file.path);
+    const VtkPolyData frame = read_frame(file.path);
     const std::vector<std::int64_t>& ids = frame_ids(frame, file);
     FrameFacts facts;
     facts.time = frame.time;
@@ -218,7 +218,7 @@ std::vector<double> attribute_values(const VtkPolyData& frame, const PageAttribu
 
 RunSurvey survey_run(const std::vector<FrameFile>& frames, const Box3& colliders,
                      const std::function<void(double)>& progress) {
-    const VtkPolyData first = read_vtp(frames.front().path);
+    const VtkPolyData first = read_frame(frames.front().path);
     const std::vector<PageAttribute> attributes = attributes_of(first);
     const std::vector<bool> is_sampled = spread_choice(frames.size());
     std::vector<FrameFacts> facts(frames.size());

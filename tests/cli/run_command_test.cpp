@@ -366,7 +366,7 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     expect_refused(files.run({"--resume"}), 2, "not a checkpoint;");
     (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");  // little-endian, as earlier versions began
     expect_refused(files.run({"--resume"}), 2, "a checkpoint of another version");
-    (void)files.folder.write("out/checkpoint.bin", "7KHCOCIR and more");
+    (void)files.folder.write("out/checkpoint.bin", "8KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
     std::filesystem::remove(files.folder.path("out/checkpoint.bin"));
     ASSERT_EQ(::mkfifo(files.folder.path("out/checkpoint.bin").c_str(), 0600), 0);

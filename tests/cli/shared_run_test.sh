@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Runs that several processes share, started by mpirun: the bits of one process, resumed by more and by fewer; what ends
 # one of them ends all, with one line, and leaves what a resumed run needs; what cannot be shared is refused.
-# shared_run_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS
+# shared_run_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS [PYTHON]: PYTHON has VTK, or skips
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
 scenes="$3"
 folder="$4"
 kills="$5"
+python="${6:-}"
 # As root, on fewer processors than ranks, and in containers, which do not let processes read each other's memory. The
 # second line is for the fifth release.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
@@ -59,9 +60,26 @@ same_checkpoint() {
     cmp "$folder/$1.state" "$folder/$2.state" || fail "$2 has another checkpoint than $1"
 }
 
+# same_particles A B: what an export makes of the frames is the same, byte by byte, and so is all else but the frames,
+# which are in pieces in B.
+same_particles() {
+    local file
+    diff <(summary_of "$1") <(summary_of "$2") || fail "$2 has another summary than $1"
+    cmp "$folder/$1.csv" "$folder/$2.csv" || fail "$2 ends in another state than $1"
+    for file in "$1" "$2"; do
+        "$ricochet" export "$folder/$file" --format ply --output "$folder/$file.ply" >/dev/null || fail "no export of $file"
+    done
+    diff -r "$folder/$1.ply" "$folder/$2.ply" >/dev/null || fail "$2 has other particles than $1"
+    for file in "$folder/$1"/*; do
+        case "$(basename "$file")" in summary.json | particles*) continue ;; esac
+        cmp "$file" "$folder/$2/$(basename "$file")" || fail "$2 has another $(basename "$file")"
+    done
+    [[ -z "$(compgen -G "$folder/$2/*.partial" || true)" ]] || fail "$2 holds unfinished files"
+}
+
 # Waits until run `run` has written that many frames into the folder, or has ended.
 wait_for_frames() {
-    until (($(compgen -G "$folder/$1/particles_*.vtp" | wc -l) >= $2)) || ! kill -0 "$run" 2>/dev/null; do
+    until (($(compgen -G "$folder/$1/particles_*[0-9].*vtp" | wc -l) >= $2)) || ! kill -0 "$run" 2>/dev/null; do
         sleep 0.02
     done
 }
@@ -123,6 +141,63 @@ echo "processes killed: $k"
 ((k > 0)) || fail "no process was killed"
 ranks 2 "$scene" --output "$folder/killed" --output-state "$folder/killed.csv" "${resume[@]}" "${cut[@]}"
 same_run alone killed
+
+# Pieces: each process writes its own part of frames and checkpoints.
+cut=(--set simulation.duration=0.6 --set output.contacts=true)
+for count in 1 2 3; do
+    ranks "$count" "$scenes/fountain.json" --output "$folder/pieces-$count" --output-state "$folder/pieces-$count.csv" \
+        "${cut[@]}" --set output.pieces=true
+    same_particles fountain "pieces-$count"
+    if [[ -n "$python" ]]; then
+        code=0
+        "$python" "$(dirname "$0")/pieces_test.py" "$folder/fountain" "$folder/pieces-$count" || code=$?
+        ((code == 0 || code == 77)) || fail "VTK does not read pieces-$count"
+    fi
+done
+for command in "render $folder/pieces-3 --size 64x48 --frame 12 --output $folder/pieces.png" \
+    "view $folder/pieces-3 --output $folder/pieces.html"; do
+    # shellcheck disable=SC2086  # words
+    "$ricochet" $command >"$folder/command.out" 2>&1 || fail "$command: $(cat "$folder/command.out")"
+done
+rm "$folder/pieces-3/particles_000012_p1.vtp"
+code=0
+"$ricochet" export "$folder/pieces-3" --format ply --output "$folder/lost.ply" >"$folder/lost.out" 2>&1 || code=$?
+expect_end lost 2 'particles_000012_p1.vtp: not a regular file'
+
+# 4, 2 and 3 ranks go on one after the other from checkpoints in parts; in between one process alone, gathered.
+cut=(--set simulation.duration=1.2 --set output.every=10 --set output.checkpoint_every=20)
+scene="$scenes/shattering.json"
+"$ricochet" run "$scene" --output "$folder/parts-whole" --output-state "$folder/parts-whole.csv" "${cut[@]}" --quiet
+# stop_at FRAME RANKS ARGUMENTS...: until a folder is in the place of that frame's index.
+stop_at() {
+    mkdir -p "$folder/parts/particles_$1.pvtp/obstacle"
+    code=0
+    ranks "$2" "$scene" --output "$folder/parts" "${cut[@]}" "${@:3}" >"$folder/parts.out" 2>&1 || code=$?
+    expect_end parts 2 "particles_$1.pvtp: not a regular file"
+    rm -r "$folder/parts/particles_$1.pvtp"
+}
+"$ricochet" run "$scene" --output "$folder/parts" --set simulation.duration=0.01 --quiet
+stop_at 000050 4 --set output.pieces=true
+(($(compgen -G "$folder/parts/checkpoint_0_p?.bin" | wc -l) == 4)) || fail "not four parts: $(ls "$folder/parts")"
+stop_at 000090 2 --set output.pieces=true --resume
+(($(compgen -G "$folder/parts/checkpoint_0_p?.bin" | wc -l) == 2)) || fail "not two parts: $(ls "$folder/parts")"
+cp -r "$folder/parts" "$folder/parts-alone"
+cp -r "$folder/parts" "$folder/parts-lost"
+"$ricochet" run "$scene" --output "$folder/parts-alone" --output-state "$folder/parts-alone.csv" "${cut[@]}" --resume --quiet
+same_particles parts-whole parts-alone
+[[ -z "$(compgen -G "$folder/parts-alone/checkpoint*" || true)" ]] || fail "a finished run has parts of a checkpoint"
+ranks 3 "$scene" --output "$folder/parts" --output-state "$folder/parts.csv" "${cut[@]}" --set output.pieces=true --resume
+same_particles parts-whole parts
+
+# A checkpoint that lacks a part, or has one of another time, is refused as a whole.
+truncate -s -1 "$folder/parts-lost"/checkpoint_0_p1.bin
+code=0
+ranks 2 "$scene" --output "$folder/parts-lost" "${cut[@]}" --resume >"$folder/parts-lost.out" 2>&1 || code=$?
+expect_end parts-lost 2 'checkpoint.bin: its part checkpoint_0_p1.bin cannot be used: .*is damaged or cut short'
+rm "$folder/parts-lost"/checkpoint_0_p1.bin
+code=0
+ranks 2 "$scene" --output "$folder/parts-lost" "${cut[@]}" --resume >"$folder/parts-lost.out" 2>&1 || code=$?
+expect_end parts-lost 2 'checkpoint.bin: its part checkpoint_0_p1.bin is missing'
 
 # A signal to one of them ends all after the same step, with a checkpoint. Meanwhile nobody else gets the folder.
 ranks 3 "$scene" --output "$folder/signal" --set simulation.duration=1000 >"$folder/signal.out" 2>&1 &

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <memory>
 #include <string>
 
 #include "ricochet/core/error.h"
@@ -31,6 +32,19 @@ TEST(RunFiles, ContactFilesAreNamedLikeFramesAndNotTakenForThem) {
     EXPECT_FALSE(step_of_frame_file(contact_file_name(42)));
 }
 
+TEST(RunFiles, NamesOfPiecesAndPartsSayWhatTheyAreOf) {
+    EXPECT_EQ(frame_index_name(42), "particles_000042.pvtp");
+    EXPECT_EQ(piece_file_name(42, 3), "particles_000042_p3.vtp");
+    EXPECT_EQ(step_of_frame_index(frame_index_name(1234567)), 1234567U);
+    EXPECT_EQ(step_of_piece_file(piece_file_name(1234567, 1000)), 1234567U);
+    EXPECT_FALSE(step_of_frame_file(frame_index_name(42)));
+    EXPECT_FALSE(step_of_frame_file(piece_file_name(42, 3)));
+    EXPECT_FALSE(step_of_frame_index(frame_file_name(42)));
+    EXPECT_FALSE(step_of_piece_file(frame_file_name(42)));
+    EXPECT_EQ(set_of_checkpoint_part(checkpoint_part_name(1, 20)), 1U);
+    EXPECT_FALSE(set_of_checkpoint_part("checkpoint.bin"));
+}
+
 TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
     EXPECT_EQ(collider_file_name(3, "bunny"), "collider_03_bunny.vtp");
     EXPECT_EQ(collider_file_name(0, "../a b"), "collider_00____a_b.vtp");
@@ -50,12 +64,15 @@ TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
          {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp", "collider_00_a.vtp",
           "contacts.pvd", "contacts_000001.vtp", "particles_000001.vtp.123-4.partial",
           "contacts_000001.vtp.123-4.partial", "summary.json.9-0.partial", "compare.json", "report.html", "cost.png",
-          "tunnelled.png.7-0.partial"}) {
+          "tunnelled.png.7-0.partial", "particles_000001.pvtp", "particles_000001_p0.vtp", "checkpoint_0_p12.bin",
+          "checkpoint_1_p0.bin.7-0.partial"}) {
         EXPECT_TRUE(is_run_file(own)) << own;
     }
     for (const char* other :
          {"notes.txt", "a.partial", "summary.json.partial", "summary.json.x-0.partial", "summary.json~", "contacts.txt",
-          "contacts_1.vtp", "my_contacts_000001.vtp", ".ricochet-run", "picture.png", "summary.json.9.partial", ""}) {
+          "contacts_1.vtp", "my_contacts_000001.vtp", "particles_000001_p01.vtp", "particles_1_p0.vtp",
+          "particles_000001_p.vtp", "checkpoint_2_p0.bin", "checkpoint_00_p0.bin", "checkpoint_p0.bin", ".ricochet-run",
+          "picture.png", "summary.json.9.partial", ""}) {
         EXPECT_FALSE(is_run_file(other)) << other;
     }
 }
@@ -113,15 +130,52 @@ TEST(OutputDirectory, ReplacesAnEarlierRunsFilesAndNothingElse) {
 TEST(OutputDirectory, KeepsForAResumedRunWhatWasFinishedUpToItsStep) {
     const TemporaryFolder folder;
     { const OutputDirectory first(folder.path("")); }
-    const std::vector<std::string> kept{"particles_000010.vtp", "summary.json", "checkpoint.bin", "notes.partial"};
-    const std::vector<std::string> removed{"particles_000011.vtp", "contacts_000020.vtp",
-                                           "particles_000010.vtp.17-0.partial", "checkpoint.bin.4-12.partial"};
+    const std::vector<std::string> kept{"particles_000010.vtp", "summary.json",          "checkpoint.bin",
+                                        "notes.partial",        "particles_000010.pvtp", "particles_000010_p1.vtp"};
+    const std::vector<std::string> removed{"particles_000011.vtp",
+                                           "contacts_000020.vtp",
+                                           "particles_000011.pvtp",
+                                           "particles_000020_p1.vtp",
+                                           "particles_000010.vtp.17-0.partial",
+                                           "checkpoint.bin.4-12.partial"};
     for (const auto& names : {kept, removed}) {
         for (const std::string& name : names) (void)folder.write(name, "x");
     }
     OutputDirectory(folder.path(""), OutputDirectory::Earlier::keep).remove_after(10);
     for (const std::string& name : kept) EXPECT_TRUE(std::filesystem::exists(folder.path(name))) << name;
     for (const std::string& name : removed) EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
+}
+
+TEST(OutputDirectory, StaysLockedWhileAnyOfThoseThatShareItLives) {
+    const TemporaryFolder folder;
+    auto first = std::make_unique<OutputDirectory>(folder.path("run"));
+    (void)folder.write("run/summary.json", "x");
+    const auto join = [&] {
+        return std::make_unique<OutputDirectory>(folder.path("run"), OutputDirectory::Earlier::join);
+    };
+    EXPECT_THROW((void)join(), RunError) << "before it is shared";
+    first->share();
+    auto second = join();
+    auto third = join();
+    EXPECT_EQ(folder.read("run/summary.json"), "x");
+    first.reset();
+    second.reset();
+    EXPECT_THROW(OutputDirectory{folder.path("run")}, RunError) << "the third lives";
+    third.reset();
+    EXPECT_NO_THROW(OutputDirectory{folder.path("run")});
+}
+
+TEST(OutputDirectory, RemovesThePartsOfCheckpointsThatNobodyNames) {
+    const TemporaryFolder folder;
+    const OutputDirectory directory(folder.path(""));
+    for (const char* name : {"checkpoint.bin", "checkpoint_0_p0.bin", "checkpoint_1_p0.bin", "checkpoint_1_p1.bin"}) {
+        (void)folder.write(name, "x");
+    }
+    directory.remove_checkpoint_parts({"checkpoint_1_p0.bin"});
+    EXPECT_TRUE(std::filesystem::exists(folder.path("checkpoint.bin")));
+    EXPECT_TRUE(std::filesystem::exists(folder.path("checkpoint_1_p0.bin")));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("checkpoint_0_p0.bin")));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("checkpoint_1_p1.bin")));
 }
 
 TEST(OutputDirectory, RemovesALinkAndNotWhatItPointsTo) {

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,12 +16,15 @@
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
+#include "ricochet/io/run_folder.h"
 
 namespace ricochet {
 namespace {
 
 /// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
-constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b37ULL;
+constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b38ULL;
+/// Begins every part of one, which is ended likewise.
+constexpr std::uint64_t kPartFormat = 0x5249434f50415230ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
 template <class Archive>
@@ -37,6 +41,7 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     archive_series(a, checkpoint.moving);
     LoadRows& loads = checkpoint.loads;
     a(loads.colliders), a(loads.bodies), a(loads.since);
+    archive_entries(a, checkpoint.parts, [&](CheckpointPart& part) { a(part.file), a(part.checksum); });
     archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
 }
 
@@ -78,14 +83,14 @@ std::size_t read_bytes(std::span<std::byte> bytes, std::FILE* file, const std::f
     return count;
 }
 
-/// Before anything is believed: what kind of file it is, and that no byte of it has changed.
-void require_whole_checkpoint(std::FILE* file, const std::filesystem::path& name) {
+/// Before anything is believed: what kind of file it is, and that no byte of it has changed. Returns its checksum.
+std::uint64_t require_whole_file(std::FILE* file, const std::filesystem::path& name, std::uint64_t expected) {
     std::uint64_t format = 0;
     if (read_bytes(std::as_writable_bytes(std::span(&format, 1)), file, name) != sizeof(format)) {
         throw InputError("the file is damaged: it is too short");
     }
-    if (format != kCheckpointFormat) {
-        const bool is_of_another_version = (format & kAnyLayout) == (kCheckpointFormat & kAnyLayout);
+    if (format != expected) {
+        const bool is_of_another_version = (format & kAnyLayout) == (expected & kAnyLayout);
         throw InputError(is_of_another_version ? "a checkpoint of another version of ricochet, which can resume it"
                                                : "not a checkpoint");
     }
@@ -106,36 +111,88 @@ void require_whole_checkpoint(std::FILE* file, const std::filesystem::path& name
         throw InputError("the file is damaged or cut short (its checksum is wrong)");
     }
     std::rewind(file);
+    return found;
 }
 
-}  // namespace
-
-void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation) {
+/// A file that ends with the checksum of what `write` has put into it, which is returned.
+std::uint64_t write_checked_file(const std::filesystem::path& file, const std::function<void(const ByteSink&)>& write) {
     AtomicFile target(file);
     StateHash checksum;
     const ByteSink sink = [&](std::span<const std::byte> bytes) {
         checksum.add(bytes);
         target.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     };
-    BinaryWriter writer(sink);
-    writer(kCheckpointFormat);
-    writer(checkpoint.scene);
-    Checkpoint copy = checkpoint;
-    archive_checkpoint(writer, copy);
-    simulation.save(sink);
+    write(sink);
     const std::uint64_t whole = checksum.value();
+    BinaryWriter writer(sink);
     writer(whole);
     target.commit();
+    return whole;
+}
+
+ByteSource source_of(const OpenFile& opened, const std::filesystem::path& file) {
+    return [&](std::span<std::byte> bytes) {
+        if (read_bytes(bytes, opened.get(), file) != bytes.size()) throw InputError("the file ends too early");
+    };
+}
+
+void read_part(const std::filesystem::path& folder, const CheckpointPart& part, Simulation& simulation) {
+    const auto refuse_part = [&](const std::string& why) {
+        throw InputError(fmt::format("its part {} {}", part.file, why));
+    };
+    // Its name comes from a file: nothing beside the checkpoint is opened.
+    if (!set_of_checkpoint_part(part.file)) refuse_part("is no part of a checkpoint");
+    const std::filesystem::path file = folder / part.file;
+    const OpenFile opened(std::fopen(file.c_str(), "rb"));
+    if (!opened && errno != ENOENT) fail_to_read(file);
+    if (!opened) refuse_part("is missing");
+    try {
+        if (require_whole_file(opened.get(), file, kPartFormat) != part.checksum) {
+            throw InputError("it is of another checkpoint");
+        }
+        const ByteSource source = source_of(opened, file);
+        BinaryReader reader(source);
+        std::uint64_t format = 0;
+        reader(format);
+        simulation.restore_particles(source);
+    } catch (const InputError& error) {
+        refuse_part(fmt::format("cannot be used: {}", error.what()));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> names_of(const std::vector<CheckpointPart>& parts) {
+    std::vector<std::string> names;
+    for (const CheckpointPart& part : parts) names.push_back(part.file);
+    return names;
+}
+
+std::uint64_t write_checkpoint_part(const std::filesystem::path& file, const Simulation& simulation) {
+    return write_checked_file(file, [&](const ByteSink& sink) {
+        BinaryWriter writer(sink);
+        writer(kPartFormat);
+        simulation.save_particles(sink);
+    });
+}
+
+void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation) {
+    (void)write_checked_file(file, [&](const ByteSink& sink) {
+        BinaryWriter writer(sink);
+        writer(kCheckpointFormat);
+        writer(checkpoint.scene);
+        Checkpoint copy = checkpoint;
+        archive_checkpoint(writer, copy);
+        simulation.save(sink);
+    });
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene, Simulation& simulation) {
     const OpenFile opened = open_checkpoint(file);
-    const ByteSource source = [&](std::span<std::byte> bytes) {
-        if (read_bytes(bytes, opened.get(), file) != bytes.size()) throw InputError("the file ends too early");
-    };
+    const ByteSource source = source_of(opened, file);
     Checkpoint checkpoint;
     try {
-        require_whole_checkpoint(opened.get(), file);
+        (void)require_whole_file(opened.get(), file, kCheckpointFormat);
         BinaryReader reader(source);
         std::uint64_t format = 0;
         reader(format);
@@ -145,6 +202,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
         }
         archive_checkpoint(reader, checkpoint);
         simulation.restore(source);
+        for (const CheckpointPart& part : checkpoint.parts) read_part(file.parent_path(), part, simulation);
     } catch (const InputError& error) {
         refuse(file, error.what());
     }

@@ -13,8 +13,8 @@
 #include "ricochet/geometry/mesh/point_cache.h"
 #include "ricochet/io/export_colliders.h"
 #include "ricochet/io/export_folder.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/run_export.h"
-#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace {
@@ -87,7 +87,7 @@ Survey survey_of(const std::vector<FrameFile>& files) {
     std::vector<double> times;
     std::vector<std::int64_t> first;
     for (const FrameFile& file : files) {
-        const VtkPolyData frame = read_vtp(file.path);
+        const VtkPolyData frame = read_frame(file.path);
         const std::vector<std::int64_t>& ids = ids_of(frame, file);
         if (times.empty()) first = ids;
         if (survey.same_particles && (ids != first || ids.empty())) {
@@ -145,7 +145,7 @@ private:
     // The meshes that the caches move, as they stand in the first sample, and those at rest.
     void write_meshes(const ExportFolder& target) {
         if (survey_.same_particles) {
-            const TriangleMesh points{read_vtp(survey_.frames.front().path).points, {}};
+            const TriangleMesh points{read_frame(survey_.frames.front().path).points, {}};
             write_mesh(points, target.file(particles_stem_ + kObj));
             cached_.push_back({particles_stem_, std::nullopt, points.vertices.size()});
         }
@@ -159,7 +159,7 @@ private:
     void add_sample(const FrameFile& frame) {
         const std::map<std::uint32_t, TriangleMesh> moving = colliders_.moving(frame);
         for (const Cached& one : cached_) {
-            one.cache->add(one.collider ? moving.at(*one.collider).vertices : read_vtp(frame.path).points);
+            one.cache->add(one.collider ? moving.at(*one.collider).vertices : read_frame(frame.path).points);
         }
     }
 

@@ -110,12 +110,15 @@ public:
 
     void write(std::uint64_t step, VtkPolyData& frame) {
         const std::string name = files_.file_name(step);
-        bytes_since_list_ += write_vtp(folder_ / name, frame);
-        entries_.push_back({frame.time, 0, name});
-        const std::size_t list_bytes = 100 * entries_.size();
-        if (entries_.size() <= kAlwaysListed || bytes_since_list_ >= list_bytes) write_list();
+        list(frame.time, name, write_vtp(folder_ / name, frame));
         const std::lock_guard lock(mutex_);
         if (keeps_frames_) written_.push_back(std::move(frame));
+    }
+
+    void write_index(std::uint64_t step, double time, const std::string& text) {
+        const std::string name = frame_index_name(step);
+        write_file(folder_ / name, text);
+        list(time, name, text.size());
     }
 
     // A checkpoint names the frames in the list, so the list must be complete before it is written.
@@ -136,6 +139,13 @@ public:
     }
 
 private:
+    void list(double time, const std::string& name, std::uint64_t bytes) {
+        bytes_since_list_ += bytes;
+        entries_.push_back({time, 0, name});
+        const std::size_t list_bytes = 100 * entries_.size();
+        if (entries_.size() <= kAlwaysListed || bytes_since_list_ >= list_bytes) write_list();
+    }
+
     void write_list() {
         write_file(folder_ / files_.list, pvd_text(entries_));
         listed_ = entries_.size();
@@ -166,6 +176,11 @@ VtkPolyData FrameWriter::blank_frame() {
 void FrameWriter::submit(std::uint64_t step, VtkPolyData frame) {
     const auto held = std::make_shared<VtkPolyData>(std::move(frame));
     thread_->submit([series = series_, step, held] { series->write(step, *held); });
+    ++submitted_;
+}
+
+void FrameWriter::submit_index(std::uint64_t step, double time, std::string text) {
+    thread_->submit([series = series_, step, time, text = std::move(text)] { series->write_index(step, time, text); });
     ++submitted_;
 }
 

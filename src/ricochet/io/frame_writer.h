@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -73,6 +74,8 @@ public:
     [[nodiscard]] VtkPolyData blank_frame();
     /// Hands over a frame. Throws what writing an earlier frame threw.
     void submit(std::uint64_t step, VtkPolyData frame);
+    /// The same for a frame whose pieces are on disk: only its index is written.
+    void submit_index(std::uint64_t step, double time, std::string text);
     /// Throws what writing an earlier frame threw, without waiting.
     void check() { thread_->check(); }
     /// Waits until everything handed over so far is on disk; the whole series. Throws what the writing threw.

@@ -9,9 +9,9 @@
 #include "ricochet/geometry/mesh/mesh_writer.h"
 #include "ricochet/io/export_colliders.h"
 #include "ricochet/io/export_folder.h"
+#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/glb_writer.h"
 #include "ricochet/io/ply_points.h"
-#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace {
@@ -103,7 +103,7 @@ public:
         std::map<std::string, std::string> renamed;
         for (std::size_t k = 0; k < frames.size(); ++k) {
             const std::filesystem::path file = target.file("particles" + frame_endings_[k]);
-            for (const auto& [name, property] : write_ply_points(file, read_vtp(frames[k].path)).renamed) {
+            for (const auto& [name, property] : write_ply_points(file, read_frame(frames[k].path)).renamed) {
                 renamed.emplace(name, property);
             }
             const std::map<std::uint32_t, TriangleMesh> moving = colliders_.moving(frames[k]);
@@ -144,7 +144,7 @@ ExportReport export_gltf(const RunFolder& folder, const FrameFile& frame, const 
     ExportReport report{1, 1, {}};
     GlbScene scene;
     add_colliders(folder, frame, scene, report);
-    add_particles(read_vtp(frame.path), scene, report);
+    add_particles(read_frame(frame.path), scene, report);
     (void)write_glb(target, scene);
     return report;
 }

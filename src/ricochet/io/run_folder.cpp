@@ -30,16 +30,21 @@ constexpr std::string_view kContactPrefix = "contacts_";
 constexpr std::string_view kMovingPrefix = "moving_";
 constexpr std::string_view kColliderPrefix = "collider_";
 constexpr std::string_view kExtension = ".vtp";
+constexpr std::string_view kIndexExtension = ".pvtp";
+constexpr std::string_view kPartPrefix = "checkpoint_";
+constexpr std::string_view kPartExtension = ".bin";
+constexpr std::string_view kPieceMark = "_p";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_plain(char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; }
 
 // The part of the name between prefix and extension; nothing when they do not match.
-std::optional<std::string_view> stem_after(std::string_view name, std::string_view prefix) {
-    if (!name.starts_with(prefix) || !name.ends_with(kExtension)) return std::nullopt;
-    if (name.size() < prefix.size() + kExtension.size()) return std::nullopt;
-    return name.substr(prefix.size(), name.size() - prefix.size() - kExtension.size());
+std::optional<std::string_view> stem_after(std::string_view name, std::string_view prefix,
+                                           std::string_view extension = kExtension) {
+    if (!name.starts_with(prefix) || !name.ends_with(extension)) return std::nullopt;
+    if (name.size() < prefix.size() + extension.size()) return std::nullopt;
+    return name.substr(prefix.size(), name.size() - prefix.size() - extension.size());
 }
 
 std::optional<std::uint64_t> number(std::string_view text) {
@@ -70,6 +75,15 @@ bool is_comparison_file(std::string_view name) {
            std::find(kComparisonPictures.begin(), kComparisonPictures.end(), name) != kComparisonPictures.end();
 }
 
+// N_pK.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> numbers_of_part(std::optional<std::string_view> stem) {
+    const std::size_t mark = stem ? stem->find(kPieceMark) : std::string_view::npos;
+    if (mark == std::string_view::npos) return std::nullopt;
+    const auto first = number(stem->substr(0, mark));
+    const auto second = number(stem->substr(mark + kPieceMark.size()));
+    return first && second ? std::optional(std::pair(*first, *second)) : std::nullopt;
+}
+
 std::string file_of_step(std::string_view prefix, std::uint64_t step) {
     return fmt::format("{}{:06}{}", prefix, step, kExtension);
 }
@@ -85,6 +99,34 @@ std::optional<std::uint64_t> step_of_file(std::string_view prefix, std::string_v
 
 std::string frame_file_name(std::uint64_t step) { return file_of_step(kFramePrefix, step); }
 std::optional<std::uint64_t> step_of_frame_file(std::string_view name) { return step_of_file(kFramePrefix, name); }
+std::string frame_index_name(std::uint64_t step) {
+    return fmt::format("{}{:06}{}", kFramePrefix, step, kIndexExtension);
+}
+std::optional<std::uint64_t> step_of_frame_index(std::string_view name) {
+    const auto stem = stem_after(name, kFramePrefix, kIndexExtension);
+    const auto step = stem ? number(*stem) : std::nullopt;
+    return step && frame_index_name(*step) == name ? step : std::nullopt;
+}
+
+std::string piece_file_name(std::uint64_t step, std::size_t piece) {
+    return fmt::format("{}{:06}{}{}{}", kFramePrefix, step, kPieceMark, piece, kExtension);
+}
+std::optional<std::uint64_t> step_of_piece_file(std::string_view name) {
+    const auto numbers = numbers_of_part(stem_after(name, kFramePrefix));
+    return numbers && piece_file_name(numbers->first, numbers->second) == name ? std::optional(numbers->first)
+                                                                               : std::nullopt;
+}
+
+std::string checkpoint_part_name(unsigned set, std::size_t part) {
+    return fmt::format("{}{}{}{}{}", kPartPrefix, set, kPieceMark, part, kPartExtension);
+}
+std::optional<unsigned> set_of_checkpoint_part(std::string_view name) {
+    const auto numbers = numbers_of_part(stem_after(name, kPartPrefix, kPartExtension));
+    if (!numbers || numbers->first > 1) return std::nullopt;
+    const auto set = static_cast<unsigned>(numbers->first);
+    return checkpoint_part_name(set, numbers->second) == name ? std::optional(set) : std::nullopt;
+}
+
 std::string contact_file_name(std::uint64_t step) { return file_of_step(kContactPrefix, step); }
 std::optional<std::uint64_t> step_of_contact_file(std::string_view name) { return step_of_file(kContactPrefix, name); }
 
@@ -119,6 +161,7 @@ bool is_run_file(std::string_view name) {
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
            finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile ||
            finished == kParticleSpriteFile || finished == kParticleMeshFile || step_of_frame_file(finished) ||
+           step_of_frame_index(finished) || step_of_piece_file(finished) || set_of_checkpoint_part(finished) ||
            step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
 }
 
@@ -184,12 +227,15 @@ void write_marker(int descriptor, const std::filesystem::path& marker) {
     }
 }
 
-void lock_marker(int descriptor, const std::filesystem::path& folder) {
+void lock_marker(int descriptor, const std::filesystem::path& folder, int how) {
+    if (::flock(descriptor, how | LOCK_NB) == 0) return;
+    if (errno != EWOULDBLOCK) fail(folder / kRunMarkerFile, "lock the output folder", std::strerror(errno));
+    throw RunError(fmt::format("{}: another run is writing into this folder", folder.string()));
+}
+
+void take_marker(int descriptor, const std::filesystem::path& folder) {
     const std::filesystem::path marker = folder / kRunMarkerFile;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        if (errno != EWOULDBLOCK) fail(marker, "lock the output folder", std::strerror(errno));
-        throw RunError(fmt::format("{}: another run is writing into this folder", folder.string()));
-    }
+    lock_marker(descriptor, folder, LOCK_EX);
     if (holds_other_text(descriptor)) {
         throw InputError(
             fmt::format("{}: not a marker that ricochet wrote; choose another output folder", marker.string()));
@@ -224,7 +270,7 @@ OutputDirectory::OutputDirectory(std::filesystem::path path, Earlier earlier) : 
     make_folder(path_);
     marker_ = open_marker(path_);
     try {
-        lock_marker(marker_, path_);
+        earlier == Earlier::join ? lock_marker(marker_, path_, LOCK_SH) : take_marker(marker_, path_);
         if (earlier == Earlier::remove) remove_files(path_, [](const std::string& name) { return is_run_file(name); });
     } catch (...) {
         ::close(marker_);
@@ -232,9 +278,19 @@ OutputDirectory::OutputDirectory(std::filesystem::path path, Earlier earlier) : 
     }
 }
 
+void OutputDirectory::share() const { lock_marker(marker_, path_, LOCK_SH); }
+
+void OutputDirectory::remove_checkpoint_parts(const std::vector<std::string>& kept) const {
+    remove_files(path_, [&](const std::string& name) {
+        return set_of_checkpoint_part(name) && std::find(kept.begin(), kept.end(), name) == kept.end();
+    });
+}
+
 void OutputDirectory::remove_after(std::uint64_t step) const {
     remove_files(path_, [&](const std::string& name) {
-        const auto frame = step_of_frame_file(name);
+        auto frame = step_of_frame_file(name);
+        if (!frame) frame = step_of_frame_index(name);
+        if (!frame) frame = step_of_piece_file(name);
         const auto contacts = step_of_contact_file(name);
         const auto moving = step_of_moving_file(name);
         const bool is_unfinished = without_partial_ending(name) != name && is_run_file(name);
@@ -256,7 +312,9 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     for (auto entry = std::filesystem::directory_iterator(path, error);
          !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
         const std::string name = entry->path().filename().string();
-        if (const auto step = step_of_frame_file(name)) folder.frames.push_back({*step, entry->path()});
+        auto frame = step_of_frame_file(name);
+        if (!frame) frame = step_of_frame_index(name);
+        if (frame) folder.frames.push_back({*frame, entry->path()});
         if (const auto step = step_of_contact_file(name)) folder.contacts.push_back({*step, entry->path()});
         if (const auto step = step_of_moving_file(name)) moving.emplace(*step, entry->path());
         if (const auto index = index_of_collider_file(name)) colliders.emplace(*index, entry->path());
@@ -264,8 +322,8 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     }
     if (error) throw InputError(fmt::format("{}: cannot be read ({})", path.string(), error.message()));
     if (folder.frames.empty()) {
-        throw InputError(fmt::format("{}: holds no frames (particles_NNNNNN.vtp); give the --output folder of a run",
-                                     path.string()));
+        throw InputError(fmt::format(
+            "{}: holds no frames (particles_NNNNNN.vtp or .pvtp); give the --output folder of a run", path.string()));
     }
     for (std::vector<FrameFile>* files : {&folder.frames, &folder.contacts}) {
         std::sort(files->begin(), files->end(), [](const FrameFile& a, const FrameFile& b) { return a.step < b.step; });

@@ -42,6 +42,19 @@ inline constexpr std::array<const char*, 6> kComparisonPictures{
 /// The step of a frame file's name; nothing when it is not one.
 [[nodiscard]] std::optional<std::uint64_t> step_of_frame_file(std::string_view name);
 
+/// particles_NNNNNN.pvtp: the index over the pieces of a frame that several processes have written.
+[[nodiscard]] std::string frame_index_name(std::uint64_t step);
+/// The step of an index's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_frame_index(std::string_view name);
+/// particles_NNNNNN_pK.vtp: what process K had of it.
+[[nodiscard]] std::string piece_file_name(std::uint64_t step, std::size_t piece);
+/// The step of a piece's name; nothing when it is not one.
+[[nodiscard]] std::optional<std::uint64_t> step_of_piece_file(std::string_view name);
+/// checkpoint_S_pK.bin: the particles that process K had. Sets 0 and 1 take turns, so that one is always whole.
+[[nodiscard]] std::string checkpoint_part_name(unsigned set, std::size_t part);
+/// The set of such a name; nothing when it is not one.
+[[nodiscard]] std::optional<unsigned> set_of_checkpoint_part(std::string_view name);
+
 /// contacts_NNNNNN.vtp; the number is the step after which it was written.
 [[nodiscard]] std::string contact_file_name(std::uint64_t step);
 /// The step of a contact file's name; nothing when it is not one.
@@ -84,13 +97,19 @@ public:
     /// another run or the system refuses.
     explicit OutputDirectory(std::filesystem::path path) : OutputDirectory(std::move(path), Earlier::remove) {}
     /// What is to become of an earlier run's files. Kept ones must be there: InputError where the folder is no run's.
-    enum class Earlier { remove, keep };
+    /// join: this process writes into the folder of a run that another one has begun and shares: see share().
+    enum class Earlier { remove, keep, join };
     OutputDirectory(std::filesystem::path path, Earlier earlier);
     ~OutputDirectory();
     OutputDirectory(const OutputDirectory&) = delete;
     OutputDirectory& operator=(const OutputDirectory&) = delete;
 
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// From now on other processes may join, and the folder is locked while any of them lives. Throws RunError where
+    /// another run has taken it that very moment.
+    void share() const;
+    /// Removes the parts of checkpoints, but those of these names.
+    void remove_checkpoint_parts(const std::vector<std::string>& kept = {}) const;
     /// Removes frames and contact files of steps after this one, and what was never finished: an interrupted run goes
     /// on there.
     void remove_after(std::uint64_t step) const;

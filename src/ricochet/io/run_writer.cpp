@@ -71,12 +71,22 @@ Box3 particle_region(const SimulationSetup& setup) {
     return region;
 }
 
+void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation) {
+    fill_particle_frame(frame, simulation.particles(), simulation.shown_attributes(), simulation.time(),
+                        simulation.has_spheres());
+    if (!simulation.springs().empty()) {
+        add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
+    }
+    if (info.camera && info.camera->moves()) {
+        add_camera(frame, camera_place(*info.camera, info.up, info.camera->frames.get(), simulation));
+    }
+}
+
 RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
                      const std::optional<Checkpoint>& resumed, WriterThread::Mode mode)
     : folder_(std::move(folder)),
       info_(std::move(info)),
       region_(region),
-      has_spheres_(simulation.has_spheres()),
       output_seconds_(resumed ? resumed->output_seconds : 0.0),
       thread_(std::make_shared<WriterThread>(mode)),
       frames_(folder_, kParticleSeries, resumed ? resumed->frames : std::vector<PvdEntry>{}, thread_),
@@ -117,23 +127,25 @@ void RunWriter::write_frame(const Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     const SecondsTo clock(output_seconds_);
     if (contacts_) contacts_->write(simulation);
-    VtkPolyData frame = frames_.blank_frame();
-    fill_particle_frame(frame, simulation.particles(), simulation.shown_attributes(), simulation.time(), has_spheres_);
-    if (!simulation.springs().empty()) {
-        add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
+    if (writes_particles_) {
+        VtkPolyData frame = frames_.blank_frame();
+        fill_run_frame(frame, info_, simulation);
+        frames_.submit(simulation.step_index(), std::move(frame));
     }
-    if (info_.camera && info_.camera->moves()) {
-        add_camera(frame, camera_place(*info_.camera, info_.up, info_.camera->frames.get(), simulation));
-    }
-    frames_.submit(simulation.step_index(), std::move(frame));
     if (moving_) moving_->submit(simulation.step_index(), moving_collider_frame(simulation, region_));
     loads_.add(simulation);
     last_frame_ = simulation.step_index();
 }
 
-void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds) {
+void RunWriter::list(const PieceIndex& index) {
+    frames_.submit_index(index.step, index.shape.time, pvtp_text(index.shape, index.files));
+}
+
+void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
+                                 std::vector<CheckpointPart> parts) {
     const SecondsTo clock(output_seconds_);
-    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(), {}, {}, loads_.rows()};
+    Checkpoint checkpoint{scene, wall_seconds, output_seconds_, frames_.drain(),
+                          {},    {},           loads_.rows(),   std::move(parts)};
     if (contacts_) checkpoint.contacts = contacts_->drain();
     if (moving_) checkpoint.moving = moving_->drain();
     loads_.write(simulation);

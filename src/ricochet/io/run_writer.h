@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -19,6 +20,17 @@ namespace ricochet {
 /// Where particles are at the start, are born, and are kept: what a picture of a scene without meshes should show.
 [[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
 
+/// Fills in what a frame of the run holds: the particles that the simulation has, springs between them, the camera's
+/// place.
+void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation);
+
+/// A frame whose pieces are on disk, see PieceWriter.
+struct PieceIndex {
+    std::uint64_t step = 0;
+    VtkPolyData shape{};               ///< time and arrays, without values
+    std::vector<std::string> files{};  ///< of the pieces
+};
+
 /// Writes a run: first run.json and the colliders, then frames, at the end the colliders with their totals and the
 /// summary. What is on disk at any moment can be opened, however the run ends. Frames and contact files are written by
 /// a thread of their own; at most two of them are in memory, then the simulation waits. The next call throws what that
@@ -31,6 +43,10 @@ public:
     RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
               const std::optional<Checkpoint>& resumed = std::nullopt,
               WriterThread::Mode mode = WriterThread::Mode::background);
+    /// Particles are written in pieces, by others: write_frame() leaves them out, and list() lists them.
+    void leave_particles_out() { writes_particles_ = false; }
+    /// Writes the index over a frame's pieces, which are all on disk.
+    void list(const PieceIndex& index);
 
     /// To be called after every step. Logs its contacts where the simulation records them. Throws like
     /// ContactLog::add_step(), and what writing an earlier frame threw, so that a run that cannot write ends soon.
@@ -39,8 +55,10 @@ public:
     /// them. Throws what writing an earlier frame threw.
     void write_frame(const Simulation& simulation);
     /// Writes a checkpoint of the present state, which must be a frame already (write_frame()), and waits until all
-    /// that it names is on disk. scene: the scene's fingerprint; wall_seconds: spent so far. Throws like write_frame().
-    void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds);
+    /// that it names is on disk. scene: the scene's fingerprint; wall_seconds: spent so far; parts: of the particles,
+    /// where the simulation shows all but them. Throws like write_frame().
+    void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
+                          std::vector<CheckpointPart> parts = {});
     /// A run that is finished needs no checkpoint.
     void remove_checkpoint() const;
     /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
@@ -52,6 +70,8 @@ public:
     /// s that the simulation's thread has spent in calls of this class, waiting for the disk included; a resumed run
     /// counts on.
     [[nodiscard]] double output_seconds() const { return output_seconds_; }
+    /// What it has spent on output beside this class.
+    void add_output_seconds(double seconds) { output_seconds_ += seconds; }
 
 private:
     [[nodiscard]] RunSummary close(const Simulation& simulation);
@@ -61,7 +81,7 @@ private:
     RunInfo info_;
     Box3 region_;
     std::optional<std::uint64_t> last_frame_;
-    bool has_spheres_ = false;
+    bool writes_particles_ = true;
     double output_seconds_ = 0.0;
     std::shared_ptr<WriterThread> thread_;
     FrameWriter frames_;

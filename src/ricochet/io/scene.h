@@ -25,6 +25,7 @@ struct OutputOptions {
     std::string format = "vtp";
     std::uint64_t every = 1;             ///< steps from one frame to the next, >= 1
     std::uint64_t checkpoint_every = 0;  ///< steps from one checkpoint to the next, at the frame that follows; 0: none
+    bool pieces = false;                 ///< each process of a run writes its own part of frames and checkpoints
 };
 
 /// Where a picture is taken from.

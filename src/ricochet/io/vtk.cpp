@@ -234,6 +234,28 @@ std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& da
     return size;
 }
 
+std::string pvtp_text(const VtkPolyData& shape, const std::vector<std::string>& files) {
+    require_time(shape.time);
+    std::string text =
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"PPolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+        "<PPolyData GhostLevel=\"0\">\n";
+    const auto list = [&](const char* section, const std::vector<VtkArray>& arrays) {
+        text += fmt::format("<{}>\n", section);
+        for (const VtkArray& array : arrays) {
+            text += fmt::format("<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>\n",
+                                std::visit(TypeName{}, array.values), escaped(array.name),
+                                std::holds_alternative<std::vector<Vec3>>(array.values) ? 3 : 1);
+        }
+        text += fmt::format("</{}>\n", section);
+    };
+    list("PPointData", shape.point_arrays);
+    list("PCellData", shape.cell_arrays);
+    text += "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
+    for (const std::string& file : files) text += fmt::format("<Piece Source=\"{}\"/>\n", escaped(file));
+    return text + "</PPolyData>\n</VTKFile>\n";
+}
+
 std::string pvd_text(const std::vector<PvdEntry>& entries) {
     std::string text =
         "<?xml version=\"1.0\"?>\n"

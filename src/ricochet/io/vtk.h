@@ -78,6 +78,10 @@ enum class VtkIndexWidth { automatic, bits64 };
 std::uint64_t write_vtp(const std::filesystem::path& path, const VtkPolyData& data,
                         VtkIndexWidth width = VtkIndexWidth::automatic);
 
+/// Text of a .pvtp file: the index over pieces that hold the arrays of `shape`, whatever their lengths; its values are
+/// not looked at. files: .vtp files, relative to the index.
+[[nodiscard]] std::string pvtp_text(const VtkPolyData& shape, const std::vector<std::string>& files);
+
 /// One line of a series file.
 struct PvdEntry {
     double time = 0.0;       ///< s

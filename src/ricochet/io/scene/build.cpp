@@ -180,6 +180,10 @@ const ObjectSpec& output_spec() {
          {"checkpoint_every", &O::checkpoint_every, kCount, "",
           "Steps from one checkpoint to the next, each made with the frame that follows. An interrupted run leaves one "
           "in any case; `ricochet run --resume` goes on from it."},
+         {"pieces", &O::pieces,
+          "Each process of a run that several share writes its own part of the frames, with a .pvtp index over them, "
+          "and "
+          "of the checkpoints. Otherwise the first process gathers and writes them."},
          {"contacts", &O::contacts, "Write every impact, as points with their columns, once a frame."}});
     return spec;
 }

@@ -1,0 +1,98 @@
+// What ranks that are behind give, and which of their particles: by closed forms.
+#include "ricochet/simulation/rank_balance.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "ricochet/core/random.h"
+#include "support/thread_ranks.h"
+
+namespace ricochet {
+namespace {
+
+using Work = std::vector<std::uint64_t>;
+
+/// What each has once all have given.
+std::vector<double> after_gifts(const Work& work) {
+    std::vector<double> after(work.begin(), work.end());
+    for (std::size_t from = 0; from < work.size(); ++from) {
+        const RankGifts gifts = gifts_of(from, work);
+        for (std::size_t to = 0; to < work.size(); ++to) {
+            EXPECT_GE(gifts[to], 0.0);
+            after[from] -= gifts[to] * static_cast<double>(work[from]);
+            after[to] += gifts[to] * static_cast<double>(work[from]);
+        }
+    }
+    return after;
+}
+
+TEST(RankGifts, AreWhatMakesAllTheSame) {
+    EXPECT_EQ(gifts_of(0, {300, 100}), (RankGifts{0.0, 1.0 / 3.0}));
+    EXPECT_EQ(gifts_of(1, {300, 100}), (RankGifts{0.0, 0.0}));
+    EXPECT_EQ(gifts_of(2, {0, 0, 900}), (RankGifts{1.0 / 3.0, 1.0 / 3.0, 0.0}));
+    EXPECT_EQ(gifts_of(0, {5, 5, 5}), (RankGifts{0.0, 0.0, 0.0}));
+    EXPECT_EQ(gifts_of(0, {0, 0}), (RankGifts{0.0, 0.0}));
+    RandomSequence random(71, 0, 0);
+    for (int round = 0; round < 1000; ++round) {
+        Work work(1 + static_cast<std::size_t>(random.uniform() * 12.0));
+        for (std::uint64_t& one : work) one = static_cast<std::uint64_t>(random.uniform() * random.uniform() * 1e6);
+        const double mean = static_cast<double>(std::accumulate(work.begin(), work.end(), std::uint64_t{0})) /
+                            static_cast<double>(work.size());
+        for (const double left : after_gifts(work)) EXPECT_NEAR(left, mean, 1e-6 * (1.0 + mean)) << "round " << round;
+    }
+}
+
+TEST(GiftChoice, TakesTheSamePartOfEachCostAndNothingThatIsIdle) {
+    GiftChoice choice({0.0, 0.25, 0.1});
+    std::vector<std::vector<int>> gone(2, std::vector<int>(3, 0));
+    constexpr int kEach = 10'000;
+    for (int k = 0; k < kEach; ++k) {
+        for (const auto cost : {GiftChoice::Cost::queried, GiftChoice::Cost::flying}) {
+            const std::uint32_t rank = choice.next(cost);
+            if (rank != GiftChoice::kStays) ++gone[static_cast<std::size_t>(cost)][rank];
+        }
+        EXPECT_EQ(choice.next(GiftChoice::Cost::idle), GiftChoice::kStays);
+    }
+    for (const std::vector<int>& of_cost : gone) {
+        EXPECT_EQ(of_cost[0], 0);
+        EXPECT_NEAR(of_cost[1], 0.25 * kEach, 3.0);
+        EXPECT_NEAR(of_cost[2], 0.1 * kEach, 3.0);
+    }
+}
+
+/// Whether ranks with so much work a step, and so many particles, have given any in this many steps.
+bool is_moved(const Work& each_step, std::size_t particles, std::uint64_t steps) {
+    bool is_moved = false;
+    testing::on_ranks(each_step.size(), [&](const std::shared_ptr<Ranks>& ranks) {
+        RankBalancer balancer;
+        bool any = false;
+        for (std::uint64_t k = 0; k < steps; ++k) {
+            any |= balancer.look(*ranks, particles).has_value();
+            WorkCounts counts;
+            counts.idle = each_step[ranks->rank()];
+            balancer.note(counts);
+        }
+        if (ranks->rank() == 0) is_moved = any;
+    });
+    return is_moved;
+}
+
+TEST(RankBalancer, ActsWhereOneIsMoreThanATenthBehind) {
+    constexpr std::uint64_t kMany = 1'000'000;
+    EXPECT_FALSE(is_moved({kMany, kMany}, 100, 40));
+    EXPECT_FALSE(is_moved({kMany * 109, kMany * 91}, 100, 40));
+    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, 40));
+    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, RankBalancer::kSteps + 1)) << "at the first look";
+    EXPECT_FALSE(is_moved({100, 0}, 100, 40)) << "a microsecond is not worth it";
+    // Room among so many particles costs more than is won in a few steps, not in sixteen.
+    EXPECT_FALSE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kSteps + 1));
+    EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kLooks * RankBalancer::kSteps + 1));
+}
+
+}  // namespace
+}  // namespace ricochet

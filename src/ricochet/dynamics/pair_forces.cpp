@@ -9,6 +9,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 namespace {
@@ -84,6 +85,7 @@ public:
     }
 
     [[nodiscard]] bool depends_on_velocity() const override { return depends_on_velocity_; }
+    [[nodiscard]] const Law& law() const { return law_; }
 
 private:
     [[nodiscard]] const std::vector<NeighbourPair>& pairs_of(const ParticlesView& particles,
@@ -141,6 +143,10 @@ public:
         return bare_potential(pair.distance) - potential_at_cutoff_ + (pair.distance - cutoff_) * force_at_cutoff_;
     }
     [[nodiscard]] double cutoff() const { return cutoff_; }
+    /// The second derivative at the least potential, r^6 = 2 diameter^6.
+    [[nodiscard]] PairSteepness steepness() const {
+        return {72.0 / std::cbrt(2.0) * (depth_ / (diameter_ * diameter_)), 0.0};
+    }
 
 private:
     [[nodiscard]] double bare_force(double r) const {
@@ -179,6 +185,7 @@ public:
         return in_gap + in_overlap - scale / 12.0;
     }
     [[nodiscard]] double cutoff() const { return settings_.range; }
+    [[nodiscard]] PairSteepness steepness() const { return {settings_.stiffness, settings_.damping}; }
 
 private:
     static double gap_of(const PairState& pair) { return pair.distance - (pair.radii[0] + pair.radii[1]); }
@@ -186,7 +193,19 @@ private:
     CohesionSettings settings_;
 };
 
+template <class Law>
+const Law* law_in(const ParticlesForce& force) {
+    const auto* const pairs = dynamic_cast<const PairForce<Law>*>(&force);
+    return pairs == nullptr ? nullptr : &pairs->law();
+}
+
 }  // namespace
+
+std::optional<PairSteepness> steepness_of(const ParticlesForce& force) {
+    if (const Cohesion* const law = law_in<Cohesion>(force)) return law->steepness();
+    if (const LennardJones* const law = law_in<LennardJones>(force)) return law->steepness();
+    return std::nullopt;
+}
 
 std::shared_ptr<const ParticlesForce> make_pair_force(PairLaw law) {
     detail::require_positive(law.cutoff, "force of pairs: the cutoff", "m");

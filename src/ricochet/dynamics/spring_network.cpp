@@ -12,6 +12,7 @@
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 
@@ -193,12 +194,6 @@ std::size_t SpringNetwork::break_overstretched(std::span<const Vec3> position) {
 
 namespace {
 
-constexpr double kAnyStep = std::numeric_limits<double>::infinity();
-
-/// Radii of discs around 0 whose left halves lie in the regions of stability, along the imaginary axis almost.
-constexpr double kReachOfMidpoint = 1.0;
-constexpr double kReachOfRk4 = 2.6;
-
 /// Largest sums of stiffness and damping over mass of one particle.
 struct Rates {
     double stiffness = 0.0;  // 1/s^2
@@ -225,7 +220,7 @@ Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>
 
 /// forward_euler: every spring's own damper has to take out what its step puts in.
 double damper_bound(std::span<const Spring> springs) {
-    double bound = kAnyStep;
+    double bound = std::numeric_limits<double>::infinity();
     for (const Spring& spring : springs) {
         if (spring.stiffness > 0.0) bound = std::min(bound, spring.damping / spring.stiffness);
     }
@@ -236,26 +231,8 @@ double damper_bound(std::span<const Spring> springs) {
 
 double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                            const std::vector<Particle>& particles) {
-    if (name_of(kind).empty()) throw InputError("longest stable step: there is no such integrator");
     const Rates rates = largest_rates(springs, particles);
-    const double omega_squared = 2.0 * rates.stiffness;
-    const double gamma = 2.0 * rates.damping;
-    const double root = std::sqrt(gamma * gamma + 4.0 * omega_squared);
-    if (!(root > 0.0)) return kAnyStep;
-    const double fastest = 0.5 * (gamma + root);  // no eigenvalue is larger
-    switch (kind) {
-        case IntegratorKind::implicit_euler:
-        case IntegratorKind::dormand_prince:
-            return kAnyStep;
-        case IntegratorKind::forward_euler:
-            return std::min(damper_bound(springs), 1.0 / fastest);
-        case IntegratorKind::midpoint:
-            return kReachOfMidpoint / fastest;
-        case IntegratorKind::rk4:
-            return kReachOfRk4 / fastest;
-        default:
-            return 4.0 / (gamma + root);
-    }
+    return longest_stable_step(kind, {2.0 * rates.stiffness, 2.0 * rates.damping, damper_bound(springs)});
 }
 
 }  // namespace ricochet

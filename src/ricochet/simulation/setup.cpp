@@ -11,10 +11,10 @@
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/neighbour_grid.h"
-#include "ricochet/dynamics/springs.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/simulation/impl.h"
 #include "ricochet/simulation/memory_estimate.h"
+#include "ricochet/simulation/stability_warnings.h"
 #include "ricochet/simulation/validation.h"
 #include "ricochet/verify/sphere_overlaps.h"
 
@@ -69,25 +69,6 @@ std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
                     substep, bound, spring.stiffness, mass, restitution, advice)};
 }
 
-std::vector<std::string> spring_warnings(const SimulationSetup& setup) {
-    if (setup.solver) return {};
-    const IntegratorKind kind = setup.options.integrator.kind;
-    const double bound = longest_stable_step(kind, setup.springs, setup.particles);
-    const double step = setup.options.time_step;
-    if (step <= bound) return {};
-    if (bound == 0.0) {
-        return {
-            fmt::format("{} is not stable at any time step with these springs, some of which have no damping: they "
-                        "may explode; give every spring damping of more than the time step times its stiffness, or "
-                        "use the integrator symplectic_euler, velocity_verlet or implicit_euler",
-                        name_of(kind))};
-    }
-    return {
-        fmt::format("the time step of {:.3g} s exceeds {:.3g} s, up to which {} is sure to be stable with these "
-                    "springs: they may explode; use a shorter step or the integrator implicit_euler",
-                    step, bound, name_of(kind))};
-}
-
 /// By how much paths may leave their chords: more where the look-ahead follows parabolas.
 double chord_margin(const AccelerationSwitches& acceleration, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
@@ -96,7 +77,7 @@ double chord_margin(const AccelerationSwitches& acceleration, const ForceField& 
 
 std::vector<std::string> warnings_of(const SimulationSetup& setup) {
     std::vector<std::string> warnings = penalty_warnings(setup);
-    for (std::string& warning : spring_warnings(setup)) warnings.push_back(std::move(warning));
+    for (std::string& warning : stability_warnings(setup)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

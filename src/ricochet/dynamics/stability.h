@@ -1,0 +1,36 @@
+/// \file
+/// Private to the library: the longest steps that integrators can make with what oscillates.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "ricochet/dynamics/integrator.h"
+#include "ricochet/dynamics/particles_force.h"
+
+namespace ricochet {
+
+/// No oscillation is faster, nor damped faster.
+struct OscillationRates {
+    double omega_squared = 0.0;  ///< 1/s^2: the largest eigenvalue of the stiffness over the masses
+    double gamma = 0.0;          ///< 1/s: the same of the damping
+    /// s: every oscillator's own damping over its stiffness is at least this (forward_euler needs it)
+    double least_damper = std::numeric_limits<double>::infinity();
+};
+
+/// s: longer steps may explode. Infinite for implicit_euler, which needs none, and dormand_prince, which chooses its
+/// own. symplectic_euler, velocity_verlet and ballistic are stable while h^2 omega^2 + 2 h gamma < 4; the Runge-Kutta
+/// methods while h times the largest eigenvalue stays within their region of stability; forward_euler where every own
+/// damper takes out what its step puts in. Throws InputError for a kind that does not exist.
+[[nodiscard]] double longest_stable_step(IntegratorKind kind, const OscillationRates& rates);
+
+/// How steep a force of two particles is along their line where it is steepest of what it holds together, and what it
+/// drags at most: of cohesion at contact, of lennard_jones at the distance of rest.
+struct PairSteepness {
+    double stiffness = 0.0;  ///< N/m
+    double damping = 0.0;    ///< N s/m
+};
+/// Nothing for forces that are not known: those of the user's own, and those that grow without bound.
+[[nodiscard]] std::optional<PairSteepness> steepness_of(const ParticlesForce& force);
+
+}  // namespace ricochet

@@ -1,0 +1,143 @@
+#include "ricochet/simulation/stability_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+#include "ricochet/dynamics/springs.h"
+#include "ricochet/dynamics/stability.h"
+
+namespace ricochet {
+namespace {
+
+/// What twelve neighbours in the closest packing of equal spheres hold a sphere with, over what one does: the sum of
+/// the squared cosines between their lines and any other.
+constexpr double kClosestPacking = 4.0;
+
+/// Digits after which doubles differ, if they do.
+constexpr int kMostDigits = 17;
+
+/// Among colliders that move these methods would kick spheres that meet twice.
+bool may_kick_first(const SimulationSetup& setup) {
+    return !setup.options.particle_contacts ||
+           std::none_of(setup.colliders.begin(), setup.colliders.end(),
+                        [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
+}
+
+/// The two lightest of the particles that a force acts between, kg, infinite where they are pinned or not there.
+struct LightestPair {
+    std::array<double, 2> masses{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    double count = 0.0;  ///< of all of them
+
+    void add(double mass) {
+        masses[1] = std::min(masses[1], std::max(masses[0], mass));
+        masses[0] = std::min(masses[0], mass);
+        ++count;
+    }
+    /// 1/kg
+    [[nodiscard]] double reduced_inverse() const { return 1.0 / masses[0] + 1.0 / masses[1]; }
+};
+
+/// Fragments, whose masses only the run gives, are passed over.
+LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry& entry) {
+    const bool is_all = entry.particles.empty() && entry.emitters.empty();
+    LightestPair lightest;
+    const auto add = [&](const Particle& particle) {
+        lightest.add(particle.pinned ? std::numeric_limits<double>::infinity() : particle.mass);
+    };
+    if (is_all) std::for_each(setup.particles.begin(), setup.particles.end(), add);
+    for (const std::uint64_t id : entry.particles) {
+        if (id < setup.particles.size()) add(setup.particles[id]);
+    }
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        const bool takes_part = std::find(entry.emitters.begin(), entry.emitters.end(), k) != entry.emitters.end();
+        if (!(is_all || takes_part) || (emitter.parent && emitter.parent->share)) continue;
+        const double mass = emitter.mass.mean - emitter.mass.spread;
+        lightest.add(mass);
+        lightest.add(mass);
+        lightest.count = std::numeric_limits<double>::infinity();
+    }
+    return lightest;
+}
+
+/// As few digits as tell them apart.
+std::array<std::string, 2> told_apart(double step, double bound) {
+    for (int digits = 3;; ++digits) {
+        std::array<std::string, 2> texts{fmt::format("{:.{}g}", step, digits), fmt::format("{:.{}g}", bound, digits)};
+        if (texts[0] != texts[1] || digits == kMostDigits) return texts;
+    }
+}
+
+std::string too_long(const SimulationSetup& setup, double bound, const std::string& forces, const char* advice) {
+    const auto [step, longest] = told_apart(setup.options.time_step, bound);
+    return fmt::format(
+        "the time step of {} s exceeds {} s, up to which {} is sure to be stable with {}: they may explode; use a "
+        "shorter step or {}",
+        step, longest, name_of(setup.options.integrator.kind), forces, advice);
+}
+
+std::string undamped(const SimulationSetup& setup, const std::string& forces, const char* whose) {
+    std::string others = may_kick_first(setup) ? "symplectic_euler or velocity_verlet" : "velocity_verlet";
+    if (may_be_implicit(setup)) {
+        others = may_kick_first(setup) ? "symplectic_euler, velocity_verlet or implicit_euler"
+                                       : "velocity_verlet or implicit_euler";
+    }
+    return fmt::format(
+        "{} is not stable at any time step with {}: they may explode; give {} damping of more than the time step times "
+        "its stiffness, or use the integrator {}",
+        name_of(setup.options.integrator.kind), forces, whose, others);
+}
+
+std::optional<std::string> spring_warning(const SimulationSetup& setup) {
+    const double bound = longest_stable_step(setup.options.integrator.kind, setup.springs, setup.particles);
+    if (setup.options.time_step <= bound) return std::nullopt;
+    if (bound == 0.0) return undamped(setup, "these springs, some of which have no damping", "every spring");
+    return too_long(setup, bound, "these springs",
+                    may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs");
+}
+
+std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_t number) {
+    const ParticlesForceEntry& entry = setup.particles_forces[number];
+    const std::optional<PairSteepness> steepness = steepness_of(*entry.force);
+    const LightestPair lightest = lightest_of(setup, entry);
+    if (!steepness || lightest.count < 2.0) return std::nullopt;
+    const double neighbours = std::min(lightest.count - 1.0, kClosestPacking) * lightest.reduced_inverse();
+    OscillationRates rates{neighbours * steepness->stiffness, neighbours * steepness->damping};
+    if (steepness->stiffness > 0.0) rates.least_damper = steepness->damping / steepness->stiffness;
+    const double bound = longest_stable_step(setup.options.integrator.kind, rates);
+    if (setup.options.time_step <= bound) return std::nullopt;
+    std::string what = fmt::format("particle_forces[{}] (stiffness {:.3g} N/m, ", number, steepness->stiffness);
+    if (steepness->damping > 0.0) what += fmt::format("damping {:.3g} N s/m, ", steepness->damping);
+    what += fmt::format("lightest particle {:.3g} kg)", lightest.masses[0]);
+    if (rates.least_damper == 0.0 && setup.options.integrator.kind == IntegratorKind::forward_euler) {
+        return undamped(setup, what + ", which has no damping", "it");
+    }
+    return too_long(setup, bound, "what is held together by " + what, "a weaker force");
+}
+
+}  // namespace
+
+bool may_be_implicit(const SimulationSetup& setup) {
+    const SimulationOptions& options = setup.options;
+    if (options.integrator.kind == IntegratorKind::implicit_euler) return false;
+    if (options.flow || options.response == ResponseKind::penalty) return false;
+    if (!setup.particles_forces.empty() && !setup.solver) return false;
+    return !options.particle_contacts || (setup.springs.empty() && may_kick_first(setup));
+}
+
+std::vector<std::string> stability_warnings(const SimulationSetup& setup) {
+    std::vector<std::string> warnings;
+    if (setup.solver) return warnings;
+    if (auto warning = spring_warning(setup)) warnings.push_back(std::move(*warning));
+    for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
+        if (auto warning = pair_warning(setup, k)) warnings.push_back(std::move(*warning));
+    }
+    return warnings;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,156 @@
+// Time steps too long for forces between particles: what is said, and that it is so.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/dynamics/pair_forces.h"
+#include "ricochet/dynamics/particles_force.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::setup_of;
+
+constexpr double kRadius = 0.5;
+constexpr double kStiffness = 100.0;
+
+Particle grain(const Vec3& position, double mass = 1.0) {
+    Particle particle = particle_of(position, {}, kRadius);
+    particle.mass = mass;
+    return particle;
+}
+
+/// Grains at rest that stick, and stretch by little against the range: their forces are linear almost.
+SimulationSetup sticking(double time_step, double damping, IntegratorKind kind, std::vector<Particle> grains) {
+    SimulationSetup setup = setup_of(time_step, 400.0 * time_step);
+    setup.options.integrator.kind = kind;
+    setup.particles = std::move(grains);
+    setup.particles_forces.push_back({make_cohesion({.stiffness = kStiffness, .range = 0.3, .damping = damping})});
+    return setup;
+}
+
+std::vector<Particle> pair_of(double second_mass) { return {grain({}), grain({1.0 + 1e-7, 0, 0}, second_mass)}; }
+
+/// The closest packing of 108 grains, their places off by some 1e-7 m.
+std::vector<Particle> packing() {
+    const double edge = std::sqrt(2.0);
+    std::vector<Particle> grains;
+    for (int k = 0; k < 6 * 6 * 6; ++k) {
+        const Vec3 place{double(k % 6), double(k / 6 % 6), double(k / 36)};
+        if ((k % 6 + k / 6 % 6 + k / 36) % 2 != 0) continue;
+        grains.push_back(
+            grain(0.5 * edge * place + 1e-7 * Vec3{std::sin(7.0 * k), std::sin(5.0 * k), std::sin(3.0 * k)}));
+    }
+    return grains;
+}
+
+bool explodes(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    const double before = simulation.potential_energy().value();
+    while (!simulation.finished()) simulation.step();
+    return simulation.kinetic_energy() + simulation.potential_energy().value() > before + 1e-9;
+}
+
+std::vector<std::string> warnings_of(SimulationSetup setup) { return Simulation(std::move(setup)).warnings(); }
+
+TEST(StabilityWarnings, OfCohesionBeginWhereTwoGrainsBeginToExplode) {
+    for (const double mass : {1.0, 0.25}) {
+        const double inverse = 1.0 + 1.0 / mass;
+        for (const double damping : {0.0, 3.0, 100.0}) {
+            // h^2 k / m + 2 h c / m = 4
+            const double gamma = damping * inverse;
+            const double bound = 4.0 / (gamma + std::sqrt(gamma * gamma + 4.0 * kStiffness * inverse));
+            const auto scene = [&](double h) {
+                return sticking(h, damping, IntegratorKind::velocity_verlet, pair_of(mass));
+            };
+            SCOPED_TRACE(damping);
+            EXPECT_TRUE(warnings_of(scene(0.99 * bound)).empty());
+            EXPECT_FALSE(explodes(scene(0.99 * bound)));
+            EXPECT_EQ(warnings_of(scene(1.02 * bound)).size(), 1U);
+            EXPECT_TRUE(damping > 0.0 || explodes(scene(1.02 * bound)));
+            EXPECT_TRUE(explodes(scene(2.1 * bound)));  // the bound of a drag is safe by two
+        }
+    }
+}
+
+TEST(StabilityWarnings, OfCohesionAreSilentUpToWhereTheClosestPackingExplodes) {
+    const double bound = 2.0 / std::sqrt(8.0 * kStiffness);  // four times two over the mass
+    const auto scene = [](double h) { return sticking(h, 0.0, IntegratorKind::velocity_verlet, packing()); };
+    EXPECT_TRUE(warnings_of(scene(0.99 * bound)).empty());
+    EXPECT_FALSE(explodes(scene(0.99 * bound)));
+    EXPECT_EQ(warnings_of(scene(1.01 * bound)).size(), 1U);
+    EXPECT_TRUE(explodes(scene(1.1 * bound)));
+}
+
+TEST(StabilityWarnings, SayTheStepTheForceAndWhatToDo) {
+    EXPECT_EQ(warnings_of(sticking(0.2, 2.0, IntegratorKind::velocity_verlet, pair_of(1.0))),
+              (std::vector<std::string>{
+                  "the time step of 0.2 s exceeds 0.123 s, up to which velocity_verlet is sure to be stable with what "
+                  "is held together by particle_forces[0] (stiffness 100 N/m, damping 2 N s/m, lightest particle 1 "
+                  "kg): they may explode; use a shorter step or a weaker force"}));
+    EXPECT_EQ(warnings_of(sticking(0.2, 0.0, IntegratorKind::forward_euler, pair_of(1.0))),
+              (std::vector<std::string>{
+                  "forward_euler is not stable at any time step with particle_forces[0] (stiffness 100 N/m, lightest "
+                  "particle 1 kg), which has no damping: they may explode; give it damping of more than the time step "
+                  "times its stiffness, or use the integrator symplectic_euler or velocity_verlet"}));
+}
+
+TEST(StabilityWarnings, TellStepsApartThatAreAlmostTheSame) {
+    const double bound = 2.0 / std::sqrt(200.0);
+    const auto lines =
+        warnings_of(sticking(std::nextafter(bound, 1.0), 0.0, IntegratorKind::velocity_verlet, pair_of(1.0)));
+    ASSERT_EQ(lines.size(), 1U);
+    EXPECT_NE(lines[0].find("step of 0.1414213562373"), std::string::npos) << lines[0];
+    const auto at = lines[0].find("exceeds ") + 8;
+    EXPECT_NE(lines[0].substr(17, lines[0].find(" s", 17) - 17), lines[0].substr(at, lines[0].find(" s", at) - at))
+        << lines[0];
+}
+
+/// Two grains of 1 kg and two of 100 kg, with a step above the bound of the light ones alone, 0.141 s.
+SimulationSetup light_and_heavy(std::vector<std::uint64_t> taking_part) {
+    std::vector<Particle> grains = pair_of(1.0);
+    grains.push_back(grain({5, 0, 0}, 100.0));
+    grains.push_back(grain({9, 0, 0}, 100.0));
+    SimulationSetup setup = sticking(0.2, 0.0, IntegratorKind::velocity_verlet, std::move(grains));
+    setup.particles_forces[0].particles = std::move(taking_part);
+    return setup;
+}
+
+SimulationSetup emitted(double mass) {
+    SimulationSetup setup = sticking(0.2, 0.0, IntegratorKind::velocity_verlet, {});
+    setup.emitters.resize(1);
+    setup.emitters[0].mass.mean = mass;
+    return setup;
+}
+
+TEST(StabilityWarnings, LookAtThoseThatTakePart) {
+    EXPECT_EQ(warnings_of(light_and_heavy({})).size(), 1U);
+    EXPECT_EQ(warnings_of(light_and_heavy({0, 1})).size(), 1U);
+    EXPECT_TRUE(warnings_of(light_and_heavy({2, 3})).empty());
+    EXPECT_TRUE(warnings_of(light_and_heavy({0})).empty()) << "one has nobody to act on";
+    EXPECT_EQ(warnings_of(emitted(1.0)).size(), 1U);
+    EXPECT_TRUE(warnings_of(emitted(100.0)).empty());
+}
+
+TEST(StabilityWarnings, OfLennardJonesComeFromTheCurvatureOfTheWell) {
+    const auto scene = [](double h) {
+        SimulationSetup setup = setup_of(h, h);
+        setup.particles = {grain({}), grain({2, 0, 0})};
+        setup.particles_forces.push_back({make_lennard_jones({.depth = 3.0, .diameter = 0.5})});
+        return setup;
+    };
+    const double curvature = 72.0 / std::cbrt(2.0) * 3.0 / 0.25;
+    const double bound = 2.0 / std::sqrt(2.0 * curvature);
+    EXPECT_TRUE(warnings_of(scene(0.999 * bound)).empty());
+    EXPECT_EQ(warnings_of(scene(1.001 * bound)).size(), 1U);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -141,6 +141,15 @@ TEST(BodyScene, WarnsOfAMeshThatCrossesItselfWhereItsVolumeCounts) {
         << crossing[0];
 }
 
+TEST(BodyScene, GoesWithAnEmptyListOfSprings) {
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "", R"(, "springs": [], "particle_forces": [])")), Lines{});
+    EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
+                                 R"(, "springs": [{"type": "rope", "from": [0, 0, 9], "to": [1, 0, 9], "nodes": 3,
+                                     "mass": 1, "stiffness": 1}])")),
+              (Lines{"frames.wheel.body: bodies that impulses move and springs do not go together yet, expected a "
+                     "scene without the one or the other"}));
+}
+
 TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
                                  R"(, "emitters": [{"type": "point", "frame": "wheel", "rate": 5}])")),

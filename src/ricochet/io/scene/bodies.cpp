@@ -210,7 +210,7 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
             context.error(named.view, key, "a body moves by what acts on it, in the world; expected no such key");
         }
         auto keys = view.read<BodyKeys>();
-        if (context.root().has("springs")) {
+        if (!context.objects("springs").empty()) {
             context.error(named.view, "body",
                           "bodies that impulses move and springs do not go together yet, expected "
                           "a scene without the one or the other");

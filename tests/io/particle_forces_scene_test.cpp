@@ -92,6 +92,10 @@ TEST(ParticleForcesScene, RefusesWhatCannotBeWithOneLine) {
              Case{R"({"type": "lennard_jones", "depth": 0})", "particle_forces[0].depth"},
              Case{R"({"type": "cohesion", "stiffness": 1})", "particle_forces[0]"},
              Case{R"({"type": "cohesion", "stiffness": -1, "range": 1})", "particle_forces[0].stiffness"},
+             Case{R"({"type": "cohesion", "stiffness": 1e300, "range": 1})",
+                  "particle_forces[0].stiffness: found 1e+300, expected at most 1e+75 in magnitude"},
+             Case{R"({"type": "cohesion", "stiffness": 1, "range": 1, "damping": 1e76})",
+                  "particle_forces[0].damping: found 1e+76, expected at most 1e+75 in magnitude"},
          }) {
         const Lines errors = errors_of(scene_with(c.force));
         ASSERT_EQ(errors.size(), 1U) << c.force;

@@ -74,9 +74,9 @@ ForceLaw cohesion() {
         "cohesion",
         "Spheres that stick: a spring between their surfaces that lets go at a gap, F = k g (1 - g / range)^2, and "
         "pushes back where they overlap.",
-        {{"stiffness", &C::stiffness, kNotNegative, "N/m", "The k: the spring's near contact.", kRequired},
+        {{"stiffness", &C::stiffness, kLengthOrZero, "N/m", "The k: the spring's near contact.", kRequired},
          {"range", &C::range, kLength, "m", "Gap between the surfaces at which they let go.", kRequired},
-         {"damping", &C::damping, kNotNegative, "N s/m", "Along the line of the centres, within the range."}},
+         {"damping", &C::damping, kLengthOrZero, "N s/m", "Along the line of the centres, within the range."}},
         &make_cohesion);
 }
 

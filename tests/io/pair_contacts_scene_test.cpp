@@ -77,6 +77,21 @@ TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
                      "here, expected another name"}));
 }
 
+TEST(PairContactsScene, APairThatNamesNothingIsRefusedForThatAlone) {
+    const auto refused = [](const std::string& pair) {
+        return errors_of(scene_with(R"("materials": {"steel": {}, "glass": {}}, "pairs": [)" + pair + "]"));
+    };
+    const std::string first = "particle_contacts.pairs[0].first: ";
+    const std::string second = "particle_contacts.pairs[0].second: ";
+    const std::string missing = "missing, expected a text that is not empty";
+    EXPECT_EQ(refused("{}"), (Lines{first + missing, second + missing}));
+    EXPECT_EQ(refused(R"({"first": "steel"})"), (Lines{second + missing}));
+    EXPECT_EQ(refused("1"),
+              (Lines{"particle_contacts.pairs[0]: found 1, expected an object {...} (pair of materials)"}));
+    EXPECT_EQ(refused(R"({"first": 1, "second": 2})"), (Lines{first + "found 1, expected a text that is not empty",
+                                                              second + "found 2, expected a text that is not empty"}));
+}
+
 // Forty materials whose order is not that of their names, all pairs of them in an order of their own.
 TEST(PairContactsScene, EachOfManyPairsStaysWhereItStandsAndCountsOnce) {
     constexpr std::size_t kMany = 40;

@@ -68,7 +68,8 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
             is_known = false;
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
-        if (!is_known) continue;
+        const bool is_named = !read.first.empty() && !read.second.empty();  // else it is refused already
+        if (!is_known || !is_named) continue;
         if (read.first == read.second) {
             context.error(
                 pair, "second",
@@ -77,9 +78,8 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
                             read.first));
             continue;
         }
-        // A name that is missing is refused already.
-        const std::size_t first = numbers.of(read.first).value_or(known.size());
-        const std::size_t second = numbers.of(read.second).value_or(known.size());
+        const std::size_t first = *numbers.of(read.first);
+        const std::size_t second = *numbers.of(read.second);
         if (taken.insert(std::minmax(first, second)).second) {
             settings.pairs.push_back(std::move(read));
         } else {

@@ -125,6 +125,20 @@ TEST(GlbWriter, StandsUprightAndKeepsCoordinatesFarFromTheOrigin) {
     EXPECT_NE(text.find(R"("roughnessFactor":0.3)"), std::string::npos);
 }
 
+TEST(GlbWriter, KeepsTheDigitsOfAMeshBesideVerticesOfNoTriangleThatAreFarAway) {
+    const TemporaryFolder folder;
+    GlbScene scene;
+    scene.meshes.push_back({"cloth", {{{1e7, 1e7, 1e7}, {0.1, 0, 1}, {0.7, 0, 1}, {0.1, 0.6, 1}}, {{1, 2, 3}}}, {}});
+    (void)write_glb(folder.path("a.glb"), scene);
+    const TriangleMesh mesh = read_mesh(folder.path("a.glb")).mesh;
+    ASSERT_EQ(mesh.triangles.size(), 1U);
+    EXPECT_EQ(mesh.vertices.size(), 3U);
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Vec3 expected = scene.meshes[0].mesh.vertices[corner + 1];
+        EXPECT_LT(max_abs(mesh.vertices[mesh.triangles[0][corner]] - expected), 6e-8 * 0.6);
+    }
+}
+
 TEST(GlbWriter, ShowsSpheresAsBallsOfTheirRadius) {
     const TemporaryFolder folder;
     GlbScene scene;

@@ -58,6 +58,24 @@ TriangleMesh coarse_ball() {
     return ball;
 }
 
+// Cloth comes with all particles of its frame: those far away would take the middle, and with it the digits.
+TriangleMesh without_loose_vertices(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> numbers(mesh.vertices.size(), 0);
+    for (const Triangle& triangle : mesh.triangles) {
+        for (const std::uint32_t corner : triangle) numbers[corner] = 1;
+    }
+    TriangleMesh kept;
+    for (std::size_t v = 0; v < numbers.size(); ++v) {
+        if (numbers[v] == 0) continue;
+        numbers[v] = static_cast<std::uint32_t>(kept.vertices.size());
+        kept.vertices.push_back(mesh.vertices[v]);
+    }
+    for (const Triangle& triangle : mesh.triangles) {
+        kept.triangles.push_back({numbers[triangle[0]], numbers[triangle[1]], numbers[triangle[2]]});
+    }
+    return kept;
+}
+
 // The parts of a file as they come together.
 class GlbBuilder {
 public:
@@ -69,10 +87,11 @@ public:
 
     void add(const GlbMesh& mesh) {
         if (mesh.mesh.triangles.empty()) return;
-        const Vec3 middle = middle_of(mesh.mesh.vertices);
+        const TriangleMesh shown = without_loose_vertices(mesh.mesh);
+        const Vec3 middle = middle_of(shown.vertices);
         Json primitive;
-        primitive["attributes"]["POSITION"] = add_points(mesh.mesh.vertices, middle);
-        primitive["indices"] = add_indices(mesh.mesh.triangles);
+        primitive["attributes"]["POSITION"] = add_points(shown.vertices, middle);
+        primitive["indices"] = add_indices(shown.triangles);
         primitive["material"] = add_material(mesh);
         add_node(mesh.name, add_mesh(mesh.name, std::move(primitive)), middle);
     }

@@ -65,11 +65,6 @@ bool CloudMotion::is_parent(std::size_t i) const {
     return emitter != kNoEmitter && has_children_[emitter] != 0;
 }
 
-bool CloudMotion::has_ended(std::size_t i, double time) const {
-    const Particles& p = store_.particles();
-    return p.absorbed[i] != 0 || p.birth_time[i] + p.lifetime[i] <= time;
-}
-
 bool CloudMotion::is_sound(std::size_t i, std::uint64_t next_id) const {
     if (!leads(i)) return true;
     const std::uint32_t emitter = store_.particles().origin[i].emitter;
@@ -107,7 +102,7 @@ void CloudMotion::note_tracks(const ParticleRange& batch, const TimeSpan& step,
         if (!is_parent(i) || leads(i)) continue;
         const std::uint64_t id = particles.id[i];
         tracks_[id] = {flight_knots(particles, i, starts_[i - batch.begin], step.begin, step.end, records.of(id)),
-                       has_ended(i, step.end)};
+                       store_.has_ended(i, step.end)};
     }
 }
 
@@ -163,7 +158,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     if (is_alone && particles.absorbed[i] == 0) {
         part(i, journey.now);
         const std::size_t first = scratch.records.size();
-        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !has_ended(i, journey.now)) {
+        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !store_.has_ended(i, journey.now)) {
             free_mover_.move_one(i, {journey.now, journey.until}, scratch, record);
             journey.now = journey.until;
         }
@@ -176,7 +171,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
         }
     }
     if (journey.track == nullptr) return;
-    track.ends = has_ended(i, step.end);
+    track.ends = store_.has_ended(i, step.end);
     if (particles.absorbed[i] != 0) return;
     track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
 }

@@ -71,7 +71,6 @@ private:
 
     [[nodiscard]] const CloudRule& rule_of(std::size_t i) const;
     [[nodiscard]] bool is_parent(std::size_t i) const;
-    [[nodiscard]] bool has_ended(std::size_t i, double time) const;
     [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& batch) const;
     void note_tracks(const ParticleRange& batch, const TimeSpan& step, const std::vector<BlockRecord>& blocks);
     void move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record, Track& track);

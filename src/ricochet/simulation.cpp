@@ -47,6 +47,10 @@ AttributeTable Simulation::shown_attributes() const {
     }
     return shown;
 }
+std::optional<std::vector<std::int64_t>> Simulation::cloud_parents() const {
+    if (!impl().clouds) return std::nullopt;
+    return impl().clouds->parents();
+}
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
 RankBalance Simulation::rank_balance() const { return impl().balancer.balance(); }
 const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }

@@ -261,6 +261,9 @@ public:
     [[nodiscard]] const Particles& particles() const;
     /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
     [[nodiscard]] AttributeTable shown_attributes() const;
+    /// Of each particle the id of the parent with which it goes (CloudRule), -1 where it flies by itself; nothing in
+    /// setups without clouds.
+    [[nodiscard]] std::optional<std::vector<std::int64_t>> cloud_parents() const;
     /// The springs of the setup, bound to the order of particles().
     [[nodiscard]] const SpringNetwork& springs() const;
     /// The cloth of the setup, torn parts included.

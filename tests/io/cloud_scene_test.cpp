@@ -1,12 +1,16 @@
 // The key "cloud" of emitters: what it says, and what is refused, in one line each.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "ricochet/io/frames.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/vtk.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace {
@@ -73,6 +77,17 @@ TEST(CloudScene, WhatCannotBeIsRefusedInOneLine) {
     for (const auto& [text, message] : wrongs) {
         EXPECT_NE(error_of(text).find(message), std::string::npos) << text << '\n' << error_of(text);
     }
+}
+
+TEST(CloudScene, FramesSayWithWhomEachParticleGoes) {
+    Simulation simulation(
+        parse_scene(scene_with(R"("on": "birth", "count": 2, "cloud": {"type": "point"})"), "s.json").setup);
+    simulation.step();
+    VtkPolyData frame = particle_frame(simulation.particles(), simulation.time());
+    add_cloud_parents(frame, simulation.particles(), simulation.cloud_parents().value());
+    const VtkArray* const parents = find_array(frame.point_arrays, "cloud_parent");
+    ASSERT_NE(parents, nullptr);
+    EXPECT_EQ(std::get<std::vector<std::int64_t>>(parents->values), (std::vector<std::int64_t>{-1, 0, 0}));
 }
 
 }  // namespace

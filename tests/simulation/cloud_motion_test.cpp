@@ -296,8 +296,10 @@ TEST(CloudMotion, AParentThatIsTakenAwayLeavesItsCloudFree) {
     Simulation simulation(std::move(setup));
     simulation.step();
     const Particles before = simulation.particles();
+    EXPECT_EQ(*simulation.cloud_parents(), (std::vector<std::int64_t>{-1, 0, 0}));
     ASSERT_TRUE(simulation.remove_particle(0));
     simulation.step();
+    EXPECT_EQ(*simulation.cloud_parents(), (std::vector<std::int64_t>{-1, -1}));
     for (std::size_t i = 0; i < 2; ++i) {
         const Vec3 straight = before.position[i + 1] + 0.1 * before.velocity[i + 1];
         EXPECT_LT(length(simulation.particles().position[i] - straight), 1e-14);

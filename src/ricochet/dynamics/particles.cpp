@@ -16,11 +16,11 @@ namespace ricochet {
 namespace {
 
 // Arrays of frames, columns of tables, and what pictures make of them.
-constexpr std::array<std::string_view, 28> kOwnArrays = {
-    "id",       "x",       "y",        "z",      "vx",       "vy",        "vz",     "position",
-    "velocity", "mass",    "radius",   "age",    "contacts", "resting",   "frozen", "unsimulated_time",
-    "spin",     "speed",   "lifetime", "pinned", "Points",   "TimeValue", "spin_x", "spin_y",
-    "spin_z",   "color_x", "color_y",  "color_z"};
+constexpr std::array<std::string_view, 29> kOwnArrays = {
+    "id",       "x",       "y",        "z",       "vx",          "vy",        "vz",     "position",
+    "velocity", "mass",    "radius",   "age",     "contacts",    "resting",   "frozen", "unsimulated_time",
+    "spin",     "speed",   "lifetime", "pinned",  "Points",      "TimeValue", "spin_x", "spin_y",
+    "spin_z",   "color_x", "color_y",  "color_z", "cloud_parent"};
 
 void require(bool condition, const AttributeDescription& column, const char* what) {
     if (!condition) throw InputError(fmt::format("attribute '{}': {}", column.name, what));

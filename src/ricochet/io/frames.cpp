@@ -199,6 +199,14 @@ void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const A
     list.end();
 }
 
+void add_cloud_parents(VtkPolyData& frame, const Particles& particles, const std::vector<std::int64_t>& parents) {
+    require_same_length(parents.size(), particles.size(), "parents of the particles");
+    std::vector<std::int64_t> values;
+    values.reserve(parents.size());
+    for (const std::uint32_t i : particles.order_by_id()) values.push_back(parents[i]);
+    frame.point_arrays.push_back({"cloud_parent", std::move(values)});
+}
+
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
                  const std::vector<SpringFace>& faces) {
     const std::vector<std::uint32_t> order = particles.order_by_id();

@@ -23,6 +23,9 @@ namespace ricochet {
 void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
                          bool has_spheres);
 
+/// Adds the array cloud_parent to a frame of these particles: Simulation::cloud_parents().
+void add_cloud_parents(VtkPolyData& frame, const Particles& particles, const std::vector<std::int64_t>& parents);
+
 /// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
 /// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for
 /// triangles and points) and stretch (length over rest length minus 1; of a triangle the largest of its springs; 0

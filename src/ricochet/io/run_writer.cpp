@@ -74,6 +74,7 @@ Box3 particle_region(const SimulationSetup& setup) {
 void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation) {
     fill_particle_frame(frame, simulation.particles(), simulation.shown_attributes(), simulation.time(),
                         simulation.has_spheres());
+    if (const auto parents = simulation.cloud_parents()) add_cloud_parents(frame, simulation.particles(), *parents);
     if (!simulation.springs().empty()) {
         add_springs(frame, simulation.particles(), simulation.springs(), simulation.spring_faces());
     }

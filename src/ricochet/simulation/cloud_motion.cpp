@@ -56,6 +56,14 @@ std::span<const FlightKnot> CloudMotion::knots_of(std::uint64_t id) const {
     return found == tracks_.end() ? std::span<const FlightKnot>() : found->second.knots;
 }
 
+std::vector<std::int64_t> CloudMotion::parents() const {
+    std::vector<std::int64_t> parents;
+    for (const Member& member : members_) {
+        parents.push_back(member.parent == kNobody ? -1 : static_cast<std::int64_t>(member.parent));
+    }
+    return parents;
+}
+
 const CloudRule& CloudMotion::rule_of(std::size_t i) const {
     return *emitters_[store_.particles().origin[i].emitter].description().parent->cloud;
 }

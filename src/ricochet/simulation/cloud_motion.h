@@ -32,6 +32,8 @@ public:
 
     /// True when the particle goes with a parent.
     [[nodiscard]] bool leads(std::size_t i) const { return members_[i].parent != kNobody; }
+    /// Of each particle the id of its parent; -1 of those that go with nobody.
+    [[nodiscard]] std::vector<std::int64_t> parents() const;
     /// What a parent has flown in this step; nothing of a particle that is none, or was not moved yet.
     [[nodiscard]] std::span<const FlightKnot> knots_of(std::uint64_t id) const;
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/error.h"
 #include "ricochet/dynamics/pair_forces.h"
 #include "ricochet/dynamics/particles_force.h"
 #include "ricochet/simulation.h"
@@ -150,6 +151,70 @@ TEST(StabilityWarnings, OfLennardJonesComeFromTheCurvatureOfTheWell) {
     const double bound = 2.0 / std::sqrt(2.0 * curvature);
     EXPECT_TRUE(warnings_of(scene(0.999 * bound)).empty());
     EXPECT_EQ(warnings_of(scene(1.001 * bound)).size(), 1U);
+}
+
+/// What a run ends with; empty where it does not diverge.
+std::string end_of(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    try {
+        while (!simulation.finished()) simulation.step();
+    } catch (const DivergedError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// Two spheres joined by a spring that explodes.
+SimulationSetup exploding_spring(IntegratorKind kind, bool with_contacts) {
+    SimulationSetup setup = setup_of(0.1, 1e3);
+    setup.options.integrator.kind = kind;
+    setup.particles = {grain({}), grain({1.5, 0, 0})};
+    setup.springs = {{0, 1, 1.4, 1e5, 0.0}};
+    if (with_contacts) setup.options.particle_contacts = PairContactSettings{};
+    return setup;
+}
+
+TEST(StabilityAdvice, NamesTheImplicitMethodOnlyWhereTheSceneMayUseIt) {
+    const IntegratorKind verlet = IntegratorKind::velocity_verlet;
+    EXPECT_NE(warnings_of(exploding_spring(verlet, false)).at(0).find("implicit_euler"), std::string::npos);
+    EXPECT_NE(end_of(exploding_spring(verlet, false)).find("more damping, or the integrator implicit_euler"),
+              std::string::npos);
+    const std::string warning = warnings_of(exploding_spring(verlet, true)).at(0);
+    EXPECT_EQ(warning.find("implicit_euler"), std::string::npos) << warning;
+    const std::string line = end_of(exploding_spring(verlet, true));
+    EXPECT_NE(line.find("more damping, or weaker springs and forces between particles"), std::string::npos) << line;
+    const auto undamped = warnings_of(exploding_spring(IntegratorKind::forward_euler, true));
+    EXPECT_NE(undamped.at(0).find("use the integrator symplectic_euler or velocity_verlet"), std::string::npos);
+}
+
+/// Two that gravity, their own or that of all, brings beyond the speed of light.
+SimulationSetup thrown_by_gravity(bool between_particles) {
+    SimulationSetup setup = setup_of(1.0, 100.0, {}, between_particles ? Vec3{} : Vec3{1e12, 0, 0});
+    setup.options.integrator.kind = IntegratorKind::velocity_verlet;
+    setup.particles = {grain({}), grain({1, 0, 0})};
+    GravitySettings gravity;
+    gravity.constant = 1e12;
+    if (between_particles) setup.particles_forces = {{make_mutual_gravity(gravity)}};
+    return setup;
+}
+
+TEST(StabilityAdvice, OfARunawayIsWhatTheSceneMayDo) {
+    EXPECT_NE(end_of(thrown_by_gravity(false)).find("a shorter time step, the integrator implicit_euler, or weaker"),
+              std::string::npos);
+    const std::string line = end_of(thrown_by_gravity(true));
+    EXPECT_EQ(line.find("implicit_euler"), std::string::npos) << line;
+    EXPECT_FALSE(line.empty());
+}
+
+TEST(StabilityAdvice, OfWhatAFasterOneHasHitNamesThatOne) {
+    SimulationSetup setup = setup_of(1e-3, 1e-2);
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.5};
+    setup.particles = {grain({}), grain({2, 0, 0})};
+    setup.particles[0].velocity = {1e70, 0, 0};
+    EXPECT_EQ(
+        end_of(std::move(setup)),
+        "by t = 0.001 s particle 1 has come to 7.5e+69 m/s, beyond the speed of light, and particle 0 has set out "
+        "at 1e+70 m/s: let no particle set out faster than light");
 }
 
 }  // namespace

@@ -225,6 +225,7 @@ void Simulation::Impl::read_state(const ByteSource& source) {
     archive(reader);
     expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
     require_sound_state();
+    for (std::size_t i = 0; i < store.size(); ++i) note_speed(i);
 }
 
 // What slept where the state was saved may not sleep here: until now it has pressed on what holds it.

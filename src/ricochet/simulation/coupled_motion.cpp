@@ -94,12 +94,12 @@ bool is_in_contact(const Particles& particles, std::size_t i) {
 }  // namespace
 
 CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                             const ForceField& forces, const Integrator& integrator, double time_step)
+                             const ForceField& forces, const Integrator& integrator, const Terms& terms)
     : springs_(std::move(springs)),
       mutual_(std::move(mutual)),
       solver_(std::move(solver)),
       integrator_(integrator),
-      time_step_(time_step),
+      terms_(terms),
       system_(forces, springs_, mutual_),
       least_energy_(negligible_energy(springs_)) {}
 
@@ -205,13 +205,13 @@ SystemStep CoupledMotion::stepped(double duration) {
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
-    const double first_try = std::max(first_try_, kLeastPart * time_step_);
+    const double first_try = std::max(first_try_, kLeastPart * terms_.time_step);
     const bool is_part = first_try_ > 0.0 && first_try < 0.75 * duration;
     Foreseen foreseen = foresee(is_part ? first_try : duration, spins, contacts);
     bool is_cut = false;
     int vain = 0;
     double h = foreseen.step.duration;
-    while (!foreseen.has_settled && 0.5 * h >= kLeastPart * time_step_ && vain < kMostVainCuts) {
+    while (!foreseen.has_settled && 0.5 * h >= kLeastPart * terms_.time_step && vain < kMostVainCuts) {
         Foreseen half = foresee(0.5 * h, spins, contacts);
         h = half.step.duration;
         const bool is_better = half.has_settled || half.misplaced < kWorthCutting * foreseen.misplaced;
@@ -334,8 +334,10 @@ void CoupledMotion::report_divergence(const SystemStep& step) const {
     throw DivergedError(
         fmt::format("at t = {:.6g} s the motion has diverged: particle {} would reach {:.3g} m/s, and springs and "
                     "particles hold over {} times the energy that forces and walls have given them; use a shorter "
-                    "time step, more damping, or the integrator implicit_euler",
-                    system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain));
+                    "time step, {}",
+                    system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain,
+                    terms_.knows_implicit ? "more damping, or the integrator implicit_euler"
+                                          : "more damping, or weaker springs and forces between particles"));
 }
 
 CoupledMotion::Correction CoupledMotion::correct_velocities(Particles& particles) {

@@ -22,9 +22,14 @@ namespace ricochet {
 /// if no surface stopped them; then each member moves along its flight and bounces; settle() takes up what came out.
 class CoupledMotion {
 public:
-    /// Throws InputError for springs that cannot be. forces must outlive it. time_step: s, of the run.
+    /// Of the run.
+    struct Terms {
+        double time_step = 0.0;       ///< s
+        bool knows_implicit = false;  ///< whether implicit_euler may be advised where the motion diverges
+    };
+    /// Throws InputError for springs that cannot be. forces must outlive it.
     CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
-                  const ForceField& forces, const Integrator& integrator, double time_step);
+                  const ForceField& forces, const Integrator& integrator, const Terms& terms);
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
     [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty() || !mutual_.empty(); }
@@ -130,7 +135,7 @@ private:
     MutualForces mutual_;
     SystemSolver solver_;
     Integrator integrator_;
-    double time_step_;
+    Terms terms_;
     ParticleSystem system_;
     std::vector<std::uint32_t> slots_;    // of every particle: its number among the members
     std::vector<Flight> flights_;         // of the members

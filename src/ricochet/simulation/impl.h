@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/collision/collider_list.h"
@@ -116,6 +117,7 @@ struct Simulation::Impl {
     void exchange(WholeRun& whole);
     void compact(const std::vector<std::uint8_t>& keep);
     [[nodiscard]] static std::vector<std::byte> bytes_of(ParticleStore& particles);
+    void note_speed(std::size_t i);
 
     /// Lends the weight of sleeping particles to the totals of surfaces (sign 1), or takes it back (-1).
     void add_weights_of_sleepers(double sign);
@@ -141,6 +143,9 @@ struct Simulation::Impl {
     RankBalancer balancer;
     StepClock clock;
     std::vector<std::string> warnings;
+    bool knows_implicit;  ///< whether implicit_euler may be advised where motion diverges
+    /// The first particle that has set out faster than light, by its id, and its speed, m/s.
+    std::optional<std::pair<std::uint64_t, double>> faster_than_light;
     bool has_spheres;
     ForceField forces;
     std::vector<Material> materials;

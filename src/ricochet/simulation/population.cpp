@@ -156,6 +156,12 @@ void Simulation::Impl::prepare_radius(double radius) {
     if (bodies) bodies->prepare_radius(radius);
 }
 
+/// Forces may not bring particles beyond the speed of light; those that are there from the begin may hit others.
+void Simulation::Impl::note_speed(std::size_t i) {
+    const double speed = length(particles().velocity[i]);
+    if (!faster_than_light && speed > kMaxSpeed) faster_than_light = {particles().id[i], speed};
+}
+
 void Simulation::Impl::add(Particle&& particle) {
     prepare_radius(particle.radius);
     const std::optional<Vec3> off =
@@ -172,6 +178,7 @@ void Simulation::Impl::add(Particle&& particle) {
     store.append(std::move(particle));
     if (clouds) clouds->append();
     const std::size_t i = store.size() - 1;
+    note_speed(i);
     if (offspring && inside_step) birth_records.push_back({particles().id[i], particles().origin[i]});
     if (!response->keeps_sides()) {
         if (overlap) store.set_core(i, core_radius(*overlap, particles().position[i], particles().radius[i]));

@@ -291,10 +291,19 @@ std::string Simulation::Impl::runaway_message(const std::vector<BlockRecord>& bl
             "the colliders, or their materials, move more slowly",
             time, particles().id[i], length(particles().velocity[i]));
     }
+    if (faster_than_light) {
+        return fmt::format(
+            "by t = {:.6g} s particle {} has come to {:.3g} m/s, beyond the speed of light, and particle {} has set "
+            "out "
+            "at {:.3g} m/s: let no particle set out faster than light",
+            time, particles().id[i], length(particles().velocity[i]), faster_than_light->first,
+            faster_than_light->second);
+    }
     return fmt::format(
         "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
-        "diverged; use a shorter time step, the integrator implicit_euler, or weaker forces",
-        time, particles().id[i], length(particles().velocity[i]));
+        "diverged; use a shorter time step, {}or weaker forces",
+        time, particles().id[i], length(particles().velocity[i]),
+        knows_implicit ? "the integrator implicit_euler, " : "");
 }
 
 void Simulation::Impl::retire_particles(double time) {

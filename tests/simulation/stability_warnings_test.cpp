@@ -217,5 +217,32 @@ TEST(StabilityAdvice, OfWhatAFasterOneHasHitNamesThatOne) {
         "at 1e+70 m/s: let no particle set out faster than light");
 }
 
+/// Six pieces of each sphere that hits something.
+SimulationSetup pieces(double softening, double count, bool share) {
+    SimulationSetup setup = setup_of(1e-3, 1e-2);
+    setup.emitters.resize(2);
+    setup.emitters[1].name = "pieces";
+    setup.emitters[1].parent =
+        ParentRule{.emitter = 0, .on = BirthEvent::impact, .count = {count, 0.0}, .share = share};
+    GravitySettings gravity;
+    gravity.softening = softening;
+    setup.particles_forces = {{make_mutual_gravity(gravity)}};
+    return setup;
+}
+
+TEST(BirthWarnings, TellOfChildrenThatAForceWithoutSofteningThrowsApart) {
+    EXPECT_EQ(warnings_of(pieces(0.0, 6.0, true)),
+              (std::vector<std::string>{
+                  "children of 'pieces' begin where their parent is, in each other, and particle_forces[0], which has "
+                  "no softening, may throw them apart at any speed: give it a softening of about their radius, or "
+                  "leave them out of it"}));
+    EXPECT_EQ(warnings_of(pieces(0.0, 1.0, false)).size(), 1U);  // beside the parent, which stays
+    EXPECT_TRUE(warnings_of(pieces(0.0, 1.0, true)).empty());    // in its place
+    EXPECT_TRUE(warnings_of(pieces(0.1, 6.0, true)).empty());
+    SimulationSetup others = pieces(0.0, 6.0, true);
+    others.particles_forces[0].emitters = {0};
+    EXPECT_TRUE(warnings_of(std::move(others)).empty());
+}
+
 }  // namespace
 }  // namespace ricochet

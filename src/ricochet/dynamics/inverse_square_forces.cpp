@@ -10,6 +10,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/inverse_square.h"
 #include "ricochet/dynamics/particles_force.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 namespace {
@@ -59,6 +60,7 @@ public:
     }
 
     [[nodiscard]] bool depends_on_velocity() const override { return false; }
+    [[nodiscard]] double softening() const { return settings_.softening; }
 
 protected:
     [[nodiscard]] virtual std::span<const double> weights_of(const ParticlesView& particles) const = 0;
@@ -122,6 +124,11 @@ void require_sound(const InverseSquareSettings& settings, const std::string& nam
 }
 
 }  // namespace
+
+bool lacks_softening(const ParticlesForce& force) {
+    const auto* const law = dynamic_cast<const InverseSquareForce*>(&force);
+    return law != nullptr && law->softening() == 0.0;
+}
 
 std::string_view name_of(SumMethod method) {
     switch (method) {

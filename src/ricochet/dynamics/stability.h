@@ -33,4 +33,7 @@ struct PairSteepness {
 /// Nothing for forces that are not known: those of the user's own, and those that grow without bound.
 [[nodiscard]] std::optional<PairSteepness> steepness_of(const ParticlesForce& force);
 
+/// Gravity and charges without softening: the nearer two come to each other the more they do, without bound.
+[[nodiscard]] bool lacks_softening(const ParticlesForce& force);
+
 }  // namespace ricochet

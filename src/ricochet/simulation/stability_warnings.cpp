@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/dynamics/stability.h"
@@ -120,6 +121,32 @@ std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_
     return too_long(setup, bound, "what is held together by " + what, "a weaker force");
 }
 
+/// Children begin where their parent is: two of a batch in each other, one that the parent outlives in the parent.
+bool is_born_beside_others(const ParentRule& rule) {
+    return (!rule.share && rule.on != BirthEvent::death) || rule.count.mean + rule.count.spread >= 1.5;
+}
+
+std::vector<std::string> birth_warnings(const SimulationSetup& setup) {
+    std::vector<std::string> warnings;
+    for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
+        const ParticlesForceEntry& entry = setup.particles_forces[k];
+        if (!lacks_softening(*entry.force)) continue;
+        const bool is_all = entry.particles.empty() && entry.emitters.empty();
+        for (std::size_t e = 0; e < setup.emitters.size(); ++e) {
+            const EmitterDescription& emitter = setup.emitters[e];
+            const bool takes_part = std::find(entry.emitters.begin(), entry.emitters.end(), e) != entry.emitters.end();
+            if (!(is_all || takes_part) || !emitter.parent || !is_born_beside_others(*emitter.parent)) continue;
+            const std::string name = emitter.name.empty() ? fmt::format("emitters[{}]", e) : "'" + emitter.name + "'";
+            warnings.push_back(
+                fmt::format("children of {} begin where their parent is, in each other, and particle_forces[{}], which "
+                            "has no softening, may throw them apart at any speed: give it a softening of about their "
+                            "radius, or leave them out of it",
+                            name, k));
+        }
+    }
+    return warnings;
+}
+
 }  // namespace
 
 bool may_be_implicit(const SimulationSetup& setup) {
@@ -137,6 +164,7 @@ std::vector<std::string> stability_warnings(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
         if (auto warning = pair_warning(setup, k)) warnings.push_back(std::move(*warning));
     }
+    for (std::string& warning : birth_warnings(setup)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

@@ -14,7 +14,7 @@ namespace ricochet {
 [[nodiscard]] bool may_be_implicit(const SimulationSetup& setup);
 
 /// The time step against the stability bounds of the springs and of every force between particles whose steepness is
-/// known (steepness_of()). A line each.
+/// known (steepness_of()), and children that are born in each other where a force grows without bound. A line each.
 [[nodiscard]] std::vector<std::string> stability_warnings(const SimulationSetup& setup);
 
 }  // namespace ricochet

@@ -99,7 +99,7 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
     if (setup.options.time_step <= bound) return std::nullopt;
     if (bound == 0.0) return undamped(setup, "these springs, some of which have no damping", "every spring");
     return too_long(setup, bound, "these springs",
-                    may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs");
+                    may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
 }
 
 std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_t number) {

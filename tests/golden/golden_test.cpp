@@ -218,6 +218,7 @@ TEST_P(ShippedSceneLong, LosesNoTime) {
     simulation.advance(simulation.step_count());
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
     EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+    EXPECT_EQ(simulation.statistics().frozen, 0U);
 }
 
 /// Saved two fifths of the way, with one thread, and finished with several.

@@ -257,6 +257,8 @@ std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactA
     if (!(end.time > 0.0) && !way.jams) return std::nullopt;
     lead_until(end.time, arc, way);
     if (end.time > 0.0) keep_to_pieces(arc, way);  // else it jams at once, and has no path
+    // In 1e-46 s and less the cubic between two places that are one but for rounding has no coefficients.
+    if (!way.jams && !can_be_followed(way.path)) return std::nullopt;
     return way;
 }
 

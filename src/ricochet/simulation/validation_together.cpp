@@ -140,7 +140,6 @@ void validate_clouds(const SimulationSetup& setup) {
     if (!setup.springs.empty() || setup.solver) refuse("springs", "one beside particles without springs");
     if (!setup.particles_forces.empty()) refuse("particle_forces", "one beside particles without forces between them");
     if (!setup.bodies.empty()) refuse("bodies", "one beside colliders that impulses do not move");
-    if (setup.ranks && setup.ranks->size() > 1) refuse("ranks", "one in a run of one process, with threads");
     if (std::any_of(setup.colliders.begin(), setup.colliders.end(), is_deforming)) {
         refuse("colliders", "one beside colliders that do not deform");
     }
@@ -166,6 +165,9 @@ void validate_ranks(const SimulationSetup& setup) {
     if (!setup.particles_forces.empty()) refuse("particle_forces", "each particle pulls at all others");
     if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
     if (!setup.bodies.empty()) refuse("bodies", "what all particles do to a body moves it within a step");
+    if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) {
+        refuse("cloud", "children fly along what their parents have flown");
+    }
     if (setup.options.response != ResponseKind::exact) refuse("response", "only exact moves each particle by itself");
     if (setup.options.verify) refuse("verify", "the list of what is wrong is made in one process");
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,31 @@ TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
             begin, end, [&](std::size_t k) { return is_match[k] != 0; }, [&](std::size_t k) { visited.push_back(k); });
         EXPECT_EQ(visited, expected);
     }
+}
+
+TEST(KeepMarked, KeepsWhatIsMarkedInItsOrder) {
+    RandomSequence random(11, 0, 0);
+    for (int i = 0; i < 600; ++i) {
+        SCOPED_TRACE("case " + std::to_string(i));
+        const double share = std::array{0.0, 0.02, 0.5, 0.98, 1.0}[static_cast<std::size_t>(i) % 5];
+        const std::size_t width = 1 + static_cast<std::size_t>(3.0 * random.uniform());
+        std::vector<std::uint8_t> keep(static_cast<std::size_t>(60.0 * random.uniform()));
+        for (std::uint8_t& mark : keep) mark = random.uniform() < share ? 1 : 0;
+        std::vector<std::size_t> list(keep.size() * width);
+        std::iota(list.begin(), list.end(), std::size_t{0});
+        std::vector<std::size_t> expected;
+        for (const std::size_t entry : list) {
+            if (keep[entry / width] != 0) expected.push_back(entry);
+        }
+        keep_marked(list, keep, width);
+        EXPECT_EQ(list, expected);
+    }
+}
+
+TEST(KeepMarked, OfAListThatIsNotFilledKeepsNothing) {
+    std::vector<int> list;
+    keep_marked(list, {1, 0, 1});
+    EXPECT_TRUE(list.empty());
 }
 
 TEST(GrowCapacityBy, AddsExactlyTheCapacityThatIsRequested) {

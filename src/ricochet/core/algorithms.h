@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace ricochet {
@@ -33,6 +34,22 @@ template <class T>
 void grow_capacity_by(std::vector<T>& list, std::size_t more) {
     const std::size_t wanted = list.size() + more;
     if (wanted > list.capacity()) list.reserve(std::max(wanted, list.capacity() + list.capacity() / 2));
+}
+
+/// Keeps the entries whose mark is not 0, in their order; each mark stands for `width` entries in a row. Moves runs of
+/// entries at once: fast where few go. Marks beyond the list's end stand for nothing.
+template <class T>
+void keep_marked(std::vector<T>& list, const std::vector<std::uint8_t>& keep, std::size_t width = 1) {
+    const auto entry = [&list, width](auto mark) { return list.begin() + mark * static_cast<std::ptrdiff_t>(width); };
+    const auto last = keep.begin() + static_cast<std::ptrdiff_t>(std::min(keep.size(), list.size() / width));
+    auto gap = std::find(keep.begin(), last, 0);
+    auto kept = entry(gap - keep.begin());
+    while (gap != last) {
+        const auto run = std::find_if(gap, last, [](std::uint8_t mark) { return mark != 0; });
+        gap = std::find(run, last, 0);
+        kept = std::move(entry(run - keep.begin()), entry(gap - keep.begin()), kept);
+    }
+    list.erase(kept, list.end());
 }
 
 }  // namespace ricochet

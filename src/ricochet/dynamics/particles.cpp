@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
 
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/core/printable.h"
 
 namespace ricochet {
@@ -90,12 +92,7 @@ void AttributeTable::compact(const std::vector<std::uint8_t>& keep) {
     for (std::size_t k = 0; k < columns_.size(); ++k) {
         const auto width = static_cast<std::size_t>(columns_[k].components);
         require_same_length(keep.size() * width, values_[k].size(), "entries of attributes to be kept");
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < keep.size(); ++i) {
-            if (keep[i] == 0) continue;
-            for (std::size_t c = 0; c < width; ++c) values_[k][kept++] = values_[k][i * width + c];
-        }
-        values_[k].resize(kept);
+        keep_marked(values_[k], keep, width);
     }
 }
 
@@ -125,15 +122,6 @@ std::vector<AttributeValue> AttributeTable::at(std::size_t i) const {
 }
 
 namespace {
-
-template <typename T>
-void compact_array(std::vector<T>& values, const std::vector<std::uint8_t>& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        if (keep[i] != 0) values[kept++] = values[i];
-    }
-    values.resize(kept);
-}
 
 // Ids lie close together as a rule, and then a table of who has which is faster than sorting. False, and nothing done,
 // where they do not, or are not all different.
@@ -213,27 +201,20 @@ Particle Particles::at(std::size_t i) const {
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
     require_same_length(keep.size(), size(), "particles to be kept");
-    compact_array(id, keep);
-    compact_array(position, keep);
-    compact_array(velocity, keep);
-    compact_array(spin, keep);
-    compact_array(mass, keep);
-    compact_array(radius, keep);
-    compact_array(birth_time, keep);
-    compact_array(lifetime, keep);
-    compact_array(unsimulated_time, keep);
-    compact_array(contacts, keep);
-    compact_array(frozen, keep);
-    compact_array(resting, keep);
-    compact_array(held, keep);
-    compact_array(absorbed, keep);
-    compact_array(draws, keep);
-    compact_array(support, keep);
-    compact_array(cascade_left, keep);
-    compact_array(pinned, keep);
-    compact_array(accounted_until, keep);
+    const auto keep_in_all = [&keep](auto&... lists) {
+        const std::array<std::function<void()>, sizeof...(lists)> each{
+            [&lists, &keep] { keep_marked(lists, keep); }...};
+        // Memory is moved, nothing else: threads are worth it for much of it only.
+        constexpr std::size_t kMany = 16384;
+        parallel_for_blocks(each.size(), keep.size() < kMany ? each.size() : 1,
+                            [&each](std::size_t, std::size_t begin, std::size_t end) {
+                                for (std::size_t k = begin; k < end; ++k) each.at(k)();
+                            });
+    };
+    keep_in_all(id, position, velocity, spin, mass, radius, birth_time, lifetime, unsimulated_time, contacts, frozen,
+                resting, held, absorbed, draws, support, cascade_left, pinned, accounted_until);
     attributes.compact(keep);
-    if (keeps_origin) compact_array(origin, keep);
+    if (keeps_origin) keep_marked(origin, keep);
 }
 
 std::vector<std::uint32_t> Particles::order_by_id() const {

@@ -141,7 +141,8 @@ public:
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
 
     /// Adds to the totals of surfaces the impulse of a sleeping particle's weight since it was last moved, until a
-    /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals.
+    /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals. Of
+    /// different particles from several threads.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);

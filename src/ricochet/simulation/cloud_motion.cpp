@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "ricochet/core/algorithms.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/run_recorder.h"
@@ -81,13 +82,7 @@ bool CloudMotion::is_sound(std::size_t i, std::uint64_t next_id) const {
     return parent && parent->cloud;
 }
 
-void CloudMotion::compact(const std::vector<std::uint8_t>& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (keep[i] != 0) members_[kept++] = members_[i];
-    }
-    members_.resize(kept);
-}
+void CloudMotion::compact(const std::vector<std::uint8_t>& keep) { keep_marked(members_, keep); }
 
 void CloudMotion::before_move(const ParticleRange& batch) {
     const Particles& particles = store_.particles();

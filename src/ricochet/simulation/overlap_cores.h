@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ricochet/core/algorithms.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -37,13 +38,7 @@ public:
         if (!cores_.empty()) cores_.push_back(kNone);
     }
     /// Keeps what Particles::compact() keeps.
-    void compact(const std::vector<std::uint8_t>& keep) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < cores_.size(); ++i) {
-            if (keep[i] != 0) cores_[kept++] = cores_[i];
-        }
-        cores_.resize(kept);
-    }
+    void compact(const std::vector<std::uint8_t>& keep) { keep_marked(cores_, keep); }
     /// Saves or restores all; a: an archive of core/binary_archive.h, count: of the particles.
     template <class Archive>
     void archive(Archive& a, std::size_t count) {

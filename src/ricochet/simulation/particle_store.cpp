@@ -53,18 +53,8 @@ void ParticleStore::reserve(std::size_t more) {
 }
 
 void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
-    const auto colliders = static_cast<std::ptrdiff_t>(colliders_);
-    auto kept = sides_.begin();
-    for (std::size_t i = 0; colliders > 0 && i < keep.size(); ++i) {
-        const auto first = sides_.begin() + static_cast<std::ptrdiff_t>(i) * colliders;
-        if (keep[i] != 0) kept = std::copy_n(first, colliders, kept);
-    }
-    sides_.erase(kept, sides_.end());
-    std::size_t kept_rides = 0;
-    for (std::size_t i = 0; keeps_rides_ && i < keep.size(); ++i) {
-        if (keep[i] != 0) rides_[kept_rides++] = rides_[i];
-    }
-    rides_.resize(kept_rides);
+    if (colliders_ > 0) keep_marked(sides_, keep, colliders_);
+    if (keeps_rides_) keep_marked(rides_, keep);
     cores_.compact(keep);
     particles_.compact(keep);
 }

@@ -38,14 +38,8 @@ void QuerySchedule::reserve(std::size_t more) {
 }
 
 void QuerySchedule::compact(const std::vector<std::uint8_t>& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (keep[i] == 0) continue;
-        next_[kept] = next_[i];
-        candidates_[kept++] = candidates_[i];
-    }
-    next_.resize(kept);
-    candidates_.resize(kept);
+    keep_marked(next_, keep);
+    keep_marked(candidates_, keep);
 }
 
 void QuerySchedule::rearrange(const std::vector<std::size_t>& from) {

@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "ricochet/core/algorithms.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/particle_store.h"
@@ -281,14 +282,6 @@ void RunCheck::restart(const ParticleStore& store, double now) {
     });
 }
 
-void RunCheck::compact(const std::vector<std::uint8_t>& keep) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < watched_.size(); ++i) {
-        if (keep[i] == 0) continue;
-        if (kept != i) watched_[kept] = std::move(watched_[i]);
-        ++kept;
-    }
-    watched_.resize(kept);
-}
+void RunCheck::compact(const std::vector<std::uint8_t>& keep) { keep_marked(watched_, keep); }
 
 }  // namespace ricochet

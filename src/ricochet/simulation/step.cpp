@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impl.h"
 
@@ -25,6 +28,28 @@ public:
 
 private:
     bool& flag_;
+};
+
+/// Of a block of particles: how many leave why.
+class LeaverCounts {
+public:
+    /// lost: impulses of its weight that no total could take.
+    void add(Departure departure, std::uint64_t lost) {
+        ++counts_[static_cast<std::size_t>(departure)];
+        lost_impulses_ += lost;
+    }
+    void add_to(SimulationStatistics& statistics) const {
+        const auto of = [this](Departure departure) { return counts_[static_cast<std::size_t>(departure)]; };
+        statistics.expired += of(Departure::expired);
+        statistics.absorbed += of(Departure::absorbed);
+        statistics.shattered += of(Departure::shattered);
+        statistics.out_of_bounds += of(Departure::out_of_bounds);
+        statistics.lost_impulses += lost_impulses_;
+    }
+
+private:
+    std::array<std::uint64_t, 5> counts_{};  // by departure
+    std::uint64_t lost_impulses_ = 0;
 };
 
 }  // namespace
@@ -318,17 +343,17 @@ void Simulation::Impl::retire_particles(double time) {
 void Simulation::Impl::remove_leavers(double time) {
     SimulationStatistics& statistics = recorder.statistics();
     std::vector<std::uint8_t> keep(store.size(), 1);
-    for (std::size_t i = 0; i < store.size(); ++i) {
-        const Departure departure = retirement.departure_of(i, time);
-        if (departure == Departure::none) continue;
-        statistics.expired += departure == Departure::expired ? 1 : 0;
-        statistics.absorbed += departure == Departure::absorbed ? 1 : 0;
-        statistics.shattered += departure == Departure::shattered ? 1 : 0;
-        statistics.out_of_bounds += departure == Departure::out_of_bounds ? 1 : 0;
-        keep[i] = 0;
-        const double death = particles().birth_time[i] + particles().lifetime[i];
-        statistics.lost_impulses += mover.add_weight(i, std::min(time, death), 1.0);
-    }
+    std::vector<LeaverCounts> blocks(blocks_of(store.size()));
+    parallel_for_blocks(store.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Departure departure = retirement.departure_of(i, time);
+            if (departure == Departure::none) continue;
+            keep[i] = 0;
+            const double death = particles().birth_time[i] + particles().lifetime[i];
+            blocks[block].add(departure, mover.add_weight(i, std::min(time, death), 1.0));
+        }
+    });
+    for (const LeaverCounts& counts : blocks) counts.add_to(statistics);
     compact(keep);
 }
 

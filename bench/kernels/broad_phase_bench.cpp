@@ -74,7 +74,7 @@ BENCHMARK(visit_across_until_the_first)->ArgName("triangles")->Arg(20'000)->Arg(
 /// Tests clusters that a path of the given bend passes within one of their sizes.
 void test_clusters(benchmark::State& state, double bend) {
     const TriangleMesh& mesh = ground(20'000).mesh;
-    const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
+    const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
     RandomSequence random(2, 0, 0);
     std::vector<Tube> tubes;
     for (const TriangleCluster& cluster : clusters) {

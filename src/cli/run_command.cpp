@@ -337,6 +337,7 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     summary.scene = prepared.info.scene;
     const cli::RunResources here = cli::RunResources::of_this_process();
     summary.balance = simulation.rank_balance();
+    summary.common_memory_bytes = simulation.common_memory_bytes();
     summary.processes = of_others.processes + here.processes;
     summary.threads = static_cast<int>(of_others.threads + here.threads);
     summary.peak_memory_bytes = of_others.peak_memory_bytes + here.peak_memory_bytes;

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "mpi/common_memory.h"
 #include "mpi/launch.h"
 
 namespace ricochet::mpi {
@@ -108,6 +109,10 @@ public:
         }
         for (MPI_Request& open : requests) wait_for(open);
         return received;
+    }
+
+    [[nodiscard]] std::uint64_t have_in_common(std::span<const std::span<const std::byte>> pages) override {
+        return mpi::have_in_common(pages, wait_for);
     }
 
 private:

@@ -226,6 +226,8 @@ public:
     void restore_particles(const ByteSource& source);
     /// As of the last step; the same on all ranks. Without them nothing is counted.
     [[nodiscard]] RankBalance rank_balance() const;
+    /// Bytes of meshes that this rank has in common with the others of its machine. 0 without ranks.
+    [[nodiscard]] std::uint64_t common_memory_bytes() const;
 
     // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
     // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended

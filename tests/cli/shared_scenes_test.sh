@@ -22,7 +22,7 @@ fail() {
 
 # What does not depend on the time it took, nor on who did it.
 summary_of() {
-    grep -vE '"(wall_seconds|output_seconds|processes|busiest_process|particles_moved|threads|peak_memory_bytes)"' \
+    grep -vE '"(wall_seconds|output_seconds|processes|busiest_process|particles_moved|common_memory_bytes|threads|peak_memory_bytes)"' \
         "$folder/$1/summary.json"
 }
 

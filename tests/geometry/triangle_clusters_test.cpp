@@ -47,7 +47,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
         RandomSequence random(static_cast<std::uint64_t>(i), 41, 0);
         const double scale = std::pow(10.0, 6.0 * random.uniform() - 4.0);
         const TriangleMesh mesh = neighbours(random, scale, 3.0 * random.in_unit_ball());
-        const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
+        const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
         const double margin = scale * std::pow(10.0, -9.0 * random.uniform());
         const auto& aim = mesh.triangles[static_cast<std::size_t>(4.0 * random.uniform())];
         const Vec3 target = point_of(mesh, aim, random) + 2.0 * margin * random.in_unit_ball();
@@ -92,7 +92,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
 
 TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     const std::vector<Vec3> vertices{{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
-    const std::vector<TriangleCluster> clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
+    const TriangleClusters clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
         for (const Vec3& direction : {Vec3{1, 0, 0}, Vec3{0, 0, 1}, Vec3{-1, -2, 3}}) {
             TubeIntervals intervals;
@@ -103,7 +103,7 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
 
 TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
-    const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
+    const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
     RandomSequence random(7, 0, 0);
     int wrong = 0;
     int right = 0;
@@ -132,7 +132,7 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
 
 TEST(TriangleClusters, HoldEveryTriangleOnceAndNearlyFull) {
     const TriangleMesh mesh = testing::sphere_mesh({1, 2, 3}, 1.0, 4);
-    const std::vector<TriangleCluster> clusters = make_clusters(mesh.vertices, mesh.triangles);
+    const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
     std::set<std::uint32_t> seen;
     for (const TriangleCluster& cluster : clusters) {
         for (const std::uint32_t triangle : cluster.triangle) {

@@ -43,7 +43,7 @@ void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>&
     });
 }
 
-Box3 box_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+Box3 box_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     std::vector<Box3> boxes((triangles.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(triangles.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         Box3 box;
@@ -133,7 +133,7 @@ void CollisionWorld::prepare_radius(double radius) {
     const double beside_chords = std::max(chord_margin_, kLeastChordMargin * largest);
     const double box_margin = largest <= 0.5 * chord_margin_ ? chord_margin_ : largest + beside_chords;
     if (!clusters_) {
-        clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices_, triangles_));
+        clusters_ = std::make_shared<const TriangleClusters>(make_clusters(vertices_, triangles_));
     }
     classes_.insert(at, RadiusClass{largest, TriangleBvh(clusters_, box_margin)});
 }
@@ -338,6 +338,13 @@ std::optional<TriangleMesh> CollisionWorld::mesh_of(std::size_t collider) const 
     }
     mesh.vertices.assign(vertices_.begin() + range.first_vertex, vertices_.begin() + last_vertex + 1);
     return mesh;
+}
+
+void CollisionWorld::add_pages_to(std::vector<std::span<const std::byte>>& pages) const {
+    for (const auto list : {own_pages(vertices_), own_pages(triangles_), own_pages(degenerate_),
+                            clusters_ ? own_pages(*clusters_) : std::span<const std::byte>()}) {
+        if (!list.empty()) pages.push_back(list);
+    }
 }
 
 std::size_t CollisionWorld::memory_bytes() const {

@@ -13,6 +13,7 @@
 #include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/surface.h"
 #include "ricochet/core/box3.h"
+#include "ricochet/core/page_vector.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/distance_field.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
@@ -160,6 +161,8 @@ public:
     [[nodiscard]] const DistanceField& distance_field() const { return distance_field_; }
     /// What all of this takes without the colliders' own meshes, bytes: also what Embree maps by itself.
     [[nodiscard]] std::size_t memory_bytes() const;
+    /// The pages of what is large and stays as it is.
+    void add_pages_to(std::vector<std::span<const std::byte>>& pages) const;
     /// Triangles that take no part in collisions.
     [[nodiscard]] std::size_t degenerate_triangles() const { return degenerate_count_; }
 
@@ -188,9 +191,9 @@ private:
     std::shared_ptr<ColliderList> list_;
     std::vector<Range> ranges_;  ///< one a collider of the list
     std::vector<PlaneSurface> planes_;
-    std::vector<Vec3> vertices_;
-    std::vector<Triangle> triangles_;
-    std::vector<std::uint8_t> degenerate_;
+    PageVector<Vec3> vertices_;
+    PageVector<Triangle> triangles_;
+    PageVector<std::uint8_t> degenerate_;
     std::size_t degenerate_count_ = 0;
     Box3 bounds_;
     Box3 triangle_bounds_;

@@ -33,6 +33,12 @@ public:
     /// Bytes for each rank, of any length, the own one too: those that each has sent to this one, by rank.
     [[nodiscard]] virtual std::vector<std::vector<std::byte>> exchange(
         const std::vector<std::vector<std::byte>>& to_each) = 0;
+    /// Pages (own_pages()) that all ranks hold alike and write no more: those of ranks on one machine become the same
+    /// memory, where the system allows it, and can only be read from then on. Bytes of them that a machine holds once;
+    /// 0 where each rank keeps its own. Throws RunError where they are not alike.
+    [[nodiscard]] virtual std::uint64_t have_in_common(std::span<const std::span<const std::byte>> /*pages*/) {
+        return 0;
+    }
 };
 
 }  // namespace ricochet

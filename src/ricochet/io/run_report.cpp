@@ -315,6 +315,7 @@ std::string summary_text(const RunSummary& summary) {
         json["processes"] = summary.processes;
         json["busiest_process"] = summary.balance.busiest;
         json["particles_moved"] = summary.balance.moved;
+        json["common_memory_bytes"] = summary.common_memory_bytes;
     }
     json["threads"] = summary.threads;
     json["response"] = summary.response;

@@ -73,12 +73,13 @@ struct ColliderSummary {
 
 /// Everything that summary.json says.
 struct RunSummary {
-    std::string version;          ///< of ricochet
-    std::string scene;            ///< the scene file as it was named
-    std::uint64_t processes = 1;  ///< that shared the run
-    RankBalance balance{};        ///< of them
-    int threads = 0;              ///< of all of them together
-    std::string response;         ///< by which impacts were answered
+    std::string version;                    ///< of ricochet
+    std::string scene;                      ///< the scene file as it was named
+    std::uint64_t processes = 1;            ///< that shared the run
+    RankBalance balance{};                  ///< of them
+    std::uint64_t common_memory_bytes = 0;  ///< of meshes that those of a machine hold once
+    int threads = 0;                        ///< of all of them together
+    std::string response;                   ///< by which impacts were answered
     std::uint64_t seed = 0;
     double time_step = 0.0;       ///< s
     double simulated_time = 0.0;  ///< s

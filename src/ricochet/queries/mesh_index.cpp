@@ -35,15 +35,14 @@ void require_positions(std::span<const Vec3> points, const char* name) {
 }
 
 MeshIndex::MeshIndex(TriangleMesh mesh) : mesh_(std::make_shared<const TriangleMesh>(checked(std::move(mesh)))) {
-    clusters_ = std::make_shared<const std::vector<TriangleCluster>>(make_clusters(mesh_->vertices, mesh_->triangles));
+    clusters_ = std::make_shared<const TriangleClusters>(make_clusters(mesh_->vertices, mesh_->triangles));
     finish();
 }
 
 MeshIndex::MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices) {
     require_same_length(vertices.size(), other.mesh().vertices.size(), "vertices");
     mesh_ = std::make_shared<const TriangleMesh>(checked({{vertices.begin(), vertices.end()}, other.mesh().triangles}));
-    clusters_ = std::make_shared<const std::vector<TriangleCluster>>(
-        refitted(*other.clusters_, mesh_->vertices, mesh_->triangles));
+    clusters_ = std::make_shared<const TriangleClusters>(refitted(*other.clusters_, mesh_->vertices, mesh_->triangles));
     {
         const std::lock_guard lock(other.making_);
         closed_ = other.closed_;  // of the triangles alone

@@ -109,6 +109,8 @@ struct Simulation::Impl {
     /// Where ranks share the run, all of which have all particles so far: each keeps its own, and the first one what
     /// has been counted.
     void keep_share();
+    /// Meshes that neither move in their frames nor bend: ranks of one machine hold them once.
+    void have_meshes_in_common();
     /// What all ranks have together, on the first one. All call it.
     [[nodiscard]] WholeRun gather(Shown what);
     /// A store like this one, whose next particle has the same id.
@@ -141,6 +143,7 @@ struct Simulation::Impl {
     AccelerationSwitches acceleration;
     RankShare share;
     RankBalancer balancer;
+    std::uint64_t common_memory_bytes = 0;  ///< of meshes that the ranks of this machine hold once
     StepClock clock;
     std::vector<std::string> warnings;
     bool knows_implicit;  ///< whether implicit_euler may be advised where motion diverges

@@ -89,6 +89,13 @@ SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
 
 std::vector<std::byte> Simulation::Impl::bytes_of(ParticleStore& particles) { return archived(particles); }
 
+void Simulation::Impl::have_meshes_in_common() {
+    std::vector<std::span<const std::byte>> pages;
+    world.add_pages_to(pages);
+    for (BodyId body = 0; bodies && body < bodies->size(); ++body) bodies->world(body).add_pages_to(pages);
+    common_memory_bytes = share.ranks().have_in_common(pages);
+}
+
 void Simulation::Impl::keep_share() {
     std::vector<std::uint8_t> keep(store.size());
     for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = share.has_place_for(particles().id[i]) ? 1 : 0;

@@ -122,11 +122,11 @@ std::vector<Block> divide(std::span<const Vec3> vertices, std::span<const Triang
 
 }  // namespace
 
-std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+TriangleClusters make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
     const std::vector<std::uint32_t> order = in_spatial_order(vertices, triangles);
     const std::vector<Block> blocks = divide(vertices, triangles, order);
     if (blocks.empty()) return {};
-    std::vector<TriangleCluster> clusters(blocks.back().first + blocks.back().ends.size());
+    TriangleClusters clusters(blocks.back().first + blocks.back().ends.size());
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
         const auto& [members, ends, first] = blocks[k];
         std::size_t begin = 0;
@@ -138,9 +138,9 @@ std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices, std::
     return clusters;
 }
 
-std::vector<TriangleCluster> refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
-                                      std::span<const Triangle> triangles) {
-    std::vector<TriangleCluster> moved(clusters.size());
+TriangleClusters refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
+                          std::span<const Triangle> triangles) {
+    TriangleClusters moved(clusters.size());
     parallel_for_blocks(clusters.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const auto& lanes = clusters[k].triangle;

@@ -80,7 +80,7 @@ std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const 
 /// State of a segment or tube query during traversal.
 struct Query {
     void* context;
-    const std::vector<TriangleCluster>* clusters;
+    const TriangleClusters* clusters;
     TriangleBvh::VisitSegment visit = nullptr;    ///< this one or the next
     TriangleBvh::VisitTube query_tube = nullptr;  ///< triangles that the tube may touch
     Tube tube = {};
@@ -114,7 +114,7 @@ double Query::visit_cluster(const TriangleCluster& cluster) {
 struct PointQuery {
     void* context;
     TriangleBvh::VisitPoint visit;
-    const std::vector<TriangleCluster>* clusters;
+    const TriangleClusters* clusters;
     double within;  ///< m, narrowed so far
     double scale;   ///< of the float frame
 
@@ -285,7 +285,7 @@ void TriangleBvh::Impl::build() {
 }
 
 TriangleBvh::TriangleBvh(std::span<const Vec3> vertices, std::span<const Triangle> triangles, double margin)
-    : TriangleBvh(std::make_shared<const std::vector<TriangleCluster>>(make_clusters(vertices, triangles)), margin) {}
+    : TriangleBvh(std::make_shared<const TriangleClusters>(make_clusters(vertices, triangles)), margin) {}
 
 TriangleBvh::TriangleBvh(Clusters clusters, double margin, Device device) : impl_(std::make_unique<Impl>()) {
     impl_->shares_device = device == Device::shared;

@@ -27,7 +27,7 @@ public:
     /// interest (1: all are). The smallest value returned so far holds.
     using VisitSegment = double (*)(void* context, std::uint32_t triangle);
 
-    using Clusters = std::shared_ptr<const std::vector<TriangleCluster>>;
+    using Clusters = std::shared_ptr<const TriangleClusters>;
 
     /// Builds the hierarchy with all threads. Coordinates must be finite and, after centring, below kLargestCoordinate.
     /// margin (m, >= 0): AABB margin, by which paths may leave the segments of queries. Throws RunError when memory is

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/core/page_vector.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -87,13 +88,13 @@ struct alignas(64) TriangleCluster {
 };
 static_assert(sizeof(TriangleCluster) == 128);
 
+using TriangleClusters = PageVector<TriangleCluster>;
+
 /// All triangles of a mesh in clusters of neighbours.
-[[nodiscard]] std::vector<TriangleCluster> make_clusters(std::span<const Vec3> vertices,
-                                                         std::span<const Triangle> triangles);
+[[nodiscard]] TriangleClusters make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
 /// Clusters of the same triangles after vertices have moved. Where neighbours do not stay neighbours queries cost more.
-[[nodiscard]] std::vector<TriangleCluster> refitted(std::span<const TriangleCluster> clusters,
-                                                    std::span<const Vec3> vertices,
-                                                    std::span<const Triangle> triangles);
+[[nodiscard]] TriangleClusters refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
+                                        std::span<const Triangle> triangles);
 
 }  // namespace ricochet

@@ -307,6 +307,7 @@ std::optional<int> share_folder(const RunArguments& arguments, const cli::Shared
 std::optional<int> prepare_together(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (const auto failed = run.together([&] { prepare(arguments, run, prepared); })) return failed;
     if (const auto failed = run.require_alike(what_is_asked(arguments, prepared))) return failed;
+    if (const auto failed = run.together([&] { prepared.simulation->have_meshes_in_common(); })) return failed;
     if (const auto failed = run.together([&] { open_folder(arguments, prepared); })) return failed;
     std::vector<std::uint64_t> alike;
     if (const auto failed = run.together([&] { alike = begin(arguments, prepared); })) return failed;

@@ -112,8 +112,9 @@ bool have_in_common(std::span<const std::byte> list, const Machine& machine) {
     const bool have_all = machine.all(pages != nullptr);
     if (are_alike && have_all) {
         void* const place = const_cast<std::byte*>(list.data());
-        if (::mremap(pages, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place) != MAP_FAILED) return true;
-        throw RunError("memory for the meshes is short");  // what was there may be gone
+        const bool is_there = ::mremap(pages, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place) != MAP_FAILED;
+        if (machine.all(is_there)) return true;
+        throw RunError("ranks: memory for the meshes is short");  // what was there may be gone
     }
     if (pages != nullptr) (void)::munmap(pages, size);
     if (!are_alike) throw RunError("ranks: the meshes of processes on this machine differ, expected the same files");

@@ -54,6 +54,9 @@ std::optional<std::vector<std::int64_t>> Simulation::cloud_parents() const {
 const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
 RankBalance Simulation::rank_balance() const { return impl().balancer.balance(); }
 std::uint64_t Simulation::common_memory_bytes() const { return impl().common_memory_bytes; }
+void Simulation::have_meshes_in_common() {
+    if (!impl().share.is_alone()) impl().have_meshes_in_common();
+}
 const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }
 const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().world.colliders(); }
 std::span<const Material> Simulation::materials() const { return impl().materials; }

@@ -226,7 +226,10 @@ public:
     void restore_particles(const ByteSource& source);
     /// As of the last step; the same on all ranks. Without them nothing is counted.
     [[nodiscard]] RankBalance rank_balance() const;
-    /// Bytes of meshes that this rank has in common with the others of its machine. 0 without ranks.
+    /// Where ranks share the run, and have all made their simulation: those of one machine hold its meshes once from
+    /// then on, where the system allows it (Ranks::have_in_common(), which may throw). Without ranks nothing happens.
+    void have_meshes_in_common();
+    /// Bytes of meshes that this rank has in common with the others of its machine.
     [[nodiscard]] std::uint64_t common_memory_bytes() const;
 
     // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().

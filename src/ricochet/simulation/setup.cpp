@@ -284,10 +284,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
     if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
-    if (!share.is_alone()) {
-        keep_share();
-        have_meshes_in_common();
-    }
+    if (!share.is_alone()) keep_share();
     if (coupled.is_active()) coupled.bind(particles());
     most_that_fit = store.size() + particles_that_fit(particle_bytes);
     if (offspring) offspring->set_memory(most_that_fit, particle_bytes);

@@ -237,7 +237,7 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
         followed.duration = time;
         return next;
     };
-    followed.contact = step_.follow(path, held(), closer);
+    followed.contact = step_.follow(path, held(path), closer);
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
     // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.

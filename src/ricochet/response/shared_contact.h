@@ -34,9 +34,10 @@ private:
     struct Touched {
         ContactSurface surface;
         BodyId body = kAtRest;
-        Vec3 velocity;               ///< m/s, of the surface and its material at the contact
-        Vec3 turning;                ///< rad/s, of the body
-        std::vector<SurfaceId> all;  ///< of a mesh that deforms: DeformedContact::all
+        Vec3 velocity;  ///< m/s, of the surface and its material at the contact
+        Vec3 turning;   ///< rad/s, of the body
+        /// Of a mesh that deforms: DeformedContact::all; at the rim of a triangle others that it is a rim of.
+        std::vector<SurfaceId> all;
     };
     enum class Hold { shared, single, none };
 
@@ -76,7 +77,8 @@ private:
     [[nodiscard]] Height height_above(const Touched& touched, const Vec3& position, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
     void lift_middle(Path& path) const;
-    [[nodiscard]] std::vector<SurfaceId> held() const;
+    [[nodiscard]] std::vector<SurfaceId> held(const Path& path) const;
+    [[nodiscard]] static Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position);
     void take_part_in(Contact& contact) const;
     [[nodiscard]] KeptContact kept() const;
     [[nodiscard]] bool rests() const;

@@ -1,6 +1,7 @@
 // What a SharedContact touches: which surfaces of which frames, how they hold the particle, and where they are.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_arc.h"
@@ -57,11 +58,24 @@ void SharedContact::gather_in(BodyId body) {
         Touched& touched = touched_[count_++];
         touched.surface = manifold[k];
         touched.all.clear();
+        if (!manifold[k].flat && !world.is_shape(manifold[k].surface)) {
+            const Vec3 rim = rim_of(world, manifold[k].surface, seen.position);
+            step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId other) {
+                if (other == manifold[k].surface || !world.triangle_of(other)) return;
+                if (length(rim_of(world, other, seen.position) - rim) <= reach) touched.all.push_back(other);
+            });
+        }
         touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
         touched.body = body;
         touched.velocity = step_.impact().velocity_of(touched.surface);
         touched.turning = view.bodies().pose(body, state_.time).angular_velocity;
     }
+}
+
+/// The point of a triangle that is nearest.
+Vec3 SharedContact::rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position) {
+    const CollisionWorld::Nearest nearest = world.nearest(triangle, position);
+    return position - nearest.distance * nearest.normal;
 }
 
 bool SharedContact::is_on_deforming() const {
@@ -169,11 +183,21 @@ double SharedContact::until_rim(const Path& path) const {
     return most;
 }
 
-std::vector<SurfaceId> SharedContact::held() const {
+/// Those that a path goes along. At a rim others end there too: they are nothing else to it where it ends off them.
+std::vector<SurfaceId> SharedContact::held(const Path& path) const {
+    const double end = path.duration >= step_.remaining() ? particle_.step_end : state_.time + path.duration;
     std::vector<SurfaceId> list;
     for (const Touched& one : touched()) {
-        if (!deforms(one)) list.push_back(one.surface.surface);
-        list.insert(list.end(), one.all.begin(), one.all.end());
+        if (deforms(one)) {
+            list.insert(list.end(), one.all.begin(), one.all.end());
+            continue;
+        }
+        list.push_back(one.surface.surface);
+        const MovingView view = view_at(end);
+        const Vec3 image = view.image(one.body, path.end, 0.0);
+        std::copy_if(one.all.begin(), one.all.end(), std::back_inserter(list), [&](SurfaceId other) {
+            return view.bodies().world(one.body).nearest(other, image).distance >= state_.radius;
+        });
     }
     std::sort(list.begin(), list.end());
     return list;

@@ -220,6 +220,7 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     const Vec3 fall = uniform_acceleration(scene.setup);
     prepared.last.emplace(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
     scene.setup.ranks = run.ranks();
+    run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
     std::vector<std::string> warnings = prepared.simulation->warnings();
     std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));

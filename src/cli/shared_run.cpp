@@ -71,6 +71,14 @@ int SharedRun::threads_for(int wanted) const {
     return std::max(1, thread_count() / static_cast<int>(neighbours_));
 }
 
+// What one of them holds of its particles does not say of springs whether they are lost.
+void SharedRun::require_shareable(const SceneDescription& scene) const {
+    if (!ranks_ || !scene.output.pieces || scene.setup.springs.empty()) return;
+    throw InputError(fmt::format(
+        "{}: output.pieces: found true beside springs, expected false where several processes share the run",
+        scene.file));
+}
+
 std::optional<int> SharedRun::together(const std::function<void()>& work) const {
     if (!ranks_) {
         work();

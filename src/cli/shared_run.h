@@ -12,6 +12,7 @@
 
 #include "cli/run_messages.h"
 #include "ricochet/core/ranks.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet::cli {
 
@@ -46,6 +47,9 @@ public:
     [[nodiscard]] bool talks() const { return !ranks_ || ranks_->rank() == 0; }
     /// Threads of this process; 0 for all of the machine. wanted: 0 where nobody has said. Asks nobody.
     [[nodiscard]] int threads_for(int wanted) const;
+
+    /// Throws InputError for a scene that one process can run, and several cannot. Asks nobody.
+    void require_shareable(const SceneDescription& scene) const;
 
     /// Does what may fail on some and succeed on others, and asks nobody. Where it fails on any, all end: the first one
     /// that failed throws its error, the others return the exit code. Nothing where all can go on.

@@ -259,6 +259,8 @@ void Simulation::restore(const ByteSource& source) {
 
 void Simulation::save_particles(const ByteSink& sink) const {
     if (!sink) throw InputError("save_particles: found an empty function, expected one that takes the bytes");
+    if (!springs().empty())
+        throw InputError("save_particles: found springs, expected none: a part does not know both ends");
     if (impl().inside_step) {
         throw RunError("save_particles: the last step or restore() of this simulation has ended with an error");
     }

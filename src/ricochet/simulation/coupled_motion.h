@@ -32,7 +32,11 @@ public:
                   const ForceField& forces, const Integrator& integrator, const Terms& terms);
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
-    [[nodiscard]] bool is_active() const { return solver_ || !springs_.empty() || !mutual_.empty(); }
+    [[nodiscard]] bool is_active() const {
+        return !stands_aside_ && (solver_ || !springs_.empty() || !mutual_.empty());
+    }
+    /// Others have the particles: what there is of springs is kept only for states that are restored.
+    void stand_aside() { stands_aside_ = true; }
     /// What the forces on particle i, m/s^2, leave it in the contact that it is in.
     using Hold = std::function<Vec3(std::size_t i, const Vec3& pull)>;
 
@@ -144,6 +148,7 @@ private:
     double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
     bool is_unsolved_ = false;  // a part of the present step
+    bool stands_aside_ = false;
     std::function<void()> between_;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.

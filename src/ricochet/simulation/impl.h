@@ -57,7 +57,9 @@ struct Simulation::Impl {
     void emit_particles(const TimeSpan& step);
     void move_batch(const ParticleRange& batch, const TimeSpan& step);
     [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
-    [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest);
+    [[nodiscard]] TimeSpan plan_coupled_motion(const TimeSpan& rest);
+    [[nodiscard]] double plan_on_first_rank(const TimeSpan& rest);
+    [[nodiscard]] double plan_coupled(const TimeSpan& rest);
     [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
     [[nodiscard]] double settle_driven_motion(const ParticleRange& batch, TimeSpan part);
     void record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks);
@@ -109,6 +111,8 @@ struct Simulation::Impl {
     /// Where ranks share the run, all of which have all particles so far: each keeps its own, and the first one what
     /// has been counted.
     void keep_share();
+    /// Where ranks share the run: what springs join lives on the first one, and is planned there.
+    void keep_springs_together();
     /// Meshes that neither move in their frames nor bend: ranks of one machine hold them once.
     void have_meshes_in_common();
     /// What all ranks have together, on the first one. All call it.
@@ -176,11 +180,12 @@ struct Simulation::Impl {
     std::unique_ptr<CloudMotion> clouds;  ///< null where no particles go with others
     std::unique_ptr<PairMotion> pairs;    ///< null where spheres do not meet each other
     Retirement retirement;
-    ContactCallback callback;       ///< of on_contact(); may be empty
-    bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error
-    bool is_stepping = false;       ///< it runs
-    bool is_reporting = false;      ///< the callback runs
-    bool has_new_callback = false;  ///< on_contact() was called by the callback
+    ContactCallback callback;         ///< of on_contact(); may be empty
+    bool inside_step = false;         ///< a step has begun and not ended, perhaps by an error
+    bool is_stepping = false;         ///< it runs
+    bool is_moving_children = false;  ///< those that were born in the step
+    bool is_reporting = false;        ///< the callback runs
+    bool has_new_callback = false;    ///< on_contact() was called by the callback
 };
 
 }  // namespace ricochet

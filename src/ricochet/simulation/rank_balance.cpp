@@ -115,7 +115,7 @@ void Simulation::Impl::give_away(GiftChoice choice) {
         const auto cost = schedule.is_left_alone(i) ? GiftChoice::Cost::idle
                           : flies                   ? GiftChoice::Cost::flying
                                                     : GiftChoice::Cost::queried;
-        goes_to[i] = choice.next(cost);
+        goes_to[i] = share.stays(particles().id[i]) ? GiftChoice::kStays : choice.next(cost);
         keep[i] = goes_to[i] == GiftChoice::kStays ? 1 : 0;
     }
     std::vector<std::vector<std::byte>> gifts(share.ranks().size());
@@ -149,6 +149,7 @@ void Simulation::Impl::take_in(std::vector<std::vector<std::byte>> parts) {
         if (particles().id[i] == here[next]) from[i] = next++;
     }
     schedule.rearrange(from);
+    if (coupled.is_active()) coupled.bind(particles());
     for (std::size_t i = 0; i < from.size(); ++i) {
         if (from[i] != QuerySchedule::kNew) continue;
         prepare_radius(particles().radius[i]);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <tuple>
 
@@ -14,6 +15,19 @@ namespace ricochet {
 void RankShare::require_alone(const char* call) const {
     if (is_alone()) return;
     throw InputError(fmt::format("{}: found a run that {} ranks share, expected one process", call, ranks_->size()));
+}
+
+void RankShare::keep_together(std::vector<std::uint64_t> ids) {
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    together_ = std::move(ids);
+}
+
+// Numbers above 0 have the order of their bits.
+double RankShare::shortest(double duration) const {
+    std::array<std::uint64_t, 1> bits{std::bit_cast<std::uint64_t>(duration)};
+    ranks_->least(bits);
+    return std::bit_cast<double>(bits[0]);
 }
 
 void RankShare::end_step(std::size_t living_here, const ColliderList& colliders) {

@@ -2,11 +2,14 @@
 /// Private to the simulation: what of a run one of several processes has.
 ///
 /// Each rank has the whole scene and moves particles of its own. Emitters run on all of them alike, so that ids need no
-/// talk; a particle lives where its id puts it, a child where its parent lives. Sums that do not depend on the order of
-/// their terms are kept by each rank for itself; for the others (seconds that budgets have cut off, what colliders that
-/// move have been given) each keeps its terms, and the first one adds them up in the order in which one process would.
+/// talk; a particle lives where its id puts it, a child where its parent lives. Those that springs join live on the
+/// first rank, which plans their motion; the others take a step in as many parts as it does. Sums that do not depend on
+/// the order of their terms are kept by each rank for itself; for the others (seconds that budgets have cut off, what
+/// colliders that move have been given) each keeps its terms, and the first one adds them up in the order in which one
+/// process would.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -39,10 +42,20 @@ public:
     void require_alone(const char* call) const;
     /// Not when alone.
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
+    /// Those with these ids live on the first one and stay there: they act on each other.
+    void keep_together(std::vector<std::uint64_t> ids);
+    [[nodiscard]] bool keeps_together() const { return !together_.empty(); }
+    [[nodiscard]] bool stays(std::uint64_t id) const {
+        return std::binary_search(together_.begin(), together_.end(), id);
+    }
     /// Whether a particle that no other one spawns lives here.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
-        return is_alone() || (id / kNeighbours) % ranks_->size() == ranks_->rank();
+        if (is_alone()) return true;
+        if (stays(id)) return is_first();
+        return (id / kNeighbours) % ranks_->size() == ranks_->rank();
     }
+    /// s: the least of what ranks are ready to do next, all of them above 0. All call it.
+    [[nodiscard]] double shortest(double duration) const;
 
     /// Particles that live on all ranks; here: those of this one, all when alone.
     [[nodiscard]] std::uint64_t living(std::size_t here) const { return is_alone() ? here : living_; }
@@ -85,6 +98,7 @@ private:
     };
 
     std::shared_ptr<Ranks> ranks_;
+    std::vector<std::uint64_t> together_;  // ascending
     std::uint64_t living_ = 0;
     std::uint64_t part_ = 0;  // parts of steps so far
     std::vector<LostTime> new_lost_times_;

@@ -280,6 +280,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
         mover.set_clouds(clouds.get());
         offspring->set_clouds(clouds.get(), place_test());
     }
+    if (!share.is_alone()) keep_springs_together();
     reserve(setup.particles.size());
     for (Particle& particle : setup.particles) add(std::move(particle));
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));

@@ -64,7 +64,9 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
     const auto ask = [&] {
         if (!goes_on_within()) throw StoppedError("the step was stopped before its end");
     };
-    impl().coupled.call_between(goes_on_within ? std::function<void()>(ask) : std::function<void()>());
+    // Ranks that share a run stop together, between steps.
+    const bool may_stop = goes_on_within && impl().share.is_alone();
+    impl().coupled.call_between(may_stop ? std::function<void()>(ask) : std::function<void()>());
     const auto end = [&] {
         impl().coupled.call_between({});
         impl().free_flights.end_deferring();
@@ -94,9 +96,11 @@ void Simulation::Impl::step() {
     balance_ranks();
     emit_particles(step);
     std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
+    is_moving_children = false;
     do {
         move_batch(*batch, step);
         batch = spawn_children(step);
+        is_moving_children = true;
     } while (batch);
     retire_particles(step.end);
     check_spheres(step.begin, step.end);
@@ -155,7 +159,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
 }
 
 TimeSpan Simulation::Impl::plan_part(const ParticleRange& batch, const TimeSpan& rest) {
-    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(batch, rest);
+    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(rest);
 }
 
 // Children are moved through the parts of the step that have been, with the bodies where they were.
@@ -213,18 +217,24 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 }
 
 // Children join the coupled motion with the next step.
-TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
-    if (!coupled.is_active() || batch.begin != 0) return rest;
+TimeSpan Simulation::Impl::plan_coupled_motion(const TimeSpan& rest) {
+    if (is_moving_children) return rest;
     const double whole = rest.end - rest.begin;
+    const double planned = share.keeps_together() ? plan_on_first_rank(rest) : plan_coupled(rest);
+    return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
+}
+
+// s, that are planned.
+double Simulation::Impl::plan_coupled(const TimeSpan& rest) {
+    const double whole = rest.end - rest.begin;
+    if (!coupled.is_active()) return whole;
     // What others press on is expected to go on as it does, as what walls hold is.
     const std::vector<std::uint8_t> pressing = pairs ? pairs->pressing() : std::vector<std::uint8_t>();
     const auto hold = [&](std::size_t i, const Vec3& pull) {
         if (!pressing.empty() && pressing[i] != 0) return Vec3{};
         return mover.held_acceleration(i, rest.begin, pull);
     };
-    const double planned =
-        coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
-    return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
+    return coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
 }
 
 /// What sleeps takes part where a collider that moves comes near. What holds it is at rest, and it sleeps on where that
@@ -369,9 +379,11 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
 void Simulation::Impl::end_step() {
     recorder.end_step();
     SimulationStatistics& statistics = recorder.statistics();
-    statistics.springs_broken = coupled.springs().broken();
-    statistics.springs_lost = coupled.springs().lost();
-    statistics.unsolved_steps = coupled.unsolved_steps() + (pairs ? pairs->unsolved() : 0);
+    if (coupled.is_active()) {
+        statistics.springs_broken = coupled.springs().broken();
+        statistics.springs_lost = coupled.springs().lost();
+    }
+    statistics.unsolved_steps = (coupled.is_active() ? coupled.unsolved_steps() : 0) + (pairs ? pairs->unsolved() : 0);
     ++statistics.steps;
     if (!share.is_alone()) share.end_step(store.size(), *colliders);
     inside_step = false;

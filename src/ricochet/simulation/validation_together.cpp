@@ -161,7 +161,7 @@ void validate_ranks(const SimulationSetup& setup) {
         Subject(what).refuse("ranks", setup.ranks->size(),
                              fmt::format("1 (run it in one process, with threads): {}", why));
     };
-    if (!setup.springs.empty() || setup.solver) refuse("springs", "particles that act on each other move together");
+    if (setup.solver) refuse("solver", "it steps all particles together");
     if (!setup.particles_forces.empty()) refuse("particle_forces", "each particle pulls at all others");
     if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
     if (!setup.bodies.empty()) refuse("bodies", "what all particles do to a body moves it within a step");

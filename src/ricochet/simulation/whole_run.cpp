@@ -89,6 +89,26 @@ SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
 
 std::vector<std::byte> Simulation::Impl::bytes_of(ParticleStore& particles) { return archived(particles); }
 
+void Simulation::Impl::keep_springs_together() {
+    std::vector<std::uint64_t> ids;
+    for (const Spring& spring : coupled.springs().springs()) ids.insert(ids.end(), {spring.first, spring.second});
+    share.keep_together(std::move(ids));
+    if (!share.is_first()) coupled.stand_aside();
+}
+
+// All ranks go as far as the first one has planned, or end with what it has come to.
+double Simulation::Impl::plan_on_first_rank(const TimeSpan& rest) {
+    double planned = rest.end - rest.begin;
+    std::optional<std::string> message;
+    try {
+        planned = plan_coupled(rest);
+    } catch (const DivergedError& error) {
+        message = error.what();
+    }
+    if (const auto first = share.first_message(message, 0)) throw DivergedError(*first);
+    return share.shortest(planned);
+}
+
 void Simulation::Impl::have_meshes_in_common() {
     std::vector<std::span<const std::byte>> pages;
     world.add_pages_to(pages);
@@ -137,6 +157,8 @@ WholeRun Simulation::Impl::gather(Shown what) {
 void Simulation::Impl::exchange(WholeRun& whole) {
     if (whole.contacts) std::swap(recorder.contact_records(), *whole.contacts);
     if (whole.store) std::swap(store, *whole.store);
+    // Nothing is asked of springs where no particles are.
+    if (whole.store && store.size() > 0 && coupled.is_active()) coupled.bind(particles());
     if (whole.statistics) std::swap(recorder.statistics(), *whole.statistics);
     if (whole.loads) std::swap(recorder.loads(), *whole.loads);
     if (whole.totals) std::swap(recorder.totals(), *whole.totals);

@@ -1,0 +1,120 @@
+// Springs in a run that ranks share: what they join lives on the first rank, and the bits are those of one process.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/simulation.h"
+#include "simulation/shared_outcome.h"
+#include "support/simulations.h"
+#include "support/thread_ranks.h"
+
+namespace ricochet {
+namespace {
+
+using testing::busy_setup;
+using testing::difference;
+using testing::family_setup;
+using testing::on_ranks;
+using testing::Outcome;
+using testing::particle_of;
+using testing::run;
+using testing::run_on;
+using testing::setup_of;
+
+/// What is joined by springs, some of which break and some of which lose an end, among drops that fly for themselves.
+SimulationSetup joined_setup(IntegratorKind kind) {
+    SimulationSetup setup = busy_setup();
+    setup.options.integrator.kind = kind;
+    setup.options.most_particles = 3000;
+    for (std::uint64_t i = 0; i < 30; ++i) {
+        const double strength = i % 3 == 0 ? 1.5 : 8.0;
+        setup.springs.push_back({i, i + 1, 0.05, 400.0, 0.1, strength});
+    }
+    for (std::uint64_t i = 60; i < 80; ++i) setup.springs.push_back({i, i + 2, 0.1, 100.0, 0.2});
+    setup.particles[70].lifetime = 0.33;
+    return setup;
+}
+
+const std::vector<std::pair<const char*, SimulationSetup (*)()>> kJoined = {
+    {"implicit", [] { return joined_setup(IntegratorKind::implicit_euler); }},
+    {"adaptive", [] { return joined_setup(IntegratorKind::dormand_prince); }},
+    {"explicit", [] { return joined_setup(IntegratorKind::velocity_verlet); }}};
+
+TEST(SharedSprings, HaveTheBitsOfOneProcess) {
+    for (const auto& [name, make] : kJoined) {
+        Simulation counted(make());
+        while (!counted.finished()) counted.step();
+        EXPECT_GT(counted.statistics().springs_broken, 0U) << name;
+        EXPECT_GT(counted.statistics().springs_lost, 0U) << name;
+        const Outcome alone = run(make, nullptr);
+        for (const std::size_t count : {2U, 3U}) {
+            EXPECT_EQ(difference(run_on(count, make), alone), "none") << name << ", " << count << " ranks";
+        }
+    }
+}
+
+TEST(SharedSprings, GoOnWithAnyNumberOfRanks) {
+    for (const auto& [name, make] : kJoined) {
+        const Outcome alone = run(make, nullptr);
+        const Outcome three = run_on(3, make, {}, 20);
+        const Outcome two = run_on(2, make, {three.saved, {}}, 45);
+        EXPECT_EQ(run_on(4, make, {two.saved, {}}).saved == alone.saved, true) << name;
+        EXPECT_EQ(run(make, nullptr, {two.saved, {}}).saved == alone.saved, true) << name;
+    }
+}
+
+TEST(SharedSprings, StayOnTheFirstRankWhileOthersMove) {
+    std::vector<std::size_t> joined(3);
+    std::uint64_t moved = 0;
+    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
+        SimulationSetup setup = family_setup();
+        for (int i = 0; i < 20; ++i) setup.particles.push_back(particle_of({0.1 * i, 2.0, 0.5}));
+        for (std::uint64_t i = 0; i < 19; ++i) setup.springs.push_back({i, i + 1, 0.1, 50.0, 0.1});
+        setup.ranks = ranks;
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const std::vector<std::uint64_t>& ids = simulation.particles().id;
+        joined[ranks->rank()] =
+            static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [](std::uint64_t id) { return id < 20; }));
+        if (ranks->rank() == 0) moved = simulation.rank_balance().moved;
+    });
+    EXPECT_EQ(joined, (std::vector<std::size_t>{20, 0, 0}));
+    EXPECT_GT(moved, 0U);
+}
+
+TEST(SharedSprings, EndAllRanksWhereTheyDiverge) {
+    const auto make = [] {
+        SimulationSetup setup = setup_of(0.1, 20.0);
+        setup.options.integrator.kind = IntegratorKind::velocity_verlet;
+        for (int i = 0; i < 60; ++i) setup.particles.push_back(particle_of({0, 0, 0.1 * i}));
+        setup.springs.push_back({3, 4, 0.05, 1e6, 0.0});
+        return setup;
+    };
+    const auto message_of = [&](const std::shared_ptr<Ranks>& ranks) -> std::string {
+        try {
+            (void)run(make, ranks);
+        } catch (const DivergedError& error) {
+            return error.what();
+        }
+        return "none";
+    };
+    const std::string alone = message_of(nullptr);
+    EXPECT_NE(alone, "none");
+    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(message_of(ranks), alone); });
+}
+
+TEST(SharedSprings, AreNotSavedByParts) {
+    const Simulation simulation(joined_setup(IntegratorKind::implicit_euler));
+    EXPECT_THROW(simulation.save_particles([](std::span<const std::byte>) {}), InputError);
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <set>
 #include <utility>
 #include <vector>
@@ -24,6 +25,41 @@ TEST(PixelSamples, TheFirstSixteenLieOneEachInEveryElementaryBox) {
             }
             EXPECT_EQ(boxes.size(), 16U) << "pixel " << pixel << ", " << across << " x " << along;
         }
+    }
+}
+
+// The points themselves, before they are scrambled, have these bits: Sobol's first two dimensions, Owen-scrambled by
+// hand.
+TEST(PixelSamples, AreTheScrambledPointsOfSobol) {
+    const auto reversed = [](std::uint32_t x) {
+        std::uint32_t out = 0;
+        for (int bit = 0; bit < 32; ++bit) out |= ((x >> bit) & 1U) << (31 - bit);
+        return out;
+    };
+    const auto mixed = [](std::uint32_t x) {
+        x = (x ^ (x >> 16)) * 0x7feb352dU;
+        x = (x ^ (x >> 15)) * 0x846ca68bU;
+        return x ^ (x >> 16);
+    };
+    const auto scrambled = [&](std::uint32_t x, std::uint32_t seed) {
+        x = reversed(x) + seed;
+        for (const std::uint32_t factor : {0x6c50b47cU, 0xb82f1e52U, 0xc7afe638U, 0x8d22f6e6U}) x ^= x * factor;
+        return reversed(x);
+    };
+    const auto second = [](std::uint32_t index) {
+        std::uint32_t sum = 0;
+        for (std::uint32_t direction = 0x80000000U; index != 0; index >>= 1, direction ^= direction >> 1) {
+            if ((index & 1U) != 0) sum ^= direction;
+        }
+        return sum;
+    };
+    for (int s = 0; s < 200; ++s) {
+        const std::uint32_t pixel = mixed(17U + mixed(41U + 0x9e3779b9U));
+        const std::uint32_t seed = mixed(pixel + 0x632be5abU * 4U);
+        const std::uint32_t index = scrambled(static_cast<std::uint32_t>(s), seed);
+        const SamplePair at = PixelSamples(17, 41).get(s, SamplePurpose::sky);
+        EXPECT_EQ(at.u, scrambled(reversed(index), mixed(seed ^ 0x1b873593U)) / 4294967296.0);
+        EXPECT_EQ(at.v, scrambled(second(index), mixed(seed ^ 0xcc9e2d51U)) / 4294967296.0);
     }
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
+#include <vector>
 
 #include "ricochet/core/parallel.h"
 
@@ -19,13 +21,6 @@ constexpr float kSmallestAlbedo = 0.03F;  // added before light is divided by it
 
 float bright(const Float3& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
-float squared_distance(const Float3& a, const Float3& b) {
-    const float x = a.x - b.x;
-    const float y = a.y - b.y;
-    const float z = a.z - b.z;
-    return x * x + y * y + z * z;
-}
-
 Float3 divided(const Float3& light, const Float3& albedo) {
     return {light.x / (albedo.x + kSmallestAlbedo), light.y / (albedo.y + kSmallestAlbedo),
             light.z / (albedo.z + kSmallestAlbedo)};
@@ -38,20 +33,114 @@ Float3 multiplied(const Float3& light, const Float3& albedo) {
 
 // exp(-x) for x >= 0 to some thousandths, without a call: (1 - x / 16)^16.
 float falling(float x) {
-    float t = std::max(0.0F, 1.0F - x * (1.0F / 16.0F));
+    const float left = 1.0F - x * (1.0F / 16.0F);
+    float t = 0.5F * (left + std::fabs(left));  // not below 0, without a branch
     t *= t;
     t *= t;
     t *= t;
     return t * t;
 }
 
+// A row of a picture, number by number, so that the processor can take several pixels at once.
+struct Row {
+    std::vector<float> red, green, blue, bright, variance;
+    std::vector<float> normal_x, normal_y, normal_z, albedo_x, albedo_y, albedo_z, distance;
+
+    explicit Row(std::size_t width) {
+        for (auto* values : {&red, &green, &blue, &bright, &variance, &normal_x, &normal_y, &normal_z, &albedo_x,
+                             &albedo_y, &albedo_z, &distance}) {
+            values->resize(width);
+        }
+    }
+
+    void load(const NoisyPicture& picture, int y) {
+        const std::size_t first = static_cast<std::size_t>(y) * red.size();
+        for (std::size_t x = 0; x < red.size(); ++x) {
+            const Float3& light = picture.light[first + x];
+            const PixelFeatures& features = picture.features[first + x];
+            red[x] = light.x;
+            green[x] = light.y;
+            blue[x] = light.z;
+            bright[x] = ricochet::bright(light);
+            variance[x] = picture.variance[first + x];
+            normal_x[x] = features.normal.x;
+            normal_y[x] = features.normal.y;
+            normal_z[x] = features.normal.z;
+            albedo_x[x] = features.albedo.x;
+            albedo_y[x] = features.albedo.y;
+            albedo_z[x] = features.albedo.z;
+            distance[x] = features.distance;
+        }
+    }
+};
+
+// Sums over the taps of a row of pixels.
+struct Sums {
+    std::vector<float> red, green, blue, variance, weights;
+
+    explicit Sums(std::size_t width) : red(width), green(width), blue(width), variance(width), weights(width) {}
+    void clear() {
+        for (auto* values : {&red, &green, &blue, &variance, &weights}) std::fill(values->begin(), values->end(), 0.0F);
+    }
+};
+
+float squared(float x) { return x * x; }
+
+// How much each of `count` pixels speaks against showing the surface of another one, and against having its light.
+// scale: over differences of brightness; allowed: m, difference of distance that a slant explains.
+void differences(const Row& here, std::size_t x, const Row& there, std::size_t u, std::size_t count,
+                 const float* __restrict scale, const float* __restrict allowed, float* __restrict out) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const float apart = std::fabs(there.bright[u + i] - here.bright[x + i]) * scale[i];
+        const float normals = squared(here.normal_x[x + i] - there.normal_x[u + i]) +
+                              squared(here.normal_y[x + i] - there.normal_y[u + i]) +
+                              squared(here.normal_z[x + i] - there.normal_z[u + i]);
+        const float albedos = squared(here.albedo_x[x + i] - there.albedo_x[u + i]) +
+                              squared(here.albedo_y[x + i] - there.albedo_y[u + i]) +
+                              squared(here.albedo_z[x + i] - there.albedo_z[u + i]);
+        const float difference = kNormalSharpness * normals + kAlbedoSharpness * albedos +
+                                 std::fabs(here.distance[x + i] - there.distance[u + i]) / allowed[i];
+        out[i] = apart + difference;
+    }
+}
+
 // One pass of the filter over the light of a picture, from one buffer into another.
 class Pass {
 public:
-    Pass(const NoisyPicture& picture, int step) : picture_(picture), step_(step) {}
+    Pass(const NoisyPicture& picture, int step)
+        : picture_(picture),
+          step_(step),
+          width_(static_cast<std::size_t>(picture.width)),
+          here_(width_),
+          there_(width_),
+          sums_(width_),
+          scale_(width_),
+          allowed_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
+          weights_(width_) {}
 
-    void row(int y, NoisyPicture& target) const {
-        for (int x = 0; x < picture_.width; ++x) pixel(x, y, target);
+    void row(int y, NoisyPicture& target) {
+        here_.load(picture_, y);
+        for (std::size_t x = 0; x < width_; ++x) {
+            scale_[x] = 1.0F / (kLightSigmas * std::sqrt(variance_near(static_cast<int>(x), y)) + kLightFloor);
+            const PixelFeatures& features = picture_.features[index(static_cast<int>(x), y)];
+            for (std::size_t away = 0; away < allowed_.size(); ++away) {
+                const float reach = static_cast<float>(step_) * static_cast<float>(away);
+                allowed_[away][x] = 1.5F * reach * features.slope + 2e-3F * features.distance + 1e-30F;
+            }
+        }
+        sums_.clear();
+        for (int dy = -2; dy <= 2; ++dy) {
+            const int v = y + dy * step_;
+            if (v < 0 || v >= picture_.height) continue;
+            if (dy != 0) there_.load(picture_, v);
+            for (int dx = -2; dx <= 2; ++dx) add_tap(dx, dy);
+        }
+        const std::size_t first = index(0, y);
+        for (std::size_t x = 0; x < width_; ++x) {
+            const float weights = sums_.weights[x];
+            target.light[first + x] = {sums_.red[x] / weights, sums_.green[x] / weights, sums_.blue[x] / weights};
+            target.variance[first + x] = sums_.variance[x] / (weights * weights);
+        }
     }
 
 private:
@@ -77,48 +166,53 @@ private:
         return sum / weights;
     }
 
-    void pixel(int x, int y, NoisyPicture& target) const {
+    // Of all pixels of the row whose tap lies in the picture.
+    void add_tap(int dx, int dy) {
         constexpr std::array<float, 3> kKernel = {3.0F / 8.0F, 1.0F / 4.0F, 1.0F / 16.0F};
-        const std::size_t here = index(x, y);
-        const float mine = bright(picture_.light[here]);
-        const float scale = 1.0F / (kLightSigmas * std::sqrt(variance_near(x, y)) + kLightFloor);
-        Float3 sum;
-        float variance = 0.0F;
-        float weights = 0.0F;
-        for (int dy = -2; dy <= 2; ++dy) {
-            const int v = y + dy * step_;
-            if (v < 0 || v >= picture_.height) continue;
-            for (int dx = -2; dx <= 2; ++dx) {
-                const int u = x + dx * step_;
-                if (u < 0 || u >= picture_.width) continue;
-                const std::size_t there = index(u, v);
-                const float kernel =
-                    kKernel[static_cast<std::size_t>(std::abs(dx))] * kKernel[static_cast<std::size_t>(std::abs(dy))];
-                const float reach = static_cast<float>(step_ * std::max(std::abs(dx), std::abs(dy)));
-                const float apart = std::fabs(bright(picture_.light[there]) - mine) * scale;
-                const float weight = there == here ? kernel : kernel * falling(apart + difference(here, there, reach));
-                sum.x += weight * picture_.light[there].x;
-                sum.y += weight * picture_.light[there].y;
-                sum.z += weight * picture_.light[there].z;
-                variance += weight * weight * picture_.variance[there];
-                weights += weight;
-            }
+        const auto across = static_cast<std::size_t>(std::abs(dx));
+        const auto along = static_cast<std::size_t>(std::abs(dy));
+        const float kernel = kKernel[across] * kKernel[along];
+        const std::size_t shift = across * static_cast<std::size_t>(step_);
+        if (shift >= width_) return;
+        const std::size_t x = dx < 0 ? shift : 0;
+        const std::size_t u = dx < 0 ? 0 : shift;
+        const std::size_t count = width_ - shift;
+        const Row& there = dy == 0 ? here_ : there_;
+        float* __restrict weights = weights_.data();
+        if (dx == 0 && dy == 0) {
+            std::fill(weights_.begin(), weights_.end(), kernel);
+        } else {
+            differences(here_, x, there, u, count, scale_.data() + x, allowed_[std::max(across, along)].data() + x,
+                        weights);
+            for (std::size_t i = 0; i < count; ++i) weights[i] = kernel * falling(weights[i]);
         }
-        target.light[here] = {sum.x / weights, sum.y / weights, sum.z / weights};
-        target.variance[here] = variance / (weights * weights);
+        add(there.red, u, sums_.red, x, count);
+        add(there.green, u, sums_.green, x, count);
+        add(there.blue, u, sums_.blue, x, count);
+        float* __restrict variance = sums_.variance.data() + x;
+        float* __restrict all = sums_.weights.data() + x;
+        for (std::size_t i = 0; i < count; ++i) {
+            variance[i] += weights[i] * weights[i] * there.variance[u + i];
+            all[i] += weights[i];
+        }
     }
 
-    // How much speaks against two pixels showing the same surface.
-    [[nodiscard]] float difference(std::size_t a, std::size_t b, float reach) const {
-        const PixelFeatures& p = picture_.features[a];
-        const PixelFeatures& q = picture_.features[b];
-        const float allowed = 1.5F * reach * p.slope + 2e-3F * p.distance + 1e-30F;
-        return kNormalSharpness * squared_distance(p.normal, q.normal) +
-               kAlbedoSharpness * squared_distance(p.albedo, q.albedo) + std::fabs(p.distance - q.distance) / allowed;
+    void add(const std::vector<float>& values, std::size_t u, std::vector<float>& sums, std::size_t x,
+             std::size_t count) const {
+        float* __restrict to = sums.data() + x;
+        const float* __restrict from = values.data() + u;
+        const float* __restrict weights = weights_.data();
+        for (std::size_t i = 0; i < count; ++i) to[i] += weights[i] * from[i];
     }
 
     const NoisyPicture& picture_;
     int step_;
+    std::size_t width_;
+    Row here_, there_;
+    Sums sums_;
+    std::vector<float> scale_;
+    std::array<std::vector<float>, 3> allowed_;  // by the steps that a tap is away
+    std::vector<float> weights_;                 // of one tap
 };
 
 }  // namespace
@@ -133,9 +227,9 @@ void filter_noise(NoisyPicture& picture) {
     }
     NoisyPicture next{picture.width, picture.height, std::vector<Float3>(pixels), std::vector<float>(pixels), {}};
     for (const int step : kSteps) {
-        const Pass pass(picture, step);
-        parallel_for_blocks(static_cast<std::size_t>(picture.height), 4,
+        parallel_for_blocks(static_cast<std::size_t>(picture.height), 16,
                             [&](std::size_t, std::size_t begin, std::size_t end) {
+                                Pass pass(picture, step);
                                 for (std::size_t y = begin; y < end; ++y) pass.row(static_cast<int>(y), next);
                             });
         std::swap(picture.light, next.light);

@@ -23,9 +23,8 @@ std::uint32_t reversed_bits(std::uint32_t x) {
     return ((x & 0x55555555U) << 1) | ((x & 0xaaaaaaaaU) >> 1);
 }
 
-// Owen's scrambling of the bits from the highest down (Burley 2020, listing 3).
-std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
-    x = reversed_bits(x);
+// Owen's scrambling of the bits from the highest down (Burley 2020, listing 3), of a number whose bits are reversed.
+std::uint32_t scrambled_reversed(std::uint32_t x, std::uint32_t seed) {
     x += seed;
     x ^= x * 0x6c50b47cU;
     x ^= x * 0xb82f1e52U;
@@ -34,14 +33,15 @@ std::uint32_t scrambled(std::uint32_t x, std::uint32_t seed) {
     return reversed_bits(x);
 }
 
-// The second dimension of Sobol's sequence; the first one is the bits reversed.
-std::uint32_t sobol_second(std::uint32_t index) {
-    std::uint32_t result = 0;
-    for (std::uint32_t direction = 0x80000000U; index != 0; index >>= 1) {
-        if ((index & 1U) != 0) result ^= direction;
-        direction ^= direction >> 1;
-    }
-    return result;
+// The second dimension of Sobol's sequence, bits reversed; the first one is the index with reversed bits. Its direction
+// numbers are the powers of 1 + t over the field of two elements: bits are the coefficients of a polynomial in t, into
+// which 1 + t is put for t, half by half, since (1 + t)^16 = 1 + t^16 there, and so on.
+std::uint32_t reversed_sobol_second(std::uint32_t index) {
+    index ^= index >> 16;
+    index ^= (index & 0xff00ff00U) >> 8;
+    index ^= (index & 0xf0f0f0f0U) >> 4;
+    index ^= (index & 0xccccccccU) >> 2;
+    return index ^ ((index & 0xaaaaaaaaU) >> 1);
 }
 
 }  // namespace
@@ -52,14 +52,14 @@ PixelSamples::PixelSamples(int x, int y)
 SamplePair PixelSamples::get(int sample, SamplePurpose purpose) const {
     const std::uint32_t seed = mixed(seed_ + 0x632be5abU * (static_cast<std::uint32_t>(purpose) + 1));
     // The order is shuffled by scrambling the index, so that pairs of two purposes are independent.
-    const std::uint32_t index = scrambled(static_cast<std::uint32_t>(sample), seed);
-    return {scrambled(reversed_bits(index), mixed(seed ^ 0x1b873593U)) * kUnit,
-            scrambled(sobol_second(index), mixed(seed ^ 0xcc9e2d51U)) * kUnit};
+    const std::uint32_t index = scrambled_reversed(reversed_bits(static_cast<std::uint32_t>(sample)), seed);
+    return {scrambled_reversed(index, mixed(seed ^ 0x1b873593U)) * kUnit,
+            scrambled_reversed(reversed_sobol_second(index), mixed(seed ^ 0xcc9e2d51U)) * kUnit};
 }
 
 double PixelSamples::time(int sample) const {
     const std::uint32_t seed = mixed(seed_ + 0x27d4eb2fU);
-    return scrambled(reversed_bits(static_cast<std::uint32_t>(sample)), seed) * kUnit;
+    return scrambled_reversed(static_cast<std::uint32_t>(sample), seed) * kUnit;
 }
 
 }  // namespace ricochet

@@ -61,7 +61,7 @@ struct Door {
 constexpr std::array kDoors = {
     Door{"embree[34]/", "src/ricochet/geometry/acceleration/embree\\.h"},
     Door{"ricochet/geometry/acceleration/embree\\.h",
-         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/(preview\\.cpp|drawn_mesh\\.h|"
+         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/(preview_impl\\.h|drawn_mesh\\.h|"
          "shape_copies\\.h)|src/bench/native_ray\\.h"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
+
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -62,7 +64,10 @@ TEST(Lamps, AGlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
         options.lighting = Lighting::night;
         // Past the ball: the floor below the spark is in the middle of the picture.
         const Painter painter(preview, {{0, -6, 6}, {0, 0, 0}, {0, 0, 1}, 40.0}, options, lamps);
-        return painter.pixel(kSize / 2, kSize / 2).light.x / kExposure;
+        const PixelPlace middle{kSize / 2, kSize / 2};
+        PixelLight pixel;
+        painter.pixels(std::span(&middle, 1), std::span(&pixel, 1));
+        return pixel.light.x / kExposure;
     };
     // The floor's chequer may take a tenth of its colour, and distance turns it into the horizon by this part.
     const double reach = std::sqrt(72.0) / (14.0 * std::sqrt(72.0) * std::tan(20.0 * std::numbers::pi / 180.0));

@@ -2,8 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
+
+#include "ricochet/core/random.h"
 
 namespace ricochet {
 namespace {
@@ -76,7 +81,12 @@ TEST(Painter, ALensBlursWhatIsOutOfFocusByTheThinLensRule) {
         camera.aperture = aperture;
         const Painter painter(preview, camera, options);
         int count = 0;
-        for (int x = 0; x < kSize; ++x) count += painter.pixel(x, kSize / 2).light.x > 0.0 ? 1 : 0;
+        for (int x = 0; x < kSize; ++x) {
+            const PixelPlace place{x, kSize / 2};
+            PixelLight pixel;
+            painter.pixels(std::span(&place, 1), std::span(&pixel, 1));
+            count += pixel.light.x > 0.0 ? 1 : 0;
+        }
         return count;
     };
     const double scale = 0.5 * kSize / std::tan(10.0 * std::numbers::pi / 180.0);  // pixels per unit slope
@@ -87,6 +97,43 @@ TEST(Painter, ALensBlursWhatIsOutOfFocusByTheThinLensRule) {
         const double blur = scale * 0.5 * std::fabs(depth) / (10.0 * (10.0 + depth));
         EXPECT_NEAR(lit_pixels(depth, 0.5), ball + blur, 3.0) << depth;
     }
+}
+
+// Spheres over a ground and a ball: some pixels at edges, where single precision decides, may differ.
+TEST(Painter, ADraftIsTheSameWhetherRaysOrTheViewFindTheSpheres) {
+    constexpr int kSize = 96;
+    Preview preview({coarse_ball()}, {{{0, 0, -1}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
+    RandomSequence draws(8, 0, 0);
+    PreviewSpheres spheres;
+    for (int i = 0; i < 400; ++i) {
+        spheres.centers.push_back(3.0 * draws.in_unit_ball());
+        spheres.radii.push_back(0.04 + 0.1 * draws.uniform());
+        spheres.colors.push_back({draws.uniform(), draws.uniform(), 0.3});
+    }
+    preview.set_spheres(spheres);
+    PictureOptions options;
+    options.width = options.height = kSize;
+    options.quick = true;
+    const Camera camera{{5, -6, 4}, {0, 0, 0}, {0, 0, 1}, 45.0};
+    const Painter painter(preview, camera, options);
+    const SphereView view(preview.spheres(), camera, kSize, kSize);
+    const SunShadows shadows(preview.spheres(), *painter.sun_middle());
+    ASSERT_TRUE(view.pays());
+    std::vector<SphereFind> finds(static_cast<std::size_t>(kSize) * SphereView::band_rows());
+    int differing = 0;
+    for (int y = 0; y < kSize; ++y) {
+        if (y % SphereView::band_rows() == 0) view.find(y / SphereView::band_rows(), finds);
+        for (int x = 0; x < kSize; ++x) {
+            const PixelPlace place{x, y};
+            const auto row = static_cast<std::size_t>(y % SphereView::band_rows());
+            std::array<PixelLight, 2> lights;
+            painter.quick_pixels(std::span(&place, 1), std::span(lights).first(1));
+            painter.quick_pixels(std::span(&place, 1), std::span(lights).subspan(1),
+                                 std::span(finds).subspan(row * kSize + static_cast<std::size_t>(x), 1), &shadows);
+            if (length(lights[0].light - lights[1].light) > 1e-3) ++differing;
+        }
+    }
+    EXPECT_LT(differing, kSize * kSize / 500);
 }
 
 }  // namespace

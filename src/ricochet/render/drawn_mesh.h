@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
@@ -15,7 +16,10 @@ namespace ricochet {
 // Debian builds Embree with assertions: rays beyond 1.8e18 or not finite end the process.
 inline constexpr double kLargestDrawn = 1e15;
 
-[[nodiscard]] inline bool drawable(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestDrawn; }
+/// False for what is not finite, too.
+[[nodiscard]] inline bool drawable(const Vec3& p) {
+    return std::fabs(p.x) <= kLargestDrawn && std::fabs(p.y) <= kLargestDrawn && std::fabs(p.z) <= kLargestDrawn;
+}
 [[nodiscard]] inline Vec3 towards(const Vec3& normal, const Vec3& direction) {
     return dot(normal, direction) > 0.0 ? -normal : normal;
 }

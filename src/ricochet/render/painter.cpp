@@ -1,7 +1,9 @@
 #include "ricochet/render/painter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -16,33 +18,6 @@ constexpr double kMirror = 0.3;  // surfaces smoother than this show what is aro
 
 Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-// Adds one sample to the means of a pixel; `sum_of_squares` of the luminance.
-struct PixelSum {
-    PixelLight sum;
-    double sum_of_squares = 0.0;
-
-    void add(const Vec3& shown) {
-        sum.light += shown;
-        const double bright = luminance(shown);
-        sum_of_squares += bright * bright;
-    }
-
-    [[nodiscard]] PixelLight mean(int samples) const {
-        PixelLight mean = sum;
-        mean.light = sum.light / samples;
-        mean.normal = sum.normal / samples;
-        mean.albedo = sum.albedo / samples;
-        mean.distance = sum.distance / samples;
-        mean.slope = sum.slope / samples;
-        mean.alpha = sum.alpha / samples;
-        const double bright = luminance(mean.light);
-        // Of one sample nothing is known: it may be off by as much as it is.
-        const double spread = samples == 1 ? bright * bright : sum_of_squares / samples - bright * bright;
-        mean.variance = std::max(0.0, spread) / std::max(1, samples - 1);
-        return mean;
-    }
-};
-
 }  // namespace
 
 Painter::Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps)
@@ -50,60 +25,138 @@ Painter::Painter(const Preview& preview, const Camera& camera, const PictureOpti
       camera_(camera),
       frame_(camera_frame(camera)),
       options_(options),
+      has_glass_(preview.has_glass()),
       light_(light_for(options.lighting, camera)),
       lamps_(std::move(lamps)),
+      sun_middle_(light_.sun_direction(0.0, 0.0)),
+      horizon_(options.background ? *options.background : light_.backdrop_colors.horizon),
       tangent_(half_height(camera)),
+      half_pixel_(tangent_ / options.height),
       focus_(camera.focus_distance > 0.0 ? camera.focus_distance : length(camera.target - camera.position)),
       extent_(tangent_ * length(camera.target - camera.position)),
       tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}
 
-PixelLight Painter::pixel(int x, int y) const {
-    const PixelSamples samples(x, y);
-    PixelSum sum;
-    sum.sum.alpha = 0.0;
-    for (int s = 0; s < options_.samples; ++s) {
-        const SamplePair at = samples.get(s, SamplePurpose::pixel);
-        PreviewRay ray = camera_ray(x + at.u, y + at.v, samples.get(s, SamplePurpose::lens));
-        ray.time = samples.time(s);
-        const Seen seen_here = seen(ray, samples, s);
-        sum.add(tone_mapped(options_.exposure * seen_here.light));
-        sum.sum.alpha += seen_here.cover;
-        if (!seen_here.hit) {
-            sum.sum.albedo += {1, 1, 1};
-            continue;
-        }
-        const PreviewHit& hit = *seen_here.hit;
-        const double pixel_size = 2.0 * tangent_ * hit.distance / options_.height;
-        const double facing = std::max(0.05, std::fabs(dot(hit.face, ray.direction)));
-        sum.sum.normal += hit.normal;
-        sum.sum.albedo += surface_color(hit);
-        sum.sum.distance += hit.distance;
-        sum.sum.slope += pixel_size / facing;
-    }
-    return sum.mean(options_.samples);
+void Painter::PixelSum::add(const Vec3& shown) {
+    sum.light += shown;
+    const double bright = luminance(shown);
+    sum_of_squares += bright * bright;
 }
 
-PixelLight Painter::quick_pixel(int x, int y) const {
-    PreviewRay ray = camera_ray(x + 0.5, y + 0.5, {});
-    ray.time = 1.0;
-    const std::optional<PreviewHit> hit = preview_.trace(ray);
-    const bool open = options_.transparent && !hit;
-    Vec3 light;
-    if (hit) light = quick_light(ray, *hit);
-    if (!hit && !open) light = behind_everything(ray.direction);
-    const Seen shown = through_glass(ray, hit ? hit->distance : kNothing, light);
-    PixelLight pixel;
-    pixel.light = tone_mapped(options_.exposure * shown.light);
-    pixel.alpha = open ? shown.cover : 1.0;
-    return pixel;
+PixelLight Painter::PixelSum::mean(int samples) const {
+    PixelLight mean = sum;
+    mean.light = sum.light / samples;
+    mean.normal = sum.normal / samples;
+    mean.albedo = sum.albedo / samples;
+    mean.distance = sum.distance / samples;
+    mean.slope = sum.slope / samples;
+    mean.alpha = sum.alpha / samples;
+    const double bright = luminance(mean.light);
+    // Of one sample nothing is known: it may be off by as much as it is.
+    const double spread = samples == 1 ? bright * bright : sum_of_squares / samples - bright * bright;
+    mean.variance = std::max(0.0, spread) / std::max(1, samples - 1);
+    return mean;
+}
+
+void Painter::pixels(std::span<const PixelPlace> places, std::span<PixelLight> out) const {
+    std::array<std::optional<PixelSamples>, kPacketRays> samples;
+    std::array<PixelSum, kPacketRays> sums;
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        samples[k].emplace(places[k].x, places[k].y);
+        sums[k].sum.alpha = 0.0;
+    }
+    std::array<Look, kPacketRays> room;
+    const std::span looks(room.data(), places.size());
+    for (int s = 0; s < options_.samples; ++s) {
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            looks[k].samples = &*samples[k];
+            looks[k].sample = s;
+            const SamplePair at = looks[k].get(SamplePurpose::pixel);
+            const SamplePair lens = camera_.aperture > 0.0 ? looks[k].get(SamplePurpose::lens) : SamplePair{};
+            looks[k].ray = camera_ray(places[k].x + at.u, places[k].y + at.v, lens);
+            looks[k].ray.time = samples[k]->time(s);
+        }
+        trace(looks);
+        add_sun_light(looks);
+        add_sky_light(looks);
+        for (std::size_t k = 0; k < places.size(); ++k) add(looks[k], sums[k]);
+    }
+    for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean(options_.samples);
+}
+
+void Painter::add(const Look& look, PixelSum& sum) const {
+    const Seen seen_here = seen(look);
+    sum.add(tone_mapped(options_.exposure * seen_here.light));
+    sum.sum.alpha += seen_here.cover;
+    if (!look.hit) {
+        sum.sum.albedo += {1, 1, 1};
+        return;
+    }
+    const PreviewHit& hit = *look.hit;
+    const double pixel_size = 2.0 * tangent_ * hit.distance / options_.height;
+    const double facing = std::max(0.05, std::fabs(dot(hit.face, look.ray.direction)));
+    sum.sum.normal += hit.normal;
+    sum.sum.albedo += surface_color(hit);
+    sum.sum.distance += hit.distance;
+    sum.sum.slope += pixel_size / facing;
+}
+
+std::optional<Vec3> Painter::sun_middle() const { return light_.has_sun() ? std::optional(sun_middle_) : std::nullopt; }
+
+void Painter::quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
+                           std::span<const SphereFind> finds, const SunShadows* shadows) const {
+    std::array<PreviewRay, kPacketRays> room;
+    std::array<std::optional<PreviewHit>, kPacketRays> hits;
+    std::array<SunAsk, kPacketRays> asks;
+    const std::span rays(room.data(), places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        rays[k] = camera_ray(places[k].x + 0.5, places[k].y + 0.5, {});
+        rays[k].time = 1.0;
+    }
+    trace_quickly(rays, std::span(hits.data(), places.size()), finds);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        asks[k].hit = hits[k] ? &*hits[k] : nullptr;
+        asks[k].to_sun = sun_middle_;
+    }
+    ask_sun(std::span(asks.data(), places.size()), shadows);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const PreviewHit* const hit = asks[k].hit;
+        const bool open = options_.transparent && hit == nullptr;
+        const Vec3 behind = open             ? Vec3{}
+                            : hit == nullptr ? behind_everything(rays[k].direction)
+                                             : quick_light(*hit, asks[k].light);
+        const Seen shown = through_glass(rays[k], hit == nullptr ? kNothing : hit->distance, behind);
+        out[k].light = tone_mapped(options_.exposure * shown.light);
+        out[k].alpha = open ? shown.cover : 1.0;
+    }
+}
+
+// The first thing on each ray, of what is told of spheres and what rays find.
+void Painter::trace_quickly(std::span<PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
+                            std::span<const SphereFind> finds) const {
+    if (finds.empty()) {
+        preview_.trace(rays, hits);
+        return;
+    }
+    for (std::size_t k = 0; k < rays.size(); ++k) rays[k].reach = finds[k].distance;
+    preview_.trace(rays, hits, SphereRays::left_out);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        rays[k].reach = kNothing;
+        const double distance = hits[k] ? hits[k]->distance : kNothing;
+        if (finds[k].distance < distance) hits[k].emplace(sphere_hit(finds[k], rays[k]));
+    }
+}
+
+PreviewHit Painter::sphere_hit(const SphereFind& find, const PreviewRay& ray) const {
+    const Vec3 point = ray.origin + find.distance * ray.direction;
+    return preview_.sphere_hit(find.sphere, find.distance, normalized(point - preview_.spheres().centers[find.sphere]),
+                               ray);
 }
 
 PreviewRay Painter::camera_ray(double x, double y, const SamplePair& lens) const {
-    const double aspect = static_cast<double>(options_.width) / options_.height;
-    const double across = (2.0 * x / options_.width - 1.0) * aspect * tangent_;
-    const double along = (1.0 - 2.0 * y / options_.height) * tangent_;
+    const double across = (2.0 * x - options_.width) * half_pixel_;
+    const double along = (options_.height - 2.0 * y) * half_pixel_;
     const Vec3 ahead = frame_.forward + across * frame_.right + along * frame_.up;
-    if (!(camera_.aperture > 0.0)) return {camera_.position, normalized(ahead)};
+    if (!(camera_.aperture > 0.0)) return {camera_.position, (1.0 / length(ahead)) * ahead};
     const double radius = 0.5 * camera_.aperture * std::sqrt(lens.u);
     const double angle = 2.0 * std::numbers::pi * lens.v;
     const Vec3 offset = radius * std::cos(angle) * frame_.right + radius * std::sin(angle) * frame_.up;
@@ -114,12 +167,18 @@ Vec3 Painter::behind_everything(const Vec3& direction) const {
     return options_.background ? *options_.background : light_.backdrop(direction);
 }
 
-Painter::Seen Painter::seen(const PreviewRay& ray, const PixelSamples& samples, int s) const {
-    const std::optional<PreviewHit> hit = preview_.trace(ray);
-    const bool open = options_.transparent && !hit;
-    Seen out = through_glass(ray, hit ? hit->distance : kNothing, open ? Vec3{} : solid_light(ray, hit, samples, s));
+void Painter::trace(std::span<Look> looks) const {
+    std::array<PreviewRay, kPacketRays> rays;
+    std::array<std::optional<PreviewHit>, kPacketRays> hits;
+    for (std::size_t k = 0; k < looks.size(); ++k) rays[k] = looks[k].ray;
+    preview_.trace(std::span(rays.data(), looks.size()), std::span(hits.data(), looks.size()));
+    for (std::size_t k = 0; k < looks.size(); ++k) looks[k].hit = hits[k];
+}
+
+Painter::Seen Painter::seen(const Look& look) const {
+    const bool open = options_.transparent && !look.hit;
+    Seen out = through_glass(look.ray, look.hit ? look.hit->distance : kNothing, open ? Vec3{} : solid_light(look));
     if (!open) out.cover = 1.0;
-    out.hit = hit;
     return out;
 }
 
@@ -127,6 +186,7 @@ Painter::Seen Painter::seen(const PreviewRay& ray, const PixelSamples& samples, 
 // a slant, which draws its outline.
 Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3& behind) const {
     constexpr int kMostSurfaces = 8;
+    if (!has_glass_) return {behind, 0.0};
     Vec3 light;
     double open = 1.0;
     for (int k = 0; k < kMostSurfaces; ++k) {
@@ -144,35 +204,93 @@ Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3
         distance -= length(next - ray.origin);
         ray.origin = next;
     }
-    return {light + open * behind, std::nullopt, 1.0 - open};
+    return {light + open * behind, 1.0 - open};
 }
 
-Vec3 Painter::solid_light(const PreviewRay& ray, const std::optional<PreviewHit>& hit, const PixelSamples& samples,
-                          int s) const {
-    if (!hit) return behind_everything(ray.direction);
-    const Vec3 color = surface_color(*hit);
-    Vec3 light = hit->emission + times(color, sun_light(*hit, samples.get(s, SamplePurpose::sun)));
-    light += times(color, sky_light(*hit, samples, s));
-    if (!lamps_.empty()) light += times(color, lamp_light(*hit, samples.get(s, SamplePurpose::lamp)));
-    if (hit->roughness < 1.0) light += gloss(*hit, ray);
-    return hit->kind == PreviewHit::Kind::plane ? faded(light, *hit, ray) : light;
+Vec3 Painter::solid_light(const Look& look) const {
+    if (!look.hit) return behind_everything(look.ray.direction);
+    const PreviewHit& hit = *look.hit;
+    const Vec3 color = surface_color(hit);
+    Vec3 light = hit.emission + times(color, look.sun);
+    light += times(color, look.sky);
+    if (!lamps_.empty()) light += times(color, lamp_light(hit, look.get(SamplePurpose::lamp)));
+    if (hit.roughness < 1.0) light += gloss(hit, look.ray);
+    return hit.kind == PreviewHit::Kind::plane ? faded(light, hit) : light;
 }
 
 // Without rays but the one to the sun.
-Vec3 Painter::quick_light(const PreviewRay& ray, const PreviewHit& hit) const {
+Vec3 Painter::quick_light(const PreviewHit& hit, const Vec3& sun) const {
     constexpr double kOpenSky = 0.7;  // the part of the sky that is seen from a surface among others
     const Vec3 color = surface_color(hit);
-    const Vec3 light = hit.emission + times(color, sun_light(hit, {}) + kOpenSky * light_.sky(hit.normal));
-    return hit.kind == PreviewHit::Kind::plane ? faded(light, hit, ray) : light;
+    const Vec3 light = hit.emission + times(color, sun + kOpenSky * light_.sky(hit.normal));
+    return hit.kind == PreviewHit::Kind::plane ? faded(light, hit) : light;
 }
 
-// Light of the sun on a surface, unless something stands in between.
-Vec3 Painter::sun_light(const PreviewHit& hit, const SamplePair& at) const {
-    if (!light_.has_sun()) return {};
-    const Vec3 to_sun = light_.sun_direction(at.u, at.v);
-    const double cosine = dot(hit.normal, to_sun);
-    if (cosine <= 0.0) return {};
-    return preview_.occluded({off_surface(hit) + hit.lift, to_sun, hit.time}) ? Vec3{} : cosine * light_.sun;
+// Light of the sun on surfaces, unless something stands in between. Asks without a hit stay as they are.
+void Painter::ask_sun(std::span<SunAsk> asks, const SunShadows* shadows) const {
+    if (!light_.has_sun()) return;
+    std::array<PreviewRay, kPacketRays> rays;
+    std::array<std::size_t, kPacketRays> whose{};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < asks.size(); ++k) {
+        if (asks[k].hit == nullptr) continue;
+        const PreviewHit& hit = *asks[k].hit;
+        const double cosine = dot(hit.normal, asks[k].to_sun);
+        if (cosine <= 0.0) continue;
+        const Vec3 start = off_surface(hit) + hit.lift;
+        if (shadows != nullptr && shadows->covers(start)) continue;
+        asks[k].light = cosine * light_.sun;
+        rays[count] = {start, asks[k].to_sun, hit.time};
+        whose[count++] = k;
+    }
+    const SphereRays by_rays = shadows == nullptr ? SphereRays::met : SphereRays::left_out;
+    const std::array<bool, kPacketRays> dark = preview_.occluded(std::span(rays.data(), count), by_rays);
+    for (std::size_t j = 0; j < count; ++j) {
+        if (dark[j]) asks[whose[j]].light = {};
+    }
+}
+
+Vec3 Painter::sun_light(const PreviewHit& hit, const Vec3& to_sun) const {
+    SunAsk ask{&hit, to_sun};
+    ask_sun(std::span(&ask, 1));
+    return ask.light;
+}
+
+void Painter::add_sun_light(std::span<Look> looks) const {
+    if (!light_.has_sun()) return;
+    std::array<SunAsk, kPacketRays> asks;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        asks[k] = {};
+        if (!looks[k].hit) continue;
+        const SamplePair at = looks[k].get(SamplePurpose::sun);
+        asks[k] = {&*looks[k].hit, light_.sun_direction(at.u, at.v)};
+    }
+    ask_sun(std::span(asks.data(), looks.size()));
+    for (std::size_t k = 0; k < looks.size(); ++k) looks[k].sun = asks[k].light;
+}
+
+// Light from one direction of the sky, or from the sunlit surface that is seen instead of it.
+void Painter::add_sky_light(std::span<Look> looks) const {
+    std::array<std::optional<PreviewHit>, kPacketRays> others;
+    std::array<SunAsk, kPacketRays> asks;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        asks[k] = {};
+        if (!looks[k].hit) continue;
+        const PreviewHit& hit = *looks[k].hit;
+        const SamplePair at = looks[k].get(SamplePurpose::sky);
+        const Vec3 direction = cosine_direction(hit.normal, at.u, at.v);
+        others[k] = preview_.trace({off_surface(hit) + hit.lift, direction, hit.time});
+        looks[k].sky = others[k] ? Vec3{} : light_.sky(direction);
+        if (!others[k] || !light_.has_sun()) continue;
+        const SamplePair sun_at = looks[k].get(SamplePurpose::far_sun);
+        asks[k] = {&*others[k], light_.sun_direction(sun_at.u, sun_at.v)};
+    }
+    ask_sun(std::span(asks.data(), looks.size()));
+    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // stands for all further bounces
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        if (!looks[k].hit || !others[k]) continue;
+        looks[k].sky = others[k]->emission + times(others[k]->color, asks[k].light + light_.sky_brightness * kFarSky);
+    }
 }
 
 // Light of one lamp, chosen by what each would give if nothing stood in between, for all of them.
@@ -200,17 +318,6 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     return chosen->intensity * (total / luminance(chosen->intensity));
 }
 
-// Light from one direction of the sky, or from the sunlit surface that is seen instead of it.
-Vec3 Painter::sky_light(const PreviewHit& hit, const PixelSamples& samples, int s) const {
-    const SamplePair at = samples.get(s, SamplePurpose::sky);
-    const Vec3 direction = cosine_direction(hit.normal, at.u, at.v);
-    const std::optional<PreviewHit> other = preview_.trace({off_surface(hit) + hit.lift, direction, hit.time});
-    if (!other) return light_.sky(direction);
-    const Vec3 sun = sun_light(*other, samples.get(s, SamplePurpose::far_sun));
-    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // stands for all further bounces
-    return other->emission + times(other->color, sun + light_.sky_brightness * kFarSky);
-}
-
 // A highlight of the sky and its brightest part; on smooth surfaces of what is around.
 Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray) const {
     const double facing = -dot(hit.normal, ray.direction);
@@ -226,7 +333,8 @@ Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray) const {
     Vec3 around = 0.5 * light_.sky(mirrored);
     if (hit.roughness < kMirror) {
         if (const auto other = preview_.trace({off_surface(hit) + hit.lift, mirrored, hit.time})) {
-            around = other->emission + times(other->color, sun_light(*other, {0.5, 0.5}) + light_.sky(other->normal));
+            around = other->emission +
+                     times(other->color, sun_light(*other, light_.sun_direction(0.5, 0.5)) + light_.sky(other->normal));
             return fresnel * around;
         }
         around = behind_everything(mirrored);
@@ -247,16 +355,14 @@ Vec3 Painter::surface_color(const PreviewHit& hit) const {
     const auto [u, v] = tangent_frame(hit.normal);
     const double cells = std::floor(dot(hit.point, u) / tile_) + std::floor(dot(hit.point, v) / tile_);
     const bool odd = cells - 2.0 * std::floor(0.5 * cells) > 0.5;
-    const double fade = std::exp(-hit.distance / (12.0 * extent_));
-    return hit.color * (odd ? 1.0 : 1.0 - 0.10 * fade);
+    return odd ? hit.color : hit.color * (1.0 - 0.10 * std::exp(-hit.distance / (12.0 * extent_)));
 }
 
-// Planes go on for ever; far away they turn into the horizon.
-Vec3 Painter::faded(const Vec3& light, const PreviewHit& hit, const PreviewRay& ray) const {
+// Planes go on for ever; far away they turn into what is behind everything on the horizon.
+Vec3 Painter::faded(const Vec3& light, const PreviewHit& hit) const {
     const double reach = hit.distance / (14.0 * extent_);
     const double left = std::exp(-reach * reach);
-    const Vec3 level = ray.direction - dot(ray.direction, light_.up) * light_.up;
-    return left * light + (1.0 - left) * behind_everything(length(level) > 1e-9 ? normalized(level) : level);
+    return left * light + (1.0 - left) * horizon_;
 }
 
 }  // namespace ricochet

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
@@ -13,6 +14,8 @@
 #include "ricochet/render/picture.h"
 #include "ricochet/render/preview.h"
 #include "ricochet/render/sampling.h"
+#include "ricochet/render/sphere_view.h"
+#include "ricochet/render/sun_shadows.h"
 
 namespace ricochet {
 
@@ -27,48 +30,92 @@ struct PixelLight {
     double slope = 0.0;     ///< m from pixel to pixel
 };
 
-/// Safe from any thread.
+/// Where a pixel is: column and row.
+struct PixelPlace {
+    int x = 0;
+    int y = 0;
+};
+
+/// Safe from any thread. Pixels are worked on in tiles, whose rays go alike: up to kPacketRays at once.
 class Painter {
 public:
     Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps = {});
 
-    [[nodiscard]] PixelLight pixel(int x, int y) const;
-    /// As PictureOptions::quick has it: light and alpha alone.
-    [[nodiscard]] PixelLight quick_pixel(int x, int y) const;
+    /// out: as many as places.
+    void pixels(std::span<const PixelPlace> places, std::span<PixelLight> out) const;
+    /// As PictureOptions::quick has it: light and alpha alone are set. finds: the spheres that are seen, as many as
+    /// places, and what shadows spheres throw towards sun_middle(); without them rays find both.
+    void quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
+                      std::span<const SphereFind> finds = {}, const SunShadows* shadows = nullptr) const;
+    /// Direction to the middle of the sun; nothing without a sun.
+    [[nodiscard]] std::optional<Vec3> sun_middle() const;
 
 private:
     // What one ray sees.
     struct Seen {
         Vec3 light;
-        std::optional<PreviewHit> hit;
         double cover = 1.0;
+    };
+    // A sample of a pixel on its way.
+    struct Look {
+        PreviewRay ray;
+        const PixelSamples* samples = nullptr;
+        int sample = 0;
+        std::optional<PreviewHit> hit;
+        Vec3 sun, sky;  // light that falls on what is hit
+
+        [[nodiscard]] SamplePair get(SamplePurpose purpose) const { return samples->get(sample, purpose); }
+    };
+    // Samples of a pixel, added up.
+    struct PixelSum {
+        PixelLight sum;
+        double sum_of_squares = 0.0;  // of the luminance
+
+        void add(const Vec3& shown);
+        [[nodiscard]] PixelLight mean(int samples) const;
+    };
+    // Asks for the sun's light on a surface.
+    struct SunAsk {
+        const PreviewHit* hit = nullptr;
+        Vec3 to_sun{};
+        Vec3 light{};  // the answer
     };
 
     [[nodiscard]] PreviewRay camera_ray(double x, double y, const SamplePair& lens) const;
-    [[nodiscard]] Seen seen(const PreviewRay& ray, const PixelSamples& samples, int s) const;
+    void trace(std::span<Look> looks) const;
+    void add(const Look& look, PixelSum& sum) const;
+    void add_sun_light(std::span<Look> looks) const;
+    void add_sky_light(std::span<Look> looks) const;
+    [[nodiscard]] Seen seen(const Look& look) const;
     [[nodiscard]] Seen through_glass(PreviewRay ray, double distance, const Vec3& behind) const;
-    [[nodiscard]] Vec3 solid_light(const PreviewRay& ray, const std::optional<PreviewHit>& hit,
-                                   const PixelSamples& samples, int s) const;
-    [[nodiscard]] Vec3 quick_light(const PreviewRay& ray, const PreviewHit& hit) const;
-    [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, const SamplePair& at) const;
+    [[nodiscard]] Vec3 solid_light(const Look& look) const;
+    [[nodiscard]] Vec3 quick_light(const PreviewHit& hit, const Vec3& sun) const;
+    void trace_quickly(std::span<PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
+                       std::span<const SphereFind> finds) const;
+    void ask_sun(std::span<SunAsk> asks, const SunShadows* shadows = nullptr) const;
+    [[nodiscard]] PreviewHit sphere_hit(const SphereFind& find, const PreviewRay& ray) const;
+    [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, const Vec3& to_sun) const;
     [[nodiscard]] Vec3 lamp_light(const PreviewHit& hit, const SamplePair& at) const;
-    [[nodiscard]] Vec3 sky_light(const PreviewHit& hit, const PixelSamples& samples, int s) const;
     [[nodiscard]] Vec3 gloss(const PreviewHit& hit, const PreviewRay& ray) const;
     [[nodiscard]] Vec3 off_surface(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 surface_color(const PreviewHit& hit) const;
-    [[nodiscard]] Vec3 faded(const Vec3& light, const PreviewHit& hit, const PreviewRay& ray) const;
+    [[nodiscard]] Vec3 faded(const Vec3& light, const PreviewHit& hit) const;
     [[nodiscard]] Vec3 behind_everything(const Vec3& direction) const;
 
     const Preview& preview_;
     Camera camera_;
     CameraFrame frame_;
     PictureOptions options_;
+    bool has_glass_;
     Light light_;
     std::vector<Lamp> lamps_;
+    Vec3 sun_middle_;  // direction to the middle of the sun
+    Vec3 horizon_;     // what is behind everything there
     double tangent_;
-    double focus_;   // m from the camera's plane to the plane that is sharp
-    double extent_;  // half the height of what the picture shows at the target, m
-    double tile_;    // edge of the chequer on planes, m
+    double half_pixel_;  // slope
+    double focus_;       // m from the camera's plane to the plane that is sharp
+    double extent_;      // half the height of what the picture shows at the target, m
+    double tile_;        // edge of the chequer on planes, m
 };
 
 }  // namespace ricochet

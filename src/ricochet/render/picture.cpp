@@ -1,10 +1,12 @@
 #include "ricochet/render/picture.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,10 +15,17 @@
 #include "ricochet/render/filter.h"
 #include "ricochet/render/lamps.h"
 #include "ricochet/render/painter.h"
+#include "ricochet/render/sphere_view.h"
+#include "ricochet/render/sun_shadows.h"
 #include "ricochet/render/tone.h"
 
 namespace ricochet {
 namespace {
+
+// Pixels that are worked on together.
+constexpr int kTileWidth = 4;
+constexpr int kTileHeight = 2;
+static_assert(kTileWidth * kTileHeight == kPacketRays);
 
 Float3 single(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
 
@@ -28,6 +37,17 @@ std::size_t pixel_count(const PictureOptions& options) {
 struct Sampled {
     NoisyPicture picture;
     std::vector<float> alpha;
+
+    void store(const PixelPlace& place, const PixelLight& pixel) {
+        const std::size_t index = static_cast<std::size_t>(place.y) * static_cast<std::size_t>(picture.width) +
+                                  static_cast<std::size_t>(place.x);
+        picture.light[index] = single(pixel.light);
+        if (!alpha.empty()) alpha[index] = static_cast<float>(pixel.alpha);
+        if (picture.features.empty()) return;
+        picture.variance[index] = static_cast<float>(pixel.variance);
+        picture.features[index] = {single(pixel.normal), single(pixel.albedo), static_cast<float>(pixel.distance),
+                                   static_cast<float>(pixel.slope)};
+    }
 };
 
 // Of what glows.
@@ -56,26 +76,80 @@ SpriteLayer laid_over_each_other(std::span<const Sprites> layers, const Preview&
     return all;
 }
 
+// Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and keeps what it gives.
+template <class Paint>
+void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
+    std::array<PixelPlace, kPacketRays> places;
+    std::array<PixelLight, kPacketRays> lights;
+    const int width = out.picture.width;
+    for (int top = begin; top < end; top += kTileHeight) {
+        for (int left = 0; left < width; left += kTileWidth) {
+            std::size_t count = 0;
+            for (int y = top; y < std::min(top + kTileHeight, end); ++y) {
+                for (int x = left; x < std::min(left + kTileWidth, width); ++x) places[count++] = {x, y};
+            }
+            paint(std::span<const PixelPlace>(places.data(), count), std::span(lights.data(), count));
+            for (std::size_t k = 0; k < count; ++k) out.store(places[k], lights[k]);
+        }
+    }
+}
+
+// A draft's spheres and their shadows, found without rays where that pays.
+class DraftSpheres {
+public:
+    DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
+        : width_(options.width), view_(preview.spheres(), camera, options.width, options.height) {
+        if (const auto sun = painter.sun_middle(); sun && view_.pays()) shadows_.emplace(preview.spheres(), *sun);
+        if (!view_.pays()) preview.prepare_sphere_rays();
+    }
+
+    // The rows [begin, end) of one band of the view.
+    void paint(const Painter& painter, int begin, int end, Sampled& out) const {
+        std::vector<SphereFind> finds;
+        if (view_.pays()) {
+            finds.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
+            view_.find(begin / SphereView::band_rows(), finds);
+        }
+        std::array<SphereFind, kPacketRays> here;
+        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
+            for (std::size_t k = 0; k < places.size() && !finds.empty(); ++k) {
+                here[k] = finds[static_cast<std::size_t>(places[k].y - begin) * static_cast<std::size_t>(width_) +
+                                static_cast<std::size_t>(places[k].x)];
+            }
+            const std::span<const SphereFind> seen(here.data(), finds.empty() ? 0 : places.size());
+            painter.quick_pixels(places, lights, seen, shadows_ ? &*shadows_ : nullptr);
+        });
+    }
+
+private:
+    int width_;
+    SphereView view_;
+    std::optional<SunShadows> shadows_;
+};
+
 Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps) {
     const Painter painter(preview, camera, options, std::move(lamps));
+    std::optional<DraftSpheres> draft;
+    if (options.quick) draft.emplace(preview, camera, options, painter);
     const std::size_t pixels = pixel_count(options);
-    Sampled out{{options.width, options.height, std::vector<Float3>(pixels), std::vector<float>(pixels),
-                 std::vector<PixelFeatures>(pixels)},
+    // A draft is not filtered, and needs the light alone.
+    const std::size_t filtered = options.quick ? 0 : pixels;
+    Sampled out{{options.width, options.height, std::vector<Float3>(pixels), std::vector<float>(filtered),
+                 std::vector<PixelFeatures>(filtered)},
                 std::vector<float>(options.transparent ? pixels : 0)};
     const auto rows = static_cast<std::size_t>(options.height);
     std::atomic<std::size_t> rows_done{0};
-    parallel_for_blocks(rows, 1, [&](std::size_t row, std::size_t, std::size_t) {
-        for (int x = 0; x < options.width; ++x) {
-            const std::size_t index = row * static_cast<std::size_t>(options.width) + static_cast<std::size_t>(x);
-            const PixelLight pixel =
-                options.quick ? painter.quick_pixel(x, static_cast<int>(row)) : painter.pixel(x, static_cast<int>(row));
-            out.picture.light[index] = single(pixel.light);
-            out.picture.variance[index] = static_cast<float>(pixel.variance);
-            out.picture.features[index] = {single(pixel.normal), single(pixel.albedo),
-                                           static_cast<float>(pixel.distance), static_cast<float>(pixel.slope)};
-            if (options.transparent) out.alpha[index] = static_cast<float>(pixel.alpha);
+    const int block = options.quick ? SphereView::band_rows() : kTileHeight;
+    parallel_for_blocks(rows, static_cast<std::size_t>(block), [&](std::size_t, std::size_t begin, std::size_t end) {
+        const auto [top, bottom] = std::pair(static_cast<int>(begin), static_cast<int>(end));
+        if (draft) {
+            draft->paint(painter, top, bottom, out);
+        } else {
+            paint_tiles(top, bottom, out, [&](auto places, auto lights) { painter.pixels(places, lights); });
         }
-        if (options.progress) options.progress(static_cast<double>(++rows_done) / static_cast<double>(rows));
+        for (std::size_t row = begin; row < end && options.progress; ++row) {
+            options.progress(static_cast<double>(++rows_done) / static_cast<double>(rows));
+        }
     });
     return out;
 }
@@ -96,6 +170,7 @@ void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
 
 Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                      std::span<const Sprites> layers) {
+    if (!options.quick || !layers.empty()) preview.prepare_sphere_rays();
     const SpriteLayer layer = laid_over_each_other(layers, preview, camera, options);
     Sampled all = sampled(preview, camera, options, lamps_in(layers));
     if (options.filter && !options.quick) filter_noise(all.picture);

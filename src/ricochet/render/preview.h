@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -44,6 +46,14 @@ struct PreviewSpheres {
     std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
 };
 
+/// Spheres as they are drawn: those of PreviewSpheres that can be, when the shutter closes.
+struct DrawnSpheres {
+    std::vector<Vec3> centers;
+    std::vector<double> radii;
+    std::vector<Vec3> colors;
+    std::vector<Vec3> emissions;  ///< or empty
+};
+
 /// Straight threads with round ends; all vectors but points have the same length, the last may be empty.
 struct PreviewLines {
     std::vector<std::array<std::uint32_t, 2>> ends;  ///< indices into points
@@ -73,6 +83,9 @@ struct PreviewMoving {
     PreviewCopies copies{};
 };
 
+/// Whether rays meet spheres; those who find them by other means leave them out.
+enum class SphereRays { met, left_out };
+
 /// A ray from a point along a unit vector.
 struct PreviewRay {
     Vec3 origin;
@@ -95,6 +108,9 @@ struct PreviewHit {
     double time = 0.0;       ///< the ray's
 };
 
+/// Most rays that are traced at once.
+inline constexpr std::size_t kPacketRays = 8;
+
 /// Of particles.
 inline constexpr double kSphereRoughness = 0.42;
 
@@ -114,15 +130,31 @@ public:
     void set_shape(TriangleMesh shape) { set_shapes({std::move(shape)}); }
     /// Replaces all that moves by spheres. Not while rays are being shot.
     void set_spheres(const PreviewSpheres& spheres);
-    /// Replaces all that moves. Not while rays are being shot.
-    void set_moving(PreviewMoving moving);
+    /// Replaces all that moves. With `left_out` rays do not meet the spheres until prepare_sphere_rays(), which spares
+    /// a draft the time. Not while rays are being shot.
+    void set_moving(PreviewMoving moving, SphereRays spheres = SphereRays::met);
+    /// Lets rays meet the spheres, if they do not yet. Not while rays are being shot.
+    void prepare_sphere_rays() const;
 
     /// The first thing on the ray that is no glass; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace(const PreviewRay& ray) const;
+    /// The same for up to kPacketRays rays at once, which is faster where they start and point alike. The last digits
+    /// may differ from those of rays alone, and are the same whenever the packet is. hits: as many.
+    void trace(std::span<const PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
+               SphereRays spheres = SphereRays::met) const;
     /// The first glass mesh on the ray; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace_glass(const PreviewRay& ray) const;
     /// True when a mesh or something that moves stands on the ray; planes throw no shadow.
     [[nodiscard]] bool occluded(const PreviewRay& ray) const;
+    /// The same for up to kPacketRays rays at once, in their order.
+    [[nodiscard]] std::array<bool, kPacketRays> occluded(std::span<const PreviewRay> rays,
+                                                         SphereRays spheres = SphereRays::met) const;
+    [[nodiscard]] const DrawnSpheres& spheres() const;
+    /// What a ray meets at that distance on a sphere, given the unit normal of the surface there.
+    [[nodiscard]] PreviewHit sphere_hit(std::size_t sphere, double distance, const Vec3& normal,
+                                        const PreviewRay& ray) const;
+    /// True when trace_glass() can find anything.
+    [[nodiscard]] bool has_glass() const;
     /// The point about which coordinates are rounded.
     [[nodiscard]] const Vec3& origin() const;
 

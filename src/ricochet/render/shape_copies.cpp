@@ -149,28 +149,34 @@ bool ShapeCopies::meet(const RTCRay& ray, std::size_t copy, float& distance, Cop
     return shape == 0 ? meet_ball(local, ray, distance) : meet_mesh(shapes_[shape - 1], local, ray, distance, what);
 }
 
-// Rays are shot one by one: packets of one have the layout of a single ray.
 void ShapeCopies::intersect(const RTCIntersectFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
     const auto& self = *static_cast<const ShapeCopies*>(args->geometryUserPtr);
-    auto& query = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-    float distance = 0.0F;
-    CopyHit what;
-    if (!self.meet(query.ray, args->primID, distance, what)) return;
-    query.ray.tfar = distance;
-    query.hit.primID = args->primID;
-    query.hit.geomID = args->geomID;
-    query.hit.instID[0] = args->context->instID[0];
-    *static_cast<CopyHit*>(embree::user_of(args)) = what;
+    RTCRayN* const rays = RTCRayHitN_RayN(args->rayhit, args->N);
+    RTCHitN* const hits = RTCRayHitN_HitN(args->rayhit, args->N);
+    for (unsigned lane = 0; lane < args->N; ++lane) {
+        if (args->valid[lane] == 0) continue;
+        const RTCRay ray = rtcGetRayFromRayN(rays, args->N, lane);
+        float distance = 0.0F;
+        CopyHit what;
+        if (!self.meet(ray, args->primID, distance, what)) continue;
+        RTCRayN_tfar(rays, args->N, lane) = distance;
+        RTCHitN_primID(hits, args->N, lane) = args->primID;
+        RTCHitN_geomID(hits, args->N, lane) = args->geomID;
+        RTCHitN_instID(hits, args->N, lane, 0) = args->context->instID[0];
+        static_cast<CopyHit*>(embree::user_of(args))[ray.id] = what;
+    }
 }
 
 void ShapeCopies::occlude(const RTCOccludedFunctionNArguments* args) {
-    if (args->valid[0] == 0) return;
     const auto& self = *static_cast<const ShapeCopies*>(args->geometryUserPtr);
-    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    float distance = 0.0F;
-    CopyHit what;
-    if (self.meet(ray, args->primID, distance, what)) ray.tfar = -std::numeric_limits<float>::infinity();
+    for (unsigned lane = 0; lane < args->N; ++lane) {
+        if (args->valid[lane] == 0) continue;
+        float distance = 0.0F;
+        CopyHit what;
+        if (self.meet(rtcGetRayFromRayN(args->ray, args->N, lane), args->primID, distance, what)) {
+            RTCRayN_tfar(args->ray, args->N, lane) = -std::numeric_limits<float>::infinity();
+        }
+    }
 }
 
 // Normals go by the transposed inverse.

@@ -14,7 +14,8 @@
 
 namespace ricochet {
 
-/// What a query learns about a copy that it hits: a QueryContext's user pointer.
+/// What a query learns about a copy that it hits. A QueryContext's user pointer leads to as many as it has rays, by
+/// their ids.
 struct CopyHit {
     unsigned triangle = 0;
     float u = 0.0F;
@@ -27,7 +28,8 @@ public:
     /// shapes: all of each at most 1 away from its origin.
     void set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes);
 
-    /// The copies that can be drawn, about the origin; null pointer where there are none. Queries need a CopyHit.
+    /// The copies that can be drawn, about the origin; null pointer where there are none. Queries need a CopyHit for
+    /// each ray.
     [[nodiscard]] RTCGeometry make_geometry(RTCDevice device, const PreviewCopies& copies, const Vec3& origin);
 
     /// What a ray has hit.

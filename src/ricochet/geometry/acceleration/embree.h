@@ -64,6 +64,31 @@ inline void intersect16(const int* valid, RTCScene scene, QueryContext& context,
 #endif
 }
 
+/// Eight rays at once, as intersect16(): `valid` must be aligned to 32 bytes. Eight is what processors with AVX trace
+/// together; others take the rays in turn.
+inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& ray_hits) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context.base;
+    rtcIntersect8(valid, scene, &ray_hits, &arguments);
+#else
+    rtcIntersect8(valid, scene, &context.base, &ray_hits);
+#endif
+}
+
+/// Eight shadow rays at once, as occluded1() and intersect8().
+inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context.base;
+    rtcOccluded8(valid, scene, &rays, &arguments);
+#else
+    rtcOccluded8(valid, scene, &context.base, &rays);
+#endif
+}
+
 /// Shadow ray: afterwards ray.tfar is -infinity when it is occluded.
 inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4

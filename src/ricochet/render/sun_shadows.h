@@ -1,0 +1,49 @@
+/// \file
+/// The shadows that spheres throw in one direction: a grid across it, whose cells know what stands over them. For many
+/// spheres that takes a tenth of the time of rays.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/render/preview.h"
+
+namespace ricochet {
+
+/// Stays valid on its own. Safe from any thread.
+class SunShadows {
+public:
+    /// to_light: of unit length.
+    SunShadows(const DrawnSpheres& spheres, const Vec3& to_light);
+
+    /// True when a sphere stands on the ray from a point to the light.
+    [[nodiscard]] bool covers(const Vec3& point) const;
+
+private:
+    // A sphere, across the light and towards it.
+    struct Shade {
+        double u = 0.0, v = 0.0, height = 0.0;  // m
+        double radius = 0.0;                    // m
+    };
+    struct Cells {
+        std::size_t left, right, low, high;  // ends included
+    };
+
+    void choose_grid(const std::vector<Shade>& shades);
+    void fill(const std::vector<Shade>& shades);
+    [[nodiscard]] double entries(const std::vector<Shade>& shades, double size) const;
+    [[nodiscard]] Shade shade_of(const Vec3& center, double radius) const;
+    [[nodiscard]] Cells cells_of(const Shade& shade) const;
+
+    Vec3 across_, along_, to_light_;
+    double left_ = 0.0, low_ = 0.0;  // m, the grid's corner
+    double per_size_ = 1.0;          // 1/m, over a cell's edge
+    std::size_t columns_ = 0, rows_ = 0;
+    std::vector<std::size_t> first_;  // of a cell in over_; the last is the end
+    std::vector<Shade> over_;         // those nearest to the light first
+};
+
+}  // namespace ricochet

@@ -34,11 +34,8 @@ export function number_text(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
-// Where a particle is, how large, and its colour.
+// Where a particle is, how large, and its colour, of `place` (levels of x, y, z and of the value), `size` and `tint`.
 export const COLOR = /* glsl */ `
-  in vec4 place;  // levels of x, y, z and of the value
-  in float size;
-  in vec4 tint;
   uniform vec3 lower;
   uniform float grid_step;
   uniform vec2 value_scale;  // low, step

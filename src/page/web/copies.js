@@ -7,6 +7,9 @@ const VERTEX = /* glsl */ `
   out vec3 at;
   out vec3 facing;
   flat out vec4 color;
+  in vec4 place;
+  in float size;
+  in vec4 tint;
   ${COLOR}
   vec3 turned(vec3 v) {
     float w = sqrt(max(1.0 - dot(turn, turn), 0.0));
@@ -70,10 +73,10 @@ export class Copies {
   // What the spheres of these rows are, becomes copies.
   show(spheres, turns, rows) {
     rows.forEach((row, k) => {
-      const at = (attribute) => row * (attribute.meshPerAttribute > 1 ? 0 : attribute.itemSize);
+      const at = (column) => column.is_one ? 0 : row * column.size;
       for (const name of ['place', 'size', 'tint']) {
         const from = spheres[name];
-        const size = from.itemSize;
+        const {size} = from;
         for (let c = 0; c < size; ++c) this[name].array[size * k + c] = from.array[at(from) + c];
       }
       for (let c = 0; c < 3; ++c) this.turn.array[3 * k + c] = turns[c][row];

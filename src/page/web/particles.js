@@ -1,9 +1,20 @@
-// Particles as spheres: a square for each that faces the eye, in which a ray meets the sphere itself.
+// Particles as spheres: a triangle around each that faces the eye, in which a ray meets the sphere itself.
 import * as THREE from 'three';
 import {COLOR, LIGHT, light_uniforms} from './colors.js';
 import {Copies} from './copies.js';
 
+const TEXTURE_WIDTH = 2048;
+
+// Particles are told apart by the number of the vertex, and what is known of each is looked up: without a graphics card
+// this takes a quarter of the time of squares that are instances of one, which are drawn one by one there.
 const VERTEX = /* glsl */ `
+  uniform highp usampler2D places;
+  uniform highp sampler2D sizes;
+  uniform highp sampler2D tints;
+  uniform bool tinted;
+  vec4 place;
+  float size;
+  vec4 tint;
   ${COLOR}
   uniform float radius;      // of all; 0: their own
   uniform float pixel;       // of the picture, over its distance
@@ -12,6 +23,14 @@ const VERTEX = /* glsl */ `
   flat out float ball;
   flat out vec4 color;
   void main() {
+    int row = gl_VertexID / 3;
+    ivec2 at_row = ivec2(row % ${TEXTURE_WIDTH}, row / ${TEXTURE_WIDTH});
+    int which = gl_VertexID - 3 * row;
+    // Of the triangle whose inner circle has the radius 1.
+    vec2 corner = which == 2 ? vec2(0.0, 2.0) : vec2(which == 0 ? -1.7320508 : 1.7320508, -1.0);
+    place = vec4(texelFetch(places, at_row, 0));
+    size = radius > 0.0 ? 0.0 : texelFetch(sizes, at_row, 0).r;
+    tint = tinted ? texelFetch(tints, at_row, 0) : vec4(1.0);
     center = (modelViewMatrix * vec4(lower + grid_step * place.xyz, 1.0)).xyz;
     float far = length(center);
     ball = enlarge * (radius > 0.0 ? radius : size);
@@ -21,7 +40,7 @@ const VERTEX = /* glsl */ `
     vec3 over = cross(ahead, right);
     // The outline of a sphere is wider than the sphere.
     float wide = (ball + pixel * far) * far / sqrt(max(far * far - ball * ball, 1e-6 * far * far));
-    at = center + wide * (position.x * right + position.y * over);
+    at = center + wide * (corner.x * right + corner.y * over);
     color = color_of();
     gl_Position = ball > 0.0 && far > ball ? projectionMatrix * vec4(at, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
   }
@@ -53,6 +72,16 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
+// What is known of each particle, a pixel each; of one for all, where they do not differ.
+class Column {
+  constructor(array, size, format, type, is_one) {
+    Object.assign(this, {array, size, is_one});
+    this.texture = new THREE.DataTexture(array, TEXTURE_WIDTH, array.length / size / TEXTURE_WIDTH, format, type);
+    this.texture.needsUpdate = true;
+  }
+  sent() { this.texture.needsUpdate = true; }
+}
+
 export class Particles {
   constructor(run) {
     this.run = run;
@@ -62,22 +91,24 @@ export class Particles {
     if (find('size') >= 0) this.radius_attribute = find('size');
     this.opacity_attribute = find('opacity');
     this.drawing_attribute = find('drawing');
-    this.geometry = new THREE.InstancedBufferGeometry();
-    this.geometry.setAttribute('position', new THREE.Float32BufferAttribute([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], 3));
-    this.geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    this.geometry.instanceCount = 0;
     const room = run.most;
-    this.place = this.add_attribute('place', new Uint16Array(4 * room), 4, false);
-    this.size = this.add_attribute('size', new Float32Array(this.has_sizes() ? room : 1), 1, false);
-    this.tint = this.add_attribute('tint', new Uint8Array(4 * (this.has_tint() ? room : 1)).fill(255), 4, true);
-    if (!this.has_sizes()) this.size.meshPerAttribute = room;
-    if (!this.has_tint()) this.tint.meshPerAttribute = room;
+    this.geometry = new THREE.BufferGeometry();
+    this.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(3 * room).map((_, i) => i), 1));
+    this.geometry.boundingSphere = new THREE.Sphere();
+    this.geometry.setDrawRange(0, 0);
+    const column = (type, size, format, gl_type, varies) => new Column(
+        new type(size * TEXTURE_WIDTH * (varies ? Math.ceil(room / TEXTURE_WIDTH) : 1)), size, format, gl_type, !varies);
+    this.place = column(Uint16Array, 4, THREE.RGBAIntegerFormat, THREE.UnsignedShortType, true);
+    this.size = column(Float32Array, 1, THREE.RedFormat, THREE.FloatType, this.has_sizes());
+    this.tint = column(Uint8Array, 4, THREE.RGBAFormat, THREE.UnsignedByteType, this.has_tint());
+    this.tint.array.fill(255);
     this.uniforms = {
       ...light_uniforms(description.up), lower: {value: new THREE.Vector3(...description.grid.lower)},
       grid_step: {value: description.grid.step}, value_scale: {value: new THREE.Vector2(0, 1)},
       shown: {value: new THREE.Vector2(0, 1)}, gap_level: {value: 1e9}, map: {value: null}, own_colors: {value: false},
       radius: {value: 0}, enlarge: {value: 1}, pixel: {value: 0.001}, world_from_view: {value: new THREE.Matrix3()},
-      soft: {value: false},
+      soft: {value: false}, places: {value: this.place.texture}, sizes: {value: this.size.texture},
+      tints: {value: this.tint.texture}, tinted: {value: this.has_tint()},
     };
     const material = new THREE.ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: this.uniforms, alphaToCoverage: true,
@@ -92,13 +123,6 @@ export class Particles {
     };
     this.bound_radius = this.visible_radius();
     this.copies = this.has_shapes() ? description.shapes.meshes.map((mesh) => new Copies(mesh, room, this.uniforms)) : [];
-  }
-
-  add_attribute(name, array, size, normalized) {
-    const attribute = new THREE.InstancedBufferAttribute(array, size, normalized);
-    attribute.setUsage(THREE.DynamicDrawUsage);
-    this.geometry.setAttribute(name, attribute);
-    return attribute;
   }
 
   // spheres; soft: discs that cover what is behind; glow: discs of light that adds up, in any order.
@@ -148,14 +172,14 @@ export class Particles {
       place[to + 2] = frame.positions[from + 2];
       place[to + 3] = levels === null ? 0 : levels[i];
     }
-    this.sent(this.place, 4 * count);
+    this.place.sent();
     this.show_sizes(frame);
     this.show_tints(frame);
     this.uniforms.own_colors.value = attribute < 0 && this.run.description.colors;
     const scale = attribute >= 0 ? this.run.attributes[attribute] : {low: 0, step: 1, gaps: false};
     this.uniforms.value_scale.value.set(scale.low, scale.constant ? 0 : scale.step);
     this.uniforms.gap_level.value = scale.gaps ? scale.largest + 0.5 : 1e9;
-    this.geometry.instanceCount = count;
+    this.geometry.setDrawRange(0, 3 * count);
     this.last = [frame, attribute];
     if (this.drawing === 'spheres') this.show_copies(frame);
   }
@@ -172,13 +196,7 @@ export class Particles {
     }
     this.copies.forEach((copies, shape) => copies.show(this, frame.turns, rows[shape]));
     for (const row of rows.flat()) this.size.array[row] = 0;
-    this.sent(this.size, frame.count);
-  }
-
-  sent(attribute, count) {
-    attribute.clearUpdateRanges();
-    attribute.addUpdateRange(0, count);
-    attribute.needsUpdate = true;
+    this.size.sent();
   }
 
   show_sizes(frame) {
@@ -195,7 +213,7 @@ export class Particles {
       this.size.array[i] = own > 0 ? own : vanish ? 0 : visible;
     }
     if (frame.lines.length + frame.triangles.length > 0) this.hide_woven(frame);
-    this.sent(this.size, frame.count);
+    this.size.sent();
   }
 
   // Particles at the ends of springs are shown by their ropes and cloth, unless they are thicker.
@@ -220,7 +238,7 @@ export class Particles {
       const opacity = this.opacity_attribute < 0 ? 1 : this.run.value(frame, this.opacity_attribute, i);
       tint[4 * i + 3] = Math.round(255 * Math.min(Math.max(opacity, 0), 1));
     }
-    this.sent(this.tint, 4 * frame.count);
+    this.tint.sent();
   }
 
   // The row whose sphere a ray meets first, and how far away: {row, distance}; row -1 where it meets none.

@@ -12,7 +12,7 @@
 #include "page/page_budget.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/frame_reader.h"
 
 namespace ricochet {
 namespace {
@@ -61,7 +61,7 @@ std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::v
     std::map<std::uint64_t, std::vector<std::array<float, 3>>> all;
     for (const FrameFile& file : frames) {
         std::vector<std::array<float, 3>>& turns = all[file.step];
-        for (const Turn& turn : shapes.turns(read_vtp(file.path))) {
+        for (const Turn& turn : shapes.turns(read_frame(file.path))) {
             const Vec3 v = turn.w < 0.0 ? -turn.v : turn.v;
             turns.push_back({static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
         }

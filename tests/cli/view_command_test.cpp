@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/run_program.h"
+#include "geometry/mesh_files.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {
@@ -42,6 +43,20 @@ TEST(ViewCommand, RunsASceneFirst) {
     EXPECT_NE(result.output.find("6 frames"), std::string::npos) << result.output;
     EXPECT_TRUE(std::filesystem::exists(folder.path("kept/summary.json")));
     EXPECT_NE(folder.read("p.html").find(R"("colorBy":"age")"), std::string::npos);
+}
+
+TEST(ViewCommand, ShowsMeshesOfARunInPieces) {
+    const TemporaryFolder folder;
+    const std::string shard = folder.write("shard.obj", test::kObjTetrahedron).string();
+    const std::string scene = folder.write("drop.json", kScene).string();
+    for (const std::string pieces : {"false", "true"}) {
+        const ProgramResult result =
+            run_ricochet({"view", scene, "--output", folder.path(pieces + ".html").string(), "--run-output",
+                          folder.path("run-" + pieces).string(), "--set", "output.pieces=" + pieces, "--set",
+                          R"(picture={"particles": "meshes", "mesh": ")" + shard + R"("})"});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+    }
+    EXPECT_EQ(folder.read("true.html").size(), folder.read("false.html").size());
 }
 
 TEST(ViewCommand, RefusesWhatItCannotShowWithOneLine) {

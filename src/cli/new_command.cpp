@@ -74,6 +74,15 @@ void check_scene(const NewArguments& arguments, const std::string& text) {
     }
 }
 
+bool can_be_read(const std::string& text, const std::string& file) {
+    try {
+        const Simulation simulation(parse_scene(text, file).setup);
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
 void make_scene(const NewArguments& arguments) {
     const cli::SceneTemplate kind = wanted_template(arguments);
     const fs::path target(arguments.output);
@@ -83,13 +92,24 @@ void make_scene(const NewArguments& arguments) {
     if (!arguments.force && fs::exists(fs::symlink_status(target, ignored)))
         throw InputError(
             fmt::format("--output {}: exists already; another name, or --force to replace it", arguments.output));
-    const cli::FittedMesh mesh = fitted_mesh(arguments);
-    const std::string text = cli::scene_text(kind, mesh);
+    cli::FittedMesh mesh = fitted_mesh(arguments);
+    const bool is_to_be_filled = kind == cli::SceneTemplate::gas && mesh.closed;
+    std::string text = cli::scene_text(kind, mesh);
+    if (is_to_be_filled && !can_be_read(text, arguments.output)) {
+        mesh.closed = false;
+        text = cli::scene_text(kind, mesh);
+    }
     check_scene(arguments, text);
     write_file(target, text);
     const std::string folder = (target.parent_path() / target.stem()).generic_string();
     const std::string up = mesh.up.empty() ? mesh.format_up : mesh.up;
     cli::print("{}: a {} scene for {}, {} up\n", arguments.output, arguments.kind, arguments.mesh, up);
+    if (kind == cli::SceneTemplate::gas && !mesh.closed) {
+        cli::print("  the gas is around the mesh, in a box, not in it: {}\n",
+                   is_to_be_filled ? "where edges belong to three faces or more, or almost nothing is enclosed, the "
+                                     "mesh has no inside that could be filled"
+                                   : "the mesh is open");
+    }
     cli::print("  where the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
     cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);
 }

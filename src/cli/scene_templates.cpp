@@ -192,12 +192,12 @@ Part gas(const Fit& fit, bool closed) {
             common;
     } else {
         emitters = fmt::format(
-            R"(    // The mesh is open and would not hold a gas: one streams around it, in the box.
+            R"(    // The mesh has no inside that would hold a gas: one streams around it, in the box.
     {{"name": "gas", "type": "sphere", "center": {}, "radius": {}, {})",
             at(above_mesh(fit, 0.12), fit), about(0.08 * fit.length), common);
     }
     return {.title = closed ? "Gas: test molecules inside the closed mesh, with elastic reflections and no forces."
-                            : "Gas: test molecules around the open mesh in a closed box, with elastic reflections.",
+                            : "Gas: test molecules around the mesh in a closed box, with elastic reflections.",
             .emitters = emitters,
             .surface = R"({"restitution": 1})",
             .duration = 6.0 * fit.fall,

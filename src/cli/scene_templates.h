@@ -22,7 +22,7 @@ struct FittedMesh {
     Box3 bounds;            ///< m, as the mesh stands in the scene; not empty
     std::string up;         ///< axis of the file that points up, "y" or "z"; empty: as its format says
     std::string format_up;  ///< and what that says
-    bool closed = false;    ///< a gas can be inside
+    bool closed = false;    ///< its edges say that a gas can be inside
 };
 
 /// The text of a scene file: the mesh on a ground (a gas has none), emitter, camera; sizes and times from the bounds.

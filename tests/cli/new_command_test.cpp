@@ -77,6 +77,24 @@ TEST(NewCommand, TheCameraOfTheGasAroundAnOpenMeshSeesAllOfItsBox) {
     }
 }
 
+// Two tetrahedra that share a face: closed, and three faces meet in each of its edges.
+TEST(NewCommand, AGasIsAroundAMeshWhoseInsideNobodyCanTell) {
+    const test::TemporaryFolder folder;
+    const std::string mesh = folder
+                                 .write("m.obj",
+                                        "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 -1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
+                                        "f 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n")
+                                 .string();
+    const auto info = test::run_ricochet({"info", mesh});
+    ASSERT_NE(info.output.find("closed                yes"), std::string::npos) << info.output;
+    const std::string scene = folder.path("s.json").string();
+    const auto made = test::run_ricochet({"new", mesh, "--output", scene, "--template", "gas"});
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    EXPECT_NE(made.output.find("the gas is around the mesh, in a box"), std::string::npos) << made.output;
+    EXPECT_NE(made.output.find("three faces or more"), std::string::npos) << made.output;
+    EXPECT_NE(text_of(scene).find("\"name\": \"box\""), std::string::npos);
+}
+
 TEST(NewCommand, FitsToAMeshOfAnySizeAndPlace) {
     const test::TemporaryFolder folder;
     for (const std::string mesh : {"v 0 0 0\nv 1e-4 0 0\nv 0 1e-4 2e-5\nf 1 2 3\n",

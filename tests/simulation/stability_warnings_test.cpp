@@ -3,11 +3,15 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/pair_forces.h"
 #include "ricochet/dynamics/particles_force.h"
 #include "ricochet/simulation.h"
@@ -242,6 +246,80 @@ TEST(BirthWarnings, TellOfChildrenThatAForceWithoutSofteningThrowsApart) {
     SimulationSetup others = pieces(0.0, 6.0, true);
     others.particles_forces[0].emitters = {0};
     EXPECT_TRUE(warnings_of(std::move(others)).empty());
+}
+
+/// A ball of 1 kg and 1 m that a drag acts on, at that velocity, without gravity.
+SimulationSetup dragged(double time_step, IntegratorKind kind, std::unique_ptr<Force> drag, const Vec3& velocity) {
+    SimulationSetup setup = setup_of(time_step, 8.0 * time_step);
+    setup.options.integrator.kind = kind;
+    setup.particles = {particle_of({}, velocity, 1.0)};
+    setup.forces.push_back(std::move(drag));
+    return setup;
+}
+
+double last_speed(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    return length(simulation.particles().velocity[0]);
+}
+
+// h c / m = 2, above which every step leaves a larger velocity
+TEST(StabilityWarnings, OfLinearDragBeginWhereItBeginsToAmplify) {
+    constexpr double kBound = 2.0 / 50.0;
+    for (const IntegratorKind kind :
+         {IntegratorKind::ballistic, IntegratorKind::velocity_verlet, IntegratorKind::symplectic_euler}) {
+        for (const double factor : {0.99, 1.01}) {
+            const auto make = [&] { return dragged(factor * kBound, kind, make_linear_drag(50.0), {3, 0, 0}); };
+            EXPECT_EQ(last_speed(make()) > 3.0, factor > 1.0) << name_of(kind) << " " << factor;
+            EXPECT_EQ(warnings_of(make()).size(), factor > 1.0 ? 1U : 0U) << name_of(kind) << " " << factor;
+        }
+    }
+    EXPECT_TRUE(warnings_of(dragged(1.0, IntegratorKind::implicit_euler, make_linear_drag(50.0), {3, 0, 0})).empty());
+    EXPECT_TRUE(warnings_of(dragged(1.0, IntegratorKind::dormand_prince, make_linear_drag(50.0), {3, 0, 0})).empty());
+}
+
+// With the force k |v| v one step turns v round where h k |v| / m = 1.
+TEST(StabilityWarnings, OfQuadraticDragBeginWhereAStepThrowsTheParticleBack) {
+    for (const double factor : {0.99, 1.01}) {
+        const Vec3 velocity{3, 4, 0};
+        SimulationSetup setup =
+            dragged(factor / (2.0 * 5.0), IntegratorKind::ballistic, make_quadratic_drag(2.0), velocity);
+        EXPECT_EQ(warnings_of(std::move(setup)).size(), factor > 1.0 ? 1U : 0U) << factor;
+        setup = dragged(factor / (2.0 * 5.0), IntegratorKind::ballistic, make_quadratic_drag(2.0), velocity);
+        Simulation simulation(std::move(setup));
+        simulation.step();
+        EXPECT_EQ(dot(simulation.particles().velocity[0], velocity) < 0.0, factor > 1.0) << factor;
+    }
+}
+
+// It falls at sqrt(m g / k), at which 2 k v / m = 2 sqrt(k g / m).
+TEST(StabilityWarnings, OfDragCountTheSpeedAtWhichParticlesFall) {
+    for (const double factor : {0.98, 1.02}) {
+        SimulationSetup setup =
+            dragged(factor / std::sqrt(200.0), IntegratorKind::ballistic, make_quadratic_drag(20.0), {});
+        setup.forces.push_back(make_gravity({0, 0, -10}));
+        EXPECT_EQ(warnings_of(std::move(setup)).size(), factor > 1.0 ? 1U : 0U) << factor;
+    }
+}
+
+TEST(StabilityWarnings, OfDragAreForTheLightestAndLargestThatAnEmitterMakes) {
+    SimulationSetup setup = setup_of(0.01, 0.1);
+    EmitterDescription emitter;
+    emitter.name = "mist";
+    emitter.shape = PointShape{};
+    emitter.burst = 1;
+    emitter.mass = {1.0, 0.5};
+    emitter.radius = {0.1, 0.02};
+    setup.emitters.push_back(emitter);
+    const double rate = 6.0 * std::numbers::pi * 100.0 * 0.12 / 0.5;
+    setup.forces.push_back(make_stokes_drag(100.0));
+    ASSERT_GT(0.01 * rate, 2.0);
+    const std::vector<std::string> warnings = warnings_of(std::move(setup));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("particles of 'mist' (mass 0.5 kg, radius 0.12 m"), std::string::npos) << warnings[0];
+    EXPECT_NE(warnings[0].find("use a time_step of at most 0.00442 s or the integrator implicit_euler"),
+              std::string::npos)
+        << warnings[0];
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 
@@ -290,10 +291,12 @@ constexpr double kNewtonCoefficient = 0.44;
 // The 0.15 Re^0.687 by which drag exceeds Stokes's.
 double schiller_naumann_excess(double reynolds) { return 0.15 * portable_pow(reynolds, 0.687); }
 
+class AnyDrag : public Force {};
+
 // Law: factor(speed, input) in kg/s, the force over the velocity relative to the medium; with kNeedsSpeed it is told
 // the speed. A template, so that a law costs no call of its own.
 template <class Law>
-class Drag final : public Force {
+class Drag final : public AnyDrag {
 public:
     Drag(const Law& law, FlowPointer flow) : law_(law), flow_(std::move(flow)) {}
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
@@ -356,6 +359,8 @@ std::unique_ptr<Force> drag_of(const Law& law, FlowPointer flow) {
 }
 
 }  // namespace
+
+bool is_drag_law(const Force& force) { return dynamic_cast<const AnyDrag*>(&force) != nullptr; }
 
 std::unique_ptr<Force> make_linear_drag(double coefficient, FlowPointer flow) {
     require_not_negative(coefficient, "drag: the coefficient", "kg/s");

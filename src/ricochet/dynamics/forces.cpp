@@ -6,6 +6,7 @@
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 
@@ -66,6 +67,7 @@ public:
     [[nodiscard]] bool is_steady() const override { return force_->is_steady(); }
     [[nodiscard]] bool is_conservative() const override { return force_->is_conservative(); }
     [[nodiscard]] bool needs_temperature() const override { return force_->needs_temperature(); }
+    [[nodiscard]] const Force& force() const { return *force_; }
 
 private:
     [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
@@ -79,6 +81,11 @@ private:
 std::unique_ptr<Force> make_force_on(std::vector<std::uint64_t> particles, std::unique_ptr<Force> force) {
     if (!force) throw InputError("force on some particles: there is no force");
     return std::make_unique<ForceOnSome>(std::move(particles), std::move(force));
+}
+
+bool is_drag(const Force& force) {
+    const auto* const on_some = dynamic_cast<const ForceOnSome*>(&force);
+    return on_some ? is_drag(on_some->force()) : is_drag_law(force);
 }
 
 std::unique_ptr<Force> make_gravity(const Vec3& acceleration) {

@@ -15,6 +15,11 @@ constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 constexpr double kReachOfMidpoint = 1.0;
 constexpr double kReachOfRk4 = 2.6;
 
+/// Of the speed, or of kSlow: wide, so that the leap in Schiller and Naumann's coefficient (0.4 %) is no steep slope;
+/// the differences of linear and quadratic drags are exact.
+constexpr double kDifference = 1e-2;
+constexpr double kSlow = 1e-3;  ///< m/s
+
 }  // namespace
 
 double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
@@ -36,6 +41,18 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
         default:
             return 4.0 / (gamma + root);
     }
+}
+
+double damping_rate(const Force& drag, const ForceInput& input) {
+    const Vec3 pull = drag.acceleration(input);
+    const double size = length(pull);
+    const Vec3 along = size > 0.0 ? pull / size : Vec3{1, 0, 0};
+    const double step = kDifference * std::max(length(input.velocity), kSlow);
+    ForceInput ahead = input;
+    ForceInput behind = input;
+    ahead.velocity += step * along;
+    behind.velocity -= step * along;
+    return dot(drag.acceleration(behind) - drag.acceleration(ahead), along) / (2.0 * step);
 }
 
 }  // namespace ricochet

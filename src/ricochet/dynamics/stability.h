@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles_force.h"
 
@@ -35,5 +36,14 @@ struct PairSteepness {
 
 /// Gravity and charges without softening: the nearer two come to each other the more they do, without bound.
 [[nodiscard]] bool lacks_softening(const ParticlesForce& force);
+
+/// True for the drags of forces.h, on all particles or on some.
+[[nodiscard]] bool is_drag(const Force& force);
+/// The same on all.
+[[nodiscard]] bool is_drag_law(const Force& force);
+
+/// 1/s: how fast a drag damps velocities beside the particle's own at most, from central differences along the drag
+/// itself: of a linear one its coefficient over the mass, of a quadratic one twice that times the speed.
+[[nodiscard]] double damping_rate(const Force& drag, const ForceInput& input);
 
 }  // namespace ricochet

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
+#include "ricochet/dynamics/emitter.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/implicit_euler.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/dynamics/stability.h"
 
@@ -121,6 +126,127 @@ std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_
     return too_long(setup, bound, "what is held together by " + what, "a weaker force");
 }
 
+/// A particle that drags may be too strong for, and what it is in the scene.
+struct DraggedParticle {
+    ForceInput state{};
+    std::string name;
+};
+
+/// As an emitter lets go the lightest, largest and fastest, each way it may: drags do most to that one. Nothing of
+/// those whose mass only the run gives, or that go with their parents.
+std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, std::size_t number) {
+    const double lightest = emitter.mass.mean - emitter.mass.spread;
+    if (!(lightest > 0.0) || is_cloud(emitter) || (emitter.parent && emitter.parent->share)) return {};
+    const bool is_any_way = length_squared(emitter.direction) == 0.0;
+    std::vector<Vec3> ways{emitter.direction};
+    if (is_any_way) ways = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const double speed = std::abs(emitter.speed.mean) + emitter.speed.spread;
+    std::vector<DraggedParticle> particles;
+    for (const Vec3& way : ways) {
+        Particle particle;
+        particle.position = bounds(emitter.shape).center();
+        particle.velocity = emitter.velocity + (speed / length(way)) * way;
+        particle.mass = lightest;
+        particle.radius = emitter.radius.mean + emitter.radius.spread;
+        particle.birth_time = emitter.start;
+        if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
+        const ForceInput state{particle.position, particle.velocity,   particle.mass,
+                               particle.radius,   particle.birth_time, std::numeric_limits<std::uint64_t>::max()};
+        const std::string name = emitter.name.empty() ? fmt::format("emitters[{}]", number) : "'" + emitter.name + "'";
+        particles.push_back({state, "particles of " + name});
+    }
+    return particles;
+}
+
+/// How the particle moves at the end of a long time under the drags and what pulls all alike, m/s: as far as it gets
+/// there within many steps, since where it takes longer drags are weak.
+Vec3 falling_velocity(const std::vector<const Force*>& drags, const Vec3& pull, const ForceInput& state, double step) {
+    constexpr double kManySteps = 1000.0;
+    const auto sum = [&](const ForceInput& input) {
+        ForceInput here = state;
+        here.velocity = input.velocity;
+        Vec3 acceleration = pull;
+        for (const Force* const drag : drags) acceleration += drag->acceleration(here);
+        return acceleration;
+    };
+    std::vector<std::unique_ptr<Force>> forces;
+    forces.push_back(make_acceleration(sum));
+    return implicit_euler_velocity(ForceField(std::move(forces)), state, kManySteps * step);
+}
+
+double damping_of_all(const std::vector<const Force*>& drags, const ForceInput& state) {
+    double rate = 0.0;
+    for (const Force* const drag : drags) rate += damping_rate(*drag, state);
+    return rate;
+}
+
+/// The particle that drags damp fastest, with its velocity where they do: as it sets out or as it falls.
+class FastestDamped {
+public:
+    FastestDamped(const SimulationSetup& setup, std::vector<const Force*> drags)
+        : drags_(std::move(drags)), step_(setup.options.time_step) {
+        for (const auto& force : setup.forces) pull_ += force->common_acceleration().value_or(Vec3{});
+        for (std::size_t i = 0; i < setup.particles.size(); ++i) {
+            const Particle& p = setup.particles[i];
+            if (!p.pinned)
+                take({p.position, p.velocity, p.mass, p.radius, 0.0, i},
+                     [&] { return fmt::format("particles[{}]", i); });
+        }
+        for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+            for (const DraggedParticle& p : most_dragged_of(setup.emitters[k], k))
+                take(p.state, [&] { return p.name; });
+        }
+    }
+    [[nodiscard]] double rate() const { return rate_; }
+    [[nodiscard]] const DraggedParticle& particle() const { return particle_; }
+
+private:
+    template <class Name>
+    void take(ForceInput state, const Name& name) {
+        compare(state, name);
+        if (state.mass == fallen_.mass && state.radius == fallen_.radius) return;  // falls like the one before
+        fallen_ = state;
+        state.velocity = falling_velocity(drags_, pull_, state, step_);
+        compare(state, name);
+    }
+    template <class Name>
+    void compare(const ForceInput& state, const Name& name) {
+        const double rate = damping_of_all(drags_, state);
+        if (rate <= rate_) return;
+        rate_ = rate;
+        particle_ = {state, name()};
+    }
+
+    std::vector<const Force*> drags_;
+    double step_;
+    Vec3 pull_;
+    double rate_ = 0.0;
+    ForceInput fallen_{};
+    DraggedParticle particle_;
+};
+
+std::optional<std::string> drag_warning(const SimulationSetup& setup) {
+    std::vector<const Force*> drags;
+    for (const auto& force : setup.forces) {
+        if (is_drag(*force)) drags.push_back(force.get());
+    }
+    if (drags.empty() || setup.options.flow) return std::nullopt;
+    const FastestDamped fastest(setup, drags);
+    OscillationRates rates;
+    rates.gamma = fastest.rate();
+    const double bound = longest_stable_step(setup.options.integrator.kind, rates);
+    if (setup.options.time_step <= bound) return std::nullopt;
+    const auto [step, longest] = told_apart(setup.options.time_step, bound);
+    const ForceInput& particle = fastest.particle().state;
+    return fmt::format(
+        "the time step of {} s exceeds {} s, up to which {} is sure to be stable with the drag on {} (mass "
+        "{:.3g} kg, radius {:.3g} m, {:.3g} m/s): drag may throw them back, ever faster, instead of slowing them; use "
+        "a "
+        "time_step of at most {} s{}",
+        step, longest, name_of(setup.options.integrator.kind), fastest.particle().name, particle.mass, particle.radius,
+        length(particle.velocity), longest, may_be_implicit(setup) ? " or the integrator implicit_euler" : "");
+}
+
 /// Children begin where their parent is: two of a batch in each other, one that the parent outlives in the parent.
 bool is_born_beside_others(const ParentRule& rule) {
     return (!rule.share && rule.on != BirthEvent::death) || rule.count.mean + rule.count.spread >= 1.5;
@@ -160,6 +286,7 @@ bool may_be_implicit(const SimulationSetup& setup) {
 std::vector<std::string> stability_warnings(const SimulationSetup& setup) {
     std::vector<std::string> warnings;
     if (setup.solver) return warnings;
+    if (auto warning = drag_warning(setup)) warnings.push_back(std::move(*warning));
     if (auto warning = spring_warning(setup)) warnings.push_back(std::move(*warning));
     for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
         if (auto warning = pair_warning(setup, k)) warnings.push_back(std::move(*warning));

@@ -25,6 +25,11 @@ std::optional<Number> parse_all(std::string_view text) {
 
 }  // namespace
 
+std::optional<double> parse_number(const std::string& text) {
+    const auto value = parse_all<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 std::vector<double> parse_number_list(const std::string& option, const std::string& text) {
     std::vector<double> numbers;
     std::string_view rest = text;

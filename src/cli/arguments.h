@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet::cli {
+
+/// The number that the text is, where it is nothing else and finite.
+[[nodiscard]] std::optional<double> parse_number(const std::string& text);
 
 /// The numbers of a comma-separated list. Throws InputError, naming the option, when one is no finite number.
 [[nodiscard]] std::vector<double> parse_number_list(const std::string& option, const std::string& text);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::cli {
 
@@ -71,6 +72,22 @@ void Command::on_call(std::function<void()> action) { app_->callback(std::move(a
 
 bool Command::is_called() const { return app_->parsed(); }
 
+/// What the command knows instead of the first option that it does not.
+static std::string meant_options(const CLI::App& app) {
+    for (const CLI::App* command : app.get_subcommands()) {
+        std::vector<std::string> known;
+        for (const CLI::Option* option : command->get_options()) {
+            for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+        }
+        for (const std::string& word : command->remaining()) {
+            if (!word.starts_with("--")) continue;
+            return detail::did_you_mean(
+                detail::nearest_names(word.substr(0, word.find('=')), {known.begin(), known.end()}));
+        }
+    }
+    return "";
+}
+
 CommandLine::CommandLine(const std::string& help, const std::string& program)
     : app_(std::make_unique<CLI::App>(help, program)) {
     app_->require_subcommand(1);
@@ -97,6 +114,9 @@ std::optional<int> CommandLine::parse(int argc, char** argv, const std::string& 
         app_->parse(argc, argv);
     } catch (const CLI::Success& help_or_version) {
         return app_->exit(help_or_version);
+    } catch (const CLI::ExtrasError& error) {
+        const std::string help = meant_options(*app_);
+        throw InputError(fmt::format("{}{} ({})", error.what(), help.empty() ? "" : "; " + help, hint));
     } catch (const CLI::ParseError& error) {
         throw InputError(fmt::format("{} ({})", error.what(), hint));
     }

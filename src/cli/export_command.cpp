@@ -33,6 +33,7 @@ struct ExportArguments {
 
 void check_format(const std::string& format) {
     if (std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end()) return;
+    if (format == "glb") throw InputError("--format glb: expected gltf, which writes a .glb file");
     const auto nearest = detail::nearest_names(format, {kFormats.begin(), kFormats.end()});
     throw InputError(fmt::format("--format {}: {}", format,
                                  nearest.empty() ? "expected ply, pc2 or gltf" : detail::did_you_mean(nearest)));

@@ -116,6 +116,29 @@ void require_room(const PictureSize& size, bool has_sprites, bool film, const st
     require_memory(bytes, fmt::format("--size {}", text));
 }
 
+void print_looks(const RunPictures& pictures) {
+    if (pictures.shows_image_colors()) {
+        cli::print("in the colours of the sprite\n");
+    } else if (pictures.shows_heat_alone()) {
+        cli::print("glowing by their temperature\n");
+    } else if (pictures.shows_own_colors()) {
+        cli::print("in the particles' own colours\n");
+    } else {
+        cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
+    }
+    if (pictures.lacks_shutter()) {
+        cli::print(
+            "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "
+            "shows the ways of 0.02 s\n");
+    }
+    if (const std::string& name = pictures.hiding_collider(); !name.empty()) {
+        cli::print(
+            "note: most particles are inside \"{0}\", of which the camera sees the outside; --glass {0}, or "
+            "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
+            name);
+    }
+}
+
 void render(const RenderArguments& arguments) {
     const std::string extension = std::filesystem::path(arguments.output).extension().string();
     if (extension != ".png" && extension != ".mp4") {
@@ -161,21 +184,7 @@ void render(const RenderArguments& arguments) {
     } else {
         cli::print("{}: {} {}, ", arguments.output, frames.size(), frames.size() == 1 ? "frame" : "frames");
     }
-    if (pictures.shows_image_colors()) {
-        cli::print("in the colours of the sprite\n");
-    } else if (pictures.shows_heat_alone()) {
-        cli::print("glowing by their temperature\n");
-    } else if (pictures.shows_own_colors()) {
-        cli::print("in the particles' own colours\n");
-    } else {
-        cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
-    }
-    if (const std::string& name = pictures.hiding_collider(); !name.empty()) {
-        cli::print(
-            "note: most particles are inside \"{0}\", of which the camera sees the outside; --glass {0}, or "
-            "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
-            name);
-    }
+    print_looks(pictures);
 }
 
 }  // namespace

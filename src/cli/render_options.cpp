@@ -112,9 +112,9 @@ std::optional<Ground> parse_ground(const std::string& text) {
     if (text.empty()) return std::nullopt;
     if (text == "none") return Ground{Ground::Kind::none, 0.0};
     if (text == "auto") return Ground{Ground::Kind::automatic, 0.0};
-    const std::vector<double> v = parse_number_list("--ground", text);
-    if (v.size() != 1) refuse(fmt::format("--ground {}: expected none, auto, or a height in m", text));
-    return Ground{Ground::Kind::at_height, v[0]};
+    const std::optional<double> height = parse_number(text);
+    if (!height) refuse(fmt::format("--ground {}: expected none, auto, or a height in m (a number alone)", text));
+    return Ground{Ground::Kind::at_height, *height};
 }
 
 }  // namespace

@@ -155,6 +155,11 @@ public:
     /// True when the frames themselves say the colours.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
+    /// True when streaks are asked for and spheres drawn.
+    [[nodiscard]] bool lacks_shutter() const {
+        return !(shutter() > 0.0) && std::any_of(drawings_.begin(), drawings_.end(),
+                                                 [](const Drawing& d) { return d.kind == ParticleDrawing::streaks; });
+    }
     /// True when particles are discs or images, some of them at least.
     [[nodiscard]] bool draws_sprites() const {
         return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& d) { return d.is_flat(); });

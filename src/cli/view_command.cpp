@@ -94,6 +94,9 @@ int view(const ViewArguments& arguments) {
             fmt::format("--color-map {}: expected one of {}", arguments.color_map, fmt::join(color_map_names(), ", ")));
     }
     const bool is_run = is_folder(arguments.scene.file);
+    if (!is_run && !std::filesystem::exists(arguments.scene.file)) {
+        throw InputError(fmt::format("there is neither a run's folder nor a scene {}", arguments.scene.file));
+    }
     const std::filesystem::path target = page_path(arguments, is_run);
     if (is_folder(target)) throw InputError(fmt::format("--output {}: is a folder", target.string()));
     int exit_code = 0;

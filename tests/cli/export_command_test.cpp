@@ -172,6 +172,7 @@ TEST(ExportCommand, RefusesWhatItCannotExportWithOneLine) {
         {{run, "--format", "ply"}, "--output"},
         {{run, "--output", out}, "--format"},
         {{run, "--format", "glft", "--output", glb}, "did you mean \"gltf\""},
+        {{run, "--format", "glb", "--output", glb}, "expected gltf, which writes a .glb file"},
         {{run, "--format", "xyz", "--output", out}, "expected ply, pc2 or gltf"},
         {{run, "--format", "ply", "--output", ""}, "--output"},
         {{run, "--format", "ply", "--output", run}, "not empty"},

@@ -58,6 +58,16 @@ TEST(RenderCommand, DrawsTheLastFrameOrTheOneThatIsAskedFor) {
 }
 
 // At each time the picture is, to the bit, that of a scene in which the collider stands where it is then.
+TEST(RenderCommand, SaysThatStreaksNeedAShutter) {
+    const RunFolderFiles files;
+    const ProgramResult closed = files.render("a.png", {"--draw", "streaks"});
+    EXPECT_EQ(closed.exit_code, 0) << closed.errors;
+    EXPECT_NE(closed.output.find("note: streaks are as long as the shutter is open"), std::string::npos)
+        << closed.output;
+    EXPECT_EQ(files.render("b.png", {"--draw", "streaks", "--shutter", "0.1"}).output.find("note:"), std::string::npos);
+    EXPECT_EQ(files.render("c.png", {"--draw", "spheres"}).output.find("note:"), std::string::npos);
+}
+
 TEST(RenderCommand, ShowsCollidersThatMoveWhereTheyAreInThatFrame) {
     const TemporaryFolder folder;
     const auto pictures = [&](const std::string& name, const std::string& placement) {
@@ -169,6 +179,9 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
         {{"--frame", "7"}, "no such frame"},
         {{"--frame", "first"}, "expected a step number, last or all"},
         {{"--frame", "-1"}, "expected a step number"},
+        {{"--ground", "5m"}, "--ground 5m: expected none, auto, or a height in m"},
+        {{"--ground", "1,2"}, "expected none, auto, or a height in m"},
+        {{"--frames", "3"}, "did you mean \"--frame\"?"},
         {{"--size", "0x10"}, "expected WIDTHxHEIGHT"},
         {{"--size", "640"}, "expected WIDTHxHEIGHT"},
         {{"--size", "99999x99999"}, "expected WIDTHxHEIGHT"},
@@ -187,7 +200,7 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
         {{"--light", "dawn"}, "expected one of day, noon, overcast, night, studio"},
         {{"--background", "red"}, "expected sky, transparent"},
         {{"--background", "1,2,3"}, "expected sky, transparent"},
-        {{"--ground", "low"}, "expected numbers"},
+        {{"--ground", "low"}, "expected none, auto, or a height in m"},
         {{"--lens", "-1"}, "expected diameter[,distance]"},
         {{"--draw", "stars"}, "expected auto, spheres, streaks"},
         {{"--shutter", "-2"}, "expected 0 to"},

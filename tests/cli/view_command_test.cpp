@@ -70,7 +70,7 @@ TEST(ViewCommand, RefusesWhatItCannotShowWithOneLine) {
     const std::string page = folder.path("page.html").string();
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
         {{"view", empty, "--output", page}, "holds no frames"},
-        {{"view", run + "x", "--output", page}, "runx"},
+        {{"view", run + "x", "--output", page}, "there is neither a run's folder nor a scene"},
         {{"view", run, "--output", folder.path("folder.html").string()}, "is a folder"},
         {{"view", run, "--output", folder.path("page.txt").string()}, ".html"},
         {{"view", run, "--output", page, "--budget", "0.5"}, "--budget"},

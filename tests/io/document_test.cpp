@@ -76,8 +76,26 @@ TEST(JsonParser, RefusesWhatIsNotTextInUtf8) {
     EXPECT_EQ(only_error("[1, 2]\0"sv), "f:1:7: found a NUL byte, expected text only");
 }
 
+TEST(JsonParser, SaysWhichCommaIsMissingOrTooMany) {
+    const auto error = [](const char* text) { return only_error(text); };
+    EXPECT_EQ(error("{\"a\": 1\n \"b\": 2}"), "f:2:2: not valid JSON: a comma is missing before \"b\"");
+    EXPECT_EQ(error("{\"a\": {} // one, two\n \"b\": 2}"), "f:2:2: not valid JSON: a comma is missing before \"b\"");
+    EXPECT_EQ(error("{\"a\": [1 2]}"), "f:1:10: not valid JSON: a comma is missing before '2'");
+    EXPECT_EQ(error("[{} {}]"), "f:1:5: not valid JSON: a comma is missing before '{'");
+    EXPECT_EQ(error("[{\"a\": \"x, ]\"}\n  [1]]"), "f:2:3: not valid JSON: a comma is missing before '['");
+    EXPECT_EQ(error("{\"a\" 1}"), "f:1:6: not valid JSON: a colon is missing before '1'");
+    EXPECT_EQ(error("{\"a\": 1,}"), "f:1:8: not valid JSON: take the last comma before '}' away");
+    EXPECT_EQ(error("[1, /* , */\n]"), "f:1:3: not valid JSON: take the last comma before ']' away");
+}
+
+TEST(JsonParser, SaysWhatElseIsWrongInItsOwnWords) {
+    for (const char* text : {"[1] 2", "{,}", "[1, 2", "{\"a\": tru \"b\": 1}", "{\"a\"b\": 1}", "[,]", "[1:2]"}) {
+        EXPECT_NE(only_error(text).find("syntax error while parsing"), std::string::npos) << only_error(text);
+    }
+}
+
 TEST(JsonParser, SyntaxErrorsHaveLineAndColumn) {
-    EXPECT_EQ(only_error("{\n  \"a\": 1,\n}").rfind("f:3:1: not valid JSON", 0), 0U) << only_error("{\n  \"a\": 1,\n}");
+    EXPECT_EQ(only_error("{\n  \"a\": 1,\n}").rfind("f:2:9: not valid JSON", 0), 0U) << only_error("{\n  \"a\": 1,\n}");
     for (const char* text : {"",           "  ",        "// only a comment",
                              "{",          "[1, 2",     "{\"a\" 1}",
                              "[1 2]",      "nul",       "[NaN]",

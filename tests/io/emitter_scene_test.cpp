@@ -106,6 +106,8 @@ const Spoiled kSpoiled[] = {
     {R"("seed": 12)", R"("seed": -1)", "emitters[0].seed: found -1"},
     {R"("parent": "shell", "on")", R"("parent": "shel", "on")",
      "emitters[2].parent: there is no emitter \"shel\"; did you mean \"shell\"?"},
+    {R"("parent": "shell", "on")", R"("parent": "quark", "on")",
+     "emitters[2].parent: there is no emitter \"quark\", known: \"shell\""},
     {R"("on": "impact")", R"("on": "bounce")",
      "emitters[2].on: found \"bounce\", expected one of \"life\", \"death\", \"impact\""},
     {R"("on": "impact")", R"("on": "life")", "emitters[2].share: a parent that lives on cannot be shared out"},

@@ -48,7 +48,9 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
         const std::string name = views[k].text("parent");
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
-            context.error(views[k], "parent", unknown_name("emitter", name, names));
+            std::vector<std::string_view> others = names;  // it may be its own parent, but is no help
+            others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+            context.error(views[k], "parent", unknown_name("emitter", name, others.empty() ? names : others));
         } else {
             setup.emitters[k].parent->emitter = static_cast<std::uint32_t>(found - names.begin());
         }

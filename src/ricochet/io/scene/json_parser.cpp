@@ -9,6 +9,7 @@
 
 #include "ricochet/core/printable.h"
 #include "ricochet/io/scene/diagnostics.h"
+#include "ricochet/io/scene/json_hint.h"
 
 namespace ricochet::detail {
 
@@ -121,7 +122,9 @@ public:
     bool end_array() override { return close(); }
 
     bool parse_error(std::size_t position, const std::string& /*token*/, const Json::exception& error) override {
-        diagnostics_.error(location_of_byte(position), "", "not valid JSON: " + plain_message(error.what()));
+        const std::optional<JsonHint> hint = json_hint(text_, position, error.what());
+        const SourceLocation location = location_of_byte(hint ? hint->position + 1 : position);
+        diagnostics_.error(location, "", "not valid JSON: " + (hint ? hint->text : plain_message(error.what())));
         return false;
     }
 

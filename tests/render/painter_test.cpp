@@ -6,9 +6,11 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/random.h"
+#include "ricochet/render/tone.h"
 
 namespace ricochet {
 namespace {
@@ -57,6 +59,36 @@ TEST(Painter, TheShadowOfACoarseBallOnItselfFollowsTheSmoothSurface) {
     }
     EXPECT_GT(facing, 1000);
     EXPECT_LT(shaded, facing / 50);
+}
+
+PreviewMesh square(const Vec3& middle, const Vec3& normal, double half, double roughness) {
+    const auto [u, v] = tangent_frame(normal);
+    const Vec3 a = half * u;
+    const Vec3 b = half * v;
+    return {{{middle - a - b, middle + a - b, middle + a + b, middle - a + b}, {{0, 1, 2}, {0, 2, 3}}},
+            {0.3, 0.3, 0.3},
+            {},
+            false,
+            roughness};
+}
+
+// A square that mirrors the sun to the camera, and a screen that keeps the sun from it.
+TEST(Painter, ThereIsNoHighlightOfTheSunInTheShadow) {
+    const Camera camera{{0, -10, 3}, {0, 0, 0}, {0, 0, 1}, 20.0};
+    const Vec3 to_sun = light_for(Lighting::day, camera).to_sun;
+    const Vec3 middle = normalized(to_sun + normalized(camera.position));
+    PictureOptions options;
+    options.width = options.height = 8;
+    options.samples = 64;
+    const auto brightness = [&](double roughness, bool screened) {
+        std::vector<PreviewMesh> meshes{square({}, middle, 1.0, roughness)};
+        if (screened) meshes.push_back(square(4.0 * to_sun, to_sun, 1.5, 1.0));
+        const Preview preview(std::move(meshes), {}, {});
+        return luminance(Painter(preview, camera, options, {}).pixel(4, 4).light);
+    };
+    EXPECT_GT(brightness(0.4, false), 1.1 * brightness(1.0, false));
+    EXPECT_LT(brightness(0.4, true), 1.1 * brightness(1.0, true));
+    EXPECT_LT(brightness(1.0, true), 0.7 * brightness(1.0, false));
 }
 
 TEST(Painter, TheLiftIsZeroOnFlatMeshes) {

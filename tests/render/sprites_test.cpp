@@ -77,6 +77,24 @@ TEST(Sprites, TheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(bytes(1, true), bytes(4, true));
 }
 
+// Where thin cover came out brighter, a disc had a bright rim.
+TEST(Picture, ADiscOfTheBackgroundsLightIsNotSeen) {
+    Sprites disc;
+    disc.centers = {{0, 0, 0}};
+    disc.radii = {0.5};
+    disc.colors = {Vec3{0.3, 0.4, 0.5}};
+    disc.opacities = {0.9};
+    PictureOptions options;
+    options.width = options.height = kSize;
+    options.samples = 1;
+    options.background = kSpriteDaylight * disc.colors[0];
+    const Image image = render_picture(nothing(), front(), options, std::span(&disc, 1));
+    const Image empty = render_picture(nothing(), front(), options);
+    for (std::size_t i = 0; i < image.rgb.size(); ++i) EXPECT_NEAR(image.rgb[i], empty.rgb[i], 1) << i;
+    disc.colors[0] = {};
+    EXPECT_NE(render_picture(nothing(), front(), options, std::span(&disc, 1)).rgb, empty.rgb);
+}
+
 TEST(Picture, TheNightIsDark) {
     PictureOptions options;
     options.width = options.height = kSize;

@@ -196,7 +196,7 @@ Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3
         const double cover = 0.04 + 0.6 * slant * slant * slant;
         const double shade = 0.6 + 0.4 * std::fabs(dot(glass->normal, light_.to_sun));
         const Vec3 bright = light_.has_sun() ? light_.sun : light_.sky_colors.zenith;
-        light += open * cover * shade * (times(glass->color, bright) + gloss(*glass, ray));
+        light += open * cover * shade * (times(glass->color, bright) + gloss(*glass, ray, true));
         open *= 1.0 - cover;
         PreviewHit beyond = *glass;
         beyond.face = -glass->face;
@@ -214,7 +214,7 @@ Vec3 Painter::solid_light(const Look& look) const {
     Vec3 light = hit.emission + times(color, look.sun);
     light += times(color, look.sky);
     if (!lamps_.empty()) light += times(color, lamp_light(hit, look.get(SamplePurpose::lamp)));
-    if (hit.roughness < 1.0) light += gloss(hit, look.ray);
+    if (hit.roughness < 1.0) light += gloss(hit, look.ray, look.sun != Vec3{});
     return hit.kind == PreviewHit::Kind::plane ? faded(light, hit) : light;
 }
 
@@ -319,7 +319,7 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
 }
 
 // A highlight of the sky and its brightest part; on smooth surfaces of what is around.
-Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray) const {
+Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) const {
     const double facing = -dot(hit.normal, ray.direction);
     const Vec3 mirrored = ray.direction + 2.0 * facing * hit.normal;
     const double grazing = 1.0 - std::clamp(facing, 0.0, 1.0);
@@ -339,7 +339,7 @@ Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray) const {
         }
         around = behind_everything(mirrored);
     }
-    return fresnel * (around + spot * light_.sun);
+    return fresnel * (in_sun ? around + spot * light_.sun : around);
 }
 
 // Starting points of further rays stand off the surface by what single precision cannot tell apart.

@@ -96,7 +96,7 @@ private:
     [[nodiscard]] PreviewHit sphere_hit(const SphereFind& find, const PreviewRay& ray) const;
     [[nodiscard]] Vec3 sun_light(const PreviewHit& hit, const Vec3& to_sun) const;
     [[nodiscard]] Vec3 lamp_light(const PreviewHit& hit, const SamplePair& at) const;
-    [[nodiscard]] Vec3 gloss(const PreviewHit& hit, const PreviewRay& ray) const;
+    [[nodiscard]] Vec3 gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) const;
     [[nodiscard]] Vec3 off_surface(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 surface_color(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 faded(const Vec3& light, const PreviewHit& hit) const;

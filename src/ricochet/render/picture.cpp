@@ -57,20 +57,30 @@ std::vector<Lamp> lamps_in(std::span<const Sprites> layers) {
     return glowing == layers.end() ? std::vector<Lamp>{} : lamps_of(*glowing, kMostLamps);
 }
 
-// All layers as one; empty where nothing is drawn.
-SpriteLayer laid_over_each_other(std::span<const Sprites> layers, const Preview& preview, const Camera& camera,
-                                 const PictureOptions& options) {
-    SpriteLayer all;
+// All layers: what covers as one, and what only adds light, which no cover bounds. Empty where nothing is drawn.
+struct LaidOver {
+    SpriteLayer cover;
+    std::vector<Vec3> glow;
+};
+LaidOver laid_over_each_other(std::span<const Sprites> layers, const Preview& preview, const Camera& camera,
+                              const PictureOptions& options) {
+    LaidOver all;
     for (const Sprites& sprites : layers) {
         if (sprites.empty()) continue;
         SpriteLayer next = draw_sprites(sprites, preview, camera, options.width, options.height);
-        if (all.light.empty()) {
-            all = std::move(next);
-            continue;
+        for (std::size_t i = 0; i < all.glow.size(); ++i) {
+            all.glow[i] = next.transmittance[i] * all.glow[i] + (sprites.glow ? next.light[i] : Vec3{});
         }
-        for (std::size_t i = 0; i < all.light.size(); ++i) {
-            all.light[i] = next.light[i] + next.transmittance[i] * all.light[i];
-            all.transmittance[i] *= next.transmittance[i];
+        SpriteLayer& cover = all.cover;
+        if (sprites.glow) {
+            if (all.glow.empty()) all.glow = std::move(next.light);
+        } else if (cover.light.empty()) {
+            cover = std::move(next);
+        } else {
+            for (std::size_t i = 0; i < cover.light.size(); ++i) {
+                cover.light[i] = next.light[i] + next.transmittance[i] * cover.light[i];
+                cover.transmittance[i] *= next.transmittance[i];
+            }
         }
     }
     return all;
@@ -154,6 +164,24 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
     return out;
 }
 
+// A pixel of the picture as shown, with the layers over it. The curve of the tones is for what covers as if it covered
+// all, so that what covers half is half of that; it would make thin cover too bright.
+void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& light, double& alpha) {
+    if (!layers.cover.light.empty()) {
+        const double open = layers.cover.transmittance[i];
+        if (open < 1.0) {
+            const Vec3 shown = tone_mapped(exposure / (1.0 - open) * layers.cover.light[i]);
+            light = open * light + (1.0 - open) * shown;
+            alpha = 1.0 - open * (1.0 - alpha);
+        }
+    }
+    if (!layers.glow.empty()) {
+        const Vec3 shown = tone_mapped(exposure * layers.glow[i]);
+        light += shown;
+        alpha = std::max(alpha, std::min(1.0, luminance(shown)));
+    }
+}
+
 // Bytes of a pixel whose light is that of its covered part alone: PNG wants colours that are not multiplied by alpha.
 void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
     if (!image.alpha.empty()) {
@@ -171,7 +199,7 @@ void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
 Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                      std::span<const Sprites> layers) {
     if (!options.quick || !layers.empty()) preview.prepare_sphere_rays();
-    const SpriteLayer layer = laid_over_each_other(layers, preview, camera, options);
+    const LaidOver over = laid_over_each_other(layers, preview, camera, options);
     Sampled all = sampled(preview, camera, options, lamps_in(layers));
     if (options.filter && !options.quick) filter_noise(all.picture);
     const std::size_t pixels = pixel_count(options);
@@ -183,11 +211,7 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
             const Float3& shown = all.picture.light[i];
             Vec3 light{shown.x, shown.y, shown.z};
             double alpha = options.transparent ? all.alpha[i] : 1.0;
-            if (!layer.light.empty()) {
-                const Vec3 laid_over = tone_mapped(options.exposure * layer.light[i]);
-                light = layer.transmittance[i] * light + laid_over;
-                alpha = std::max(1.0 - layer.transmittance[i] * (1.0 - alpha), std::min(1.0, luminance(laid_over)));
-            }
+            lay_over(over, i, options.exposure, light, alpha);
             store_pixel(image, i, light, alpha);
         }
     });

@@ -120,6 +120,10 @@ ColliderParts::ColliderParts(const RunFolder& folder, const std::vector<FrameFil
         part.name = info == nullptr ? file.stem().string() : info->name;
         part.material = info == nullptr ? 0 : info->material;
         part.number = static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0));
+        if (info != nullptr) {
+            part.is_glass = info->looks.glass;
+            part.color = info->looks.color;
+        }
         part.hits = part_map(data, "hits", true);
         part.impulse = part_map(data, "impulse", false);
         const std::vector<double>* const normal = find_field(data, "plane_normal");
@@ -207,7 +211,7 @@ void ColliderParts::find_glass(const FrameFile& probe) {
             is_inside[i] = std::fabs(winding_number(mesh, points[i])) > kInside ? 1 : 0;
         });
         const auto inside = std::accumulate(is_inside.begin(), is_inside.end(), std::size_t{0});
-        part.is_glass = 2 * inside > points.size();
+        part.is_glass = part.is_glass || 2 * inside > points.size();
     }
 }
 

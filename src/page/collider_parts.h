@@ -32,7 +32,8 @@ struct ColliderPart {
     std::uint32_t number = 0;  ///< in the run
     std::uint32_t material = 0;
     PartMotion motion = PartMotion::still;
-    bool is_glass = false;  ///< has particles inside: to be seen through
+    bool is_glass = false;      ///< of its own looks, or has particles inside: to be seen through
+    std::optional<Vec3> color;  ///< of its own looks, linear light
     /// World coordinates, of one that moves those in the first frame, m. A plane is a square.
     TriangleMesh mesh;
     std::optional<Vec3> plane_normal;  ///< of a plane at rest

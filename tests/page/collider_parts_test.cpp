@@ -5,6 +5,7 @@
 #include "page/moving_run.h"
 #include "page/page_reader.h"
 #include "page/part_encoder.h"
+#include "page/run_page.h"
 #include "ricochet/core/error.h"
 
 namespace ricochet {
@@ -70,6 +71,25 @@ TEST(ColliderParts, ShowsThroughTheOnesThatHoldTheParticles) {
     const ColliderParts colliders(folder, folder.frames);
     EXPECT_TRUE(colliders.parts()[0].is_glass);
     EXPECT_FALSE(colliders.parts()[1].is_glass);
+}
+
+TEST(ColliderParts, HaveTheColourAndTheGlassOfTheirLooks) {
+    test::MadeRun run;
+    run.add_still("block", box_mesh({-3, -3, -3}, {3, 3, -1}));
+    run.add_still("window", box_mesh({-3, 3, -3}, {3, 4, 3}));
+    run.add_frame(point_frame({{0, 0, 0}}, {1}));
+    RunFolder folder = run.finish();
+    folder.info.colliders[0].looks.color = Vec3{0.25, 0.5, 1};
+    folder.info.colliders[1].looks.glass = true;
+    const ColliderParts colliders(folder, folder.frames);
+    EXPECT_EQ(colliders.parts()[0].color, (Vec3{0.25, 0.5, 1}));
+    EXPECT_FALSE(colliders.parts()[0].is_glass);
+    EXPECT_FALSE(colliders.parts()[1].color);
+    EXPECT_TRUE(colliders.parts()[1].is_glass);
+    (void)write_run_page(folder, run.folder.path("page.html"), {});
+    const nlohmann::json page = test::ReadPage(run.folder.read("page.html")).description.at("parts");
+    EXPECT_EQ(page[0].at("color"), nlohmann::json({0.25, 0.5, 1}));
+    EXPECT_FALSE(page[1].contains("color"));
 }
 
 TEST(ColliderParts, RefusesMeshesThatChangeTheirTriangles) {

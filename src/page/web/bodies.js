@@ -163,6 +163,7 @@ export class Body {
     this.object = mesh_of(positions, normals, new Uint8Array(part.corners.length), this.material);
     this.object.matrixAutoUpdate = false;
     if (this.is_plane) this.make_plane(description);
+    if (part.color) this.material.uniforms.color.value.setRGB(...part.color);
     this.see_through(part.glass);
   }
 
@@ -182,7 +183,7 @@ export class Body {
   }
 
   set_theme(theme) {
-    if (this.is_plane) this.material.uniforms.color.value.set(PLANE[theme]);
+    if (this.is_plane && !this.part.color) this.material.uniforms.color.value.set(PLANE[theme]);
   }
 
   half_edge() {

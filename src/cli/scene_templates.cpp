@@ -104,7 +104,8 @@ Part rain(const Fit& fit) {
 }
 
 Part debris(const Fit& fit) {
-    std::string emitters = "    // Spheres of three sizes: they roll, and come to rest. Pairs are [mean, spread].\n";
+    std::string emitters =
+        "    // Spheres of three sizes: they roll, and most come to rest. Pairs are [mean, spread].\n";
     struct Kind {
         const char* name;
         double radius;
@@ -125,7 +126,7 @@ Part debris(const Fit& fit) {
             kind.color, kind.radius < 0.02 ? ",\n" : "");
         height += 0.1;
     }
-    return {.title = "Debris: gravel, stones and boulders fall on the mesh, roll off it and come to rest.",
+    return {.title = "Debris: gravel, stones and boulders fall on the mesh, roll off it, and most come to rest.",
             .picture = "",
             .emitters = emitters,
             .surface = R"({"restitution": 0.3, "friction": 0.4, "rolling_friction": 0.08})",

@@ -48,6 +48,7 @@ protected:
         (void)folder_.write("hull.obj", obj_of(hull));
         hull.triangles.pop_back();
         (void)folder_.write("leaky.obj", obj_of(hull));
+        (void)folder_.write("line.obj", "v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\nf 2 4 3\n");
         (void)folder_.write("funnel.obj", obj_of(funnel_mesh(1.0, 0.1)));
     }
 
@@ -233,6 +234,26 @@ TEST_F(CheckWarnings, TellsOfMeshesThatCoordinatesHardlyResolve) {
         0U)
         << text;
     EXPECT_EQ(warnings(far("100")), "");
+}
+
+TEST_F(CheckWarnings, TellsOfMeshesWithoutArea) {
+    const std::string points = emitter(R"("type": "point", "center": [0, 0, 3])");
+    EXPECT_EQ(warnings(mesh("line.obj") + points),
+              "colliders[0] 'c': none of its triangles (2) has an area, so that nothing hits it: look at the file\n");
+    EXPECT_EQ(warnings(mesh("hull.obj") + points), "");
+}
+
+// In 0.01 s what falls from rest falls 0.49 mm.
+TEST_F(CheckWarnings, TellsOfStepsInWhichAllFallsThroughTheWholeScene) {
+    const auto drop = [](const std::string& height) {
+        return collider(R"("type": "plane", "normal": [0, 0, 1])") +
+               emitter(R"("type": "point", "center": [0, 0, )" + height + "]");
+    };
+    const std::string text = warnings(drop("0.00048") + gravity());
+    EXPECT_EQ(text.rfind("simulation.time_step: in one step of 0.01 s what falls from rest falls 0.000491 m", 0), 0U)
+        << text;
+    EXPECT_EQ(warnings(drop("0.0005") + gravity()), "");
+    EXPECT_EQ(warnings(drop("0.00048")), "");
 }
 
 TEST_F(CheckWarnings, TellsOfNothingToHitWhereImpactsAreAskedFor) {

@@ -17,6 +17,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -40,9 +41,6 @@ constexpr double kLeastRadiusUlps = 1e3;
 /// Part of the edges' mean length that kCandidateSlack may measure. Beyond it a contact looks at more triangles than
 /// can be hit: at a tenth it costs 1.6 times as much, at a fifth 2.8 times.
 constexpr double kMostSlack = 0.1;
-
-/// Restitution from which on spheres are meant to keep their energy.
-constexpr double kNearlyElastic = 0.9;
 
 /// Particles that begin for one reason, some of them.
 struct Starts {
@@ -155,6 +153,7 @@ public:
 
     std::vector<std::string> lines() {
         review_surfaces();
+        if (auto line = long_step_warning(simulation_.options(), extent(), fall_)) lines_.push_back(std::move(*line));
         std::ranges::move(pair_method_warnings(simulation_, fall_), std::back_inserter(lines_));
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
         for (const Starts& starts : starts_) {
@@ -165,7 +164,9 @@ public:
     }
 
 private:
+    [[nodiscard]] Box3 extent() const;
     void review_surfaces();
+    void review_area(const TriangleMesh& mesh, const std::string& where);
     void review_collider(std::size_t i);
     void review_precision(const TriangleMesh& mesh, const std::string& where);
     void review_sides(const Starts& starts, const Solid& solid, const std::string& where);
@@ -181,6 +182,24 @@ private:
     std::vector<Starts> starts_;
     std::vector<std::string> lines_;
 };
+
+/// Of all starts and colliders, of planes their points.
+Box3 SceneReview::extent() const {
+    Box3 box;
+    for (const Starts& starts : starts_) {
+        for (const Particle& particle : starts.particles) {
+            if (is_finite(particle.position)) box.include(particle.position);
+        }
+    }
+    for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
+        const auto* const plane = std::get_if<PlaneShape>(&simulation_.colliders()[i].shape);
+        if (plane) box.include(plane->point);
+        if (plane) continue;
+        const TriangleMesh mesh = *simulation_.collider_mesh(i);
+        for (const Vec3& vertex : mesh.vertices) box.include(vertex);
+    }
+    return box;
+}
 
 /// Scenes without colliders are common: only what needs them is told.
 void SceneReview::review_surfaces() {
@@ -216,7 +235,11 @@ void SceneReview::review_collider(std::size_t i) {
     const ColliderDescription& collider = simulation_.colliders()[i];
     const std::string where = named("colliders", i, collider.name);
     if (std::holds_alternative<PlaneShape>(collider.shape)) return;
-    if (std::holds_alternative<MeshShape>(collider.shape)) review_precision(*simulation_.collider_mesh(i), where);
+    if (std::holds_alternative<MeshShape>(collider.shape)) {
+        const TriangleMesh mesh = *simulation_.collider_mesh(i);
+        review_precision(mesh, where);
+        review_area(mesh, where);
+    }
     if (const std::optional<OpenMesh> open = open_mesh(simulation_, i, where)) {
         for (const Starts& starts : starts_) {
             review_leaks(starts, *open);
@@ -226,6 +249,16 @@ void SceneReview::review_collider(std::size_t i) {
     }
     const Solid solid(simulation_, i);
     for (const Starts& starts : starts_) review_sides(starts, solid, where);
+}
+
+void SceneReview::review_area(const TriangleMesh& mesh, const std::string& where) {
+    const auto has_area = [&](const Triangle& t) {
+        return !are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+    };
+    if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), has_area)) return;
+    lines_.push_back(
+        fmt::format("{}: none of its triangles ({}) has an area, so that nothing hits it: look at the file", where,
+                    mesh.triangles.size()));
 }
 
 /// What coordinates far from the origin leave of small triangles.
@@ -344,32 +377,6 @@ void SceneReview::review_radius(const Starts& starts) {
 }
 
 }  // namespace
-
-std::vector<std::string> pair_method_warnings(const Simulation& simulation, const Vec3& fall) {
-    const std::optional<PairContactSettings>& pairs = simulation.options().particle_contacts;
-    std::vector<std::string> lines;
-    if (!pairs) return lines;
-    double least = pairs->restitution;
-    double most = pairs->restitution < 1.0 ? pairs->restitution : 0.0;  // of those that lose energy
-    for (const MaterialPair& pair : pairs->pairs) {
-        const double restitution = pair.material.restitution;
-        least = std::min(least, restitution);
-        if (restitution < 1.0) most = std::max(most, restitution);
-    }
-    if (pairs->method == PairMethod::events && fall != Vec3{} && least < 1.0) {
-        lines.emplace_back(
-            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
-            "their impacts of each step and stand still in the air; use auto");
-    }
-    if (pairs->method == PairMethod::contacts && most >= kNearlyElastic) {
-        lines.push_back(
-            fmt::format("particle_contacts.method: contacts: impacts that follow each other in a step are one, which "
-                        "loses energy in a gas and shares out that of a cradle, whatever the restitution of {:g}; use "
-                        "auto or events",
-                        most));
-    }
-    return lines;
-}
 
 std::vector<std::string> scene_warnings(const Simulation& simulation, std::span<const EmitterDescription> emitters,
                                         const Vec3& fall) {

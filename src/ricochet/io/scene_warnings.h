@@ -2,6 +2,7 @@
 /// What is probably not meant in a scene that can be run: `ricochet check` says so, and `run` a part of it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,14 +14,19 @@ namespace ricochet {
 
 /// One line each: where, what, what to do about it. About particles that begin on both sides of a closed collider or
 /// inside one that leaks, spheres that find no position, do not fit through the opening that they fall to or are too
-/// small for their coordinates, and collisions that are asked for where there is nothing to hit. What is said rests on
-/// some hundred starts of every emitter and some thousand of the explicit particles; a scene without a line here may
-/// still be wrong. simulation: before its first step. emitters: of the setup that it was made from. fall: m/s^2, the
-/// acceleration that is the same everywhere (uniform_acceleration()).
+/// small for their coordinates, meshes without area, steps
+/// in which all falls through the whole scene, and collisions that are asked for where there is nothing to hit. What is
+/// said rests on some hundred starts of every emitter and some thousand of the explicit particles; a scene without a
+/// line here may still be wrong. simulation: before its first step. emitters: of the setup that it was made from. fall:
+/// m/s^2, the acceleration that is the same everywhere (uniform_acceleration()).
 [[nodiscard]] std::vector<std::string> scene_warnings(const Simulation& simulation,
                                                       std::span<const EmitterDescription> emitters, const Vec3& fall);
 
 /// Those of them about the method of particle contacts, which depends on little and is told with every run, too.
 [[nodiscard]] std::vector<std::string> pair_method_warnings(const Simulation& simulation, const Vec3& fall);
+
+/// A step in which what falls from rest falls further than all of the scene is large. Nothing where that is unknown.
+[[nodiscard]] std::optional<std::string> long_step_warning(const SimulationOptions& options, const Box3& scene,
+                                                           const Vec3& fall);
 
 }  // namespace ricochet

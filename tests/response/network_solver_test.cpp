@@ -174,6 +174,26 @@ TEST(NetworkSolver, ForcesInAColumnAreTheWeightsAbove) {
     }
 }
 
+// A light ball passes on a heavy one's weight to the floor; sweeps alone would take as many as the ratio of the masses.
+TEST(NetworkSolver, ALightBallHoldsAHeavyOne) {
+    for (const double ratio : {1e3, 1e6, 1e9}) {
+        SCOPED_TRACE(ratio);
+        const Vec3 fall{0, 0, -1.0 - kGravity * kStep};
+        std::vector<NetworkBody> bodies{ball(1.0, 0.1, fall), ball(ratio, 1.0, fall)};
+        const std::vector<NetworkContact> contacts{on_wall(0, kUp, 0.5), between(1, 0, kUp, 0.5)};
+        NetworkSettings settings = exactly(1e-6);
+        settings.sweeps = 30;
+        settings.most_sweeps = 300;
+        NetworkSolver solver;
+        const NetworkReport report = solver.solve(bodies, contacts, settings);
+        EXPECT_TRUE(report.is_converged);
+        EXPECT_LT(length(bodies[0].velocity), 3e-6);
+        EXPECT_LT(length(bodies[1].velocity), 3e-6);
+        EXPECT_NEAR(solver.impulses()[1].normal / (ratio * length(fall)), 1.0, 3e-6);
+        EXPECT_NEAR(solver.impulses()[0].normal / ((ratio + 1.0) * length(fall)), 1.0, 3e-6);
+    }
+}
+
 TEST(NetworkSolver, WallsOfAGrooveShareABall) {
     // Walls at angles A and B to the horizontal: N_A sin A = N_B sin B, N_A cos A + N_B cos B = m g.
     const double a = 0.6;

@@ -19,6 +19,9 @@ constexpr int kMostPlans = 8;
 /// Part of what another sphere may go that one near it is expected to be pushed.
 constexpr double kPushed = 0.5;
 
+/// Times the radius of another one that a large sphere has.
+constexpr double kLarge = 3.0;
+
 /// Where a member has gone; what has no time left stays where it is to the end.
 void keep_way(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
     member.way = flown;
@@ -89,9 +92,16 @@ void DenseIslands::find_pairs(Work& work) {
 /// reaches farther by that.
 bool DenseIslands::expect_pushes(Work& work) {
     std::vector<double> pushed(work.members.size(), 0.0);
+    const auto push = [&](std::size_t i, const NetworkMember& by) {
+        const NetworkMember& member = work.members[i];
+        // A large sphere looks farther about it than it goes, which is no push for small ones.
+        const bool is_large = by.radius > kLarge * member.radius;
+        const double beside = is_large ? NetworkIsland::kReach * (by.radius - member.radius) : 0.0;
+        pushed[i] = std::max(pushed[i], kPushed * (by.reach - beside));
+    };
     for (const auto& [first, second] : work.pairs) {
-        pushed[first] = std::max(pushed[first], kPushed * work.members[second].reach);
-        pushed[second] = std::max(pushed[second], kPushed * work.members[first].reach);
+        push(first, work.members[second]);
+        push(second, work.members[first]);
     }
     bool is_any = false;
     for (std::size_t i = 0; i < pushed.size(); ++i) {

@@ -26,22 +26,23 @@ constexpr double kRounding = 1e-12;
 /// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.
 constexpr double kConnecting = 4.0;
 
-/// Part of a radius beside it in which contacts are looked for even where nothing moves.
-constexpr double kReach = 0.05;
-
 /// Parts of the smaller radius: spheres with no more between them touch.
 constexpr double kTouching = 0.01;
 
 /// Part of the speed sqrt(pull times radius) with which what overlaps is parted at most, beside the speed with which it
 /// still approaches, which is what sweeps have left over: spheres keep it, and two hundredths of what a fall of the
-/// radius gives is what that may cost. Piles need less: they are parted by a thousandth of the radius a step.
+/// smaller radius gives is what that may cost. Piles need less: they are parted by a thousandth of the radius a step.
 constexpr double kPartingFall = 0.2;
 
-/// fall: m^2/s^2, pull times radius.
-double most_parting(double fall, double approach) { return kPartingFall * std::sqrt(fall) + std::max(0.0, approach); }
+/// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
+/// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
+double most_parting(double pull, double radius, double overlap, double approach) {
+    const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * std::max(0.0, overlap));
+    return std::sqrt(pull * fall) + std::max(0.0, approach);
+}
 
 /// m, for a sphere that goes a way, m.
-double reach_of(double way, double radius) { return 2.0 * way + kReach * radius; }
+double reach_of(double way, double radius) { return 2.0 * way + NetworkIsland::kReach * radius; }
 
 /// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
 constexpr double kClear = 0.9;
@@ -76,10 +77,10 @@ void NetworkIsland::set_part(std::span<const NetworkMember> members) {
 
 void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
     bodies_.clear();
-    falls_.clear();
+    pulls_.clear();
     for (const NetworkMember& member : members) {
         const ForceInput& state = member.moving->state;
-        falls_.push_back(0.0);
+        pulls_.push_back(0.0);
         NetworkBody body;
         body.radius = member.radius;
         if (member.stays()) {
@@ -87,7 +88,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
         } else {
             body.velocity = velocity_in_flight(member);
             const Vec3 gained = body.velocity - state.velocity;
-            if (member.duration > 0.0) falls_.back() = member.radius * length(gained) / member.duration;
+            if (member.duration > 0.0) pulls_.back() = length(gained) / member.duration;
             body.spin = (state.radius / member.radius) * member.moving->spin;
             body.inverse_mass = 1.0 / state.mass;
             body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
@@ -120,7 +121,8 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         const Vec3 arriving = velocity_of(a) - velocity_of(b);
         const double approach = -dot(arriving, contact.normal);
         contact.restitution = rebound(law.restitution, approach);
-        contact.most_parting = most_parting(std::max(falls_[contact.a], falls_[contact.b]), approach);
+        contact.most_parting = most_parting(std::max(pulls_[contact.a], pulls_[contact.b]),
+                                            std::min(a.radius, b.radius), -contact.gap, approach);
         warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id), memory);
     }
 }
@@ -162,7 +164,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     carry(contact, wall, material, state);
     const double approach = -dot(state.velocity - wall.carried, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
-    contact.most_parting = most_parting(falls_[index], approach);
+    contact.most_parting = most_parting(pulls_[index], member.radius, -contact.gap, approach);
     warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface), memory);
     surfaces_.push_back(wall.surface);
 }

@@ -44,6 +44,9 @@ struct SleeperPush {
 /// to the next.
 class NetworkIsland {
 public:
+    /// Part of a radius beside it in which contacts are looked for even where nothing moves.
+    static constexpr double kReach = 0.05;
+
     /// Both must outlive it.
     NetworkIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 
@@ -95,7 +98,7 @@ private:
     double duration_ = 0.0;
     double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
-    std::vector<double> falls_;  // m^2/s^2, of each member: what forces pull it with, times its radius
+    std::vector<double> pulls_;  // m/s^2, of each member, of the forces on it
     std::vector<NetworkContact> contacts_;
     std::vector<NetworkKey> keys_;  // of the contacts
     std::vector<WallContact> walls_;

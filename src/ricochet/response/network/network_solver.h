@@ -8,6 +8,7 @@
 #include "ricochet/response/network/connected_impacts.h"
 #include "ricochet/response/network/contact_coloring.h"
 #include "ricochet/response/network/contact_network.h"
+#include "ricochet/response/network/direct_network.h"
 #include "ricochet/response/network/network_rows.h"
 
 namespace ricochet {
@@ -36,6 +37,13 @@ private:
         [[nodiscard]] double factor() const;
     };
 
+    /// All that sweeps change.
+    struct Impulses {
+        std::vector<NetworkRow> rows;
+        std::vector<RollingRow> rolling;
+        std::vector<NetworkState> states;
+    };
+
     void set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts, double duration);
     [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies,
                                     double duration);
@@ -43,6 +51,7 @@ private:
     void apply_start();
     [[nodiscard]] double gain_of_impulses() const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
+    bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep();
     [[nodiscard]] SweepChange sweep_rows(std::size_t begin, std::size_t end);
     void go_on(double factor);
@@ -66,6 +75,8 @@ private:
     std::vector<NetworkPush> directions_;  // in which the sweeps go on
     int momentum_ = 0;                     // sweeps since it last began anew
     std::vector<SweepChange> blocks_;
+    DirectNetwork direct_;
+    double mass_ratio_ = 1.0;  // largest of two that touch
     ConnectedImpacts impacts_;
     std::vector<NetworkImpulse> impulses_;
     std::vector<std::uint8_t> rebounds_;

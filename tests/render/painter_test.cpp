@@ -84,7 +84,11 @@ TEST(Painter, ThereIsNoHighlightOfTheSunInTheShadow) {
         std::vector<PreviewMesh> meshes{square({}, middle, 1.0, roughness)};
         if (screened) meshes.push_back(square(4.0 * to_sun, to_sun, 1.5, 1.0));
         const Preview preview(std::move(meshes), {}, {});
-        return luminance(Painter(preview, camera, options, {}).pixel(4, 4).light);
+        preview.prepare_sphere_rays();
+        const PixelPlace place{4, 4};
+        PixelLight pixel;
+        Painter(preview, camera, options, {}).pixels(std::span(&place, 1), std::span(&pixel, 1));
+        return luminance(pixel.light);
     };
     EXPECT_GT(brightness(0.4, false), 1.1 * brightness(1.0, false));
     EXPECT_LT(brightness(0.4, true), 1.1 * brightness(1.0, true));

@@ -15,45 +15,6 @@
 namespace ricochet::mpi {
 namespace {
 
-/// The ranks of this machine.
-class Machine {
-public:
-    explicit Machine(const Wait& wait_for) : wait_for_(wait_for) {
-        MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &ranks_);
-    }
-    ~Machine() { MPI_Comm_free(&ranks_); }
-    Machine(const Machine&) = delete;
-    Machine& operator=(const Machine&) = delete;
-
-    [[nodiscard]] bool is_first() const {
-        int rank = 0;
-        MPI_Comm_rank(ranks_, &rank);
-        return rank == 0;
-    }
-    [[nodiscard]] int size() const {
-        int size = 1;
-        MPI_Comm_size(ranks_, &size);
-        return size;
-    }
-    /// What the first one says, to all.
-    void tell(std::span<std::int64_t> values) const {
-        MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Ibcast(values.data(), static_cast<int>(values.size()), MPI_INT64_T, 0, ranks_, &request);
-        wait_for_(request);
-    }
-    [[nodiscard]] bool all(bool is_so) const {
-        int least = is_so ? 1 : 0;
-        MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Iallreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, ranks_, &request);
-        wait_for_(request);
-        return least != 0;
-    }
-
-private:
-    const Wait& wait_for_;
-    MPI_Comm ranks_ = MPI_COMM_NULL;
-};
-
 class File {
 public:
     explicit File(int number) : number_(number) {}
@@ -95,11 +56,11 @@ void* mapped(int file, std::size_t size) {
 
 /// Two steps, so that all ranks have what they need before one gives up its own. The first rank's file is open until
 /// all have theirs.
-bool have_in_common(std::span<const std::byte> list, const Machine& machine) {
-    const bool is_first = machine.is_first();
+bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
+    const bool is_first = here.is_first();
     const File own(is_first ? file_of(list) : -1);
     std::array<std::int64_t, 3> told{::getpid(), own.number(), static_cast<std::int64_t>(list.size())};
-    machine.tell(told);
+    here.tell(told);
     if (told[1] < 0) return false;
     const auto size = static_cast<std::size_t>(told[2]);
     // As the first one's process sees it: no name is needed.
@@ -108,12 +69,12 @@ bool have_in_common(std::span<const std::byte> list, const Machine& machine) {
     void* const pages = mapped(is_first ? own.number() : other.number(), size);
     const bool is_alike =
         list.size() == size && (is_first || pages == nullptr || std::memcmp(pages, list.data(), size) == 0);
-    const bool are_alike = machine.all(is_alike);
-    const bool have_all = machine.all(pages != nullptr);
+    const bool are_alike = here.all(is_alike);
+    const bool have_all = here.all(pages != nullptr);
     if (are_alike && have_all) {
         void* const place = const_cast<std::byte*>(list.data());
         const bool is_there = ::mremap(pages, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place) != MAP_FAILED;
-        if (machine.all(is_there)) return true;
+        if (here.all(is_there)) return true;
         throw RunError("ranks: memory for the meshes is short");  // what was there may be gone
     }
     if (pages != nullptr) (void)::munmap(pages, size);
@@ -123,11 +84,10 @@ bool have_in_common(std::span<const std::byte> list, const Machine& machine) {
 
 }  // namespace
 
-std::uint64_t have_in_common(std::span<const std::span<const std::byte>> pages, const Wait& wait_for) {
-    const Machine machine(wait_for);
+std::uint64_t have_in_common(std::span<const std::span<const std::byte>> pages, const Neighbours& here) {
     std::uint64_t bytes = 0;
-    if (machine.size() < 2) return bytes;
-    for (const auto list : pages) bytes += have_in_common(list, machine) ? list.size() : 0;
+    if (here.size() < 2) return bytes;
+    for (const auto list : pages) bytes += have_in_common(list, here) ? list.size() : 0;
     return bytes;
 }
 

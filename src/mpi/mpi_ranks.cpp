@@ -39,6 +39,41 @@ void wait_for(MPI_Request& request) {
     }
 }
 
+/// Those of this machine.
+class MachineRanks final : public Neighbours {
+public:
+    MachineRanks() { MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &ranks_); }
+    ~MachineRanks() override { MPI_Comm_free(&ranks_); }
+    MachineRanks(const MachineRanks&) = delete;
+    MachineRanks& operator=(const MachineRanks&) = delete;
+
+    [[nodiscard]] bool is_first() const override {
+        int rank = 0;
+        MPI_Comm_rank(ranks_, &rank);
+        return rank == 0;
+    }
+    [[nodiscard]] std::size_t size() const override {
+        int size = 1;
+        MPI_Comm_size(ranks_, &size);
+        return static_cast<std::size_t>(size);
+    }
+    void tell(std::span<std::int64_t> values) const override {
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Ibcast(values.data(), static_cast<int>(values.size()), MPI_INT64_T, 0, ranks_, &request);
+        wait_for(request);
+    }
+    [[nodiscard]] bool all(bool is_so) const override {
+        int least = is_so ? 1 : 0;
+        MPI_Request request = MPI_REQUEST_NULL;
+        MPI_Iallreduce(MPI_IN_PLACE, &least, 1, MPI_INT, MPI_MIN, ranks_, &request);
+        wait_for(request);
+        return least != 0;
+    }
+
+private:
+    MPI_Comm ranks_ = MPI_COMM_NULL;
+};
+
 class MpiRanks final : public Ranks {
 public:
     MpiRanks(int rank, int size) : rank_(rank), size_(size) {}
@@ -112,7 +147,7 @@ public:
     }
 
     [[nodiscard]] std::uint64_t have_in_common(std::span<const std::span<const std::byte>> pages) override {
-        return mpi::have_in_common(pages, wait_for);
+        return mpi::have_in_common(pages, MachineRanks());
     }
 
 private:

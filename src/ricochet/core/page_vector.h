@@ -21,6 +21,8 @@ void give_pages_back(void* pages, std::size_t bytes) noexcept;
 template <class T>
 struct PageAllocator {
     using value_type = T;
+    /// Aligned to more than memory is by itself.
+    static constexpr bool kIsWide = alignof(T) > __STDCPP_DEFAULT_NEW_ALIGNMENT__;
 
     PageAllocator() = default;
     template <class U>
@@ -28,11 +30,13 @@ struct PageAllocator {
 
     [[nodiscard]] T* allocate(std::size_t count) {
         if (has_own_pages(count)) return static_cast<T*>(take_pages(count * sizeof(T)));
-        return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(alignof(T))));
+        if constexpr (kIsWide) return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(alignof(T))));
+        return static_cast<T*>(::operator new(count * sizeof(T)));
     }
     void deallocate(T* list, std::size_t count) noexcept {
         if (has_own_pages(count)) return give_pages_back(list, count * sizeof(T));
-        ::operator delete(list, std::align_val_t(alignof(T)));
+        if constexpr (kIsWide) return ::operator delete(list, std::align_val_t(alignof(T)));
+        ::operator delete(list);
     }
     [[nodiscard]] static bool has_own_pages(std::size_t count) { return count >= kLeastOwnPages / sizeof(T); }
     template <class U>

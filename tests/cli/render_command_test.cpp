@@ -169,56 +169,59 @@ TEST(RenderCommand, ThePictureDoesNotDependOnThreads) {
     EXPECT_TRUE(files.folder.read("one.png") == files.folder.read("seven.png"));
 }
 
+/// What `render` is called with, and words of its answer.
+struct Wrong {
+    std::vector<std::string> arguments;
+    const char* message;
+};
+
+const std::vector<Wrong> kWrongs = {
+    {{"--frame", "7"}, "no such frame"},
+    {{"--frame", "first"}, "expected a step number, last or all"},
+    {{"--frame", "-1"}, "expected a step number"},
+    {{"--ground", "5m"}, "--ground 5m: expected none, auto, or a height in m"},
+    {{"--ground", "1,2"}, "expected none, auto, or a height in m"},
+    {{"--frames", "3"}, "did you mean \"--frame\"?"},
+    {{"--size", "0x10"}, "expected WIDTHxHEIGHT"},
+    {{"--size", "640"}, "expected WIDTHxHEIGHT"},
+    {{"--size", "99999x99999"}, "expected WIDTHxHEIGHT"},
+    {{"--camera", "1,2,3"}, "expected px,py,pz,tx,ty,tz"},
+    {{"--camera", "1,2,3,1,2,3"}, "position and target are the same"},
+    {{"--camera", "1,2,3,0,0,nan"}, "expected numbers"},
+    {{"--camera", "1,2,3,0,0,0,180"}, "field of view"},
+    {{"--color-by", "temperature"}, "known arrays: speed, id, velocity, mass, radius"},
+    {{"--color-map", "jet"}, "expected one of viridis, plasma, turbo"},
+    {{"--range", "3,1"}, "low < high"},
+    {{"--range", "a,b"}, "expected numbers"},
+    {{"--collider-color", "pink"}, "expected plain or hits"},
+    {{"--collider-color", "energy"}, "no contact log"},
+    {{"--collider-color", "hits/mass"}, "expected plain or hits"},
+    {{"--collider-range", "2,1"}, "low < high"},
+    {{"--light", "dawn"}, "expected one of day, noon, overcast, night, studio"},
+    {{"--background", "red"}, "expected sky, transparent"},
+    {{"--background", "1,2,3"}, "expected sky, transparent"},
+    {{"--ground", "low"}, "expected none, auto, or a height in m"},
+    {{"--lens", "-1"}, "expected diameter[,distance]"},
+    {{"--draw", "stars"}, "expected auto, spheres, streaks"},
+    {{"--shutter", "-2"}, "expected 0 to"},
+    {{"--speed", "0"}, "expected 1e-06 to"},
+    {{"--hide", "nothing"}, "no such collider"},
+    {{"--glass", "nothing"}, "--glass nothing: no such collider"},
+    {{"--hide", "nothing", "--glass", "nothing"}, "expected one of them"},
+    {{"--up", "w"}, "expected x, y or z"},
+    {{"--samples", "0"}, "expected 1 to 4096"},
+    {{"--exposure", "0"}, "expected 0.01 to 100"},
+    {{"--particle-radius", "-1"}, "expected 0 to"},
+    {{"--threads", "0"}, "expected a whole number"},
+    {{"--fps", "0"}, "expected 1 to 240"},
+    {{"--fps", "24"}, "expected a film"},
+    {{"--speed", "2"}, "expected a film"},
+    {{"--unknown"}, "--unknown"},
+};
+
 TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
     const RunFolderFiles files;
-    struct Wrong {
-        std::vector<std::string> arguments;
-        const char* message;
-    };
-    const std::vector<Wrong> wrongs = {
-        {{"--frame", "7"}, "no such frame"},
-        {{"--frame", "first"}, "expected a step number, last or all"},
-        {{"--frame", "-1"}, "expected a step number"},
-        {{"--ground", "5m"}, "--ground 5m: expected none, auto, or a height in m"},
-        {{"--ground", "1,2"}, "expected none, auto, or a height in m"},
-        {{"--frames", "3"}, "did you mean \"--frame\"?"},
-        {{"--size", "0x10"}, "expected WIDTHxHEIGHT"},
-        {{"--size", "640"}, "expected WIDTHxHEIGHT"},
-        {{"--size", "99999x99999"}, "expected WIDTHxHEIGHT"},
-        {{"--camera", "1,2,3"}, "expected px,py,pz,tx,ty,tz"},
-        {{"--camera", "1,2,3,1,2,3"}, "position and target are the same"},
-        {{"--camera", "1,2,3,0,0,nan"}, "expected numbers"},
-        {{"--camera", "1,2,3,0,0,0,180"}, "field of view"},
-        {{"--color-by", "temperature"}, "known arrays: speed, id, velocity, mass, radius"},
-        {{"--color-map", "jet"}, "expected one of viridis, plasma, turbo"},
-        {{"--range", "3,1"}, "low < high"},
-        {{"--range", "a,b"}, "expected numbers"},
-        {{"--collider-color", "pink"}, "expected plain or hits"},
-        {{"--collider-color", "energy"}, "no contact log"},
-        {{"--collider-color", "hits/mass"}, "expected plain or hits"},
-        {{"--collider-range", "2,1"}, "low < high"},
-        {{"--light", "dawn"}, "expected one of day, noon, overcast, night, studio"},
-        {{"--background", "red"}, "expected sky, transparent"},
-        {{"--background", "1,2,3"}, "expected sky, transparent"},
-        {{"--ground", "low"}, "expected none, auto, or a height in m"},
-        {{"--lens", "-1"}, "expected diameter[,distance]"},
-        {{"--draw", "stars"}, "expected auto, spheres, streaks"},
-        {{"--shutter", "-2"}, "expected 0 to"},
-        {{"--speed", "0"}, "expected 1e-06 to"},
-        {{"--hide", "nothing"}, "no such collider"},
-        {{"--glass", "nothing"}, "--glass nothing: no such collider"},
-        {{"--hide", "nothing", "--glass", "nothing"}, "expected one of them"},
-        {{"--up", "w"}, "expected x, y or z"},
-        {{"--samples", "0"}, "expected 1 to 4096"},
-        {{"--exposure", "0"}, "expected 0.01 to 100"},
-        {{"--particle-radius", "-1"}, "expected 0 to"},
-        {{"--threads", "0"}, "expected a whole number"},
-        {{"--fps", "0"}, "expected 1 to 240"},
-        {{"--fps", "24"}, "expected a film"},
-        {{"--speed", "2"}, "expected a film"},
-        {{"--unknown"}, "--unknown"},
-    };
-    for (const Wrong& wrong : wrongs) {
+    for (const Wrong& wrong : kWrongs) {
         SCOPED_TRACE(wrong.arguments.front() + " " + wrong.arguments.back());
         std::vector<std::string> arguments = wrong.arguments;
         const bool own_size = arguments.front() == "--size" || arguments.front() == "--samples";

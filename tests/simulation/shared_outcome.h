@@ -115,6 +115,16 @@ inline State saved_by_each(std::size_t count, const MakeSetup& make, std::uint64
     return state;
 }
 
+/// The message with which a run that diverges ends; "none" where it does not.
+inline std::string divergence_of(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks) {
+    try {
+        (void)run(make, ranks);
+    } catch (const DivergedError& error) {
+        return error.what();
+    }
+    return "none";
+}
+
 /// What differs, in words: for a message.
 inline std::string difference(const Outcome& a, const Outcome& b) {
     if (a.state != b.state) return "states differ";

@@ -23,6 +23,7 @@ namespace {
 using testing::belt_setup;
 using testing::busy_setup;
 using testing::difference;
+using testing::divergence_of;
 using testing::family_setup;
 using testing::on_ranks;
 using testing::Outcome;
@@ -106,17 +107,9 @@ TEST(SharedRun, EndsOnAllRanksWhereOneParticleDiverges) {
         for (int i = 0; i < 60; ++i) setup.particles.push_back(particle_of({0, 0, 0.1 * i}, {1e6 * (i % 50), 0, 0}));
         return setup;
     };
-    const auto message_of = [&](const std::shared_ptr<Ranks>& ranks) -> std::string {
-        try {
-            (void)run(make, ranks);
-        } catch (const DivergedError& error) {
-            return error.what();
-        }
-        return "none";
-    };
-    const std::string alone = message_of(nullptr);
+    const std::string alone = divergence_of(make, nullptr);
     EXPECT_NE(alone, "none");
-    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(message_of(ranks), alone); });
+    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(divergence_of(make, ranks), alone); });
 }
 
 TEST(SharedRun, RefusesByNameWhatOneProcessMustMoveTogether) {

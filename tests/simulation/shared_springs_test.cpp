@@ -21,6 +21,7 @@ namespace {
 
 using testing::busy_setup;
 using testing::difference;
+using testing::divergence_of;
 using testing::family_setup;
 using testing::on_ranks;
 using testing::Outcome;
@@ -98,17 +99,9 @@ TEST(SharedSprings, EndAllRanksWhereTheyDiverge) {
         setup.springs.push_back({3, 4, 0.05, 1e6, 0.0});
         return setup;
     };
-    const auto message_of = [&](const std::shared_ptr<Ranks>& ranks) -> std::string {
-        try {
-            (void)run(make, ranks);
-        } catch (const DivergedError& error) {
-            return error.what();
-        }
-        return "none";
-    };
-    const std::string alone = message_of(nullptr);
+    const std::string alone = divergence_of(make, nullptr);
     EXPECT_NE(alone, "none");
-    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(message_of(ranks), alone); });
+    on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(divergence_of(make, ranks), alone); });
 }
 
 TEST(SharedSprings, AreNotSavedByParts) {

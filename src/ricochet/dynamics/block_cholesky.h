@@ -1,5 +1,6 @@
 /// \file
-/// Private to the integrators and to the responses: the factorization of symmetric matrices of 3 x 3 blocks, one row of blocks a particle.
+/// Private to the integrators and to the responses: the factorization of symmetric matrices of 3 x 3 blocks, one row of
+/// blocks a particle.
 #pragma once
 
 #include <array>

@@ -103,6 +103,8 @@ struct Simulation::Impl {
     void hold_what_touches(std::size_t i);
     bool hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position);
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
+    /// The setup's particles, which are taken out of it, and warnings of those that begin in overlap.
+    void add_first(std::vector<Particle>& first);
     /// A sentence about those of the setup's particles that are in overlap; nothing without any.
     [[nodiscard]] std::optional<std::string> overlap_warning() const;
     /// The same of those that stand in other spheres, which are counted.

@@ -226,6 +226,13 @@ std::optional<std::string> Simulation::Impl::sphere_overlap_warning() {
         count, particles().id[first->first], depth_of(*first), particles().id[first->second], deepest);
 }
 
+void Simulation::Impl::add_first(std::vector<Particle>& first) {
+    reserve(first.size());
+    for (Particle& particle : first) add(std::move(particle));
+    if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
+    if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
+}
+
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
       particle_bytes(bytes_per_particle(setup)),
@@ -281,10 +288,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
         offspring->set_clouds(clouds.get(), place_test());
     }
     if (!share.is_alone()) keep_springs_together();
-    reserve(setup.particles.size());
-    for (Particle& particle : setup.particles) add(std::move(particle));
-    if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
-    if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
+    add_first(setup.particles);
     if (!share.is_alone()) keep_share();
     if (coupled.is_active()) coupled.bind(particles());
     most_that_fit = store.size() + particles_that_fit(particle_bytes);

@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <numeric>
+#include <functional>
 #include <optional>
+#include <queue>
 #include <span>
 #include <utility>
 #include <vector>
@@ -42,22 +43,20 @@ public:
     }
     /// The ids.
     void operator()(std::vector<std::uint64_t>& ids) {
-        std::vector<std::pair<std::uint64_t, std::uint32_t>> all;
-        for (std::uint32_t k = 0; k < sources_.size(); ++k) {
-            std::vector<std::uint64_t> part;
-            read_list(sources_[k], part);
-            sources_[k].count = part.size();
-            for (const std::uint64_t id : part) all.emplace_back(id, k);
+        std::vector<std::vector<std::uint64_t>> parts(sources_.size());
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            read_list(sources_[k], parts[k]);
+            sources_[k].count = parts[k].size();
+            size_ += parts[k].size();
         }
-        std::sort(all.begin(), all.end());
-        ids.clear();
-        for (const auto& [id, source] : all) ids.push_back(id), order_.push_back(source);
+        find_runs(parts);
+        interleave(parts, ids, 1);
     }
     /// A list beside that of the ids: as many entries for each of them.
     template <class T>
     requires kIsFlat<T>
     void operator()(std::vector<T>& values, std::size_t size) {
-        const std::size_t width = order_.empty() ? 0 : size / order_.size();
+        const std::size_t width = width_of(size);
         std::vector<std::vector<T>> parts(sources_.size());
         for (std::size_t k = 0; k < parts.size(); ++k) {
             read_list(sources_[k], parts[k]);
@@ -73,7 +72,7 @@ public:
         values.clear();
         if (std::all_of(parts.begin(), parts.end(), [](const auto& part) { return part.empty(); })) return;
         for (std::size_t k = 0; k < parts.size(); ++k) parts[k].resize(sources_[k].count, absent);
-        interleave(parts, values, order_.empty() ? 0 : size / order_.size());
+        interleave(parts, values, width_of(size));
     }
     /// A list of entries that are not saved as they lie in memory: as many for each id.
     template <class T, class Visit>
@@ -86,10 +85,10 @@ public:
         }
         if (count != expected) complain();
         list.clear();
-        const std::uint64_t width = order_.empty() ? 0 : expected / order_.size();
-        for (const std::uint32_t source : order_) {
-            selected_ = source;
-            for (std::uint64_t k = 0; k < width; ++k) visit(list.emplace_back());
+        const std::uint64_t width = width_of(expected);
+        for (const Run& run : runs_) {
+            selected_ = run.source;
+            for (std::uint64_t k = 0; k < run.count * width; ++k) visit(list.emplace_back());
         }
         selected_.reset();
     }
@@ -99,6 +98,11 @@ private:
         std::span<const std::byte> bytes;
         std::size_t at = 0;
         std::size_t count = 0;  ///< ids
+    };
+    /// Entries that follow each other and are of one source.
+    struct Run {
+        std::uint32_t source = 0;
+        std::size_t count = 0;
     };
 
     [[noreturn]] static void complain() { throw RunError("what the ranks have sent does not fit together"); }
@@ -120,20 +124,42 @@ private:
         if (!into.empty()) std::memcpy(into.data(), source.bytes.data() + source.at, into.size());
         source.at += into.size();
     }
+    [[nodiscard]] std::uint64_t width_of(std::uint64_t entries) const { return size_ == 0 ? 0 : entries / size_; }
+    /// Of the source with the least id as many as come before those of all others, again and again.
+    void find_runs(const std::vector<std::vector<std::uint64_t>>& ids) {
+        using Head = std::pair<std::uint64_t, std::uint32_t>;  // the next id of a source
+        std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
+        std::vector<std::size_t> next(ids.size(), 0);
+        for (std::uint32_t k = 0; k < ids.size(); ++k) {
+            if (!ids[k].empty()) heads.emplace(ids[k].front(), k);
+        }
+        while (!heads.empty()) {
+            const std::uint32_t source = heads.top().second;
+            heads.pop();
+            const std::vector<std::uint64_t>& from = ids[source];
+            const std::size_t first = next[source];
+            std::size_t last = first + 1;
+            while (last < from.size() && (heads.empty() || from[last] < heads.top().first)) ++last;
+            runs_.push_back({source, last - first});
+            next[source] = last;
+            if (last < from.size()) heads.emplace(from[last], source);
+        }
+    }
     template <class T>
     void interleave(const std::vector<std::vector<T>>& parts, std::vector<T>& values, std::size_t width) const {
         values.clear();
-        values.reserve(order_.size() * width);
+        values.reserve(size_ * width);
         std::vector<std::size_t> next(parts.size(), 0);
-        for (const std::uint32_t source : order_) {
-            const auto first = parts[source].begin() + static_cast<std::ptrdiff_t>(next[source]);
-            values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(width));
-            next[source] += width;
+        for (const Run& run : runs_) {
+            const auto first = parts[run.source].begin() + static_cast<std::ptrdiff_t>(next[run.source]);
+            values.insert(values.end(), first, first + static_cast<std::ptrdiff_t>(run.count * width));
+            next[run.source] += run.count * width;
         }
     }
 
     std::vector<Source> sources_;
-    std::vector<std::uint32_t> order_;  // whose each entry is
+    std::vector<Run> runs_;  // in the order of ids
+    std::size_t size_ = 0;   // ids of all
     std::optional<std::uint32_t> selected_;
 };
 

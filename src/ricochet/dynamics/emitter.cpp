@@ -202,50 +202,77 @@ bool Emitter::sets(std::size_t column) const {
 
 std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most, const BirthTest& test) {
     require(std::isfinite(from) && std::isfinite(to), description_, "births are asked for finite times only");
-    Births births{most, test, {}};
-    if (!(from < to) || description_.parent) return {};
-    if (!burst_done_ && description_.start < to) {
-        append_births(description_.burst, description_.start, births);
-        burst_done_ = true;
+    std::vector<Particle> made;
+    if (!(from < to)) return made;
+    constexpr std::uint64_t kAtOnce = 65536;  // due births are small beside particles
+    while (made.size() < most) {
+        const std::vector<DueBirth> due = take_due(to, std::min(kAtOnce, most - made.size()));
+        if (due.empty()) return made;
+        for (const DueBirth& birth : due) {
+            std::optional<Particle> particle = make(birth, test);
+            if (particle) {
+                made.push_back(std::move(*particle));
+            } else {
+                ++refused_;
+            }
+        }
+    }
+    skip_due(to);
+    return made;
+}
+
+std::vector<DueBirth> Emitter::take_due(double to, std::uint64_t most) {
+    Taken taken{most, true};
+    take(to, taken);
+    return std::move(taken.list);
+}
+
+void Emitter::skip_due(double to) {
+    Taken taken{std::numeric_limits<std::uint64_t>::max(), false};
+    take(to, taken);
+}
+
+void Emitter::take(double to, Taken& taken) {
+    require(std::isfinite(to), description_, "births are asked for finite times only");
+    if (description_.parent) return;
+    if (description_.start < to) {
+        const std::uint64_t left = description_.burst - burst_born_;
+        burst_born_ += take_at(description_.start, left, taken);
     }
     const double end = std::min(to, description_.stop);
     if (period_rate_.spread == 0.0) {
-        append_steady_births(end, births);
+        take_steady(end, taken);
     } else {
-        append_redrawn_births(end, births);
+        take_redrawn(end, taken);
     }
-    return std::move(births.made);
 }
 
-void Emitter::append_births(std::uint64_t count, double time, Births& births) {
-    const std::uint64_t allowed = std::min(count, description_.limit - born_);
-    for (std::uint64_t i = 0; i < allowed && births.made.size() < births.most; ++i) {
-        std::optional<Particle> particle = make_particle(born_ + i, time, births.test);
-        if (particle) {
-            births.made.push_back(std::move(*particle));
-        } else {
-            ++refused_;
-        }
+// Returns how many there was room for.
+std::uint64_t Emitter::take_at(double time, std::uint64_t count, Taken& taken) {
+    const std::uint64_t allowed = std::min({count, description_.limit - born_, taken.most - taken.count});
+    if (taken.is_listed) {
+        for (std::uint64_t i = 0; i < allowed; ++i) taken.list.push_back({born_ + i, time});
     }
     born_ += allowed;
+    taken.count += allowed;
+    return allowed;
 }
 
 // A steady rate in closed form.
-void Emitter::append_steady_births(double to, Births& births) {
+void Emitter::take_steady(double to, Taken& taken) {
     const double rate = period_rate_.mean * periods_per_second_;
     if (!(rate > 0.0)) return;
-    while (born_ < description_.limit) {
+    while (born_ < description_.limit && taken.count < taken.most) {
         const double time = description_.start + (static_cast<double>(rate_born_) + 0.5) / rate;
         if (time >= to) return;
-        append_births(1, time, births);
-        ++rate_born_;
+        rate_born_ += take_at(time, 1, taken);
     }
 }
 
 // Period by period (seconds or frames); the state is left in the one in which the next birth, or the next call, falls.
-void Emitter::append_redrawn_births(double to, Births& births) {
+void Emitter::take_redrawn(double to, Taken& taken) {
     if (!(period_rate_.mean + period_rate_.spread > 0.0)) return;
-    while (born_ < description_.limit) {
+    while (born_ < description_.limit && taken.count < taken.most) {
         const double rate = rate_in_period(period_);
         const double next_expected = expected_ + rate;
         const double target = static_cast<double>(rate_born_) + 0.5;
@@ -253,8 +280,7 @@ void Emitter::append_redrawn_births(double to, Births& births) {
             const double fraction = (target - expected_) / rate;
             const double time = description_.start + (static_cast<double>(period_) + fraction) / periods_per_second_;
             if (time >= to) return;
-            append_births(1, time, births);
-            ++rate_born_;
+            rate_born_ += take_at(time, 1, taken);
         } else {
             if (description_.start + static_cast<double>(period_ + 1) / periods_per_second_ >= to) return;
             expected_ = next_expected;
@@ -272,11 +298,11 @@ double Emitter::draw_once(std::uint64_t seed, std::uint32_t purpose, const MeanS
     return RandomSequence(seed, purpose << 24 | stream_, 0).uniform_around(pair.mean, pair.spread);
 }
 
-// Nothing when the test refuses every position.
-std::optional<Particle> Emitter::make_particle(std::uint64_t number, double time, const BirthTest& test) const {
+std::optional<Particle> Emitter::make(const DueBirth& birth, const BirthTest& test) const {
+    const std::uint64_t number = birth.number;
     RandomSequence random(seed_, kBirthStream | stream_, number);
     Draw drawn = draw(random, seed_, number);
-    drawn.particle.birth_time = time;
+    drawn.particle.birth_time = birth.time;
     drawn.particle.origin.emitter = number_;
     const auto bits = philox4x32(
         {static_cast<std::uint32_t>(number), static_cast<std::uint32_t>(number >> 32), kLineageStream | stream_, 0},

@@ -260,6 +260,12 @@ struct EmitterSurroundings {
 /// Whether a particle may be born as it is, with its position in the world. Pure.
 using BirthTest = std::function<bool(const Particle&)>;
 
+/// A birth that is due.
+struct DueBirth {
+    std::uint64_t number = 0;  ///< within its emitter
+    double time = 0.0;         ///< s
+};
+
 /// The births of one emitter in time order.
 class Emitter {
 public:
@@ -286,8 +292,19 @@ public:
                                                const BirthTest& test = {});
     /// Births so far, refused ones included.
     [[nodiscard]] std::uint64_t born() const { return born_; }
-    /// Those of them that the test has refused.
+    /// Those of them that the test of births() has refused.
     [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+    // What births() is made of, for those who make particles with several threads or processes.
+
+    /// The next births before `to`, s, in birth order, at most so many. They count as born() from now on; the next call
+    /// goes on behind them. None for an emitter with a parent. Throws InputError for a time that is not finite.
+    [[nodiscard]] std::vector<DueBirth> take_due(double to, std::uint64_t most);
+    /// All that are left before `to` count as born(), and nobody makes them. Throws as take_due() does.
+    void skip_due(double to);
+    /// The particle of a birth, as births() makes it; nothing where the test refuses every position. Depends on nothing
+    /// else; safe from any number of threads where the test is.
+    [[nodiscard]] std::optional<Particle> make(const DueBirth& birth, const BirthTest& test) const;
 
     [[nodiscard]] const EmitterDescription& description() const { return description_; }
     /// Number of the emitter in its scene.
@@ -307,16 +324,17 @@ public:
     [[nodiscard]] bool sets(std::size_t column) const;
 
 private:
-    struct Births {
-        std::uint64_t most;  ///< that are made
-        const BirthTest& test;
-        std::vector<Particle> made;
+    /// Births that are taken off the schedule.
+    struct Taken {
+        std::uint64_t most;  ///< that may be
+        bool is_listed;      ///< somebody makes them
+        std::uint64_t count = 0;
+        std::vector<DueBirth> list{};
     };
     struct Draw {
         Particle particle;
         double speed = 0.0;  ///< m/s, along the direction
     };
-    [[nodiscard]] std::optional<Particle> make_particle(std::uint64_t number, double time, const BirthTest& test) const;
     [[nodiscard]] Draw draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 draw_place(RandomSequence& random, Particle& particle) const;
     void place(RandomSequence& random, Draw& drawn) const;
@@ -327,9 +345,10 @@ private:
     [[nodiscard]] std::vector<AttributeValue> draw_attributes(std::uint64_t seed, std::uint64_t number) const;
     [[nodiscard]] Vec3 in_cone(const Vec3& axis, RandomSequence& random) const;
     [[nodiscard]] double rate_in_period(std::uint64_t period) const;
-    void append_births(std::uint64_t count, double time, Births& births);
-    void append_steady_births(double to, Births& births);
-    void append_redrawn_births(double to, Births& births);
+    void take(double to, Taken& taken);
+    std::uint64_t take_at(double time, std::uint64_t count, Taken& taken);
+    void take_steady(double to, Taken& taken);
+    void take_redrawn(double to, Taken& taken);
 
     EmitterDescription description_;
     std::uint64_t seed_;
@@ -343,7 +362,7 @@ private:
     double periods_per_second_ = 1.0;             ///< 1, or the frame rate
     std::uint64_t born_ = 0;
     std::uint64_t refused_ = 0;
-    bool burst_done_ = false;
+    std::uint64_t burst_born_ = 0;
     std::uint64_t period_ = 0;  ///< whole periods since start that are accounted for in expected_
     double expected_ = 0.0;     ///< integral of the rate up to period_
     std::uint64_t rate_born_ = 0;

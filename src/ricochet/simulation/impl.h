@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/birth_room.h"
+#include "ricochet/simulation/births.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
@@ -40,6 +43,13 @@ struct WholeRun {
     std::optional<SimulationStatistics> statistics;
     std::optional<std::vector<ColliderTotals>> loads;
     std::optional<SurfaceTotals> totals;
+};
+
+/// What is found out about a particle before it is taken in.
+struct Arrival {
+    std::optional<Overlap> overlap;  ///< with a surface
+    bool starts_inside = false;      ///< in overlap, on a surface, or put off one that it was on
+    KeptContact contact;             ///< with what it touches
 };
 
 /// Members refer to members above them; it is never moved.
@@ -87,11 +97,18 @@ struct Simulation::Impl {
 
     /// Makes room for so many more particles.
     void reserve(std::size_t more);
+    /// It takes the next id.
     void add(Particle&& particle);
-    /// Where it lives here: it takes its id in any case.
-    void add_to_share(Particle&& particle);
+    /// Many, with the ids that they have, which ascend; what is found out about them, all threads find out. after:
+    /// called for each once it is there.
+    void add_all(std::span<Particle* const> added, const std::function<void(std::size_t)>& after = {});
+    void let_in(Particle&& particle, const Arrival& arrival);
+    [[nodiscard]] Arrival arrival_of(Particle& particle) const;
+    [[nodiscard]] KeptContact contact_of(const Particle& particle) const;
+    [[nodiscard]] std::optional<KeptContact> contact_in(const CollisionWorld& of_frame, const Particle& particle,
+                                                        const Vec3& position) const;
     /// room: filled with the spheres that are there by the first birth.
-    [[nodiscard]] BirthTest birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const;
+    [[nodiscard]] BirthTests birth_tests(std::optional<BirthRoom>& room, const TimeSpan& step) const;
     [[nodiscard]] BirthRoom room_among_spheres(const TimeSpan& step) const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
     /// Where children may be born beside their parents: nothing is between them, and spheres overlap nothing.
@@ -100,8 +117,6 @@ struct Simulation::Impl {
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
     void inherit_sides(std::size_t i, const Child& child);
     void prepare_radius(double radius);
-    void hold_what_touches(std::size_t i);
-    bool hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position);
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
     /// The setup's particles, which are taken out of it, and warnings of those that begin in overlap.
     void add_first(std::vector<Particle>& first);

@@ -20,43 +20,23 @@
 
 namespace ricochet {
 
-// Births of all emitters are merged by (birth time, emitter), which fixes the ids for any time step.
 void Simulation::Impl::emit_particles(const TimeSpan& step) {
-    const std::uint64_t room = room_below(options.most_particles, share.living(store.size()));
-    const std::uint64_t fitting = room_below(most_that_fit, store.size());
-    std::vector<Particle> born;
-    std::uint64_t count = 0;
-    std::uint64_t refused = 0;
     std::optional<BirthRoom> among;
-    const BirthTest test = birth_test(among, step);
-    for (Emitter& emitter : emitters) {
-        const std::uint64_t before = emitter.born();
-        const std::uint64_t refused_before = emitter.refused();
-        // One more than fits shows that too many are born, before there are so many.
-        std::vector<Particle> births = emitter.births(step.begin, step.end, std::min(room, fitting + 1), test);
-        count += emitter.born() - before;
-        refused += emitter.refused() - refused_before;
-        if (std::min(room, born.size() + births.size()) > fitting) refuse_to_grow(store.size(), particle_bytes);
-        born.insert(born.end(), std::make_move_iterator(births.begin()), std::make_move_iterator(births.end()));
-    }
-    std::stable_sort(born.begin(), born.end(),
-                     [](const Particle& a, const Particle& b) { return a.birth_time < b.birth_time; });
-    const std::size_t allowed = std::min<std::uint64_t>(born.size(), room);
+    const BirthTests tests = birth_tests(among, step);
+    const BirthLimits limits{step.end, room_below(options.most_particles, share.living(store.size())),
+                             room_below(most_that_fit, store.size()), store.next_id()};
+    StepBirths births(emitters, limits, tests, share);
+    if (!births.make()) refuse_to_grow(store.size(), particle_bytes);
     if (share.is_first()) {
-        recorder.statistics().births_refused_by_overlap += refused;
-        recorder.statistics().births_refused_by_population += count - refused - allowed;
+        recorder.statistics().births_refused_by_overlap += births.refused_by_overlap();
+        recorder.statistics().births_refused_by_population += births.refused_by_population();
     }
-    if (share.is_alone()) reserve(allowed);
-    for (std::size_t k = 0; k < allowed; ++k) add_to_share(std::move(born[k]));
-    share.add_births(allowed);
-    if (allowed > 0 && coupled.is_active()) coupled.bind(particles());
+    reserve(births.here().size());
+    add_all(births.here());
+    store.set_next_id(limits.first_id + births.count());
+    share.add_births(births.count());
+    if (births.count() > 0 && coupled.is_active()) coupled.bind(particles());
     if (check) check->watch_spawned(particles());
-}
-
-void Simulation::Impl::add_to_share(Particle&& particle) {
-    const std::uint64_t id = store.next_id();
-    if (share.has_place_for(id)) return add(std::move(particle));
-    store.set_next_id(id + 1);
 }
 
 /// Returns the children that live here; nothing where none is born, not on other ranks either.
@@ -65,13 +45,17 @@ std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& st
     const std::size_t first = store.size();
     const std::uint64_t first_id = store.next_id();
     OffspringCounts counts;
-    for (Child& child : offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(),
-                                              share, counts)) {
-        store.set_next_id(first_id + child.number);
-        add(std::move(child.particle));
-        if (child.cloud) clouds->join(store.size() - 1, *child.cloud);
-        if (response->keeps_sides()) inherit_sides(store.size() - 1, child);
+    std::vector<Child> children =
+        offspring->after_move(world, store.particles(), step.begin, step.end, recorder.batch_contacts(), share, counts);
+    std::vector<Particle*> born;
+    for (Child& child : children) {
+        child.particle.id = first_id + child.number;
+        born.push_back(&child.particle);
     }
+    add_all(born, [&](std::size_t k) {
+        if (children[k].cloud) clouds->join(store.size() - 1, *children[k].cloud);
+        if (response->keeps_sides()) inherit_sides(store.size() - 1, children[k]);
+    });
     store.set_next_id(first_id + counts.children);
     share.add_births(counts.children);
     if (share.is_first()) {
@@ -102,11 +86,13 @@ void Simulation::Impl::reserve(std::size_t more) {
 
 /// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface, and no other sphere
 /// that it can meet. Empty where there is nothing to overlap.
-BirthTest Simulation::Impl::birth_test(std::optional<BirthRoom>& room, const TimeSpan& step) const {
-    if (!pairs && world.surface_count() == 0) return {};
-    if (!pairs) return [this](const Particle& particle) { return !overlap_of(particle); };
-    return [this, &room, step](const Particle& particle) {
-        if (overlap_of(particle)) return false;
+BirthTests Simulation::Impl::birth_tests(std::optional<BirthRoom>& room, const TimeSpan& step) const {
+    BirthTests tests;
+    if (pairs || world.surface_count() > 0) {
+        tests.alone = [this](const Particle& particle) { return !overlap_of(particle); };
+    }
+    if (!pairs) return tests;
+    tests.among = [this, &room, step](const Particle& particle) {
         if (!(particle.radius > 0.0) || !is_finite(particle.position)) return true;
         if (!room) room = room_among_spheres(step);
         const ForceInput input{particle.position, particle.velocity, particle.mass, particle.radius,
@@ -117,6 +103,7 @@ BirthTest Simulation::Impl::birth_test(std::optional<BirthRoom>& room, const Tim
         room->add(ball);
         return true;
     };
+    return tests;
 }
 
 /// As the spheres that are there go on from the step's begin.
@@ -132,13 +119,6 @@ BirthRoom Simulation::Impl::room_among_spheres(const TimeSpan& step) const {
     return room;
 }
 
-/// Of a sphere at the position at which it would be taken in.
-std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) const {
-    const Vec3 position = flush_tiny(particle.position);
-    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return std::nullopt;
-    return deepest_overlap(world, bodies.get(), position, particle.radius, particle.birth_time);
-}
-
 PlaceTest Simulation::Impl::place_test() const {
     return [this](const Particle& parent, const Particle& child) {
         const Vec3 position = flush_tiny(child.position);
@@ -149,81 +129,6 @@ PlaceTest Simulation::Impl::place_test() const {
 const CollisionWorld& Simulation::Impl::world_of(std::size_t collider) const {
     const bool is_framed = bodies && !bodies->deforming().is_mesh(collider);
     return is_framed ? bodies->world(bodies->body_of_collider(collider)) : world;
-}
-
-void Simulation::Impl::prepare_radius(double radius) {
-    world.prepare_radius(radius);
-    if (bodies) bodies->prepare_radius(radius);
-}
-
-/// Forces may not bring particles beyond the speed of light; those that are there from the begin may hit others.
-void Simulation::Impl::note_speed(std::size_t i) {
-    const double speed = length(particles().velocity[i]);
-    if (!faster_than_light && speed > kMaxSpeed) faster_than_light = {particles().id[i], speed};
-}
-
-void Simulation::Impl::add(Particle&& particle) {
-    prepare_radius(particle.radius);
-    const std::optional<Vec3> off =
-        bodies && is_finite(particle.position) && max_abs(particle.position) <= kLargestCoordinate
-            ? off_bodies(*bodies, flush_tiny(particle.position), std::max(0.0, particle.birth_time))
-            : std::nullopt;
-    if (off) particle.position = *off;
-    const std::optional<Overlap> overlap = overlap_of(particle);
-    SimulationStatistics& statistics = recorder.statistics();
-    statistics.started_in_overlap += overlap ? 1 : 0;
-    statistics.started_inside += overlap || off || starts_on_surface(particle) ? 1 : 0;
-    schedule.append(particle.pinned);
-    free_flights.append();
-    store.append(std::move(particle));
-    if (clouds) clouds->append();
-    const std::size_t i = store.size() - 1;
-    note_speed(i);
-    if (offspring && inside_step) birth_records.push_back({particles().id[i], particles().origin[i]});
-    if (!response->keeps_sides()) {
-        if (overlap) store.set_core(i, core_radius(*overlap, particles().position[i], particles().radius[i]));
-        if (!overlap && options.response == ResponseKind::exact && !options.flow) hold_what_touches(i);
-    } else if (is_finite(particles().position[i])) {
-        response->first_sides(particles().position[i], store.sides_of(i));
-    }
-    ++statistics.emitted;
-}
-
-/// What is born touching a surface begins in contact with it.
-void Simulation::Impl::hold_what_touches(std::size_t i) {
-    const Vec3& position = particles().position[i];
-    if (!is_finite(position) || max_abs(position) > kLargestCoordinate || particles().pinned[i] != 0) return;
-    if (hold_in(world, i, position)) return;
-    if (!bodies) return;
-    const double time = std::max(0.0, particles().birth_time[i]);
-    for (const BodyId body : bodies_near(*bodies, position, particles().radius[i], time)) {
-        if (hold_in(bodies->world(body), i, bodies->pose(body, time).image(position))) return;
-    }
-}
-
-/// Those that stand in one frame, where the particle is at a position; false where there are none.
-bool Simulation::Impl::hold_in(const CollisionWorld& of_frame, std::size_t i, const Vec3& position) {
-    KeptContact contact;
-    const double reach = kTouchingOffsets * contact_offset(position);
-    for (const SurfaceId surface : surfaces_touched(of_frame, position, particles().radius[i], reach)) {
-        // What chance answers, answers each touch.
-        if (materials[world.material_of(surface)].is_random()) return true;
-        contact.surfaces[0] = surface;
-        contact.count = 1;
-        contact.cascade_left = KeptContact::kPlaced;
-    }
-    store.set_contact(i, contact);
-    return contact.count > 0;
-}
-
-/// Points only: a sphere whose centre lies there is in overlap.
-bool Simulation::Impl::starts_on_surface(const Particle& particle) const {
-    const Vec3 position = flush_tiny(particle.position);
-    if (particle.radius > 0.0 || !is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
-    ContactScratch scratch;
-    const SurfaceGeometry geometry(world, scratch.plane_cache);
-    const Path path = line_path(position, Vec3{}, 0.0);
-    return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
 // What users change between two steps.

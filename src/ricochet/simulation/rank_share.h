@@ -1,12 +1,12 @@
 /// \file
 /// Private to the simulation: what of a run one of several processes has.
 ///
-/// Each rank has the whole scene and moves particles of its own. Emitters run on all of them alike, so that ids need no
-/// talk; a particle lives where its id puts it, a child where its parent lives. Those that springs join live on the
-/// first rank, which plans their motion; the others take a step in as many parts as it does. Sums that do not depend on
-/// the order of their terms are kept by each rank for itself; for the others (seconds that budgets have cut off, what
-/// colliders that move have been given) each keeps its terms, and the first one adds them up in the order in which one
-/// process would.
+/// Each rank has the whole scene and moves particles of its own. The schedules of emitters run on all of them alike; a
+/// birth is made, and lives, where its place in them puts it (births.h), a particle of the setup where its id does, a
+/// child where its parent lives. Those that springs join live on the first rank, which plans their motion; the others
+/// take a step in as many parts as it does. Sums that do not depend on the order of their terms are kept by each rank
+/// for itself; for the others (seconds that budgets have cut off, what colliders that move have been given) each keeps
+/// its terms, and the first one adds them up in the order in which one process would.
 #pragma once
 
 #include <algorithm>
@@ -33,11 +33,13 @@ class RankShare {
 public:
     /// ranks: null, or only one: all is here.
     explicit RankShare(std::shared_ptr<Ranks> ranks)
-        : ranks_(ranks && ranks->size() > 1 ? std::move(ranks) : nullptr) {}
+        : ranks_(ranks && ranks->size() > 1 ? std::move(ranks) : nullptr),
+          rank_(ranks_ ? ranks_->rank() : 0),
+          size_(ranks_ ? ranks_->size() : 1) {}
 
     [[nodiscard]] bool is_alone() const { return ranks_ == nullptr; }
     /// The one that enters what all ranks count alike.
-    [[nodiscard]] bool is_first() const { return is_alone() || ranks_->rank() == 0; }
+    [[nodiscard]] bool is_first() const { return rank_ == 0; }
     /// Throws InputError where it is not: what users change between steps, they change in one process.
     void require_alone(const char* call) const;
     /// Not when alone.
@@ -46,13 +48,14 @@ public:
     void keep_together(std::vector<std::uint64_t> ids);
     [[nodiscard]] bool keeps_together() const { return !together_.empty(); }
     [[nodiscard]] bool stays(std::uint64_t id) const {
-        return std::binary_search(together_.begin(), together_.end(), id);
+        return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
     }
-    /// Whether a particle that no other one spawns lives here.
+    /// Whether a particle that no other one spawns lives here. Of a birth: by the id that it has where
+    /// none before it in the step is refused.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
         if (is_alone()) return true;
         if (stays(id)) return is_first();
-        return (id / kNeighbours) % ranks_->size() == ranks_->rank();
+        return (id / kNeighbours) % size_ == rank_;
     }
     /// s: the least of what ranks are ready to do next, all of them above 0. All call it.
     [[nodiscard]] double shortest(double duration) const;
@@ -98,6 +101,8 @@ private:
     };
 
     std::shared_ptr<Ranks> ranks_;
+    std::size_t rank_;                     // of this process
+    std::size_t size_;                     // ranks
     std::vector<std::uint64_t> together_;  // ascending
     std::uint64_t living_ = 0;
     std::uint64_t part_ = 0;  // parts of steps so far

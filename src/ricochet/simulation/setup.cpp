@@ -228,7 +228,12 @@ std::optional<std::string> Simulation::Impl::sphere_overlap_warning() {
 
 void Simulation::Impl::add_first(std::vector<Particle>& first) {
     reserve(first.size());
-    for (Particle& particle : first) add(std::move(particle));
+    std::vector<Particle*> added;
+    for (Particle& particle : first) {
+        particle.id = store.next_id() + added.size();
+        added.push_back(&particle);
+    }
+    add_all(added);
     if (auto warning = overlap_warning()) warnings.push_back(std::move(*warning));
     if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
 }

@@ -145,6 +145,37 @@ TEST(DensePiles, APyramidStands) {
     EXPECT_EQ(simulation.statistics().pair_violations, 0U);
 }
 
+// Layers of a square lattice, each in the hollows of the one below, that walls hold on all sides: all of it begins to
+// press in the first step.
+TEST(DensePiles, ABoxOfThemStandsAndSleeps) {
+    const int side = test::is_long_run() ? 50 : 10;
+    const int layers = test::is_long_run() ? 41 : 11;
+    SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 0.2, 0.5);
+    const double pitch = 2.0 * kRadius * (1.0 + 1e-9);
+    const double wall = 0.5 * side * pitch;
+    add_plane(setup, {}, {0, 0, 1});
+    for (const Vec3& normal : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}})
+        add_plane(setup, -wall * normal, normal);
+    std::vector<Vec3> start;
+    for (int layer = 0; layer < layers; ++layer) {
+        const int across = side - layer % 2;
+        for (int k = 0; k < across * across; ++k) {
+            const double x = pitch * (k % across - 0.5 * (across - 1));
+            const double y = pitch * (k / across - 0.5 * (across - 1));
+            start.push_back({x, y, 0.5 * pitch + std::sqrt(0.5) * pitch * layer});
+            setup.particles.push_back(particle_of(start.back(), {}, kRadius));
+        }
+    }
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    RecordProperty("drift", std::to_string(drift(simulation.particles(), start)));
+    EXPECT_LT(drift(simulation.particles(), start), 1e-3);
+    EXPECT_LT(simulation.statistics().overlap_verified, 1e-3);
+    EXPECT_EQ(simulation.statistics().asleep, start.size());
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+}
+
 /// Degrees, slope of the cone that has the mean height and mean distance from the axis of a column that has fallen.
 double angle_of_repose(double friction, std::uint64_t seed) {
     SimulationSetup setup = pile_setup(1.0, friction);

@@ -13,6 +13,11 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
 
+/// Rounds in which only those are joined that have met. Beyond them what touches those that are joined is joined as
+/// well: of a pile whose lowest layer has just come to lie, or that begins so, each round finds one layer more else,
+/// and costs all that lies below it again.
+constexpr std::size_t kRoundsAlone = 2;
+
 bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
 }
@@ -203,6 +208,9 @@ bool PairIslands::join_those_met() {
         const IslandMember& first = *off.members[pair.first];
         const IslandMember& second = *off.members[pair.second];
         if (may_have_met(first, second)) static_cast<void>(join(number(first), number(second)));
+    }
+    if (round_ >= kRoundsAlone && !joined_.empty()) {
+        for (const NeighbourPair& pair : plans_.stack_on(joined_)) static_cast<void>(join(pair.first, pair.second));
     }
     if (round_ == 0) {
         first_off_plan_ = off.members;

@@ -16,6 +16,9 @@ namespace {
 /// Parts of the radius beside what lies held by walls in which a collider that moves may disturb it.
 constexpr double kDisturbed = 0.01;
 
+/// Parts of the smaller radius: spheres with no more between them touch.
+constexpr double kTouching = 0.01;
+
 /// Spheres one behind the other that are expected to be deflected by one that lies; what comes behind these, and meets
 /// them, is found when they have been moved, and costs that again.
 constexpr int kDeflections = 2;
@@ -66,6 +69,42 @@ bool PairPlans::expect_deflections() {
         boxes_[k] = reachable_box(k);
     }
     return !deflected.empty();
+}
+
+std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) const {
+    std::vector<NeighbourPair> touching;  // both ways, by their first
+    for (const NeighbourPair& pair : pairs_) {
+        if (!touch(pair)) continue;
+        if (is_free(pair.second)) touching.push_back(pair);
+        if (is_free(pair.first)) touching.push_back({pair.second, pair.first});
+    }
+    const auto by_first = [](const NeighbourPair& a, const NeighbourPair& b) { return a.first < b.first; };
+    std::sort(touching.begin(), touching.end(), by_first);
+    std::vector<std::uint8_t> is_found(boxes_.size(), 0);
+    for (const std::uint32_t k : base) is_found[k] = 1;
+    std::vector<NeighbourPair> stack;
+    while (!base.empty()) {
+        const std::uint32_t k = base.back();
+        base.pop_back();
+        const auto [begin, end] = std::equal_range(touching.begin(), touching.end(), NeighbourPair{k, 0}, by_first);
+        for (auto pair = begin; pair != end; ++pair) {
+            if (is_found[pair->second] != 0) continue;
+            is_found[pair->second] = 1;
+            stack.push_back(*pair);
+            base.push_back(pair->second);
+        }
+    }
+    return stack;
+}
+
+/// At the step's begin, but for a gap that a step's fall closes.
+bool PairPlans::touch(const NeighbourPair& pair) const {
+    const Particles& particles = parts_.store.particles();
+    const std::size_t a = first_ + pair.first;
+    const std::size_t b = first_ + pair.second;
+    const double distance = length(particles.position[a] - particles.position[b]);
+    const double gap = distance - particles.radius[a] - particles.radius[b];
+    return gap <= kTouching * std::min(particles.radius[a], particles.radius[b]);
 }
 
 /// What is known without asking.

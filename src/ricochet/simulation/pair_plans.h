@@ -52,6 +52,10 @@ public:
     /// Whether a member's way leads it onto a sphere of another island that does what it declares, and has been asked.
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
+    /// All that fly freely and touch one of the base, themselves or through others that do, each with one of those that
+    /// have been found before, which comes first.
+    [[nodiscard]] std::vector<NeighbourPair> stack_on(std::vector<std::uint32_t> base) const;
+
 private:
     enum class Freedom : std::uint8_t { unknown, free, bound };
 
@@ -70,6 +74,7 @@ private:
     void declare();
     void find_pairs();
     [[nodiscard]] bool expect_deflections();
+    [[nodiscard]] bool touch(const NeighbourPair& pair) const;
     void add_pairs_with_sleepers();
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "collision/worlds.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/core/random.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
@@ -164,15 +165,15 @@ TEST(GranularLaws, TheFloorOfASiloCarriesWhatJanssenSays) {
         return;
     }
     constexpr double kWidth = 8.0 * kDiameter;
-    std::vector<SiloLoad> loads;
-    for (const std::size_t grains : {200U, 400U, 650U, 950U, 1350U, 1850U}) {
-        SiloLoad mean;
+    const std::vector<std::size_t> fillings = {200, 400, 650, 950, 1350, 1850};
+    std::vector<SiloLoad> loads(fillings.size());
+    parallel_for_blocks(fillings.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+        SiloLoad& mean = loads[k];
         for (const std::uint64_t seed : {1U, 2U}) {
-            const SiloLoad load = silo_load(kWidth, grains, seed);
+            const SiloLoad load = silo_load(kWidth, fillings[k], seed);
             mean.filled += 0.5 * load.filled, mean.carried += 0.5 * load.carried, mean.density += 0.5 * load.density;
         }
-        loads.push_back(mean);
-    }
+    });
     const double most = fitted_most(loads);
     const double ratio = most_by(1.0, loads.back().density, kWidth) / most;
     std::string report = "most " + std::to_string(most) + " K " + std::to_string(ratio);
@@ -252,19 +253,23 @@ TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
         EXPECT_NEAR(rate / (0.58 * density * std::sqrt(kG) * std::pow(4.6 * kDiameter, 2.5)), 1.0, 0.25);
         return;
     }
-    std::vector<double> holes;
+    const std::vector<double> holes = {5.0, 6.5, 8.0, 10.0};
+    std::vector<double> rates(holes.size());
+    parallel_for_blocks(holes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
+        // Five hundred grains and more each, of bins that are not half empty then.
+        const double hole = holes[k];
+        const Outflow flow{0.3, std::clamp(1.5 * std::pow(5.0 / hole, 2.5), 0.25, 1.5), (hole + 10.0) * kDiameter,
+                           (hole + 5.0) * kDiameter};
+        rates[k] = outflow(hole * kDiameter, flow);
+    });
     std::vector<double> roots;
     std::vector<double> gaps;
     std::vector<double> logarithms;
     std::string report;
-    for (const double hole : {5.0, 6.5, 8.0, 10.0}) {
-        // Five hundred grains and more each, of bins that are not half empty then.
-        const Outflow flow{0.3, std::clamp(1.5 * std::pow(5.0 / hole, 2.5), 0.25, 1.5), (hole + 10.0) * kDiameter,
-                           (hole + 5.0) * kDiameter};
-        const double rate = outflow(hole * kDiameter, flow);
-        holes.push_back(hole), roots.push_back(std::pow(rate, 0.4));
-        gaps.push_back(std::log(hole - 1.4)), logarithms.push_back(std::log(rate));
-        report += std::to_string(hole) + " " + std::to_string(rate) + "; ";
+    for (std::size_t k = 0; k < holes.size(); ++k) {
+        roots.push_back(std::pow(rates[k], 0.4));
+        gaps.push_back(std::log(holes[k] - 1.4)), logarithms.push_back(std::log(rates[k]));
+        report += std::to_string(holes[k]) + " " + std::to_string(rates[k]) + "; ";
     }
     const auto [slope, intercept] = line_through(holes, roots);
     const double k = -intercept / slope;

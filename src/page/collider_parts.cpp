@@ -122,6 +122,8 @@ ColliderParts::ColliderParts(const RunFolder& folder, const std::vector<FrameFil
         part.number = static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0));
         if (info != nullptr) {
             part.is_glass = info->looks.glass;
+            part.is_hidden = info->looks.hidden;
+            part.roughness = info->looks.roughness;
             part.color = info->looks.color;
         }
         part.hits = part_map(data, "hits", true);

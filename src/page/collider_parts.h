@@ -33,6 +33,8 @@ struct ColliderPart {
     std::uint32_t material = 0;
     PartMotion motion = PartMotion::still;
     bool is_glass = false;      ///< of its own looks, or has particles inside: to be seen through
+    bool is_hidden = false;     ///< of its own looks: not shown at first
+    double roughness = 1.0;     ///< of its own looks: 0 (a mirror's gloss) .. 1 (matt)
     std::optional<Vec3> color;  ///< of its own looks, linear light
     /// World coordinates, of one that moves those in the first frame, m. A plane is a square.
     TriangleMesh mesh;

@@ -116,6 +116,8 @@ std::vector<std::size_t> PageDetail::chosen_frames(std::size_t count) const {
     return chosen;
 }
 
+int attribute_bits(const PageAttribute& attribute, int bits) { return attribute.array == "radius" ? 16 : bits; }
+
 LevelScale level_scale(const PageAttribute& attribute, int bits) {
     LevelScale scale{attribute.low, 1.0,
                      static_cast<std::uint16_t>((1U << static_cast<unsigned>(bits)) - (attribute.has_gaps ? 2U : 1U)),
@@ -145,7 +147,7 @@ PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageD
     add_positions(page, frame, rows, survey, detail.position_bits);
     for (const PageAttribute& attribute : survey.attributes) {
         if (is_constant(attribute)) continue;
-        const LevelScale scale = level_scale(attribute, detail.value_bits);
+        const LevelScale scale = level_scale(attribute, attribute_bits(attribute, detail.value_bits));
         const std::vector<double> values = attribute_values(frame, attribute, file);
         Levels levels;
         levels.reserve(rows.size());
@@ -162,7 +164,7 @@ PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageD
 FrameEncoder::FrameEncoder(const RunSurvey& survey, const PageDetail& detail, const ColliderParts& colliders)
     : channels_(3, ChannelEncoder(detail.position_bits)), moving_(colliders, survey.origin, detail.position_bits) {
     for (const PageAttribute& attribute : survey.attributes) {
-        if (!is_constant(attribute)) channels_.emplace_back(detail.value_bits);
+        if (!is_constant(attribute)) channels_.emplace_back(attribute_bits(attribute, detail.value_bits));
     }
     if (survey.has_colors) channels_.insert(channels_.end(), 3, ChannelEncoder(8));
     if (!survey.turns.empty()) channels_.insert(channels_.end(), 3, ChannelEncoder(detail.value_bits));

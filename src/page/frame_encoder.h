@@ -19,7 +19,7 @@ namespace ricochet {
 /// How much of a run goes into its page.
 struct PageDetail {
     int position_bits = 16;       ///< of a coordinate, over the longest edge of the box
-    int value_bits = 16;          ///< of an attribute, over its range; 8 or 16
+    int value_bits = 16;          ///< of an attribute, over its range; 8 or 16, see attribute_bits()
     std::size_t every_frame = 1;  ///< one frame of so many; the last one always
     double particles = 1.0;       ///< part of the particles, chosen by chance; those at springs always
 
@@ -27,7 +27,10 @@ struct PageDetail {
     [[nodiscard]] std::vector<std::size_t> chosen_frames(std::size_t count) const;
 };
 
-/// The levels that an attribute is told in.
+/// The bits of an attribute: `bits`, but 16 for radii. They rarely change, so that these cost little, and those of
+/// small spheres among large ones would drown in the rounding.
+[[nodiscard]] int attribute_bits(const PageAttribute& attribute, int bits);
+/// The levels that an attribute is told in, of attribute_bits().
 [[nodiscard]] LevelScale level_scale(const PageAttribute& attribute, int bits);
 /// The levels of a coordinate of turns.
 [[nodiscard]] LevelScale turn_scale(int bits);

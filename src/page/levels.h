@@ -2,6 +2,7 @@
 /// Numbers rounded to levels, as the page stores them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -30,6 +31,8 @@ struct PositionGrid {
 
     [[nodiscard]] LevelScale axis(int axis) const { return {lower[axis], step, largest, false}; }
 };
+/// How far rounding to a grid of that step may move a point, m: half the diagonal of a cell.
+[[nodiscard]] inline double rounding_distance(double step) { return 0.5 * std::sqrt(3.0) * step; }
 /// The grid of 2^bits levels along the longest edge of the box.
 [[nodiscard]] PositionGrid position_grid(const Box3& box, int bits);
 

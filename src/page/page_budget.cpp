@@ -12,11 +12,18 @@ constexpr double kFewParticles = 2000.0;  // thinned to no fewer
 constexpr std::array kBits = {std::array{16, 16}, std::array{16, 8}, std::array{14, 8}, std::array{12, 8},
                               std::array{11, 8}};  // of positions and of attributes
 
+constexpr double kMostOff = 0.1;  // of a sphere's radius, that rounding moves it
+
 }  // namespace
 
-std::vector<PageDetail> detail_ladder(std::size_t frames, std::uint64_t most_particles) {
+std::vector<PageDetail> detail_ladder(std::size_t frames, std::uint64_t most_particles, int least_bits) {
     std::vector<PageDetail> ladder;
-    for (const auto& [position_bits, value_bits] : kBits) ladder.push_back({position_bits, value_bits, 1, 1.0});
+    for (const auto& [position_bits, value_bits] : kBits) {
+        const PageDetail detail{std::max(position_bits, least_bits), value_bits, 1, 1.0};
+        const bool is_new = ladder.empty() || detail.position_bits < ladder.back().position_bits ||
+                            detail.value_bits < ladder.back().value_bits;
+        if (is_new) ladder.push_back(detail);
+    }
     PageDetail detail = ladder.back();
     const auto thin_frames = [&](std::size_t least) {
         while (frames / (detail.every_frame + 1) + 1 >= least) {
@@ -33,6 +40,14 @@ std::vector<PageDetail> detail_ladder(std::size_t frames, std::uint64_t most_par
     }
     thin_frames(2);
     return ladder;
+}
+
+int needed_position_bits(double radius, double longest_edge) {
+    if (!(radius > 0.0)) return kLeastPositionBits;
+    int bits = kLeastPositionBits;
+    const auto off = [&] { return rounding_distance(longest_edge / (std::exp2(bits) - 1.0)); };
+    while (bits < kMostPositionBits && off() > kMostOff * radius) ++bits;
+    return bits;
 }
 
 std::size_t first_fitting(const std::vector<PageDetail>& ladder, std::size_t begin, double budget,

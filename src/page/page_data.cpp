@@ -69,6 +69,17 @@ std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::v
     return all;
 }
 
+// By the radii of small spheres, but for those that others dwarf.
+int least_position_bits(const RunSurvey& survey) {
+    for (const PageAttribute& attribute : survey.attributes) {
+        if (attribute.array != "radius" || survey.box.empty()) continue;
+        const Vec3 size = survey.box.size();
+        const double small = std::max(attribute.shown.low, 0.25 * attribute.shown.high);
+        return needed_position_bits(small, std::max({size.x, size.y, size.z}));
+    }
+    return kLeastPositionBits;
+}
+
 // Bytes that frames would take on the page, from a few of them.
 double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     const std::vector<std::size_t> chosen = detail.chosen_frames(source.frames.size());
@@ -141,7 +152,8 @@ PageSource page_source(const RunFolder& folder, const PageShapes& shapes, const 
 
 PageFrames fitted_frames(const PageSource& source, double bytes, const PageOptions& options) {
     const auto most = std::max_element(source.survey.counts.begin(), source.survey.counts.end());
-    const std::vector<PageDetail> ladder = detail_ladder(source.frames.size(), *most);
+    const std::vector<PageDetail> ladder =
+        detail_ladder(source.frames.size(), *most, least_position_bits(source.survey));
     const auto estimate = [&](const PageDetail& detail) { return estimated_bytes(source, detail); };
     std::size_t level = bytes > 0.0 ? first_fitting(ladder, 0, bytes, estimate) : ladder.size();
     for (; level < ladder.size(); ++level) {

@@ -21,9 +21,11 @@ ordered_json grid_json(const PositionGrid& grid, const Vec3& origin) {
     return {{"lower", triple(grid.lower - origin)}, {"step", grid.step}};
 }
 
-ordered_json attribute_json(const PageAttribute& attribute, int bits) {
+ordered_json attribute_json(const PageAttribute& attribute, int value_bits) {
+    const int bits = attribute_bits(attribute, value_bits);
     const LevelScale scale = level_scale(attribute, bits);
     return {{"name", printable(attribute.name)},
+            {"bits", bits},
             {"low", scale.low},
             {"step", scale.step},
             {"largest", scale.largest},
@@ -40,15 +42,28 @@ ordered_json part_json(const ColliderPart& part, const Vec3& origin, int bits) {
                          {"material", part.material},
                          {"motion", kMotions.at(static_cast<std::size_t>(part.motion))},
                          {"glass", part.is_glass},
+                         {"hidden", part.is_hidden},
+                         {"roughness", part.roughness},
                          {"vertices", part.mesh.vertices.size()},
                          {"triangles", part.mesh.triangles.size()},
                          {"grid", grid_json(part_grid(part, 16), origin)},
-                         {"frameGrid", grid_json(part_grid(part, bits), origin)}};
+                         {"frameGrid", grid_json(part_grid(part, bits), origin)},
+                         {"error", told_error(part, bits)}};
     if (part.color) json["color"] = triple(*part.color);
     if (part.plane_normal) json["planeNormal"] = triple(*part.plane_normal);
     if (!part.hits.levels.empty()) json["hits"] = part.hits.largest;
     if (!part.impulse.levels.empty()) json["impulse"] = part.impulse.largest;
     return json;
+}
+
+// The radius of a ball around the page's origin that holds all but planes, m.
+double reach_of(const PageSource& source) {
+    Box3 box = source.survey.box;
+    const Box3 colliders = source.colliders.box();
+    if (!colliders.empty()) box.include(colliders);
+    if (box.empty()) return 0.0;
+    const Vec3& origin = source.survey.origin;
+    return length(max(box.upper - origin, origin - box.lower));
 }
 
 // Null where particles are spheres.
@@ -135,6 +150,7 @@ std::string page_description(const PageSource& source, const PageFrames& frames,
                            {"fov", source.camera.fov_degrees}}},
                          {"grid", grid_json(position_grid(survey.box, detail.position_bits), survey.origin)},
                          {"size", survey.box.empty() ? triple({}) : triple(survey.box.size())},
+                         {"reach", reach_of(source)},
                          {"positionBits", detail.position_bits},
                          {"valueBits", detail.value_bits},
                          {"largestId", survey.largest_id},

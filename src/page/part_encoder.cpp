@@ -1,5 +1,7 @@
 #include "page/part_encoder.h"
 
+#include <algorithm>
+
 namespace ricochet {
 namespace {
 
@@ -18,6 +20,20 @@ PositionGrid part_grid(const ColliderPart& part, int bits) {
     if (part.motion == PartMotion::deforming) return position_grid(part.reach, bits);
     for (const Vec3& vertex : part.mesh.vertices) box.include(vertex);
     return position_grid(box, bits);
+}
+
+double told_error(const ColliderPart& part, int bits) {
+    if (part.motion == PartMotion::deforming) return rounding_distance(part_grid(part, bits).step);
+    const PositionGrid grid = part_grid(part, kVertexBits);
+    double largest = 0.0;
+    for (const Vec3& vertex : part.mesh.vertices) {
+        Vec3 off;
+        for (int axis = 0; axis < 3; ++axis) {
+            off[axis] = vertex[axis] - (grid.lower[axis] + grid.step * grid.axis(axis).level(vertex[axis]));
+        }
+        largest = std::max(largest, length(off));
+    }
+    return largest;
 }
 
 std::string encoded_part(const ColliderPart& part) {

@@ -17,6 +17,9 @@ namespace ricochet {
 /// The grid of its vertices.
 [[nodiscard]] PositionGrid part_grid(const ColliderPart& part, int bits);
 
+/// How far the page's vertices are from where they were at most, m. bits: of positions in frames.
+[[nodiscard]] double told_error(const ColliderPart& part, int bits);
+
 /// Writes the part of a frame's block that is about colliders that move: of a rigid one twelve numbers in 32 bits
 /// (three rows of the rotation, each followed by the shift), of a deforming one three channels.
 class MovingEncoder {

@@ -54,6 +54,24 @@ SHAPES = {
 BAR = "v -1 -0.1 0\nv 1 -0.1 0\nv 1 0.1 0\nv -1 0.1 0\nf 1 2 3\nf 1 3 4\n"
 
 
+# A sheet with spheres that touch it, a hidden box before it all, and a smooth ball.
+SHEET = "v -3 0 -2\nv 3 0 -2\nv 3 0 2\nv -3 0 2\nf 1 2 3\nf 1 3 4\n"
+RADII = (0.25, 0.4, 0.1)
+TOUCHING = {
+    "ricochet": 1,
+    "simulation": {"time_step": 0.05, "duration": 0.1},
+    "camera": {"position": [0, -8, 0], "target": [0, 0, 0], "field_of_view": 40},
+    "output": {"every": 1},
+    "colliders": [
+        {"name": "sheet", "type": "mesh", "file": "sheet.obj", "looks": {"color": [0, 0.2, 0]}},
+        {"name": "lid", "type": "box", "size": [6, 0.1, 4], "position": [0, -4, 0], "looks": {"hidden": True}},
+        {"name": "ball", "type": "sphere", "radius": 0.8, "position": [0, 3, 0], "looks": {"roughness": 0.2}},
+    ],
+    "particles": [{"position": [0.61 * (i % 6) - 1.53, RADII[i % 3] * (1 + 1e-9), 1.2 * (i // 6) - 0.6],
+                   "radius": RADII[i % 3]} for i in range(12)],
+}
+
+
 def check(what, is_true, *shown):
     """Ends the test with 1 where something is not as it should be."""
     if not is_true:
@@ -187,6 +205,43 @@ def look_at_shapes(browser, page, folder):
     check("and copies again as before", changed_part(first, browser.screenshot()) == 0)
 
 
+def count_colors(png, is_wanted, area=None):
+    """How many pixels of a picture, or of the area left, top, right, bottom in it, have such a colour."""
+    width, height, channels, rows = pixels(png)
+    left, top, right, bottom = (int(v) for v in area or (0, 0, width, height))
+    return sum(is_wanted(*row[channels * x:channels * x + 3]) for row in rows[top:bottom] for x in range(left, right))
+
+
+def look_at_touching(browser, page, folder):
+    browser.open(page)
+    browser.run("ricochet.loaded")
+    browser.run("document.body.classList.add('bare'), ricochet.app.set_theme('light')")
+    shown = browser.run("ricochet.app.bodies.map((body) => body.object.visible)")
+    check("what the scene hides is not shown", shown == [True, False, True], shown)
+    boxes = browser.run("[...document.querySelectorAll('.body')].map((row) => row.querySelector('input').checked)")
+    check("and can be", boxes == shown, boxes)
+
+    def is_blue(red, green, blue):
+        return blue > red + 25 and blue > green + 25
+
+    for around, over in ((0, 0), (0.4, 0), (0.35, 0.3), (-1.2, -0.7)):
+        browser.run(f"ricochet.orbit({around}, {over})")
+        browser.run("show(1)")
+        through = count_colors(browser.screenshot(os.path.join(folder, f"behind_{around}_{over}.png")), is_blue)
+        check("no sphere is seen through the wall that it touches", through == 0, around, over, through)
+    browser.run("ricochet.app.stage.reset_view(), ricochet.orbit(2.6, 0.2)")
+    browser.run("show(1)")
+    front = browser.screenshot(os.path.join(folder, "touching.png"))
+    check("from the other side they are seen", count_colors(front, is_blue) > 3000, count_colors(front, is_blue))
+    x, y = window_place(browser, 4)
+    light = count_colors(front, lambda *rgb: min(rgb) > 150, (x - 50, y - 50, x + 50, y + 50))
+    check("and the page does not shine through their rims", light == 0, light)
+    browser.run("ricochet.app.bodies[2].material.uniforms.roughness.value = 1")
+    browser.run("show(1)")
+    matt = changed_part(front, browser.screenshot(os.path.join(folder, "matt.png")))
+    check("a smooth ball has a highlight", 1e-4 < matt < 0.1, matt)
+
+
 def view(program, scene_data, folder, name):
     """The page of a scene."""
     scene, page = os.path.join(folder, name + ".json"), os.path.join(folder, name + ".html")
@@ -206,15 +261,18 @@ def main():
     os.makedirs(folder, exist_ok=True)
     with open(os.path.join(folder, "bar.obj"), "w", encoding="utf-8") as stream:
         stream.write(BAR)
+    with open(os.path.join(folder, "sheet.obj"), "w", encoding="utf-8") as stream:
+        stream.write(SHEET)
     page, late = view(program, SCENE, folder, "page"), view(program, LATE, folder, "late")
-    shapes = view(program, SHAPES, folder, "shapes")
+    shapes, touching = view(program, SHAPES, folder, "shapes"), view(program, TOUCHING, folder, "touching")
     browser = Browser(path)
     try:
         look(browser, page, folder)
         look_at_late_one(browser, late)
         look_at_shapes(browser, shapes, folder)
+        look_at_touching(browser, touching, folder)
         check("the console stays empty", browser.console == [], browser.console)
-        pages = ["file://" + os.path.abspath(one) for one in (page, late, shapes)]
+        pages = ["file://" + os.path.abspath(one) for one in (page, late, shapes, touching)]
         outside = [url for url in browser.requests if not url.startswith(("blob:", *pages))]
         check("nothing is asked of anyone", outside == [], outside)
         check("no error", browser.run("ricochet.errors") == [])

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <tuple>
+
 namespace ricochet {
 namespace {
 
@@ -34,6 +37,31 @@ TEST(DetailLadder, LeavesSmallRunsTheirFramesAndParticles) {
     for (const PageDetail& detail : detail_ladder(1, 100)) {
         EXPECT_EQ(detail.every_frame, 1U);
         EXPECT_EQ(detail.particles, 1.0);
+    }
+}
+
+TEST(DetailLadder, GivesUpNoMoreBitsOfPositionsThanItMay) {
+    for (const int least : {11, 13, 14, 16}) {
+        const std::vector<PageDetail> ladder = detail_ladder(1000, 1'000'000, least);
+        EXPECT_EQ(ladder.back().position_bits, least);
+        for (std::size_t i = 1; i < ladder.size(); ++i) {
+            EXPECT_NE(
+                std::tie(ladder[i].position_bits, ladder[i].value_bits, ladder[i].every_frame, ladder[i].particles),
+                std::tie(ladder[i - 1].position_bits, ladder[i - 1].value_bits, ladder[i - 1].every_frame,
+                         ladder[i - 1].particles));
+        }
+    }
+}
+
+TEST(NeededPositionBits, MoveSpheresByATenthOfTheirRadiusAtMost) {
+    EXPECT_EQ(needed_position_bits(0.0, 10.0), kLeastPositionBits);
+    EXPECT_EQ(needed_position_bits(1.0, 10.0), kLeastPositionBits);
+    EXPECT_EQ(needed_position_bits(1e-9, 10.0), kMostPositionBits);
+    for (const double radius : {0.02, 0.01, 0.005, 0.002}) {
+        const auto off = [](int bits) { return 0.5 * std::sqrt(3.0) * 10.0 / (std::exp2(bits) - 1.0); };
+        const int bits = needed_position_bits(radius, 10.0);
+        EXPECT_LE(off(bits), 0.1 * radius);
+        EXPECT_GT(off(bits - 1), 0.1 * radius);
     }
 }
 

@@ -156,7 +156,7 @@ PageBytes ReadPage::block(const std::string& name) const {
 void ReadPage::read_frames() {
     std::vector<PageChannel> channels(3, PageChannel(description.at("positionBits")));
     for (const auto& attribute : description.at("attributes")) {
-        if (!attribute.at("constant")) channels.emplace_back(description.at("valueBits").get<int>());
+        if (!attribute.at("constant")) channels.emplace_back(attribute.at("bits").get<int>());
     }
     if (description.at("colors")) channels.insert(channels.end(), 3, PageChannel(8));
     std::size_t rigid = 0;

@@ -192,6 +192,84 @@ TEST(RunPage, LeavesOutParticlesThatAreFarFromAllOthersAndSaysSo) {
     ASSERT_EQ(page.description.at("notes").size(), 1U);
 }
 
+/// A wall through the origin, and spheres that touch it, of two sizes, in every frame elsewhere on it.
+struct Touching {
+    Vec3 normal = normalized(Vec3{0.3, -0.2, 1.0});
+    Vec3 u = normalized(cross(normal, {0, 1, 0}));
+    Vec3 v = cross(normal, u);
+    MadeRun run;
+
+    RunFolder written() {
+        run.add_still("wall", {{6.1 * (-u - v), 6.3 * (u - v), 5.9 * (u + v), 6.2 * (v - u)}, {{0, 1, 2}, {0, 2, 3}}});
+        for (std::uint32_t f = 0; f < 12; ++f) run.add_frame(frame(f));
+        return run.finish();
+    }
+    [[nodiscard]] VtkPolyData frame(std::uint32_t f) const {
+        std::vector<Vec3> points;
+        std::vector<std::int64_t> ids;
+        std::vector<double> radii;
+        for (std::int64_t id = 0; id < 3000; ++id) {
+            RandomSequence random(5, f, static_cast<std::uint64_t>(id));
+            const double across = 10.0 * (random.uniform() - 0.5);
+            const double along = 10.0 * (random.uniform() - 0.5);
+            radii.push_back(id % 2 == 0 ? 0.5 : 0.02);
+            points.push_back(across * u + along * v + radii.back() * normal);
+            ids.push_back(id);
+        }
+        VtkPolyData data = test::point_frame(std::move(points), std::move(ids));
+        data.point_arrays.push_back({"radius", std::move(radii)});
+        return data;
+    }
+};
+
+// What page and script take off the spheres' depth (Run.slack in web/run.js).
+double slack_of(const ReadPage& page) {
+    const auto& radius = page.description.at("attributes").at(page.attribute("radius"));
+    double walls = 0.0;
+    for (const auto& part : page.description.at("parts")) walls = std::max(walls, part.at("error").get<double>());
+    return 0.5 * std::sqrt(3.0) * page.description.at("grid").at("step").get<double>() +
+           0.5 * radius.at("step").get<double>() + walls;
+}
+
+TEST(RunPage, PutsSpheresThatTouchAWallPastItByNoMoreThanItSays) {
+    Touching touching;
+    const RunFolder folder = touching.written();
+    for (const double budget : {1e9, 0.82e6}) {
+        PageOptions options;
+        options.budget = budget;
+        const ReadPage page = page_of(folder, touching.run, options);
+        const double slack = slack_of(page);
+        double farthest = 0.0;
+        for (std::size_t row = 0; row < page.frames[0].ids.size(); ++row) {
+            const std::array<double, 3> place = page.position(page.frames[0], row);
+            const double height = dot(touching.normal, {place[0], place[1], place[2]});
+            farthest = std::max(farthest, page.value(page.frames[0], "radius", row) - height);
+        }
+        EXPECT_GT(farthest, 0.0);
+        EXPECT_LT(farthest, slack);
+        // A quarter of the larger radius is what the smaller ones count as.
+        EXPECT_LT(slack, 0.12 * 0.125) << page.description.at("positionBits");
+        EXPECT_EQ(page.description.at("valueBits"), budget == 1e9 ? 16 : 8);
+        EXPECT_LT(page.description.at("attributes").at(page.attribute("radius")).at("step").get<double>(), 1e-5);
+    }
+}
+
+TEST(RunPage, SaysHowCollidersLook) {
+    MadeRun run;
+    run.add_still("mirror", test::box_mesh({0, 0, 0}, {1, 1, 1}));
+    run.add_still("lid", test::box_mesh({0, 0, 2}, {1, 1, 3}));
+    run.add_frame(test::point_frame({{0, 0, 2}}, {1}));
+    RunFolder folder = run.finish();
+    folder.info.colliders[0].looks.roughness = 0.125;
+    folder.info.colliders[1].looks.hidden = true;
+    const ReadPage page = page_of(folder, run);
+    const auto& parts = page.description.at("parts");
+    EXPECT_EQ(parts[0].at("roughness"), 0.125);
+    EXPECT_EQ(parts[0].at("hidden"), false);
+    EXPECT_EQ(parts[1].at("roughness"), 1.0);
+    EXPECT_EQ(parts[1].at("hidden"), true);
+}
+
 TEST(RunPage, ShowsSpringsBetweenTheRowsOfTheFrame) {
     MadeRun run;
     VtkPolyData frame = test::point_frame({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {4, 5, 6, 9});

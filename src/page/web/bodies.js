@@ -1,6 +1,6 @@
 // Colliders, planes and cloth: triangles with their light and the map of what hit them.
 import * as THREE from 'three';
-import {LIGHT, light_uniforms} from './colors.js';
+import {GLOSS, LIGHT, light_uniforms} from './colors.js';
 
 const CREASE = Math.cos(38 * Math.PI / 180);
 const PALETTE = [0xa79f92, 0x9aa5b3, 0xb7a384, 0x94a59a, 0xb3968a, 0xa2abb8];
@@ -31,11 +31,13 @@ const FRAGMENT = /* glsl */ `
   uniform bool mapped;
   uniform bool flat_faces;
   uniform bool is_plane;
+  uniform float roughness;
   uniform float glass;   // 0: solid; 1: only outlines
   uniform float spacing; // of a plane's lines
   uniform vec3 middle;
   uniform float reach;
   ${LIGHT}
+  ${GLOSS}
   // How much of a pixel lines cover that are spacing apart.
   float lines_at(vec2 place, float apart) {
     vec2 cell = place / apart;
@@ -59,7 +61,7 @@ const FRAGMENT = /* glsl */ `
       alpha = 0.92 * (1.0 - smoothstep(0.35 * reach, reach, distance(at, middle)));
       if (dot(normal, up) < -0.2) alpha *= 0.25;  // from below
     }
-    vec3 light = lit(albedo, normal, to_eye);
+    vec3 light = lit(albedo, normal, to_eye) + gloss(roughness, normal, to_eye);
     if (glass > 0.0) {
       float rim = 1.0 - abs(dot(normal, to_eye));
       alpha *= mix(1.0, mapped ? 0.35 : 0.07 + 0.5 * rim * rim * rim, glass);
@@ -69,15 +71,16 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-function material_of(up, color) {
+// has_balls: particles have sizes of their own. Else they are as points, which lie in the surfaces that they touch.
+function material_of({description: {up}, has_balls}, color) {
   const uniforms = {
     ...light_uniforms(up), color: {value: new THREE.Color(color)}, map: {value: null}, mapped: {value: false},
-    flat_faces: {value: false}, is_plane: {value: false}, glass: {value: 0}, spacing: {value: 1},
+    flat_faces: {value: false}, is_plane: {value: false}, roughness: {value: 1}, glass: {value: 0}, spacing: {value: 1},
     middle: {value: new THREE.Vector3()}, reach: {value: 1},
   };
   return new THREE.ShaderMaterial({
     vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: THREE.DoubleSide,
-    polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,  // particles on a surface are in front of it
+    polygonOffset: !has_balls, polygonOffsetFactor: 1, polygonOffsetUnits: 1,  // points on a surface are in front of it
   });
 }
 
@@ -154,7 +157,8 @@ export class Body {
     this.is_deforming = part.motion === 'deforming';
     const {description} = run;
     const color = this.is_plane ? PLANE.light : PALETTE[part.material % PALETTE.length];
-    this.material = material_of(description.up, color);
+    this.material = material_of(run, color);
+    this.material.uniforms.roughness.value = part.roughness;
     this.material.uniforms.map.value = map;
     const positions = spread(part.points, part.corners);
     const normals = this.is_deforming || this.is_plane ? null
@@ -162,6 +166,7 @@ export class Body {
     this.material.uniforms.flat_faces.value = normals === null;
     this.object = mesh_of(positions, normals, new Uint8Array(part.corners.length), this.material);
     this.object.matrixAutoUpdate = false;
+    this.object.visible = !part.hidden;
     if (this.is_plane) this.make_plane(description);
     if (part.color) this.material.uniforms.color.value.setRGB(...part.color);
     this.see_through(part.glass);
@@ -180,6 +185,12 @@ export class Body {
     uniforms.middle.value.set(0.5 * (p[0] + p[6]), 0.5 * (p[1] + p[7]), 0.5 * (p[2] + p[8]));
     this.material.transparent = true;
     this.object.renderOrder = 1;
+  }
+
+  // Of a plane: how far from the page's origin it is seen, m. All else is within the run's reach.
+  reach() {
+    const {middle, reach} = this.material.uniforms;
+    return this.is_plane ? middle.value.length() + reach.value : 0;
   }
 
   set_theme(theme) {
@@ -226,7 +237,7 @@ export class Body {
 export class Cloth {
   constructor(run) {
     this.run = run;
-    this.material = material_of(run.description.up, CLOTH);
+    this.material = material_of(run, CLOTH);
     this.object = mesh_of(new Float32Array(0), new Float32Array(0), new Uint8Array(0), this.material);
   }
 

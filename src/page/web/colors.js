@@ -64,6 +64,23 @@ export const LIGHT = /* glsl */ `
   }
 `;
 
+// What is added to it of surfaces that are not matt: highlights of the sun and of the sky, by the law of the pictures.
+export const GLOSS = /* glsl */ `
+  vec3 gloss(float roughness, vec3 normal, vec3 to_eye) {
+    if (roughness >= 1.0) return vec3(0.0);
+    float grazing = 1.0 - clamp(dot(normal, to_eye), 0.0, 1.0);
+    float fresnel = 0.04 + 0.5 * pow(grazing, 5.0) * min(1.0, (1.0 - roughness) / 0.58);
+    vec3 mirrored = reflect(-to_eye, normal);
+    float width = max(0.02, roughness * roughness);
+    float power = max(1.0, 2.0 / (width * width) - 2.0);
+    float spot = 4.0 * pow(max(dot(mirrored, sun), 0.0), power) * clamp(sqrt(power / 60.0), 0.1, 8.0);
+    float blur = 0.3 * roughness + 0.02;
+    float sky = smoothstep(-blur, blur, dot(mirrored, up));
+    vec3 around = mix(vec3(0.30, 0.28, 0.27), vec3(0.58, 0.62, 0.68), sky);
+    return fresnel * (around + 0.62 * spot);
+  }
+`;
+
 // Uniforms of LIGHT, for a scene with this direction upwards.
 export function light_uniforms(up) {
   const upward = new THREE.Vector3(...up).normalize();

@@ -10,13 +10,15 @@ const VERTEX = /* glsl */ `
   in vec4 place;
   in float size;
   in vec4 tint;
+  uniform float slack;
   ${COLOR}
   vec3 turned(vec3 v) {
     float w = sqrt(max(1.0 - dot(turn, turn), 0.0));
     return v + 2.0 * cross(turn, cross(turn, v) + w * v);
   }
   void main() {
-    at = lower + grid_step * place.xyz + enlarge * size * turned(position);
+    float reach = enlarge * size;
+    at = lower + grid_step * place.xyz + (reach - min(slack, 0.5 * reach)) * turned(position);
     facing = turned(normal);
     color = color_of();
     gl_Position = projectionMatrix * viewMatrix * vec4(at, 1.0);

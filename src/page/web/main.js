@@ -108,6 +108,8 @@ class App {
     particles.uniforms.map.value = this.maps[look.map];
     particles.uniforms.shown.value.set(...look.shown);
     particles.uniforms.enlarge.value = look.enlarge;
+    const reach = this.run.description.reach + particles.largest_radius();
+    this.stage.reach = Math.max(reach, ...this.bodies.map((body) => body.reach()));
     particles.draw_as(look.drawing);
     this.show_trails();
     this.show_picked();

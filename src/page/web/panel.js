@@ -94,7 +94,7 @@ export class Panel {
     this.place.append(row('colour by', this.body_map, 'What hit each triangle over the whole run'));
     const list = make('div', {className: 'bodies'});
     for (const body of app.bodies) {
-      const shown = make('input', {type: 'checkbox', checked: true, onchange: () => {
+      const shown = make('input', {type: 'checkbox', checked: body.object.visible, onchange: () => {
         body.object.visible = shown.checked;
         app.stage.request();
       }});
@@ -178,7 +178,7 @@ export class Panel {
         const value = run.value(frame, i, row);
         const level = a.constant ? 0 : frame.values[i][row];
         const mark = a.cut && (level === 0 || level === a.largest) ? (level === 0 ? '≤ ' : '≥ ') : '';
-        line(this.unit_name(i), mark + number_text(value, run.description.valueBits === 8 ? 3 : 4));
+        line(this.unit_name(i), mark + number_text(value, a.bits === 8 ? 3 : 4));
       });
     }
     card.replaceChildren(

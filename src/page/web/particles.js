@@ -53,6 +53,9 @@ const FRAGMENT = /* glsl */ `
   flat in vec4 color;
   uniform mat3 world_from_view;
   uniform bool soft;
+  uniform float pixel;
+  uniform float slack;       // m
+  uniform float depth_step;  // of the depth at a distance d, over d * d
   uniform mat4 projectionMatrix;
   ${LIGHT}
   void main() {
@@ -65,8 +68,13 @@ const FRAGMENT = /* glsl */ `
     if (covered < 0.02) discard;
     vec3 hit = ray * (along - ball * sqrt(max(room, 0.0)));
     vec3 normal = world_from_view * normalize(hit - center);
+    // It covers what is behind a smaller sphere, and walls cover it as that: one that touches a wall is past it by
+    // rounding, and what is past it would be seen through it, in a spot as wide as the root of that. The rim stays.
+    float far = length(center);
+    float solid = ball - min(slack + 0.5 * pixel * far + depth_step * far * far, 0.5 * ball);
+    vec3 seen = ray * (along - sqrt(max(solid * solid - dot(beside, beside), 0.0)));
     gl_FragColor = vec4(soft ? color.rgb : lit(0.92 * color.rgb, normal, world_from_view * -ray), covered);
-    vec4 clip = projectionMatrix * vec4(hit, 1.0);
+    vec4 clip = projectionMatrix * vec4(seen, 1.0);
     gl_FragDepth = clamp(0.5 + 0.5 * clip.z / clip.w, 0.0, 1.0);
     #include <colorspace_fragment>
   }
@@ -106,7 +114,8 @@ export class Particles {
       ...light_uniforms(description.up), lower: {value: new THREE.Vector3(...description.grid.lower)},
       grid_step: {value: description.grid.step}, value_scale: {value: new THREE.Vector2(0, 1)},
       shown: {value: new THREE.Vector2(0, 1)}, gap_level: {value: 1e9}, map: {value: null}, own_colors: {value: false},
-      radius: {value: 0}, enlarge: {value: 1}, pixel: {value: 0.001}, world_from_view: {value: new THREE.Matrix3()},
+      radius: {value: 0}, enlarge: {value: 1}, pixel: {value: 0.001}, slack: {value: run.slack},
+      depth_step: {value: 0}, world_from_view: {value: new THREE.Matrix3()},
       soft: {value: false}, places: {value: this.place.texture}, sizes: {value: this.size.texture},
       tints: {value: this.tint.texture}, tinted: {value: this.has_tint()},
     };
@@ -120,6 +129,7 @@ export class Particles {
       const height = renderer.getDrawingBufferSize(new THREE.Vector2()).y;
       this.uniforms.pixel.value = 2 * Math.tan(camera.fov * Math.PI / 360) / height / camera.zoom;
       this.uniforms.world_from_view.value.setFromMatrix4(camera.matrixWorld);
+      this.uniforms.depth_step.value = 2 ** -23 * (1 / camera.near - 1 / camera.far);
     };
     this.bound_radius = this.visible_radius();
     this.copies = this.has_shapes() ? description.shapes.meshes.map((mesh) => new Copies(mesh, room, this.uniforms)) : [];
@@ -153,6 +163,13 @@ export class Particles {
     const away = Math.hypot(...camera.position.map((x, axis) => x - camera.target[axis]));
     const size = Math.min(Math.max(0.8 / Math.sqrt(this.run.most), 0.0029), 0.02);
     return Math.tan(camera.fov * Math.PI / 360) * away * size;
+  }
+
+  // The largest of them, m.
+  largest_radius() {
+    const own = this.run.attributes[this.radius_attribute];
+    const most = own === undefined ? 0 : own.low + (own.constant ? 0 : own.step * own.largest);
+    return this.uniforms.enlarge.value * Math.max(most, this.visible_radius());
   }
 
   // What radius a row is drawn with.

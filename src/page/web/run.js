@@ -11,7 +11,7 @@ export class Run {
     const id_type = description.largestId < 2 ** 32 ? Uint32Array : Float64Array;
     this.ids = new id_type(0);
     this.axes = [0, 1, 2].map(() => new ChannelDecoder(description.positionBits));
-    this.values = this.attributes.map((a) => a.constant ? null : new ChannelDecoder(description.valueBits));
+    this.values = this.attributes.map((a) => a.constant ? null : new ChannelDecoder(a.bits));
     this.tints = description.colors ? [0, 1, 2].map(() => new ChannelDecoder(8)) : [];
     this.turns = description.shapes === null ? [] : [0, 1, 2].map(() => new ChannelDecoder(description.valueBits));
     this.deforming = description.parts.filter((part) => part.motion === 'deforming').map((part) => (
@@ -19,6 +19,18 @@ export class Run {
   }
 
   get frame_count() { return this.description.frames.count.length; }
+  // Particles are not all points.
+  get has_balls() {
+    return this.attributes.some((a) => ['radius', 'size'].includes(a.name) && a.low + (a.constant ? 0 : a.step * a.largest) > 0);
+  }
+  // How far surfaces may be from where they were, of particles and colliders together, m: by rounding on the page, and by
+  // single precision here.
+  get slack() {
+    const {grid, parts, reach} = this.description;
+    const radius = this.attributes.find((a) => a.name === 'radius' && !a.constant);
+    const walls = Math.max(0, ...parts.map((part) => part.error));
+    return 0.5 * Math.sqrt(3) * grid.step + (radius ? 0.5 * radius.step : 0) + walls + 2.5e-7 * reach;
+  }
   get most() { return Math.max(1, ...this.description.frames.count); }
 
   async load_parts() {
@@ -46,9 +58,9 @@ export class Run {
     for (let axis = 0; axis < 3; ++axis) {
       for (let i = 0; i < ids.length; ++i) frame.positions[3 * i + axis] = axes[axis][i];
     }
-    for (const channel of this.values) {
+    for (const [i, channel] of this.values.entries()) {
       const levels = channel === null ? null : channel.decode(reader, this.rows);
-      const is_short = levels !== null && this.description.valueBits === 8;
+      const is_short = levels !== null && this.attributes[i].bits === 8;
       frame.values.push(is_short ? Uint8Array.from(levels) : levels);
     }
     if (this.tints.length > 0) {

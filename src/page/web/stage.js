@@ -6,7 +6,9 @@ export class Stage {
   constructor(canvas, description) {
     this.canvas = canvas;
     this.description = description;
-    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true, powerPreference: 'high-performance'});
+    // Of its own making, since three.js always asks for alpha: the page would shine through the rims of spheres.
+    const wanted = {alpha: false, antialias: true, powerPreference: 'high-performance'};
+    this.renderer = new THREE.WebGLRenderer({canvas, context: canvas.getContext('webgl2', wanted) ?? undefined});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.renderer.toneMapping = THREE.NoToneMapping;
     this.scene = new THREE.Scene();
@@ -17,6 +19,7 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.request());
     this.before_drawing = () => {};
+    this.reach = Infinity;  // radius of a ball around the page's origin with all that is drawn, m
     this.draws = 0;
     this.is_requested = false;
     this.reset_view();
@@ -87,8 +90,11 @@ export class Stage {
   draw() {
     const size = Math.max(Math.hypot(...this.description.size), 1e-6);
     const away = this.camera.position.distanceTo(this.controls.target);
-    this.camera.near = Math.max(1e-3 * away, 1e-7 * size);
-    this.camera.far = away + 12 * size;
+    // As far away as can be: depths that the picture can tell apart are finer by so much.
+    const ahead = this.camera.getWorldDirection(new THREE.Vector3());
+    const free = -this.camera.position.dot(ahead) - this.reach;
+    this.camera.near = Math.max(1e-3 * away, 1e-7 * size, 0.98 * free);
+    this.camera.far = Math.max(away, this.camera.near) + 12 * size;
     this.camera.updateProjectionMatrix();
     this.before_drawing();
     this.renderer.render(this.scene, this.camera);

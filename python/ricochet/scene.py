@@ -312,6 +312,7 @@ class ColliderLooks(Thing):
     roughness: From 0, which mirrors what is around, to 1, which is matt. Default: 1.
     glass: It is seen through. Default: false.
     hidden: It is not shown. Default: false.
+    pattern: Of a plane: a faint chequer (lines on pages) gives the eye a scale. Default: true.
     """
 
 

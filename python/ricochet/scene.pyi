@@ -249,6 +249,7 @@ class ColliderLooks(Thing):
         roughness: Optional[float] = ...,
         glass: Optional[bool] = ...,
         hidden: Optional[bool] = ...,
+        pattern: Optional[bool] = ...,
     ) -> None: ...
 
 class Convection(Thing):

@@ -162,6 +162,7 @@ RunPictures::Looks RunPictures::looks_of(const RunInfo& info, const std::filesys
     looks.glass = own.glass || contains(style_.glass, name);
     looks.hidden = own.hidden || contains(style_.hidden, name);
     looks.roughness = own.roughness;
+    looks.pattern = own.pattern;
     looks.color = own.color ? *own.color : looks.glass ? kGlassColor : kColliderColors[color_index(info, file)];
     looks.has_color = own.color.has_value();
     return looks;
@@ -182,7 +183,7 @@ void RunPictures::load_colliders(const RunFolder& folder) {
         const std::vector<double>* normal = find_field(data, "plane_normal");
         if (point != nullptr && normal != nullptr && point->size() == 3 && normal->size() == 3) {
             planes_.push_back({vec3_of(*point), normalized(vec3_of(*normal)),
-                               looks.has_color ? looks.color : kPlaneColor, looks.roughness});
+                               looks.has_color ? looks.color : kPlaneColor, looks.roughness, !looks.pattern});
             continue;
         }
         subject_.colliders.insert(subject_.colliders.end(), data.points.begin(), data.points.end());

@@ -179,6 +179,7 @@ private:
         bool hidden = false;
         bool has_color = false;  // of its own, from the scene
         double roughness = 1.0;
+        bool pattern = true;
     };
 
     void survey(const std::vector<FrameFile>& chosen);

@@ -124,6 +124,7 @@ ColliderParts::ColliderParts(const RunFolder& folder, const std::vector<FrameFil
             part.is_glass = info->looks.glass;
             part.is_hidden = info->looks.hidden;
             part.roughness = info->looks.roughness;
+            part.has_pattern = info->looks.pattern;
             part.color = info->looks.color;
         }
         part.hits = part_map(data, "hits", true);

@@ -35,6 +35,7 @@ struct ColliderPart {
     bool is_glass = false;      ///< of its own looks, or has particles inside: to be seen through
     bool is_hidden = false;     ///< of its own looks: not shown at first
     double roughness = 1.0;     ///< of its own looks: 0 (a mirror's gloss) .. 1 (matt)
+    bool has_pattern = true;    ///< of its own looks: a plane's lines
     std::optional<Vec3> color;  ///< of its own looks, linear light
     /// World coordinates, of one that moves those in the first frame, m. A plane is a square.
     TriangleMesh mesh;

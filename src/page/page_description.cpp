@@ -50,7 +50,10 @@ ordered_json part_json(const ColliderPart& part, const Vec3& origin, int bits) {
                          {"frameGrid", grid_json(part_grid(part, bits), origin)},
                          {"error", told_error(part, bits)}};
     if (part.color) json["color"] = triple(*part.color);
-    if (part.plane_normal) json["planeNormal"] = triple(*part.plane_normal);
+    if (part.plane_normal) {
+        json["planeNormal"] = triple(*part.plane_normal);
+        json["pattern"] = part.has_pattern;
+    }
     if (!part.hits.levels.empty()) json["hits"] = part.hits.largest;
     if (!part.impulse.levels.empty()) json["impulse"] = part.impulse.largest;
     return json;

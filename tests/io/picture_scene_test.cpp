@@ -82,7 +82,7 @@ TEST(PictureScene, RefusesCamerasThatContradictThemselves) {
 TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
     const auto scene = parsed(R"("colliders": [{"name": "a", "type": "plane", "normal": [0, 0, 1],
             "looks": {"color": [0.1, 0.2, 0.3], "roughness": 0.25, "glass": true}},
-            {"name": "b", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true}}],
+            {"name": "b", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true, "pattern": false}}],
         "picture": {"light": "studio", "background": [0, 0, 0.5], "transparent": true, "ground": -2,
                     "particles": "streaks", "shutter": 0.02})");
     ASSERT_EQ(scene.looks.size(), 2U);
@@ -102,6 +102,13 @@ TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
     EXPECT_EQ(read.colliders[0].looks.roughness, 0.25);
     EXPECT_TRUE(read.colliders[0].looks.glass && !read.colliders[0].looks.hidden);
     EXPECT_TRUE(read.colliders[1].looks.hidden);
+    EXPECT_TRUE(read.colliders[0].looks.pattern && !read.colliders[1].looks.pattern);
+}
+
+TEST(PictureScene, OnlyPlanesHaveAPattern) {
+    EXPECT_EQ(
+        error_of(R"("colliders": [{"type": "box", "size": [1, 1, 1], "looks": {"pattern": false}}])"),
+        "colliders[0].looks.pattern: only planes have one, expected the collider to be a \"plane\" or no such key");
 }
 
 // What only says how it is shown changes neither the run nor whether it may be resumed.

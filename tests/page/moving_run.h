@@ -46,6 +46,11 @@ public:
         moving_.push_back({number, std::move(mesh), std::move(where)});
     }
     void add_still(const std::string& name, const TriangleMesh& mesh) { write_collider(name, mesh, false); }
+    /// A plane through the origin, upwards.
+    void add_plane(const std::string& name) {
+        const TriangleMesh square{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+        write_collider(name, square, false, {{"plane_normal", {0, 0, 1}}});
+    }
 
     /// Writes a frame of these particles, 0.1 s after the one before.
     void add_frame(VtkPolyData particles) {
@@ -74,8 +79,10 @@ private:
         Points where;
     };
 
-    void write_collider(const std::string& name, const TriangleMesh& mesh, bool moves) {
+    void write_collider(const std::string& name, const TriangleMesh& mesh, bool moves,
+                        std::vector<VtkField> fields = {}) {
         VtkPolyData data;
+        data.fields = std::move(fields);
         data.points = mesh.vertices;
         data.triangles = mesh.triangles;
         std::vector<std::int64_t> hits;

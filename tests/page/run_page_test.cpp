@@ -270,6 +270,18 @@ TEST(RunPage, SaysHowCollidersLook) {
     EXPECT_EQ(parts[1].at("hidden"), true);
 }
 
+TEST(RunPage, SaysWhetherPlanesHaveTheirLines) {
+    MadeRun run;
+    run.add_plane("floor");
+    run.add_plane("wall");
+    run.add_frame(test::point_frame({{0, 0, 2}}, {1}));
+    RunFolder folder = run.finish();
+    folder.info.colliders[1].looks.pattern = false;
+    const ReadPage page = page_of(folder, run);
+    EXPECT_EQ(page.description.at("parts")[0].at("pattern"), true);
+    EXPECT_EQ(page.description.at("parts")[1].at("pattern"), false);
+}
+
 TEST(RunPage, ShowsSpringsBetweenTheRowsOfTheFrame) {
     MadeRun run;
     VtkPolyData frame = test::point_frame({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {4, 5, 6, 9});

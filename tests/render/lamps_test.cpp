@@ -79,5 +79,35 @@ TEST(Lamps, AGlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
     EXPECT_LT(std::fabs(floor_light(spark, true) - floor_light({}, true)), 0.05 * expected);
 }
 
+// A screen half way between spark and floor ends below the spark's middle. Below its edge half of the spark is seen,
+// and as much to the side as the spark's radius, none or all of it.
+TEST(Lamps, ShadowsOfAGlowingParticleAreAsSoftAsItIsWide) {
+    constexpr double kRadius = 0.2;
+    const std::vector<Lamp> spark = lamps_of({{{0, 0, 2.0}}, {kRadius}, {{40, 30, 20}}, {1.0}, true}, 4);
+    const PreviewMesh screen{{{{0, -4, 1}, {4, -4, 1}, {4, 4, 1}, {0, 4, 1}}, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, false};
+    PictureOptions options;
+    options.width = options.height = 512;
+    options.samples = 256;
+    options.exposure = 0.01;  // so small that the display's range is linear
+    options.lighting = Lighting::night;
+    const auto lit = [&](double x, bool with_screen, const std::vector<Lamp>& lamps) {
+        std::vector<PreviewMesh> meshes;
+        if (with_screen) meshes.push_back(screen);
+        const Preview preview(std::move(meshes), {{{0, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0.5}, 1.0, true}}, {});
+        preview.prepare_sphere_rays();
+        // From the open side, below the screen.
+        const Camera camera{{x - 6, 0, 0.9}, {x, 0, 0}, {0, 0, 1}, 40.0};
+        const PixelPlace middle{256, 256};
+        PixelLight pixel;
+        Painter(preview, camera, options, lamps).pixels(std::span(&middle, 1), std::span(&pixel, 1));
+        return pixel.light.x;
+    };
+    const auto added = [&](double x, bool with_screen) { return lit(x, with_screen, spark) - lit(x, with_screen, {}); };
+    const auto part = [&](double x) { return added(x, true) / added(x, false); };
+    EXPECT_GT(part(-1.2 * kRadius), 0.95);
+    EXPECT_NEAR(part(0.0), 0.5, 0.1);
+    EXPECT_LT(part(1.2 * kRadius), 0.05);
+}
+
 }  // namespace
 }  // namespace ricochet

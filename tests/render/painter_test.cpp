@@ -95,6 +95,28 @@ TEST(Painter, ThereIsNoHighlightOfTheSunInTheShadow) {
     EXPECT_LT(brightness(1.0, true), 0.7 * brightness(1.0, false));
 }
 
+// Looked at from above, so that the chequer's two colours are all that differs.
+TEST(Painter, PlanesCarryAChequerUnlessTheyArePlain) {
+    const Camera camera{{0, 0, 10}, {0, 0, 0}, {0, 1, 0}, 40.0};
+    PictureOptions options;
+    options.width = options.height = 32;
+    const auto darkest = [&](bool is_plain) {
+        const Preview preview({}, {{{}, {0, 0, 1}, {0.5, 0.5, 0.5}, 1.0, is_plain}}, {});
+        preview.prepare_sphere_rays();
+        const Painter painter(preview, camera, options, {});
+        double least = 1.0;
+        for (int x = 0; x < options.width; ++x) {
+            const PixelPlace place{x, 11};
+            PixelLight pixel;
+            painter.pixels(std::span(&place, 1), std::span(&pixel, 1));
+            least = std::min(least, pixel.albedo.x);
+        }
+        return least;
+    };
+    EXPECT_NEAR(darkest(true), 0.5, 1e-9);
+    EXPECT_LT(darkest(false), 0.48);
+}
+
 TEST(Painter, TheLiftIsZeroOnFlatMeshes) {
     const PreviewMesh square{{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, false};
     const Preview preview({square}, {}, {});

@@ -33,7 +33,7 @@ const FRAGMENT = /* glsl */ `
   uniform bool is_plane;
   uniform float roughness;
   uniform float glass;   // 0: solid; 1: only outlines
-  uniform float spacing; // of a plane's lines
+  uniform float spacing; // of a plane's lines; 0: none
   uniform vec3 middle;
   uniform float reach;
   ${LIGHT}
@@ -56,8 +56,10 @@ const FRAGMENT = /* glsl */ `
     if (is_plane) {
       vec3 a = abs(normal);
       vec2 place = a.z >= a.x && a.z >= a.y ? at.xy : a.y >= a.x ? at.xz : at.yz;
-      float line = 0.35 * lines_at(place, spacing) + 0.4 * lines_at(place, 5.0 * spacing);
-      albedo *= 1.0 - 0.45 * line;
+      if (spacing > 0.0) {
+        float line = 0.35 * lines_at(place, spacing) + 0.4 * lines_at(place, 5.0 * spacing);
+        albedo *= 1.0 - 0.45 * line;
+      }
       alpha = 0.92 * (1.0 - smoothstep(0.35 * reach, reach, distance(at, middle)));
       if (dot(normal, up) < -0.2) alpha *= 0.25;  // from below
     }
@@ -179,7 +181,7 @@ export class Body {
     const wanted = size / 14;
     const power = 10 ** Math.floor(Math.log10(wanted));
     uniforms.is_plane.value = true;
-    uniforms.spacing.value = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
+    uniforms.spacing.value = !this.part.pattern ? 0 : power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
     uniforms.reach.value = Math.min(2.2 * size, this.half_edge());
     const p = this.part.points;
     uniforms.middle.value.set(0.5 * (p[0] + p[6]), 0.5 * (p[1] + p[7]), 0.5 * (p[2] + p[8]));

@@ -94,6 +94,7 @@ ColliderLooks looks_of(const Json& json) {
     looks.roughness = json.value("roughness", looks.roughness);
     looks.glass = json.value("glass", false);
     looks.hidden = json.value("hidden", false);
+    looks.pattern = json.value("pattern", true);
     return looks;
 }
 
@@ -103,6 +104,7 @@ Json json_of(const ColliderLooks& looks) {
     if (looks.roughness < 1.0) json["roughness"] = looks.roughness;
     if (looks.glass) json["glass"] = true;
     if (looks.hidden) json["hidden"] = true;
+    if (!looks.pattern) json["pattern"] = false;
     return json;
 }
 

@@ -52,6 +52,7 @@ struct ColliderLooks {
     double roughness = 1.0;     ///< 0 (a mirror's gloss) .. 1 (matt)
     bool glass = false;         ///< seen through
     bool hidden = false;
+    bool pattern = true;  ///< of a plane: what gives the eye a scale
 
     friend bool operator==(const ColliderLooks&, const ColliderLooks&) = default;
 };

@@ -18,6 +18,16 @@ constexpr double kMirror = 0.3;  // surfaces smoother than this show what is aro
 
 Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
+// A point of the lamp's disc that faces a surface, and that lies before it; u and v in 0..1.
+Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
+    const Vec3 way = lamp.position - hit.point;
+    const auto [a, b] = tangent_frame(normalized(way));
+    const double angle = 2.0 * std::numbers::pi * v;
+    const double radius = std::sqrt(u) * std::min(lamp.radius, 0.5 * length(way));
+    const Vec3 off = radius * (std::cos(angle) * a + std::sin(angle) * b);
+    return dot(hit.normal, way + off) > 0.0 ? lamp.position + off : lamp.position - off;
+}
+
 }  // namespace
 
 Painter::Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps)
@@ -304,16 +314,18 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     for (const Lamp& lamp : lamps_) total += given(lamp) * luminance(lamp.intensity);
     if (!(total > 0.0)) return {};
     double left = at.u * total;
+    double within = 0.0;  // the lamp's part, 0..1: what is left of the number that chose it
     const Lamp* chosen = nullptr;
     for (const Lamp& lamp : lamps_) {
         const double part = given(lamp) * luminance(lamp.intensity);
         if (!(part > 0.0)) continue;
         chosen = &lamp;
+        within = std::min(left / part, 1.0);
         left -= part;
         if (left < 0.0) break;
     }
     const Vec3 start = off_surface(hit) + hit.lift;
-    const Vec3 way = chosen->position - start;
+    const Vec3 way = point_of(*chosen, hit, within, at.v) - start;
     if (preview_.occluded({start, normalized(way), hit.time, length(way)})) return {};
     return chosen->intensity * (total / luminance(chosen->intensity));
 }
@@ -349,9 +361,9 @@ Vec3 Painter::off_surface(const PreviewHit& hit) const {
     return hit.point + kSinglePrecision * scale * hit.face;
 }
 
-// Planes carry a faint chequer that gives the eye a scale.
+// Planes carry, unless they are plain, a faint chequer that gives the eye a scale.
 Vec3 Painter::surface_color(const PreviewHit& hit) const {
-    if (hit.kind != PreviewHit::Kind::plane) return hit.color;
+    if (hit.kind != PreviewHit::Kind::plane || hit.is_plain) return hit.color;
     const auto [u, v] = tangent_frame(hit.normal);
     const double cells = std::floor(dot(hit.point, u) / tile_) + std::floor(dot(hit.point, v) / tile_);
     const bool odd = cells - 2.0 * std::floor(0.5 * cells) > 0.5;

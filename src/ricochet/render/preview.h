@@ -33,6 +33,7 @@ struct PreviewPlane {
     Vec3 normal{0, 0, 1};  ///< of unit length
     Vec3 color{0.5, 0.5, 0.5};
     double roughness = 1.0;  ///< 0 (a mirror's gloss) .. 1 (matt)
+    bool is_plain = false;   ///< without the chequer
 };
 
 /// Spheres; the vectors have the same length, the last one may be empty.
@@ -106,6 +107,7 @@ struct PreviewHit {
     Vec3 lift{};             ///< m, to where rays for shadows begin, on the smooth surface that a mesh stands for
     double roughness = 1.0;  ///< 0 (a mirror's gloss) .. 1 (matt)
     double time = 0.0;       ///< the ray's
+    bool is_plain = false;   ///< of a plane: without the chequer
 };
 
 /// Most rays that are traced at once.

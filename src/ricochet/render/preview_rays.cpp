@@ -212,6 +212,7 @@ void Preview::Impl::trace_planes(const PreviewRay& ray, std::optional<PreviewHit
         hit.face = plane.normal;
         hit.color = plane.color;
         hit.roughness = plane.roughness;
+        hit.is_plain = plane.is_plain;
         hit.time = ray.time;
     }
 }

@@ -275,7 +275,8 @@ const ObjectSpec& collider_looks_spec() {
         {{"color", &L::color, kFraction, "", "Red, green and blue, linear light.", Without{"one for each material"}},
          {"roughness", &L::roughness, kFraction, "", "From 0, which mirrors what is around, to 1, which is matt."},
          {"glass", &L::glass, "It is seen through."},
-         {"hidden", &L::hidden, "It is not shown."}});
+         {"hidden", &L::hidden, "It is not shown."},
+         {"pattern", &L::pattern, "Of a plane: a faint chequer (lines on pages) gives the eye a scale."}});
     return spec;
 }
 
@@ -309,7 +310,12 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
 
 void build_pictures(const SceneContext& context, SceneDescription& scene) {
     for (const ObjectView& view : context.root().objects("colliders")) {
-        scene.looks.push_back(view.object("looks").read<ColliderLooks>());
+        const ObjectView looks = view.object("looks");
+        if (looks.has("pattern") && view.type() != "plane") {
+            context.error(looks, "pattern",
+                          "only planes have one, expected the collider to be a \"plane\" or no such key");
+        }
+        scene.looks.push_back(looks.read<ColliderLooks>());
     }
     if (context.root().has("camera")) scene.camera = camera_of(context, context.root().object("camera"), scene.setup);
     if (context.root().has("picture")) {

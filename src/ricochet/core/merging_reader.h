@@ -57,12 +57,22 @@ public:
     requires kIsFlat<T>
     void operator()(std::vector<T>& values, std::size_t size) {
         const std::size_t width = width_of(size);
-        std::vector<std::vector<T>> parts(sources_.size());
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            read_list(sources_[k], parts[k]);
-            if (parts[k].size() != sources_[k].count * width) complain();
+        std::vector<std::span<const std::byte>> parts;
+        for (Source& source : sources_) {
+            std::uint64_t count = 0;
+            read(source, count);
+            if (count != source.count * width) complain();
+            parts.push_back(bytes_of(source, count * sizeof(T)));
         }
-        interleave(parts, values, width);
+        values.resize(size_ * width);
+        std::byte* to = std::as_writable_bytes(std::span(values)).data();
+        for (const Run& run : runs_) {
+            const std::size_t bytes = run.count * width * sizeof(T);
+            if (bytes == 0) continue;
+            std::memcpy(to, parts[run.source].data(), bytes);
+            parts[run.source] = parts[run.source].subspan(bytes);
+            to += bytes;
+        }
     }
     /// The same where a process may have none: it has `absent` then.
     template <class T>
@@ -120,9 +130,14 @@ private:
         read_bytes(source, std::as_writable_bytes(std::span(values)));
     }
     static void read_bytes(Source& source, std::span<std::byte> into) {
-        if (into.size() > source.bytes.size() - source.at) complain();
-        if (!into.empty()) std::memcpy(into.data(), source.bytes.data() + source.at, into.size());
-        source.at += into.size();
+        const std::span<const std::byte> from = bytes_of(source, into.size());
+        if (!into.empty()) std::memcpy(into.data(), from.data(), into.size());
+    }
+    static std::span<const std::byte> bytes_of(Source& source, std::size_t size) {
+        if (size > source.bytes.size() - source.at) complain();
+        const std::span<const std::byte> bytes = source.bytes.subspan(source.at, size);
+        source.at += size;
+        return bytes;
     }
     [[nodiscard]] std::uint64_t width_of(std::uint64_t entries) const { return size_ == 0 ? 0 : entries / size_; }
     /// Of the source with the least id as many as come before those of all others, again and again.

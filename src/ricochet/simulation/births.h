@@ -33,7 +33,7 @@ struct BirthLimits {
     std::uint64_t first_id = 0;  ///< of the first
 };
 
-/// The births of a step. Referred to particles move with it.
+/// The births of a step.
 class StepBirths {
 public:
     /// All must outlive it.

@@ -349,9 +349,8 @@ bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const T
     return entry.impulse.normal > kMorePressed * (held + kWeights * weight);
 }
 
-/// The one of two that does not sleep has gone, or there is a gap between them.
+/// Of a contact at the edge of sleep: the one of two that does not sleep has gone, or there is a gap between them.
 bool LastingContacts::has_parted(const NetworkKey& key) const {
-    if (!is_at_edge_of_sleep(key)) return false;
     const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
     const std::optional<std::size_t> k = parts_.store.index_of(key.other);
     if (!i || !k) return true;
@@ -364,7 +363,7 @@ bool LastingContacts::has_parted(const NetworkKey& key) const {
 void LastingContacts::wake_those_left(const TimeSpan& step) {
     if (piles_.empty()) return;
     std::vector<std::uint64_t> parted;
-    for (const NetworkMemory::Entry& entry : piles_.contacts().entries()) {
+    for (const NetworkMemory::Entry& entry : piles_.edges()) {
         if (has_parted(entry.key)) parted.push_back(sleeper_of(entry.key));
     }
     for (const std::uint64_t particle : parted) wake_pile(particle, step.end);

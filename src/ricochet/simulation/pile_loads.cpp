@@ -59,9 +59,8 @@ void PileLoads::find_balances(const SleepingPiles& piles, const TimeSpan& step) 
 /// Pinned spheres push as they did when the pile fell asleep.
 void PileLoads::add_contacts(const SleepingPiles& piles, const TimeSpan& step) {
     const std::vector<Vec3>& position = parts_.store.particles().position;
-    for (const NetworkMemory::Entry& entry : piles.contacts().entries()) {
+    for (const NetworkMemory::Entry& entry : piles.edges()) {
         const NetworkKey& key = entry.key;
-        if (key.is_wall() || piles.has(key.particle) == piles.has(key.other)) continue;
         const bool is_first = piles.has(key.particle);
         Balance& balance = balances_[piles.number_of(is_first ? key.particle : key.other)];
         const std::optional<std::size_t> first = parts_.store.index_of(key.particle);

@@ -55,25 +55,40 @@ void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::
     contacts_ = std::move(all);
     weights_.insert(weights_.end(), weights.begin(), weights.end());
     std::stable_sort(weights_.begin(), weights_.end(), by_particle);
-    for (const NetworkMemory::Entry& entry : contacts) {
-        if (!entry.key.is_wall()) join(entry.key.particle, entry.key.other);
-    }
+    std::vector<NetworkKey> joined;
+    for (const NetworkMemory::Entry& entry : contacts) joined.push_back(entry.key);
+    join(joined);
+    find_edges();
     ++version_;
 }
 
+/// By trees of sleepers, whose roots have the lowest numbers of piles.
 void SleepingPiles::join(const std::vector<NetworkKey>& touching) {
-    for (const NetworkKey& pair : touching) join(pair.particle, pair.other);
+    std::vector<std::size_t> parents(sleepers_.size());
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        const Sleeper* const first = find(sleepers_[i].pile);
+        parents[i] = first != nullptr ? static_cast<std::size_t>(first - sleepers_.data()) : i;
+    }
+    const auto root_of = [&](std::size_t i) {
+        while (parents[i] != i) i = parents[i] = parents[parents[i]];
+        return i;
+    };
+    for (const NetworkKey& pair : touching) {
+        const Sleeper* const a = pair.is_wall() ? nullptr : find(pair.particle);
+        const Sleeper* const b = pair.is_wall() ? nullptr : find(pair.other);
+        if (a == nullptr || b == nullptr) continue;
+        const std::size_t first = root_of(static_cast<std::size_t>(a - sleepers_.data()));
+        const std::size_t second = root_of(static_cast<std::size_t>(b - sleepers_.data()));
+        parents[std::max(first, second)] = std::min(first, second);
+    }
+    // Ascending, so that a root has been given its number before those below it.
+    for (std::size_t i = 0; i < parents.size(); ++i) sleepers_[i].pile = sleepers_[root_of(i)].pile;
 }
 
-/// Where both sleep.
-void SleepingPiles::join(std::uint64_t first, std::uint64_t second) {
-    const Sleeper* const a = find(first);
-    const Sleeper* const b = find(second);
-    if (a == nullptr || b == nullptr || a->pile == b->pile) return;
-    const std::uint64_t lower = std::min(a->pile, b->pile);
-    const std::uint64_t higher = std::max(a->pile, b->pile);
-    for (Sleeper& sleeper : sleepers_) {
-        if (sleeper.pile == higher) sleeper.pile = lower;
+void SleepingPiles::find_edges() {
+    edges_.clear();
+    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
+        if (!entry.key.is_wall() && has(entry.key.particle) != has(entry.key.other)) edges_.push_back(entry);
     }
 }
 
@@ -101,6 +116,7 @@ void SleepingPiles::wake(const std::vector<std::uint64_t>& pile, NetworkMemory& 
     std::erase_if(theirs, [&](const NetworkMemory::Entry& entry) { return memory.find(entry.key) != nullptr; });
     contacts_.replace(std::move(others));
     memory.add(theirs);
+    find_edges();
     ++version_;
 }
 

@@ -39,6 +39,8 @@ public:
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
     /// Contacts of sleepers, as they were when they fell asleep.
     [[nodiscard]] const NetworkMemory& contacts() const { return contacts_; }
+    /// Those of them with spheres that do not sleep, ascending: all that a step has to look at.
+    [[nodiscard]] const std::vector<NetworkMemory::Entry>& edges() const { return edges_; }
 
     [[nodiscard]] std::uint32_t still_steps(std::uint64_t particle) const;
     /// Of the step that ends, in any order; those not in the list have moved.
@@ -63,6 +65,7 @@ public:
         archive_entries(a, still_, [&](Still& still) { a(still.particle), a(still.steps); });
         archive_entries(a, weights_, [&](Weight& weight) { a(weight.particle), a(weight.surface), a(weight.force); });
         contacts_.archive(a);
+        find_edges();
         ++version_;
     }
 
@@ -72,12 +75,13 @@ private:
         std::uint64_t pile = 0;  ///< number_of()
     };
     [[nodiscard]] const Sleeper* find(std::uint64_t particle) const;
-    void join(std::uint64_t first, std::uint64_t second);
+    void find_edges();
 
     std::vector<Sleeper> sleepers_;  // ascending, as the others
     std::vector<Still> still_;
     std::vector<Weight> weights_;
     NetworkMemory contacts_;
+    std::vector<NetworkMemory::Entry> edges_;
     std::uint64_t version_ = 0;
 };
 

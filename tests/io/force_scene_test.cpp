@@ -175,5 +175,24 @@ TEST(ForceScene, WarnsOfForcesThatNeedARadiusInASceneOfPoints) {
     EXPECT_NE(warnings("0")[0].find("forces[0].type: "), std::string::npos);
 }
 
+TEST(ForceScene, WarnsOfIdsThatNoParticleHas) {
+    const auto warnings = [](const char* list, const char* ids, const char* more) {
+        return parse_scene(
+                   std::string(
+                       R"({"ricochet": 1, "particles": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}], ")") +
+                       list + R"(": [{"type": "gravity", "particles": )" + ids + "}]" + more + "}",
+                   "s.json")
+            .warnings;
+    };
+    const char* const tap = R"(, "emitters": [{"type": "point", "rate": 1}])";
+    for (const char* const list : {"forces", "particle_forces"}) {
+        EXPECT_EQ(warnings(list, "[0, 1]", ""), Lines{});
+        EXPECT_EQ(warnings(list, "[0, 5]", tap), Lines{}) << "born later";
+        ASSERT_EQ(warnings(list, "[0, 5]", "").size(), 1U);
+        EXPECT_NE(warnings(list, "[0, 5]", "")[0].find(std::string(list) + "[0].particles: no particle has the id 5"),
+                  std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -334,6 +334,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_particle_forces(context, scene.setup);
     check_clouds(context, scene.setup);
     build_heat(context, forces, scene.setup);
+    warn_of_forces_on_nobody(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();
     scene.output = output;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -266,6 +267,11 @@ void check_memory(const SceneContext& context, SceneDescription& scene);
 [[nodiscard]] std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter);
 /// The camera, the picture's settings and the emitters' drawings; after the frames.
 void build_pictures(const SceneContext& context, SceneDescription& scene);
+/// Ids of a list that no particle of the setup has or will have.
+void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
+                         std::span<const std::uint64_t> ids);
+/// The same of the scene's forces on single particles.
+void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup& setup);
 /// Forces that grow with a particle's radius, in a scene of points only.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 

@@ -1,5 +1,9 @@
 // Forces of a scene: the keys of each, beside what is made of them.
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
 #include <utility>
 
 #include "ricochet/io/scene/context.h"
@@ -270,6 +274,25 @@ std::vector<ForcePointer> ForceBuilder::forces() const {
         if (force) forces.push_back(std::move(force));
     }
     return forces;
+}
+
+void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
+                         std::span<const std::uint64_t> ids) {
+    if (!setup.emitters.empty()) return;  // of what will be born
+    const auto is_unknown = [&](std::uint64_t id) { return id >= setup.particles.size(); };
+    const auto unknown = std::find_if(ids.begin(), ids.end(), is_unknown);
+    if (unknown == ids.end()) return;
+    context.warn(
+        view, "particles",
+        fmt::format("no particle has the id {}: ids are given from 0 on in the order of the scene's particles, of "
+                    "which there are {}, and nothing is born; the force does not act on it",
+                    *unknown, setup.particles.size()));
+}
+
+void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup& setup) {
+    for (const ObjectView& view : context.objects("forces")) {
+        if (view.has("particles")) warn_of_unknown_ids(context, view, setup, view.read<ForceKeys>().particles);
+    }
 }
 
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup) {

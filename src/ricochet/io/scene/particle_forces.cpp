@@ -155,6 +155,7 @@ void build_particle_forces(const SceneContext& context, SimulationSetup& setup) 
         entry.force = made(context, view, [&] { return law->make(view); });
         if (!entry.force) continue;
         if (view.has("particles")) entry.particles = view.read<ForceKeys>().particles;
+        warn_of_unknown_ids(context, view, setup, entry.particles);
         read_emitter(context, setup, view, entry);
         check_attributes(context, setup, view, *entry.force);
         setup.particles_forces.push_back(std::move(entry));

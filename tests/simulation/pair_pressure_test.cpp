@@ -127,7 +127,7 @@ TEST(PairPressureLong, IsThatOfCarnahanAndStarlingAtAnyPacking) {
     const std::vector<Gas> gases = {
         {0.01, 21952, 1.0}, {0.1, 21952, 1.0}, {0.2, 21952, 1.0}, {0.3, 21952, 1.0}, {0.4, 21952, 1.0}};
     const std::vector<Schedule> schedules = {
-        {1.0, 200.0, 1500.0}, {0.25, 40.0, 150.0}, {0.12, 40.0, 100.0}, {0.06, 40.0, 80.0}, {0.03, 40.0, 60.0}};
+        {1.0, 200.0, 1500.0}, {0.25, 40.0, 150.0}, {0.12, 30.0, 60.0}, {0.06, 30.0, 40.0}, {0.03, 30.0, 30.0}};
     std::vector<Pressures> found(gases.size());
     parallel_for_blocks(gases.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
         found[k] = pressures_of(gases[k], schedules[k], inner_edge(gases[k].edge()));

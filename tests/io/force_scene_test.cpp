@@ -176,20 +176,20 @@ TEST(ForceScene, WarnsOfForcesThatNeedARadiusInASceneOfPoints) {
 }
 
 TEST(ForceScene, WarnsOfIdsThatNoParticleHas) {
-    const auto warnings = [](const char* list, const char* ids, const char* more) {
-        return parse_scene(
-                   std::string(
-                       R"({"ricochet": 1, "particles": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}], ")") +
-                       list + R"(": [{"type": "gravity", "particles": )" + ids + "}]" + more + "}",
-                   "s.json")
+    const auto warnings = [](const std::string& list, const std::string& ids, const std::string& more) {
+        const std::string own = list == "forces" ? R"("acceleration": [0, 0, -1], )" : "";
+        const std::string particles = R"("particles": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}])";
+        const std::string force = R"({"type": "gravity", )" + own + R"("particles": )" + ids + "}";
+        return parse_scene(R"({"ricochet": 1, )" + particles + ", \"" + list + "\": [" + force + "]" + more + "}",
+                           "s.json")
             .warnings;
     };
-    const char* const tap = R"(, "emitters": [{"type": "point", "rate": 1}])";
-    for (const char* const list : {"forces", "particle_forces"}) {
+    const std::string tap = R"(, "emitters": [{"type": "point", "rate": 1}])";
+    for (const std::string list : {"forces", "particle_forces"}) {
         EXPECT_EQ(warnings(list, "[0, 1]", ""), Lines{});
         EXPECT_EQ(warnings(list, "[0, 5]", tap), Lines{}) << "born later";
         ASSERT_EQ(warnings(list, "[0, 5]", "").size(), 1U);
-        EXPECT_NE(warnings(list, "[0, 5]", "")[0].find(std::string(list) + "[0].particles: no particle has the id 5"),
+        EXPECT_NE(warnings(list, "[0, 5]", "")[0].find(list + "[0].particles: no particle has the id 5"),
                   std::string::npos);
     }
 }

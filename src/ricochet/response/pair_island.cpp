@@ -35,6 +35,10 @@ bool PairIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, c
     scratch.record_flown = true;
     for (std::size_t m = 0; m < members.size(); ++m) predict(m);
     neighbours_.begin(boxes_);
+    if (!limit.may_press && presses()) {
+        scratch.record_flown = false;
+        return false;
+    }
     find_all();
     while (true) {
         const double time = times_.earliest();
@@ -53,8 +57,9 @@ bool PairIsland::exceeds(const ImpactLimit& limit) const {
     return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
 }
 
-/// At the ends of the paths of those that are there for all of the step.
-bool PairIsland::sinks() const {
+/// At the ends of the paths of those that are there for all of the step. is: what else holds of the pair.
+template <class Is>
+bool PairIsland::any_sinks(const Is& is) const {
     const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
     for (std::size_t m = 0; m < members_->size(); ++m) {
         const IslandMember& member = (*members_)[m];
@@ -65,10 +70,32 @@ bool PairIsland::sinks() const {
                 continue;
             const Vec3 apart = state_of(other, member.end).position - state_of(m, member.end).position;
             const double smaller = std::min(member.radius(), neighbour.radius());
-            if (has_sunk(member.radius() + neighbour.radius(), smaller, begin_[other] - begin_[m], apart)) return true;
+            const Vec3 before = begin_[other] - begin_[m];
+            if (has_sunk(member.radius() + neighbour.radius(), smaller, before, apart) && is(m, other)) return true;
         }
     }
     return false;
+}
+
+bool PairIsland::sinks() const {
+    return any_sinks([](std::size_t, std::size_t) { return true; });
+}
+
+/// Before anybody has met: by impacts without rebound two that press on each other never get through the step. What a wall
+/// throws into another one does rebound.
+bool PairIsland::presses() const {
+    const double resting = response_.rules().settings.resting_speed;
+    return any_sinks([&](std::size_t m, std::size_t other) {
+        const IslandMember& a = (*members_)[m];
+        const IslandMember& b = (*members_)[other];
+        const bool is_thrown = predictions_[m].outcome.bounces > 0 || predictions_[other].outcome.bounces > 0;
+        if (is_thrown) return false;
+        const Vec3 apart = begin_[other] - begin_[m];
+        const double distance = length(apart);
+        const double touching = a.radius() + b.radius() + kPressedOverlap * std::min(a.radius(), b.radius());
+        const double approach = -dot(b.moving.state.velocity - a.moving.state.velocity, apart);
+        return distance <= touching && approach <= resting * distance;
+    });
 }
 
 /// The path of a member to the end of its part of the step.

@@ -64,7 +64,8 @@ struct IslandMember {
 struct ImpactLimit {
     std::size_t in_all = std::numeric_limits<std::size_t>::max();
     std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< of one member
-    bool may_sink = true;  ///< false: it is also given up where forces drive members into each other
+    bool may_sink = true;   ///< false: it is also given up where forces drive members into each other
+    bool may_press = true;  ///< false: at once where they do so with two that touch and would not rebound
 };
 
 /// Works islands off; keeps its memory for the next one. For one thread.
@@ -119,6 +120,9 @@ private:
     [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
     [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
     [[nodiscard]] bool sinks() const;
+    [[nodiscard]] bool presses() const;
+    template <class Is>
+    [[nodiscard]] bool any_sinks(const Is& is) const;
 
     const Response& response_;
     const PairMaterials& materials_;

@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kMostImpacts = 4;
 constexpr std::size_t kMostElasticImpacts = 64;
 
-/// The same of one sphere, where impacts lose energy: what rattles so between others is pressed by them, and the island's
-/// other members, however many, need not rattle as well to be planned with it.
+/// The same of one sphere, where impacts lose energy: what rattles so between others is pressed by them, and the
+/// island's other members, however many, need not rattle as well to be planned with it.
 constexpr std::size_t kMostImpactsOfOne = 100;
 
 /// Plans of an island in a step, each with contacts looked for farther than in the one before.
@@ -57,8 +57,9 @@ ImpactLimit DenseIslands::impacts_before(const std::vector<IslandMember>& member
     if (!parts_.may_be_dense()) return limit;
     limit.in_all = (parts_.materials.loses_energy() ? kMostImpacts : kMostElasticImpacts) * members.size();
     limit.may_sink = false;
-    if (parts_.materials.loses_energy())
-        limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfOne;
+    if (!parts_.materials.loses_energy()) return limit;
+    limit.may_press = false;
+    limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfOne;
     return limit;
 }
 

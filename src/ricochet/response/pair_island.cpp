@@ -81,8 +81,8 @@ bool PairIsland::sinks() const {
     return any_sinks([](std::size_t, std::size_t) { return true; });
 }
 
-/// Before anybody has met: by impacts without rebound two that press on each other never get through the step. What a wall
-/// throws into another one does rebound.
+/// Before anybody has met: by impacts without rebound two that press on each other never get through the step. What a
+/// wall throws into another one does rebound.
 bool PairIsland::presses() const {
     const double resting = response_.rules().settings.resting_speed;
     return any_sinks([&](std::size_t m, std::size_t other) {

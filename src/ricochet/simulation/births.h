@@ -66,7 +66,6 @@ private:
                          std::vector<std::optional<Particle>>& made) const;
     void look_among(const Wave& wave, std::span<const std::size_t> mine,
                     std::vector<std::optional<Particle>>& made) const;
-    [[nodiscard]] bool is_made_by_all(const Wave& wave) const;
     [[nodiscard]] bool may_be_refused(const Wave& wave) const;
     void give_ids();
 

@@ -301,18 +301,26 @@ void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, co
     for (const DenseTrace* const trace : traces) still.insert(still.end(), trace->still.begin(), trace->still.end());
     piles_.set_still(std::move(still));
     wake_those_left(step);
+    std::vector<std::uint64_t> falling;
+    std::vector<NetworkMemory::Entry> contacts;
+    std::vector<SleepingPiles::Weight> weights;
+    std::vector<NetworkKey> touching;
     for (const DenseTrace* const trace : traces) {
-        const std::vector<std::uint64_t>& falling = trace->falling_asleep;
-        if (falling.empty()) continue;
-        std::vector<NetworkMemory::Entry> contacts;
-        const auto falls = [&](std::uint64_t id) { return std::binary_search(falling.begin(), falling.end(), id); };
+        const std::vector<std::uint64_t>& own = trace->falling_asleep;
+        if (own.empty()) continue;
+        falling.insert(falling.end(), own.begin(), own.end());
+        weights.insert(weights.end(), trace->weights.begin(), trace->weights.end());
+        touching.insert(touching.end(), trace->touching.begin(), trace->touching.end());
+        const auto falls = [&](std::uint64_t id) { return std::binary_search(own.begin(), own.end(), id); };
         for (const NetworkMemory::Entry& entry : trace->pressed) {
             if (falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other)))
                 contacts.push_back(entry);
         }
-        piles_.add(falling, contacts, trace->weights);
-        piles_.join(trace->touching);
     }
+    // All at once: each call goes through all that sleep.
+    if (falling.empty()) return;
+    piles_.add(falling, contacts, weights);
+    piles_.join(touching);
 }
 
 /// Among colliders that move the verifier follows everybody's time.

@@ -210,7 +210,8 @@ bool PairIslands::join_those_met() {
         if (may_have_met(first, second)) static_cast<void>(join(number(first), number(second)));
     }
     if (round_ >= kRoundsAlone && !joined_.empty()) {
-        for (const NeighbourPair& pair : plans_.stack_on(joined_)) static_cast<void>(join(pair.first, pair.second));
+        for (const NeighbourPair& pair : plans_.stack_on(members_joined()))
+            static_cast<void>(join(pair.first, pair.second));
     }
     if (round_ == 0) {
         first_off_plan_ = off.members;
@@ -218,6 +219,20 @@ bool PairIslands::join_those_met() {
         for (const IslandMember* member : off.members) first_numbers_.push_back(number(*member));
     }
     return !joined_.empty();
+}
+
+/// All of the islands that are joined, whoever leads them: numbers must not decide what lies on them.
+std::vector<std::uint32_t> PairIslands::members_joined() {
+    std::vector<std::uint8_t> is_joined(parents_.size(), 0);
+    for (const std::uint32_t k : joined_) is_joined[root_of(k)] = 1;
+    std::vector<std::uint32_t> members = joined_;
+    for (const Island& island : islands_) {
+        if (is_joined[root_of(island.particles.front())] != 0)
+            members.insert(members.end(), island.particles.begin(), island.particles.end());
+    }
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    return members;
 }
 
 /// Islands that have been joined begin anew; the others stay.

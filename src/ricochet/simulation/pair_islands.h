@@ -59,6 +59,7 @@ private:
     [[nodiscard]] static bool may_have_met(const IslandMember& first, const IslandMember& second);
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> met_by(const OffPlan& off);
     [[nodiscard]] bool join_those_met();
+    [[nodiscard]] std::vector<std::uint32_t> members_joined();
     void rebuild(const TimeSpan& step);
 
     PairParts parts_;

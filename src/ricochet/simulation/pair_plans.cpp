@@ -72,21 +72,20 @@ bool PairPlans::expect_deflections() {
 }
 
 std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) const {
-    std::vector<NeighbourPair> touching;  // both ways, by their first
+    std::vector<NeighbourPair> lying;  // below, above
     for (const NeighbourPair& pair : pairs_) {
-        if (!touch(pair)) continue;
-        if (is_free(pair.second)) touching.push_back(pair);
-        if (is_free(pair.first)) touching.push_back({pair.second, pair.first});
+        if (lies_on(pair.second, pair.first)) lying.push_back(pair);
+        if (lies_on(pair.first, pair.second)) lying.push_back({pair.second, pair.first});
     }
     const auto by_first = [](const NeighbourPair& a, const NeighbourPair& b) { return a.first < b.first; };
-    std::sort(touching.begin(), touching.end(), by_first);
+    std::sort(lying.begin(), lying.end(), by_first);
     std::vector<std::uint8_t> is_found(boxes_.size(), 0);
     for (const std::uint32_t k : base) is_found[k] = 1;
     std::vector<NeighbourPair> stack;
     while (!base.empty()) {
         const std::uint32_t k = base.back();
         base.pop_back();
-        const auto [begin, end] = std::equal_range(touching.begin(), touching.end(), NeighbourPair{k, 0}, by_first);
+        const auto [begin, end] = std::equal_range(lying.begin(), lying.end(), NeighbourPair{k, 0}, by_first);
         for (auto pair = begin; pair != end; ++pair) {
             if (is_found[pair->second] != 0) continue;
             is_found[pair->second] = 1;
@@ -97,14 +96,16 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
     return stack;
 }
 
-/// At the step's begin, but for a gap that a step's fall closes.
-bool PairPlans::touch(const NeighbourPair& pair) const {
+/// It touches the other one, but for a small gap, and its free way leads into the place where that is.
+bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
+    if (!is_free(above)) return false;
     const Particles& particles = parts_.store.particles();
-    const std::size_t a = first_ + pair.first;
-    const std::size_t b = first_ + pair.second;
-    const double distance = length(particles.position[a] - particles.position[b]);
-    const double gap = distance - particles.radius[a] - particles.radius[b];
-    return gap <= kTouching * std::min(particles.radius[a], particles.radius[b]);
+    const Vec3& place = particles.position[first_ + below];
+    const Vec3 apart = particles.position[first_ + above] - place;
+    const double touching = particles.radius[first_ + above] + particles.radius[first_ + below];
+    const double smaller = std::min(particles.radius[first_ + above], particles.radius[first_ + below]);
+    if (length(apart) > touching + kTouching * smaller) return false;
+    return has_sunk(touching, smaller, apart, way_of_free(above).path.end - place);
 }
 
 /// What is known without asking.

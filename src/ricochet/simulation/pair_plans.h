@@ -52,8 +52,8 @@ public:
     /// Whether a member's way leads it onto a sphere of another island that does what it declares, and has been asked.
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
-    /// All that fly freely and touch one of the base, themselves or through others that do, each with one of those that
-    /// have been found before, which comes first.
+    /// All that fly freely and lie on one of the base, if that stays where it is, or on others that do: each with one
+    /// that it lies on, which comes first.
     [[nodiscard]] std::vector<NeighbourPair> stack_on(std::vector<std::uint32_t> base) const;
 
 private:
@@ -74,7 +74,7 @@ private:
     void declare();
     void find_pairs();
     [[nodiscard]] bool expect_deflections();
-    [[nodiscard]] bool touch(const NeighbourPair& pair) const;
+    [[nodiscard]] bool lies_on(std::uint32_t above, std::uint32_t below) const;
     void add_pairs_with_sleepers();
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <stdexcept>
+#include <vector>
 
 #include "ricochet/core/parallel.h"
 
@@ -110,6 +113,42 @@ TEST(Picture, MoreSamplesMakeLessNoiseAroundTheSamePicture) {
     const double fine = difference(32);
     EXPECT_LT(fine, 0.5 * rough);
     EXPECT_LT(fine, 2.0);
+}
+
+// Four hundred balls, most of them narrower than two pixels, hang before the sky and over the floor.
+Preview many_small_balls() {
+    Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
+    PreviewSpheres balls;
+    std::uint32_t state = 2026;
+    const auto next = [&] { return (state = 1664525U * state + 1013904223U) / 4294967296.0; };
+    for (int k = 0; k < 400; ++k) {
+        const double x = 8.0 * next() - 4.0;
+        const double y = 8.0 * next() - 4.0;
+        balls.centers.push_back({x, y, 5.0 * next()});
+        balls.radii.push_back(0.05 + 0.1 * next());
+        balls.colors.push_back(k % 3 == 0 ? Vec3{0.6, 0.05, 0.05} : Vec3{0.05, 0.1, 0.5});
+    }
+    preview.set_spheres(balls);
+    return preview;
+}
+
+// The signal's peak over the noise, of a filtered picture of few samples against one of many.
+double decibels(const Preview& preview, int samples) {
+    PictureOptions options = small_picture();
+    options.samples = samples;
+    const auto few = render_picture(preview, front_camera(), options).rgb;
+    options.samples = 256;
+    options.filter = false;
+    const auto many = render_picture(preview, front_camera(), options).rgb;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < few.size(); ++i) sum += std::pow(few[i] - many[i], 2);
+    return 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(few.size()) / sum);
+}
+
+// 33.2 dB as it is; 28.0 dB where the four samples alone say how much of a pixel each ball covers. In between there is
+// room for other random numbers.
+TEST(Picture, FourSamplesWithTheFilterShowSmallBallsNearlyAsManySamplesDo) {
+    EXPECT_GT(decibels(many_small_balls(), 4), 31.5);
 }
 
 // Their brightness differs where light comes from other surfaces, and at edges, through which one ray goes or not.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "ricochet/render/sampling.h"
 
 namespace ricochet {
 namespace {
@@ -72,9 +73,8 @@ Vec3 SkyColors::at(double height) const {
 
 Vec3 Light::sun_direction(double u, double v) const {
     const auto [first, second] = tangent_frame(to_sun);
-    const double radius = sun_size * std::sqrt(u);
-    const double angle = 2.0 * std::numbers::pi * v;
-    return normalized(to_sun + radius * std::cos(angle) * first + radius * std::sin(angle) * second);
+    const DiscPoint at = on_disc({u, v});
+    return normalized(to_sun + sun_size * at.x * first + sun_size * at.y * second);
 }
 
 Light light_for(Lighting lighting, const Camera& camera) {
@@ -101,10 +101,9 @@ Light light_for(Lighting lighting, const Camera& camera) {
 
 Vec3 cosine_direction(const Vec3& normal, double u, double v) {
     const auto [first, second] = tangent_frame(normal);
-    const double radius = std::sqrt(u);
-    const double angle = 2.0 * std::numbers::pi * v;
+    const DiscPoint at = on_disc({u, v});
     const double height = std::sqrt(std::max(0.0, 1.0 - u));
-    return normalized(radius * std::cos(angle) * first + radius * std::sin(angle) * second + height * normal);
+    return normalized(at.x * first + at.y * second + height * normal);
 }
 
 }  // namespace ricochet

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "ricochet/render/tone.h"
@@ -22,9 +21,8 @@ Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b
 Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
     const Vec3 way = lamp.position - hit.point;
     const auto [a, b] = tangent_frame(normalized(way));
-    const double angle = 2.0 * std::numbers::pi * v;
-    const double radius = std::sqrt(u) * std::min(lamp.radius, 0.5 * length(way));
-    const Vec3 off = radius * (std::cos(angle) * a + std::sin(angle) * b);
+    const DiscPoint at = on_disc({u, v});
+    const Vec3 off = std::min(lamp.radius, 0.5 * length(way)) * (at.x * a + at.y * b);
     return dot(hit.normal, way + off) > 0.0 ? lamp.position + off : lamp.position - off;
 }
 
@@ -46,68 +44,93 @@ Painter::Painter(const Preview& preview, const Camera& camera, const PictureOpti
       extent_(tangent_ * length(camera.target - camera.position)),
       tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}
 
-void Painter::PixelSum::add(const Vec3& shown) {
-    sum.light += shown;
-    const double bright = luminance(shown);
-    sum_of_squares += bright * bright;
-}
-
-PixelLight Painter::PixelSum::mean(int samples) const {
-    PixelLight mean = sum;
-    mean.light = sum.light / samples;
-    mean.normal = sum.normal / samples;
-    mean.albedo = sum.albedo / samples;
-    mean.distance = sum.distance / samples;
-    mean.slope = sum.slope / samples;
-    mean.alpha = sum.alpha / samples;
-    const double bright = luminance(mean.light);
-    // Of one sample nothing is known: it may be off by as much as it is.
-    const double spread = samples == 1 ? bright * bright : sum_of_squares / samples - bright * bright;
-    mean.variance = std::max(0.0, spread) / std::max(1, samples - 1);
-    return mean;
-}
-
 void Painter::pixels(std::span<const PixelPlace> places, std::span<PixelLight> out) const {
     std::array<std::optional<PixelSamples>, kPacketRays> samples;
     std::array<PixelSum, kPacketRays> sums;
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        samples[k].emplace(places[k].x, places[k].y);
-        sums[k].sum.alpha = 0.0;
-    }
     std::array<Look, kPacketRays> room;
     const std::span looks(room.data(), places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        samples[k].emplace(places[k].x, places[k].y);
+        sums[k] = PixelSum(options_.exposure);
+        looks[k].samples = &*samples[k];
+    }
     for (int s = 0; s < options_.samples; ++s) {
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            looks[k].samples = &*samples[k];
-            looks[k].sample = s;
-            const SamplePair at = looks[k].get(SamplePurpose::pixel);
-            const SamplePair lens = camera_.aperture > 0.0 ? looks[k].get(SamplePurpose::lens) : SamplePair{};
-            looks[k].ray = camera_ray(places[k].x + at.u, places[k].y + at.v, lens);
-            looks[k].ray.time = samples[k]->time(s);
-        }
+        for (std::size_t k = 0; k < places.size(); ++k) aim(looks[k], places[k], s);
         trace(looks);
         add_sun_light(looks);
         add_sky_light(looks);
         for (std::size_t k = 0; k < places.size(); ++k) add(looks[k], sums[k]);
     }
-    for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean(options_.samples);
+    if (options_.samples < kGlances) add_glances(places, looks, std::span(sums.data(), places.size()));
+    for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean();
+}
+
+// Towards a sample of a pixel.
+void Painter::aim(Look& look, const PixelPlace& place, int sample) const {
+    look.sample = sample;
+    const SamplePair at = look.get(SamplePurpose::pixel);
+    const SamplePair lens = camera_.aperture > 0.0 ? look.get(SamplePurpose::lens) : SamplePair{};
+    look.ray = camera_ray(place.x + at.u, place.y + at.v, lens);
+    look.ray.time = look.samples->time(sample);
+}
+
+// More rays from the camera, and to the sun, for pixels whose samples see different things, and some for those beside
+// them, whose samples may have missed what is small.
+void Painter::add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums) const {
+    constexpr int kBeside = 4;
+    std::array<Look, kPacketRays> room;
+    std::array<PixelSum*, kPacketRays> whose{};
+    std::size_t count = 0;
+    const auto look_at_all = [&] {
+        trace(std::span(room.data(), count));
+        add_sun_light(std::span(room.data(), count));
+        for (std::size_t j = 0; j < count; ++j) whose[j]->add(glance(room[j]));
+        count = 0;
+    };
+    std::array<int, kPacketRays> wanted{};
+    for (std::size_t k = 0; k < places.size(); ++k) wanted[k] = sums[k].rays_wanted();
+    const int beside = std::min(kBeside, *std::max_element(wanted.begin(), wanted.end()));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const int end = std::min(kGlances, options_.samples + std::max(wanted[k], beside));
+        for (int s = options_.samples; s < end; ++s) {
+            room[count].samples = looks[k].samples;
+            aim(room[count], places[k], s);
+            whose[count++] = &sums[k];
+            if (count == kPacketRays) look_at_all();
+        }
+    }
+    if (count > 0) look_at_all();
 }
 
 void Painter::add(const Look& look, PixelSum& sum) const {
-    const Seen seen_here = seen(look);
-    sum.add(tone_mapped(options_.exposure * seen_here.light));
-    sum.sum.alpha += seen_here.cover;
+    const bool open = options_.transparent && !look.hit;
+    const Vec3 light = open ? Vec3{} : solid_light(look);
+    const Seen seen = through_glass(look.ray, look.hit ? look.hit->distance : kNothing, light);
+    sum.add(glance(look), light, tone_mapped(options_.exposure * seen.light), open ? seen.cover : 1.0);
+}
+
+Glance Painter::glance(const Look& look) const {
+    Glance out;
+    const bool is_one_of_few = options_.samples < kGlances;
     if (!look.hit) {
-        sum.sum.albedo += {1, 1, 1};
-        return;
+        out.covers = !options_.transparent;
+        if (out.covers && is_one_of_few) out.own = behind_everything(look.ray.direction);
+        return out;
     }
     const PreviewHit& hit = *look.hit;
     const double pixel_size = 2.0 * tangent_ * hit.distance / options_.height;
     const double facing = std::max(0.05, std::fabs(dot(hit.face, look.ray.direction)));
-    sum.sum.normal += hit.normal;
-    sum.sum.albedo += surface_color(hit);
-    sum.sum.distance += hit.distance;
-    sum.sum.slope += pixel_size / facing;
+    out.normal = hit.normal;
+    out.albedo = surface_color(hit);
+    out.distance = hit.distance;
+    out.slope = pixel_size / facing;
+    if (!is_one_of_few) return out;
+    const double rise = 0.5 + 0.5 * dot(hit.normal, light_.up);
+    const Vec3 sky = (1.0 - rise) * light_.sky_colors.below + rise * light_.sky_colors.zenith;
+    const double left = hit.kind == PreviewHit::Kind::plane ? nearness(hit) : 1.0;
+    out.own = left * (hit.emission + times(out.albedo, look.sun)) + (1.0 - left) * horizon_;
+    out.plain = left * times(out.albedo, sky);
+    return out;
 }
 
 std::optional<Vec3> Painter::sun_middle() const { return light_.has_sun() ? std::optional(sun_middle_) : std::nullopt; }
@@ -167,9 +190,8 @@ PreviewRay Painter::camera_ray(double x, double y, const SamplePair& lens) const
     const double along = (options_.height - 2.0 * y) * half_pixel_;
     const Vec3 ahead = frame_.forward + across * frame_.right + along * frame_.up;
     if (!(camera_.aperture > 0.0)) return {camera_.position, (1.0 / length(ahead)) * ahead};
-    const double radius = 0.5 * camera_.aperture * std::sqrt(lens.u);
-    const double angle = 2.0 * std::numbers::pi * lens.v;
-    const Vec3 offset = radius * std::cos(angle) * frame_.right + radius * std::sin(angle) * frame_.up;
+    const DiscPoint at = on_disc(lens);
+    const Vec3 offset = 0.5 * camera_.aperture * (at.x * frame_.right + at.y * frame_.up);
     return {camera_.position + offset, normalized(focus_ * ahead - offset)};
 }
 
@@ -183,13 +205,6 @@ void Painter::trace(std::span<Look> looks) const {
     for (std::size_t k = 0; k < looks.size(); ++k) rays[k] = looks[k].ray;
     preview_.trace(std::span(rays.data(), looks.size()), std::span(hits.data(), looks.size()));
     for (std::size_t k = 0; k < looks.size(); ++k) looks[k].hit = hits[k];
-}
-
-Painter::Seen Painter::seen(const Look& look) const {
-    const bool open = options_.transparent && !look.hit;
-    Seen out = through_glass(look.ray, look.hit ? look.hit->distance : kNothing, open ? Vec3{} : solid_light(look));
-    if (!open) out.cover = 1.0;
-    return out;
 }
 
 // The light from behind, tinted and covered by the glass surfaces in front of it. Glass covers more where it is seen at
@@ -372,9 +387,14 @@ Vec3 Painter::surface_color(const PreviewHit& hit) const {
 
 // Planes go on for ever; far away they turn into what is behind everything on the horizon.
 Vec3 Painter::faded(const Vec3& light, const PreviewHit& hit) const {
-    const double reach = hit.distance / (14.0 * extent_);
-    const double left = std::exp(-reach * reach);
+    const double left = nearness(hit);
     return left * light + (1.0 - left) * horizon_;
+}
+
+// What is left of a plane's own look.
+double Painter::nearness(const PreviewHit& hit) const {
+    const double reach = hit.distance / (14.0 * extent_);
+    return std::exp(-reach * reach);
 }
 
 }  // namespace ricochet

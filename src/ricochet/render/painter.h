@@ -12,23 +12,13 @@
 #include "ricochet/render/lamps.h"
 #include "ricochet/render/light.h"
 #include "ricochet/render/picture.h"
+#include "ricochet/render/pixel_sum.h"
 #include "ricochet/render/preview.h"
 #include "ricochet/render/sampling.h"
 #include "ricochet/render/sphere_view.h"
 #include "ricochet/render/sun_shadows.h"
 
 namespace ricochet {
-
-/// What the samples of a pixel say together.
-struct PixelLight {
-    Vec3 light;             ///< in the display's range, mean of the samples
-    double variance = 0.0;  ///< of the mean's luminance
-    double alpha = 1.0;     ///< part of the samples that show something, where the background is transparent
-    Vec3 normal;            ///< means over the samples
-    Vec3 albedo;
-    double distance = 0.0;  ///< m
-    double slope = 0.0;     ///< m from pixel to pixel
-};
 
 /// Where a pixel is: column and row.
 struct PixelPlace {
@@ -66,14 +56,6 @@ private:
 
         [[nodiscard]] SamplePair get(SamplePurpose purpose) const { return samples->get(sample, purpose); }
     };
-    // Samples of a pixel, added up.
-    struct PixelSum {
-        PixelLight sum;
-        double sum_of_squares = 0.0;  // of the luminance
-
-        void add(const Vec3& shown);
-        [[nodiscard]] PixelLight mean(int samples) const;
-    };
     // Asks for the sun's light on a surface.
     struct SunAsk {
         const PreviewHit* hit = nullptr;
@@ -83,10 +65,12 @@ private:
 
     [[nodiscard]] PreviewRay camera_ray(double x, double y, const SamplePair& lens) const;
     void trace(std::span<Look> looks) const;
+    void aim(Look& look, const PixelPlace& place, int sample) const;
     void add(const Look& look, PixelSum& sum) const;
+    void add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums) const;
+    [[nodiscard]] Glance glance(const Look& look) const;
     void add_sun_light(std::span<Look> looks) const;
     void add_sky_light(std::span<Look> looks) const;
-    [[nodiscard]] Seen seen(const Look& look) const;
     [[nodiscard]] Seen through_glass(PreviewRay ray, double distance, const Vec3& behind) const;
     [[nodiscard]] Vec3 solid_light(const Look& look) const;
     [[nodiscard]] Vec3 quick_light(const PreviewHit& hit, const Vec3& sun) const;
@@ -100,6 +84,7 @@ private:
     [[nodiscard]] Vec3 off_surface(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 surface_color(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 faded(const Vec3& light, const PreviewHit& hit) const;
+    [[nodiscard]] double nearness(const PreviewHit& hit) const;
     [[nodiscard]] Vec3 behind_everything(const Vec3& direction) const;
 
     const Preview& preview_;

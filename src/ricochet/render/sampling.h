@@ -16,6 +16,15 @@ struct SamplePair {
     double v = 0.0;
 };
 
+/// A point of the unit disc.
+struct DiscPoint {
+    double x = 0.0;
+    double y = 0.0;
+};
+
+/// Evenly over the disc: the angle is v turns to 3e-9, the square of the distance from the middle u.
+[[nodiscard]] DiscPoint on_disc(const SamplePair& at);
+
 /// What a pair is for; pairs of different purposes are independent of each other.
 enum class SamplePurpose : std::uint32_t { pixel, lens, sun, sky, far_sun, lamp };
 

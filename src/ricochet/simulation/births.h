@@ -41,7 +41,8 @@ public:
     StepBirths(const StepBirths&) = delete;
     StepBirths& operator=(const StepBirths&) = delete;
 
-    /// Makes them. All ranks call it. False, and all of them left as they are, where more are born here than fit.
+    /// Makes them. All ranks call it. False where more are born here than fit: the schedules have gone on then, and
+    /// nobody has been given an id.
     [[nodiscard]] bool make();
 
     /// Those that live here, with their ids, ascending.

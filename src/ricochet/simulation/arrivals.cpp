@@ -23,7 +23,7 @@ bool is_in_range(const Vec3& position) { return is_finite(position) && max_abs(p
 /// Of a sphere at the position at which it would be taken in.
 std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
-    if (!is_finite(position) || max_abs(position) > kLargestCoordinate) return std::nullopt;
+    if (!is_in_range(position)) return std::nullopt;
     return deepest_overlap(world, bodies.get(), position, particle.radius, particle.birth_time);
 }
 
@@ -41,7 +41,7 @@ void Simulation::Impl::note_speed(std::size_t i) {
 /// Points only: a sphere whose centre lies there is in overlap.
 bool Simulation::Impl::starts_on_surface(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
-    if (particle.radius > 0.0 || !is_finite(position) || max_abs(position) > kLargestCoordinate) return false;
+    if (particle.radius > 0.0 || !is_in_range(position)) return false;
     ContactScratch scratch;
     const SurfaceGeometry geometry(world, scratch.plane_cache);
     const Path path = line_path(position, Vec3{}, 0.0);

@@ -89,15 +89,30 @@ void StepBirths::make(Wave& wave) {
     if (tests_.among) look_among(wave, mine, made);
     std::vector<std::uint64_t> refused;
     for (std::size_t j = 0; j < mine.size(); ++j) {
-        const bool is_here = share_.has_place_for(limits_.first_id + taken_ + mine[j]);
         if (!made[j]) refused.push_back(mine[j]);
-        if (made[j] && is_here) wave[mine[j]].made = &*made[j], ++made_here_;
     }
+    keep_those_here(wave, mine, made);
     if (is_told) refused = gather_list_to_all(share_.ranks(), refused);
     for (const std::uint64_t k : refused) wave[k].is_refused = true;
-    for (const Entry& entry : wave) made_of_[entry.emitter] += entry.is_refused ? 0 : 1;
     refused_by_overlap_ += refused.size();
     taken_ += wave.size();
+    std::erase_if(wave, [](const Entry& entry) { return entry.is_refused; });
+    for (const Entry& entry : wave) ++made_of_[entry.emitter];
+}
+
+// Where most are refused, or live elsewhere, they take no memory until the step ends.
+void StepBirths::keep_those_here(Wave& wave, std::span<const std::size_t> mine,
+                                 std::vector<std::optional<Particle>>& made) {
+    std::vector<std::size_t> here;
+    for (std::size_t j = 0; j < mine.size(); ++j) {
+        if (!made[j] || !share_.has_place_for(limits_.first_id + taken_ + mine[j])) continue;
+        if (here.size() < j) made[here.size()] = std::move(made[j]);
+        here.push_back(mine[j]);
+    }
+    made.resize(here.size());
+    if (here.size() < mine.size() / 2) made.shrink_to_fit();
+    for (std::size_t j = 0; j < here.size(); ++j) wave[here[j]].made = &*made[j];
+    made_here_ += here.size();
 }
 
 void StepBirths::make_by_threads(const Wave& wave, std::span<const std::size_t> mine,
@@ -123,7 +138,6 @@ void StepBirths::look_among(const Wave& wave, std::span<const std::size_t> mine,
 }
 
 void StepBirths::give_ids() {
-    std::erase_if(all_, [](const Entry& entry) { return entry.is_refused; });
     const auto by_order = [](const Entry& a, const Entry& b) {
         return std::tuple(a.due.time, a.emitter, a.due.number) < std::tuple(b.due.time, b.emitter, b.due.number);
     };

@@ -70,6 +70,26 @@ TEST(PixelSum, TheOpenPartOfAPixelIsThatOfAllRays) {
     EXPECT_NEAR(sum.mean().light.x, tone_mapped(kBright).x / 8.0, 1e-12);
 }
 
+PixelSum seen_twice(const Vec3& first, std::uint32_t surface, const Vec3& second, std::uint32_t other) {
+    PixelSum sum;
+    Glance glance = background(first);
+    glance.surface = surface;
+    add_shown(sum, glance, first);
+    glance = background(second);
+    glance.surface = other;
+    add_shown(sum, glance, second);
+    return sum;
+}
+
+TEST(PixelSum, OutlinesWantAllRaysWhereTheyShowAndSomeWhereSamplesMayHaveMissedThem) {
+    EXPECT_EQ(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(true), kGlances - 2);
+    EXPECT_LT(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(false), kGlances - 2);
+    EXPECT_EQ(seen_twice(kDark, 1, kDark, 2).rays_wanted(true), 0);
+    const int missed = seen_twice(kDark, 1, kDark, 1).rays_wanted(true);
+    EXPECT_GT(missed, 0);
+    EXPECT_LT(missed, kGlances - 2);
+}
+
 TEST(PixelSum, EvenPixelsAndThoseOfManySamplesWantNoMoreRays) {
     PixelSum even;
     for (int k = 0; k < 4; ++k) add_shown(even, background(kBright), kBright);

@@ -32,7 +32,7 @@ DrawnSpheres cloud(std::uint64_t seed, int count, double largest) {
 }
 
 TEST(SunShadows, CoverWhatAnySphereStandsBefore) {
-    for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
         DrawnSpheres spheres = cloud(seed, 400, 0.15);
         if (seed == 3) spheres.radii[7] = 2.0;  // one that is over thousands of cells
         RandomSequence draws(seed, 1, 0);
@@ -48,6 +48,43 @@ TEST(SunShadows, CoverWhatAnySphereStandsBefore) {
         EXPECT_GT(dark, 300);
         EXPECT_LT(dark, 4900);
     }
+}
+
+// Directions about the light's, on all sides of it, and those of its axes.
+TEST(SunShadows, CoverWhatStandsBeforeASlantedRay) {
+    for (const std::uint64_t seed : {4U, 5U}) {
+        DrawnSpheres spheres = cloud(seed, 400, 0.15);
+        if (seed == 5) spheres.radii[7] = 2.0;
+        RandomSequence draws(seed, 1, 0);
+        const Vec3 to_light = draws.unit_vector();
+        const SunShadows shadows(spheres, to_light);
+        const auto [across, along] = tangent_frame(to_light);
+        int dark = 0;
+        for (int k = 0; k < 5000; ++k) {
+            const Vec3 point = Vec3{100, -20, 3} + 5.0 * draws.in_unit_ball();
+            const double u = k % 3 == 1 ? 0.0 : 0.6 * draws.uniform() - 0.3;
+            const double v = k % 3 == 2 ? 0.0 : 0.6 * draws.uniform() - 0.3;
+            const Vec3 direction = normalized(to_light + u * across + v * along);
+            const bool expected = stands_before(spheres, point, direction);
+            EXPECT_EQ(shadows.covers(point, direction), expected) << "seed " << seed << ", point " << k;
+            dark += expected ? 1 : 0;
+        }
+        EXPECT_GT(dark, 300);
+        EXPECT_LT(dark, 4900);
+    }
+    EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0}, {0, 0, 1}));
+}
+
+TEST(SunShadows, GridsPayForNarrowLightsAndThinClouds) {
+    const SunShadows thin(cloud(6, 400, 0.05), {0, 0, 1});
+    EXPECT_TRUE(thin.pays(0.02));
+    EXPECT_FALSE(thin.pays(10.0));
+    DrawnSpheres pile;
+    for (int i = 0; i < 1000; ++i) {
+        pile.centers.push_back({0.0, 0.0, 0.1 * i});
+        pile.radii.push_back(0.05);
+    }
+    EXPECT_FALSE(SunShadows(pile, {0, 0, 1}).pays(0.0));
 }
 
 TEST(SunShadows, ThePointOfASphereThatFacesTheLightIsLit) {

@@ -87,9 +87,9 @@ struct Sums {
 float squared(float x) { return x * x; }
 
 // How much each of `count` pixels speaks against showing the surface of another one, and against having its light.
-// scale: over differences of brightness; allowed: m, difference of distance that a slant explains.
+// scale: over differences of brightness; steep: 1/m, over the difference of distance that a slant explains.
 void differences(const Row& here, std::size_t x, const Row& there, std::size_t u, std::size_t count,
-                 const float* __restrict scale, const float* __restrict allowed, float* __restrict out) {
+                 const float* __restrict scale, const float* __restrict steep, float* __restrict out) {
     for (std::size_t i = 0; i < count; ++i) {
         const float apart = std::fabs(there.bright[u + i] - here.bright[x + i]) * scale[i];
         const float normals = squared(here.normal_x[x + i] - there.normal_x[u + i]) +
@@ -99,7 +99,7 @@ void differences(const Row& here, std::size_t x, const Row& there, std::size_t u
                               squared(here.albedo_y[x + i] - there.albedo_y[u + i]) +
                               squared(here.albedo_z[x + i] - there.albedo_z[u + i]);
         const float difference = kNormalSharpness * normals + kAlbedoSharpness * albedos +
-                                 std::fabs(here.distance[x + i] - there.distance[u + i]) / allowed[i];
+                                 std::fabs(here.distance[x + i] - there.distance[u + i]) * steep[i];
         out[i] = apart + difference;
     }
 }
@@ -111,29 +111,36 @@ public:
         : picture_(picture),
           step_(step),
           width_(static_cast<std::size_t>(picture.width)),
-          here_(width_),
-          there_(width_),
+          rows_(kRows, Row(width_)),
           sums_(width_),
           scale_(width_),
-          allowed_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
+          steep_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
           weights_(width_) {}
 
+    // Rows a step apart one after the other, which have most of the rows of their taps in common.
+    void rows(int begin, int end, NoisyPicture& target) {
+        for (int first = begin; first < std::min(begin + step_, end); ++first) {
+            for (int y = first; y < end; y += step_) row(y, target);
+        }
+    }
+
+private:
     void row(int y, NoisyPicture& target) {
-        here_.load(picture_, y);
+        const Row& here = loaded(y);
         for (std::size_t x = 0; x < width_; ++x) {
             scale_[x] = 1.0F / (kLightSigmas * std::sqrt(variance_near(static_cast<int>(x), y)) + kLightFloor);
             const PixelFeatures& features = picture_.features[index(static_cast<int>(x), y)];
-            for (std::size_t away = 0; away < allowed_.size(); ++away) {
+            for (std::size_t away = 0; away < steep_.size(); ++away) {
                 const float reach = static_cast<float>(step_) * static_cast<float>(away);
-                allowed_[away][x] = 1.5F * reach * features.slope + 2e-3F * features.distance + 1e-30F;
+                steep_[away][x] = 1.0F / (1.5F * reach * features.slope + 2e-3F * features.distance + 1e-30F);
             }
         }
         sums_.clear();
         for (int dy = -2; dy <= 2; ++dy) {
             const int v = y + dy * step_;
             if (v < 0 || v >= picture_.height) continue;
-            if (dy != 0) there_.load(picture_, v);
-            for (int dx = -2; dx <= 2; ++dx) add_tap(dx, dy);
+            const Row& there = loaded(v);
+            for (int dx = -2; dx <= 2; ++dx) add_tap(here, there, dx, dy);
         }
         const std::size_t first = index(0, y);
         for (std::size_t x = 0; x < width_; ++x) {
@@ -143,7 +150,16 @@ public:
         }
     }
 
-private:
+    // Of the last rows of taps asked for.
+    const Row& loaded(int y) {
+        const auto slot = static_cast<std::size_t>(y / step_) % kRows;
+        if (loaded_[slot] != y) {
+            rows_[slot].load(picture_, y);
+            loaded_[slot] = y;
+        }
+        return rows_[slot];
+    }
+
     [[nodiscard]] std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) + static_cast<std::size_t>(x);
     }
@@ -167,7 +183,7 @@ private:
     }
 
     // Of all pixels of the row whose tap lies in the picture.
-    void add_tap(int dx, int dy) {
+    void add_tap(const Row& here, const Row& there, int dx, int dy) {
         constexpr std::array<float, 3> kKernel = {3.0F / 8.0F, 1.0F / 4.0F, 1.0F / 16.0F};
         const auto across = static_cast<std::size_t>(std::abs(dx));
         const auto along = static_cast<std::size_t>(std::abs(dy));
@@ -177,12 +193,11 @@ private:
         const std::size_t x = dx < 0 ? shift : 0;
         const std::size_t u = dx < 0 ? 0 : shift;
         const std::size_t count = width_ - shift;
-        const Row& there = dy == 0 ? here_ : there_;
         float* __restrict weights = weights_.data();
         if (dx == 0 && dy == 0) {
             std::fill(weights_.begin(), weights_.end(), kernel);
         } else {
-            differences(here_, x, there, u, count, scale_.data() + x, allowed_[std::max(across, along)].data() + x,
+            differences(here, x, there, u, count, scale_.data() + x, steep_[std::max(across, along)].data() + x,
                         weights);
             for (std::size_t i = 0; i < count; ++i) weights[i] = kernel * falling(weights[i]);
         }
@@ -208,36 +223,41 @@ private:
     const NoisyPicture& picture_;
     int step_;
     std::size_t width_;
-    Row here_, there_;
+    static constexpr std::size_t kRows = 5;  // of the taps of a pixel
+    std::vector<Row> rows_;
+    std::array<int, kRows> loaded_{-1, -1, -1, -1, -1};
     Sums sums_;
     std::vector<float> scale_;
-    std::array<std::vector<float>, 3> allowed_;  // by the steps that a tap is away
-    std::vector<float> weights_;                 // of one tap
+    std::array<std::vector<float>, 3> steep_;  // by the steps that a tap is away
+    std::vector<float> weights_;               // of one tap
 };
 
 }  // namespace
 
 void filter_noise(NoisyPicture& picture) {
     const std::size_t pixels = picture.light.size();
-    for (std::size_t i = 0; i < pixels; ++i) {
+    const auto for_each_pixel = [&](const auto& change) {
+        parallel_for_blocks(pixels, 8192, [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) change(i);
+        });
+    };
+    for_each_pixel([&](std::size_t i) {
         const Float3& albedo = picture.features[i].albedo;
         picture.light[i] = divided(picture.light[i], albedo);
         const float scale = bright(albedo) + kSmallestAlbedo;
         picture.variance[i] /= scale * scale;
-    }
+    });
     NoisyPicture next{picture.width, picture.height, std::vector<Float3>(pixels), std::vector<float>(pixels), {}};
     for (const int step : kSteps) {
         parallel_for_blocks(static_cast<std::size_t>(picture.height), 16,
                             [&](std::size_t, std::size_t begin, std::size_t end) {
                                 Pass pass(picture, step);
-                                for (std::size_t y = begin; y < end; ++y) pass.row(static_cast<int>(y), next);
+                                pass.rows(static_cast<int>(begin), static_cast<int>(end), next);
                             });
         std::swap(picture.light, next.light);
         std::swap(picture.variance, next.variance);
     }
-    for (std::size_t i = 0; i < pixels; ++i) {
-        picture.light[i] = multiplied(picture.light[i], picture.features[i].albedo);
-    }
+    for_each_pixel([&](std::size_t i) { picture.light[i] = multiplied(picture.light[i], picture.features[i].albedo); });
 }
 
 }  // namespace ricochet

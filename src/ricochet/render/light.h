@@ -3,12 +3,15 @@
 /// units of the picture's exposure.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/render/camera.h"
+#include "ricochet/render/sampling.h"
 
 namespace ricochet {
 
@@ -49,15 +52,33 @@ struct Light {
     [[nodiscard]] Vec3 sky(const Vec3& direction) const { return sky_colors.at(dot(direction, up)); }
     /// What the picture shows behind everything: brighter than the light that comes from there, and pale below.
     [[nodiscard]] Vec3 backdrop(const Vec3& direction) const { return backdrop_colors.at(dot(direction, up)); }
-    /// A direction towards a point of the sun's disk; u and v in 0..1.
-    [[nodiscard]] Vec3 sun_direction(double u, double v) const;
     [[nodiscard]] bool has_sun() const { return sun != Vec3{}; }
+};
+
+/// The sun's disc, for many directions to it.
+class SunDisc {
+public:
+    explicit SunDisc(const Light& light);
+    /// To a point of the disc; u and v in 0..1.
+    [[nodiscard]] Vec3 direction(double u, double v) const {
+        const DiscPoint at = on_disc({u, v});
+        const Vec3 way = middle_ + at.x * across_ + at.y * along_;
+        return (1.0 / length(way)) * way;
+    }
+
+private:
+    Vec3 middle_, across_, along_;
 };
 
 /// The light of that name about a camera.
 [[nodiscard]] Light light_for(Lighting lighting, const Camera& camera);
 
-/// A direction about the normal with the density of the cosine law; u and v in 0..1.
-[[nodiscard]] Vec3 cosine_direction(const Vec3& normal, double u, double v);
+/// A direction about the normal with the density of the cosine law, of unit length to 1e-8; u and v in 0..1.
+[[nodiscard]] inline Vec3 cosine_direction(const Vec3& normal, double u, double v) {
+    const auto [first, second] = tangent_frame(normal);
+    const DiscPoint at = on_disc({u, v});
+    const double height = std::sqrt(std::max(0.0, 1.0 - u));
+    return at.x * first + at.y * second + height * normal;
+}
 
 }  // namespace ricochet

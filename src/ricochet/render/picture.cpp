@@ -109,14 +109,15 @@ class DraftSpheres {
 public:
     DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
         : width_(options.width), view_(preview.spheres(), camera, options.width, options.height) {
-        if (const auto sun = painter.sun_middle(); sun && view_.pays()) shadows_.emplace(preview.spheres(), *sun);
-        if (!view_.pays()) preview.prepare_sphere_rays();
+        pays_ = view_.pays() && !view_.empty();
+        if (const auto sun = painter.sun_middle(); sun && pays_) shadows_.emplace(preview.spheres(), *sun);
+        if (!pays_) preview.prepare_sphere_rays();
     }
 
     // The rows [begin, end) of one band of the view.
     void paint(const Painter& painter, int begin, int end, Sampled& out) const {
         std::vector<SphereFind> finds;
-        if (view_.pays()) {
+        if (pays_) {
             finds.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
             view_.find(begin / SphereView::band_rows(), finds);
         }
@@ -134,13 +135,57 @@ public:
 private:
     int width_;
     SphereView view_;
+    bool pays_ = false;
+    std::optional<SunShadows> shadows_;
+};
+
+// What is known of spheres at rest without rays, where that is faster: those that rays from the camera may meet, tile
+// by tile, if the lens has no width, and their shadows.
+class TiledSpheres {
+public:
+    TiledSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter) {
+        if (preview.spheres().centers.empty() || preview.spheres_move()) return;
+        if (!(camera.aperture > 0.0)) {
+            view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
+            if (!view_->pays()) view_.reset();
+        }
+        // The grid takes up to 320 bytes for each sphere; rays to a wide sun come through too many of its cells.
+        constexpr std::size_t kMostSpheres = 500000;
+        constexpr double kWidestSun = 0.1;
+        if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;
+        if (const auto sun = painter.sun_middle()) {
+            shadows_.emplace(preview.spheres(), *sun);
+            if (!shadows_->pays(painter.sun_slope())) shadows_.reset();
+        }
+    }
+
+    // The rows [begin, end) of one row of tiles.
+    void paint(const Painter& painter, int begin, int end, Sampled& out) const {
+        constexpr std::size_t kMost = 256;  // spheres of a tile; for more, rays are faster
+        SphereTiles tiles;
+        if (view_) tiles = view_->tiles(begin, end, kTileWidth);
+        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
+            KnownSpheres known{{}, shadows_ ? &*shadows_ : nullptr};
+            if (view_) known.listed = tiles.of(static_cast<std::size_t>(places[0].x / kTileWidth));
+            if (known.listed && known.listed->size() > kMost) known.listed.reset();
+            painter.pixels(places, lights, known);
+        });
+    }
+
+private:
+    std::optional<SphereView> view_;
     std::optional<SunShadows> shadows_;
 };
 
 Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps) {
     const Painter painter(preview, camera, options, std::move(lamps));
     std::optional<DraftSpheres> draft;
-    if (options.quick) draft.emplace(preview, camera, options, painter);
+    std::optional<TiledSpheres> tiled;
+    if (options.quick) {
+        draft.emplace(preview, camera, options, painter);
+    } else {
+        tiled.emplace(preview, camera, options, painter);
+    }
     const std::size_t pixels = pixel_count(options);
     // A draft is not filtered, and needs the light alone.
     const std::size_t filtered = options.quick ? 0 : pixels;
@@ -155,7 +200,7 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
         if (draft) {
             draft->paint(painter, top, bottom, out);
         } else {
-            paint_tiles(top, bottom, out, [&](auto places, auto lights) { painter.pixels(places, lights); });
+            tiled->paint(painter, top, bottom, out);
         }
         for (std::size_t row = begin; row < end && options.progress; ++row) {
             options.progress(static_cast<double>(++rows_done) / static_cast<double>(rows));

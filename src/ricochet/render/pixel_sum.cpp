@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "ricochet/render/tone.h"
 
@@ -12,6 +13,7 @@ namespace {
 // The differences between a pixel's samples, of the root of what is shown, as the eye and the picture's bytes have it.
 constexpr double kEven = 0.06;            // below which a pixel needs no more rays
 constexpr double kRaysByContrast = 20.0;  // for a difference of 1
+constexpr int kRaysUnseen = 4;            // where samples may have missed an outline
 
 Vec3 rooted(const Vec3& shown) { return {std::sqrt(shown.x), std::sqrt(shown.y), std::sqrt(shown.z)}; }
 
@@ -25,6 +27,9 @@ void PixelSum::add(const Glance& glance, const Vec3& light, const Vec3& shown, d
         light_ += light - glance.own;
         plain_ += glance.plain;
     }
+    if (samples_ == 0) surface_ = glance.surface;
+    surfaces_differ_ = surfaces_differ_ || glance.surface != surface_;
+    farthest_ = std::max(farthest_, glance.distance > 0.0 ? glance.distance : std::numeric_limits<double>::infinity());
     ++samples_;
     sum_.light += shown;
     const double bright = luminance(shown);
@@ -53,23 +58,30 @@ Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, pl
 
 // What a sample would show if its surface were lit as the mean of the pixel is.
 Vec3 PixelSum::expected(const Sample& sample, const Vec3& lit) const {
-    const Vec3& plain = sample.plain;
-    return tone_mapped(exposure_ * (sample.own + Vec3{lit.x * plain.x, lit.y * plain.y, lit.z * plain.z}));
+    return tone_mapped(exposure_ * (sample.own + times(lit, sample.plain)));
 }
 
-int PixelSum::rays_wanted() const {
-    if (samples_ >= kGlances) return 0;
+// Of what the samples would show.
+double PixelSum::contrast() const {
     const Vec3 all = lit();
     Vec3 lower = rooted(expected(kept_[0], all));
     Vec3 upper = lower;
     for (int k = 1; k < samples_; ++k) {
         const Vec3 next = rooted(expected(kept_[static_cast<std::size_t>(k)], all));
-        lower = {std::min(lower.x, next.x), std::min(lower.y, next.y), std::min(lower.z, next.z)};
-        upper = {std::max(upper.x, next.x), std::max(upper.y, next.y), std::max(upper.z, next.z)};
+        lower = min(lower, next);
+        upper = max(upper, next);
     }
-    const double contrast = max_abs(upper - lower);
-    if (contrast < kEven) return 0;
-    return std::min(kGlances - samples_, static_cast<int>(kRaysByContrast * contrast));
+    return max_abs(upper - lower);
+}
+
+int PixelSum::rays_wanted(bool has_outline) const {
+    if (samples_ >= kGlances) return 0;
+    const int most = kGlances - samples_;
+    const double differences = contrast();
+    const bool is_even = differences < kEven;
+    if (has_outline && surfaces_differ_) return is_even ? 0 : most;
+    const int by_contrast = is_even ? 0 : static_cast<int>(kRaysByContrast * differences);
+    return std::min(most, std::max(by_contrast, has_outline ? kRaysUnseen : 0));
 }
 
 PixelLight PixelSum::mean() const {

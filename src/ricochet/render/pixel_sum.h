@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "ricochet/core/vec3.h"
 
@@ -33,9 +34,10 @@ struct Glance {
     Vec3 plain;  ///< light that the surface sends besides if nothing keeps the sky from it
     Vec3 normal;
     Vec3 albedo{1, 1, 1};
-    double distance = 0.0;  ///< m
-    double slope = 0.0;     ///< m from pixel to pixel
-    bool covers = true;     ///< whether it is in the picture: the background is not where that is transparent
+    double distance = 0.0;      ///< m
+    double slope = 0.0;         ///< m from pixel to pixel
+    std::uint32_t surface = 0;  ///< a number for each sphere that is known; 0 for all else
+    bool covers = true;         ///< whether it is in the picture: the background is not where that is transparent
 };
 
 /// What is known of a pixel, sample by sample.
@@ -46,9 +48,12 @@ public:
     /// light: what the surface sends, or what is behind everything; shown: what the pixel shows of it, in the display's
     /// range; cover: part of it that is in the picture.
     void add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover);
-    /// How many rays more make the pixel good, at most kGlances with the samples: the more, the more these differ.
-    /// 0 after one sample, and after kGlances.
-    [[nodiscard]] int rays_wanted() const;
+    /// How many rays more make the pixel good, at most kGlances with the samples: the more, the more these differ, and
+    /// all where they do on both sides of an outline. 0 after kGlances. has_outline: whether that of a known sphere may
+    /// be seen.
+    [[nodiscard]] int rays_wanted(bool has_outline = false) const;
+    /// Distance of the farthest surface of the samples, m; infinite where one saw none.
+    [[nodiscard]] double farthest() const { return farthest_; }
     /// A ray from the camera beyond the samples; at most kGlances with them.
     void add(const Glance& glance);
     /// Of the samples, at least one, and the glances.
@@ -59,6 +64,7 @@ private:
         Vec3 own, plain, shown;
     };
     void add_features(const Glance& glance);
+    [[nodiscard]] double contrast() const;
     [[nodiscard]] Vec3 lit() const;
     [[nodiscard]] Vec3 expected(const Sample& sample, const Vec3& lit) const;
     void correct(PixelLight& mean) const;
@@ -70,6 +76,9 @@ private:
     double cover_ = 0.0;           // sums over the samples, and over all rays
     double seen_ = 0.0;
     double seen_by_samples_ = 0.0;
+    double farthest_ = 0.0;
+    std::uint32_t surface_ = 0;  // of the first sample
+    bool surfaces_differ_ = false;
     int samples_ = 0;
     int rays_ = 0;
     std::array<Sample, kGlances> kept_;

@@ -178,4 +178,6 @@ void Preview::prepare_sphere_rays() const {
 
 const DrawnSpheres& Preview::spheres() const { return impl_->spheres; }
 
+bool Preview::spheres_move() const { return !impl_->sphere_ways.empty(); }
+
 }  // namespace ricochet

@@ -152,6 +152,8 @@ public:
     [[nodiscard]] std::array<bool, kPacketRays> occluded(std::span<const PreviewRay> rays,
                                                          SphereRays spheres = SphereRays::met) const;
     [[nodiscard]] const DrawnSpheres& spheres() const;
+    /// Whether spheres move while the shutter is open.
+    [[nodiscard]] bool spheres_move() const;
     /// What a ray meets at that distance on a sphere, given the unit normal of the surface there.
     [[nodiscard]] PreviewHit sphere_hit(std::size_t sphere, double distance, const Vec3& normal,
                                         const PreviewRay& ray) const;

@@ -86,10 +86,15 @@ struct PacketFind {
         }
     }
 
-    [[nodiscard]] RayFind lane_find(std::size_t lane, const RTCRay& ray) const {
+    [[nodiscard]] RayFind lane_find(std::size_t lane) const {
         RayFind find;
-        find.query = {};
-        find.query.ray = ray;
+        find.query.ray.org_x = query.ray.org_x[lane];
+        find.query.ray.org_y = query.ray.org_y[lane];
+        find.query.ray.org_z = query.ray.org_z[lane];
+        find.query.ray.dir_x = query.ray.dir_x[lane];
+        find.query.ray.dir_y = query.ray.dir_y[lane];
+        find.query.ray.dir_z = query.ray.dir_z[lane];
+        find.query.ray.time = query.ray.time[lane];
         find.query.ray.tfar = query.ray.tfar[lane];
         find.query.hit.Ng_x = query.hit.Ng_x[lane];
         find.query.hit.Ng_y = query.hit.Ng_y[lane];
@@ -247,7 +252,7 @@ void Preview::trace(std::span<const PreviewRay> rays, std::span<std::optional<Pr
         hits[lane].reset();
         if (find.valid[lane] == 0) continue;
         if (find.geometry[lane] != RTC_INVALID_GEOMETRY_ID) {
-            hits[lane] = impl_->hit_of(find.lane_find(lane, embree_ray(rays[lane], impl_->origin)), rays[lane]);
+            hits[lane].emplace(impl_->hit_of(find.lane_find(lane), rays[lane]));
         }
         impl_->trace_planes(rays[lane], hits[lane]);
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "ricochet/core/parallel.h"
@@ -9,9 +10,46 @@
 namespace ricochet {
 namespace {
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kFlat = 1e-12;         // cells per m of height, the least slope
 constexpr double kEntries = 10.0;       // cells that a sphere is in, at most in the mean
 constexpr double kMostAcross = 2048.0;  // cells
 constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work
+
+// The cells of one coordinate of a grid that a ray comes through. Coordinates are in cells, and change by `slope` with
+// the height, m, over the ray's start. Without branches by the slope's sign, which no processor can foresee.
+struct GridWalk {
+    double at, slope, per_slope, ahead;
+    std::size_t count;      // cells
+    std::size_t change;     // from cell to cell: 1, or -1 by overflow
+    double enters, leaves;  // heights of the grid's ends
+    std::size_t cell = 0;
+    double next = 0.0;  // the height at which the ray leaves the cell
+
+    GridWalk(double start, double slope_of_ray, std::size_t cells)
+        : at(start),
+          slope(std::copysign(std::max(std::fabs(slope_of_ray), kFlat), slope_of_ray)),
+          per_slope(1.0 / slope),
+          ahead(slope > 0.0 ? 1.0 : 0.0),
+          count(cells),
+          change(2 * static_cast<std::size_t>(slope > 0.0) - 1),
+          enters(std::min(-at * per_slope, (static_cast<double>(cells) - at) * per_slope)),
+          leaves(std::max(-at * per_slope, (static_cast<double>(cells) - at) * per_slope)) {}
+
+    void start(double height) {
+        cell = static_cast<std::size_t>(std::clamp(at + slope * height, 0.0, static_cast<double>(count - 1)));
+        find_next();
+    }
+
+    // False beyond the last cell.
+    bool step() {
+        cell += change;
+        find_next();
+        return cell < count;
+    }
+
+    void find_next() { next = (static_cast<double>(static_cast<std::int64_t>(cell)) + ahead - at) * per_slope; }
+};
 
 }  // namespace
 
@@ -24,6 +62,12 @@ SunShadows::SunShadows(const DrawnSpheres& spheres, const Vec3& to_light) : to_l
     if (shades.empty()) return;
     choose_grid(shades);
     fill(shades);
+    bottom_ = kNever;
+    top_ = -kNever;
+    for (const Shade& shade : shades) {
+        bottom_ = std::min(bottom_, shade.height - shade.radius);
+        top_ = std::max(top_, shade.height + shade.radius);
+    }
 }
 
 SunShadows::Shade SunShadows::shade_of(const Vec3& center, double radius) const {
@@ -42,10 +86,9 @@ double SunShadows::entries(const std::vector<Shade>& shades, double size) const 
 
 // Cells as small as the memory for them allows.
 void SunShadows::choose_grid(const std::vector<Shade>& shades) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    double right = -kInfinity;
-    double high = -kInfinity;
-    left_ = low_ = kInfinity;
+    double right = -kNever;
+    double high = -kNever;
+    left_ = low_ = kNever;
     for (const Shade& shade : shades) {
         left_ = std::min(left_, shade.u - shade.radius);
         right = std::max(right, shade.u + shade.radius);
@@ -117,6 +160,56 @@ bool SunShadows::covers(const Vec3& point) const {
         if (under >= 0.0 && shade.height + std::sqrt(under) > height) return true;
     }
     return false;
+}
+
+// By what a ray looks at: the spheres over the cells that it comes through.
+bool SunShadows::pays(double slope) const {
+    constexpr double kMostLooks = 150.0;
+    if (over_.empty()) return true;
+    double crowd = 0.0;  // spheres over a cell, as a sphere finds it in the mean
+    for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
+        const auto here = static_cast<double>(first_[cell + 1] - first_[cell]);
+        crowd += here * here / static_cast<double>(over_.size());
+    }
+    return crowd * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
+}
+
+// Between two heights over the ray's start.
+bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low, double high) const {
+    for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+        const Shade& shade = over_[k];
+        const double up = shade.height - ray.from.height;
+        if (up + shade.radius <= low) return false;
+        if (up - shade.radius >= high) continue;
+        const double u = shade.u - ray.from.u;
+        const double v = shade.v - ray.from.v;
+        const double middle = u * ray.across + v * ray.along + up * ray.rise;
+        const double under = shade.radius * shade.radius - (u * u + v * v + up * up - middle * middle);
+        if (under >= 0.0 && middle + std::sqrt(under) > 0.0) return true;
+    }
+    return false;
+}
+
+// Cell by cell, by the height at which the ray leaves each.
+bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
+    if (direction == to_light_) return covers(point);
+    if (over_.empty()) return false;
+    const Slanted ray{shade_of(point, 0.0), dot(direction, across_), dot(direction, along_), dot(direction, to_light_)};
+    const double cells_per_rise = per_size_ / ray.rise;
+    GridWalk u((ray.from.u - left_) * per_size_, ray.across * cells_per_rise, columns_);
+    GridWalk v((ray.from.v - low_) * per_size_, ray.along * cells_per_rise, rows_);
+    double height = std::max({0.0, u.enters, v.enters});
+    const double end = std::min({top_ - ray.from.height, u.leaves, v.leaves});
+    if (!(height < end)) return false;
+    u.start(height);
+    v.start(height);
+    for (;;) {
+        const double next = std::min({u.next, v.next, end});
+        if (covers_within(v.cell * columns_ + u.cell, ray, height, next)) return true;
+        if (next >= end) return false;
+        if (!(u.next <= v.next ? u : v).step()) return false;
+        height = next;
+    }
 }
 
 }  // namespace ricochet

@@ -1,6 +1,6 @@
 /// \file
-/// The shadows that spheres throw in one direction: a grid across it, whose cells know what stands over them. For many
-/// spheres that takes a tenth of the time of rays.
+/// The shadows that spheres throw in one direction, or nearly: a grid across it, whose cells know what stands over
+/// them. For many spheres that takes a tenth of the time of rays, or half of it where directions differ.
 #pragma once
 
 #include <array>
@@ -21,6 +21,10 @@ public:
 
     /// True when a sphere stands on the ray from a point to the light.
     [[nodiscard]] bool covers(const Vec3& point) const;
+    /// The same for a ray along a unit vector, less than a right angle from the light.
+    [[nodiscard]] bool covers(const Vec3& point, const Vec3& direction) const;
+    /// Whether that is faster than rays where the tangent of this angle is up to `slope`.
+    [[nodiscard]] bool pays(double slope) const;
 
 private:
     // A sphere, across the light and towards it.
@@ -31,19 +35,26 @@ private:
     struct Cells {
         std::size_t left, right, low, high;  // ends included
     };
+    // A ray in the coordinates of Shade.
+    struct Slanted {
+        Shade from;
+        double across = 0.0, along = 0.0, rise = 0.0;  // the unit vector
+    };
 
     void choose_grid(const std::vector<Shade>& shades);
     void fill(const std::vector<Shade>& shades);
     [[nodiscard]] double entries(const std::vector<Shade>& shades, double size) const;
     [[nodiscard]] Shade shade_of(const Vec3& center, double radius) const;
     [[nodiscard]] Cells cells_of(const Shade& shade) const;
+    [[nodiscard]] bool covers_within(std::size_t cell, const Slanted& ray, double low, double high) const;
 
     Vec3 across_, along_, to_light_;
     double left_ = 0.0, low_ = 0.0;  // m, the grid's corner
     double per_size_ = 1.0;          // 1/m, over a cell's edge
     std::size_t columns_ = 0, rows_ = 0;
-    std::vector<std::size_t> first_;  // of a cell in over_; the last is the end
-    std::vector<Shade> over_;         // those nearest to the light first
+    std::vector<std::size_t> first_;   // of a cell in over_; the last is the end
+    std::vector<Shade> over_;          // those nearest to the light first
+    double bottom_ = 0.0, top_ = 0.0;  // m, heights between which all spheres are
 };
 
 }  // namespace ricochet

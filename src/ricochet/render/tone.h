@@ -13,6 +13,9 @@ namespace ricochet {
     return 0.2126 * light.x + 0.7152 * light.y + 0.0722 * light.z;
 }
 
+/// Channel by channel: what a surface of one colour sends of light of the other.
+[[nodiscard]] inline Vec3 times(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+
 /// Brightness to display range: L (1 + L / white^2) / (1 + L) on the luminance, colours kept.
 /// Method: E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002, eq. 4.
 [[nodiscard]] inline Vec3 tone_mapped(const Vec3& light) {

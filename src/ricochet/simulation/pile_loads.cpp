@@ -7,14 +7,9 @@ void PileLoads::pass_on(const SleepingPiles& piles, std::span<const SleeperPush>
     if (version_ != piles.version()) find_balances(piles, step);
     std::map<std::uint64_t, Vec3> totals;
     for (const auto& [pile, balance] : balances_) {
-        if (balance.leans) totals[pile] = (step.end - step.begin) * balance.missing;
+        if (balance.missing != Vec3{}) totals[pile] = (step.end - step.begin) * balance.missing;
     }
-    for (const SleeperPush& push : pushes) {
-        const std::uint64_t pile = piles.number_of(push.particle);
-        const auto [total, is_new] = totals.try_emplace(pile);
-        if (is_new) total->second = (step.end - step.begin) * balances_[pile].missing;
-        total->second += push.impulse;
-    }
+    for (const SleeperPush& push : pushes) totals[piles.number_of(push.particle)] += push.impulse;
     share_out(piles, totals);
 }
 
@@ -32,13 +27,15 @@ void PileLoads::share_out(const SleepingPiles& piles, const std::map<std::uint64
     std::vector<SurfaceHit> hits;
     for (const SleepingPiles::Weight& weight : piles.weights()) {
         const std::uint64_t pile = piles.number_of(weight.particle);
+        const double held = balances_[pile].held;
         const auto total = totals.find(pile);
-        if (total == totals.end()) continue;
-        hits.push_back({weight.surface, (length(weight.force) / balances_[pile].held) * total->second, false});
+        if (total == totals.end() || held == 0.0) continue;
+        hits.push_back({weight.surface, (length(weight.force) / held) * total->second, false});
     }
     parts_.mover.press(hits);
 }
 
+/// What fell asleep at different times, or not quite at rest, is not in balance by itself.
 void PileLoads::find_balances(const SleepingPiles& piles, const TimeSpan& step) {
     version_ = piles.version();
     balances_.clear();
@@ -66,10 +63,7 @@ void PileLoads::add_contacts(const SleepingPiles& piles, const TimeSpan& step) {
         const std::optional<std::size_t> first = parts_.store.index_of(key.particle);
         const std::optional<std::size_t> second = parts_.store.index_of(key.other);
         if (!first || !second) continue;
-        if (!parts_.store.is_fixed(is_first ? *second : *first)) {
-            balance.leans = true;
-            continue;
-        }
+        if (!parts_.store.is_fixed(is_first ? *second : *first)) continue;
         const Vec3 normal = normalized(position[*first] - position[*second]);
         const Vec3 impulse = entry.impulse.normal * normal + entry.impulse.tangential;
         balance.missing += (is_first ? 1.0 : -1.0) / (step.end - step.begin) * impulse;

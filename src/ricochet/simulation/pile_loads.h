@@ -33,9 +33,8 @@ public:
 private:
     /// Of a pile without pushes.
     struct Balance {
-        Vec3 missing;        ///< N, its weight, and what pinned spheres do to it, less what its sleepers press with
-        double held = 0.0;   ///< N, sum of the strengths with which its sleepers press on surfaces
-        bool leans = false;  ///< when it fell asleep others that are awake touched it
+        Vec3 missing;       ///< N, its weight, and what pinned spheres do to it, less what its sleepers press with
+        double held = 0.0;  ///< N, sum of the strengths with which its sleepers press on surfaces
     };
     void find_balances(const SleepingPiles& piles, const TimeSpan& step);
     void share_out(const SleepingPiles& piles, const std::map<std::uint64_t, Vec3>& totals);

@@ -349,5 +349,24 @@ TEST(SignedDistance, HasTheRightSignAndSizeNextToThePlane) {
     }
 }
 
+TEST(PointSweep, APointFartherFromAPlaneThanADistanceIsSoCertainly) {
+    RandomSequence random(23, 0, 0);
+    int told = 0;
+    for (int i = 0; i < test::scaled(20000); ++i) {
+        SCOPED_TRACE(i);
+        const double size = std::pow(10.0, 6.0 * random.uniform() - 3.0);
+        const Plane plane{size * random.unit_vector(), random.unit_vector()};
+        const Vec3 p = (2.0 * size * random.uniform()) * random.unit_vector();
+        const double distance = std::fabs(signed_distance(p, plane));
+        EXPECT_FALSE(is_farther_than(plane, p, distance));
+        EXPECT_FALSE(is_farther_than(plane, p, std::nextafter(distance, 0.0)));
+        EXPECT_FALSE(is_farther_than(plane, p, 1.5 * distance));
+        if (distance < 1e-3 * size) continue;
+        ++told;
+        EXPECT_TRUE(is_farther_than(plane, p, (1.0 - 1e-11) * distance));
+    }
+    EXPECT_GT(told, 1000);
+}
+
 }  // namespace
 }  // namespace ricochet

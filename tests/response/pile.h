@@ -84,14 +84,14 @@ public:
 
 private:
     /// By columns along x.
-    [[nodiscard]] std::vector<std::array<std::uint32_t, 2>> pairs(const std::vector<double>& reach) const {
+    [[nodiscard]] std::vector<NeighbourPair> pairs(const std::vector<double>& reach) const {
         std::vector<std::pair<double, std::uint32_t>> begins;
         const auto half = [&](std::uint32_t i) { return particles_[i].state.radius + reach[i]; };
         for (std::uint32_t i = 0; i < particles_.size(); ++i) {
             begins.emplace_back(particles_[i].state.position.x - half(i), i);
         }
         std::sort(begins.begin(), begins.end());
-        std::vector<std::array<std::uint32_t, 2>> found;
+        std::vector<NeighbourPair> found;
         for (std::size_t n = 0; n < begins.size(); ++n) {
             const std::uint32_t i = begins[n].second;
             const double end = particles_[i].state.position.x + half(i);
@@ -103,7 +103,9 @@ private:
                 }
             }
         }
-        std::sort(found.begin(), found.end());
+        std::sort(found.begin(), found.end(), [](const NeighbourPair& a, const NeighbourPair& b) {
+            return a.first != b.first ? a.first < b.first : a.second < b.second;
+        });
         return found;
     }
     void measure() {

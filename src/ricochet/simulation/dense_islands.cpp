@@ -26,6 +26,10 @@ constexpr double kPushed = 0.5;
 /// Times the radius of another one that a large sphere has.
 constexpr double kLarge = 3.0;
 
+Box3 box_within_reach(const NetworkMember& member) {
+    return ball_box(member.moving->state.position, member.radius + member.reach);
+}
+
 /// Where a member has gone; what has no time left stays where it is to the end.
 void keep_way(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
     member.way = flown;
@@ -87,16 +91,19 @@ void DenseIslands::take_members(std::vector<IslandMember>& members, Work& work) 
 
 void DenseIslands::find_pairs(Work& work) {
     work.boxes.clear();
-    for (const NetworkMember& member : work.members) {
-        work.boxes.push_back(ball_box(member.moving->state.position, member.radius + member.reach));
-    }
-    work.pairs.clear();
-    for (const NeighbourPair& pair : work.grid.find_pairs(work.boxes)) work.pairs.push_back({pair.first, pair.second});
+    for (const NetworkMember& member : work.members) work.boxes.push_back(box_within_reach(member));
+    static_cast<void>(work.near.find(work.boxes));
 }
 
-/// What is near something that goes far may be pushed by it: then the first plan is the last one. False where nobody
-/// reaches farther by that.
-bool DenseIslands::expect_pushes(Work& work) {
+/// Again, where some reach farther; by their numbers, ascending.
+void DenseIslands::find_pairs(Work& work, std::span<const std::uint32_t> changed) {
+    for (const std::uint32_t i : changed) work.boxes[i] = box_within_reach(work.members[i]);
+    static_cast<void>(work.near.update(work.boxes, changed));
+}
+
+/// What is near something that goes far may be pushed by it: then the first plan is the last one. Those that reach
+/// farther by that, ascending.
+std::vector<std::uint32_t> DenseIslands::expect_pushes(Work& work) {
     std::vector<double> pushed(work.members.size(), 0.0);
     const auto push = [&](std::size_t i, const NetworkMember& by) {
         const NetworkMember& member = work.members[i];
@@ -105,30 +112,32 @@ bool DenseIslands::expect_pushes(Work& work) {
         const double beside = is_large ? NetworkIsland::kReach * (by.radius - member.radius) : 0.0;
         pushed[i] = std::max(pushed[i], kPushed * (by.reach - beside));
     };
-    for (const auto& [first, second] : work.pairs) {
+    for (const auto& [first, second] : work.near.all()) {
         push(first, work.members[second]);
         push(second, work.members[first]);
     }
-    bool is_any = false;
-    for (std::size_t i = 0; i < pushed.size(); ++i) {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t i = 0; i < pushed.size(); ++i) {
         NetworkMember& member = work.members[i];
         if (member.stays() || !(pushed[i] > member.reach)) continue;
         member.reach = pushed[i];
-        is_any = true;
+        changed.push_back(i);
     }
-    return is_any;
+    return changed;
 }
 
 /// Again where a sphere is pushed farther than its contacts have been looked for.
 NetworkReport DenseIslands::plan(Work& work, double duration) const {
     for (NetworkMember& member : work.members) member.reach = work.network.first_reach(member);
     MoveScratch scratch;
+    find_pairs(work);
+    find_pairs(work, expect_pushes(work));
     NetworkReport report;
     for (int k = 0; k < kMostPlans; ++k) {
-        find_pairs(work);
-        if (k == 0 && expect_pushes(work)) find_pairs(work);
-        report = work.network.plan(work.members, work.pairs, duration, contacts_.memory(), scratch);
-        if (!work.network.reach_farther(work.members)) break;
+        report = work.network.plan(work.members, work.near.all(), duration, contacts_.memory(), scratch);
+        const std::vector<std::uint32_t> changed = work.network.reach_farther(work.members);
+        if (changed.empty()) break;
+        find_pairs(work, changed);
     }
     return report;
 }

@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
-#include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/dynamics/neighbour_pairs.h"
 #include "ricochet/response/network/network_island.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/lasting_contacts.h"
@@ -36,15 +37,15 @@ private:
     struct Work {
         Work(const ResponseRules& rules, const PairMaterials& materials) : network(rules, materials) {}
         NetworkIsland network;
-        NeighbourGrid grid;
+        NeighbourPairs near;
         std::vector<Box3> boxes;
-        std::vector<std::array<std::uint32_t, 2>> pairs;
         std::vector<NetworkMember> members;
     };
     [[nodiscard]] std::unique_ptr<Work> take_work();
     void take_members(std::vector<IslandMember>& members, Work& work) const;
     static void find_pairs(Work& work);
-    [[nodiscard]] static bool expect_pushes(Work& work);
+    static void find_pairs(Work& work, std::span<const std::uint32_t> changed);
+    [[nodiscard]] static std::vector<std::uint32_t> expect_pushes(Work& work);
     [[nodiscard]] NetworkReport plan(Work& work, double duration) const;
     void move(std::vector<IslandMember>& members, Work& work, const DenseTrace& trace) const;
 

@@ -36,11 +36,19 @@ constexpr double kWeightsAside = 2.0;
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
 
-/// pull: m/s^2, of the forces on it.
+/// m/s, of its surface where it is fastest.
+double speed_of(const NetworkMember& member, const NetworkBody& planned) {
+    return length(planned.velocity) + member.radius * length(planned.spin);
+}
+
+/// Whatever pulls it.
+bool is_slow(const NetworkMember& member, const NetworkBody& planned) {
+    return member.duration * speed_of(member, planned) < kStillWay * member.radius;
+}
+
+/// What is slow. pull: m/s^2, of the forces on it.
 bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double pull) {
-    const double speed = length(planned.velocity) + member.radius * length(planned.spin);
-    if (pull > 0.0 && speed > kStillSpeed * std::sqrt(pull * member.radius)) return false;
-    return member.duration * speed < kStillWay * member.radius;
+    return !(pull > 0.0) || speed_of(member, planned) <= kStillSpeed * std::sqrt(pull * member.radius);
 }
 
 /// Steps that it has to lie still.
@@ -51,16 +59,11 @@ std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
 }
 
 /// Leaves of those that would fall asleep those that surfaces hold, or what lies still: one that lies on others that
-/// stay awake would weigh on nobody. number_of: of a member, by its id.
-template <class NumberOf>
+/// stay awake would weigh on nobody. pressing: members that press on each other, by their numbers.
 void keep_those_held(std::vector<std::uint8_t>& falls, std::span<const NetworkMember> members,
-                     const NetworkIsland& network, std::span<const NetworkMemory::Entry> pressed,
-                     const NumberOf& number_of) {
+                     const NetworkIsland& network, std::span<const NeighbourPair> pressing) {
     std::vector<std::vector<std::size_t>> touching(members.size());
-    for (const NetworkMemory::Entry& entry : pressed) {
-        if (entry.key.is_wall()) continue;
-        const std::size_t a = number_of(entry.key.particle);
-        const std::size_t b = number_of(entry.key.other);
+    for (const auto& [a, b] : pressing) {
         if (falls[a] == 0 || falls[b] == 0) continue;
         touching[a].push_back(b);
         touching[b].push_back(a);
@@ -220,16 +223,14 @@ bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step)
 void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                               DenseTrace& trace) const {
     if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
-    std::vector<std::pair<std::uint64_t, std::size_t>> by_id;
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
-        const std::uint64_t id = members[i].moving->id;
-        by_id.emplace_back(id, i);
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!may_lie(members[i], step)) continue;
+        if (!is_slow(members[i], network.planned(i)) || !may_lie(members[i], step)) continue;
         const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
         if (!is_at_rest(members[i], network.planned(i), pull)) continue;
+        const std::uint64_t id = members[i].moving->id;
         const std::uint32_t enough = steps_to_sleep(members[i], pull);
         const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, enough);
         trace.still.push_back({id, steps});
@@ -237,19 +238,13 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
         is_any_sleepy = is_any_sleepy || sleepy[i] != 0;
     }
     if (!is_any_sleepy) return;
-    std::sort(by_id.begin(), by_id.end());
-    const auto number_of = [&](std::uint64_t id) {
-        return std::lower_bound(by_id.begin(), by_id.end(), std::pair<std::uint64_t, std::size_t>(id, 0))->second;
-    };
+    const std::vector<NeighbourPair> pressing = network.pressing();
     std::vector<std::uint8_t> falls = sleepy;
-    for (const NetworkMemory::Entry& entry : trace.pressed) {
-        if (entry.key.is_wall()) continue;
-        const std::size_t a = number_of(entry.key.particle);
-        const std::size_t b = number_of(entry.key.other);
+    for (const auto& [a, b] : pressing) {
         if (sleepy[a] == 0) falls[b] = 0;
         if (sleepy[b] == 0) falls[a] = 0;
     }
-    keep_those_held(falls, members, network, trace.pressed, number_of);
+    keep_those_held(falls, members, network, pressing);
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (falls[i] == 0 || members[i].is_fixed) continue;
         const std::uint64_t id = members[i].moving->id;
@@ -271,9 +266,11 @@ void LastingContacts::end(std::span<const DenseTrace* const> traces, std::span<c
     for (const DenseTrace* const trace : traces) {
         pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
     }
-    if (first_ == 0) memory_.replace({});
-    memory_.add(pressed);
-    if (first_ != 0) return;
+    if (first_ != 0) {
+        memory_.add(pressed);
+        return;
+    }
+    memory_.replace(pressed);
     put_to_sleep(traces, step);
     std::vector<SleeperPush> stopped;
     for (const DenseTrace* const trace : traces) {

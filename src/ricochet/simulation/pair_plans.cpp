@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -37,12 +38,18 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     std::vector<std::uint32_t> asked;
     for (std::uint32_t k = 0; !is_bounded_ && k < boxes_.size(); ++k) asked.push_back(k);
     ask(std::move(asked));
-    find_pairs();
-    for (int k = 0; k < kDeflections && expect_deflections(); ++k) find_pairs();
+    near_.find(boxes_);
+    take_pairs();
+    for (int k = 0; k < kDeflections && expect_deflections(); ++k) {
+        near_.update(boxes_, changed_);
+        take_pairs();
+    }
 }
 
-void PairPlans::find_pairs() {
-    pairs_ = grid_.find_pairs(boxes_);
+/// From those whose boxes are near each other.
+void PairPlans::take_pairs() {
+    changed_.clear();
+    pairs_ = near_.all();
     add_pairs_with_sleepers();
     std::erase_if(pairs_, [&](const NeighbourPair& pair) { return !moves(pair.first) && !moves(pair.second); });
     std::vector<std::uint32_t> near;
@@ -68,6 +75,9 @@ bool PairPlans::expect_deflections() {
         freedom_[k] = Freedom::bound;
         boxes_[k] = reachable_box(k);
     }
+    changed_.insert(changed_.end(), deflected.begin(), deflected.end());
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
     return !deflected.empty();
 }
 
@@ -135,6 +145,8 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
             boxes_[k] = box_of_free(k);
         }
     });
+    std::copy_if(particles.begin(), particles.end(), std::back_inserter(changed_),
+                 [&](std::uint32_t k) { return is_free(k); });
 }
 
 /// Held by walls alone, for as long as nothing comes: where single particles may sleep it does.
@@ -274,7 +286,7 @@ void PairPlans::add_pairs_with_sleepers() {
 }
 
 void PairPlans::find_near(const Box3& box, std::vector<std::uint32_t>& found) const {
-    grid_.find_near(box, found);
+    near_.find_near(box, found);
     sleeper_grid_.find_near(box, found);
 }
 

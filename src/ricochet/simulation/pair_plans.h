@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/dynamics/neighbour_grid.h"
+#include "ricochet/dynamics/neighbour_pairs.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/pair_parts.h"
 
@@ -72,7 +72,7 @@ private:
     [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;
     [[nodiscard]] const Box3& place_of(std::uint32_t k) const { return is_asleep(k) ? sleeper_boxes_[k] : boxes_[k]; }
     void declare();
-    void find_pairs();
+    void take_pairs();
     [[nodiscard]] bool expect_deflections();
     [[nodiscard]] bool lies_on(std::uint32_t above, std::uint32_t below) const;
     void add_pairs_with_sleepers();
@@ -85,7 +85,8 @@ private:
     const PairTraces* traces_ = nullptr;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;
-    NeighbourGrid grid_;  // of boxes, those of bound ones where somebody has not been asked
+    NeighbourPairs near_;                 // of boxes, those of bound ones where somebody has not been asked
+    std::vector<std::uint32_t> changed_;  // boxes, since
     std::vector<NeighbourPair> pairs_;
     std::vector<std::uint8_t> met_;  // of the pairs
     NeighbourGrid sleeper_grid_;

@@ -323,6 +323,12 @@ double signed_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     return TrianglePlane(a, b, c).signed_distance(p);
 }
 
+bool is_farther_than(const Plane& plane, const Vec3& p, double distance) {
+    const Vec3 apart = p - plane.point;
+    const double height = std::fabs(dot(plane.normal, apart));
+    return height - 16.0 * kUnitRoundoff * dot(abs(plane.normal), abs(apart)) > distance;
+}
+
 double signed_distance(const Vec3& p, const Plane& plane) { return plane_value(plane, p).hi; }
 
 }  // namespace ricochet

@@ -34,6 +34,9 @@ struct Crossing {
 [[nodiscard]] bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack);
 [[nodiscard]] bool stays_on_one_side(const Path& path, const Plane& plane, double slack);
 
+/// Culls: true where a point is farther from a plane than `distance` metres. Errs on the side of false.
+[[nodiscard]] bool is_farther_than(const Plane& plane, const Vec3& p, double distance);
+
 /// First crossing of the closed triangle (a, b, c), which must not be degenerate. For straight paths the time is within
 /// 2 ulp of the exact rational; for curved ones it is a root of the height over the triangle's plane.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c);

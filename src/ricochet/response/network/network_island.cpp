@@ -51,9 +51,8 @@ Vec3 velocity_of(const NetworkMember& member) { return member.stays() ? Vec3{} :
 
 }  // namespace
 
-NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
-                                  std::span<const std::array<std::uint32_t, 2>> pairs, double duration,
-                                  const NetworkMemory& memory, MoveScratch& scratch) {
+NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs,
+                                  double duration, const NetworkMemory& memory, MoveScratch& scratch) {
     duration_ = duration;
     set_part(members);
     contacts_.clear();
@@ -61,9 +60,9 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members,
     surfaces_.clear();
     first_wall_.clear();
     clear_.clear();
-    add_bodies(members);
-    add_pairs(members, pairs, memory);
-    add_walls(members, memory, scratch);
+    add_bodies(members, memory);
+    add_pairs(members, pairs);
+    add_walls(members, scratch);
     return solver_.solve(bodies_, contacts_, settings(members));
 }
 
@@ -75,10 +74,12 @@ void NetworkIsland::set_part(std::span<const NetworkMember> members) {
     part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
 
-void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
+void NetworkIsland::add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory) {
     bodies_.clear();
     pulls_.clear();
+    before_.clear();
     for (const NetworkMember& member : members) {
+        before_.push_back(memory.of_particle(member.moving->id));
         const ForceInput& state = member.moving->state;
         pulls_.push_back(0.0);
         NetworkBody body;
@@ -97,8 +98,7 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members) {
     }
 }
 
-void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
-                              std::span<const std::array<std::uint32_t, 2>> pairs, const NetworkMemory& memory) {
+void NetworkIsland::add_pairs(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs) {
     for (const auto& [first, second] : pairs) {
         if (members[first].stays() && members[second].stays()) continue;
         const bool in_order = members[first].moving->id < members[second].moving->id;
@@ -123,12 +123,11 @@ void NetworkIsland::add_pairs(std::span<const NetworkMember> members,
         contact.restitution = rebound(law.restitution, approach);
         contact.most_parting = most_parting(std::max(pulls_[contact.a], pulls_[contact.b]),
                                             std::min(a.radius, b.radius), -contact.gap, approach);
-        warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id), memory);
+        warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id));
     }
 }
 
-void NetworkIsland::add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory,
-                              MoveScratch& scratch) {
+void NetworkIsland::add_walls(std::span<const NetworkMember> members, MoveScratch& scratch) {
     const SurfaceGeometry geometry(rules_.world, scratch.contacts.plane_cache);
     surfaces_.resize(contacts_.size());
     for (std::uint32_t i = 0; i < members.size(); ++i) {
@@ -145,13 +144,12 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, const Netw
             const TimeOfStep step{state.time, state.time + members[i].duration};
             find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
         }
-        for (const WallContact& wall : walls_) add_wall(i, members[i], wall, memory);
+        for (const WallContact& wall : walls_) add_wall(i, members[i], wall);
     }
     first_wall_.push_back(contacts_.size());
 }
 
-void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
-                             const NetworkMemory& memory) {
+void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall) {
     const ForceInput& state = member.moving->state;
     const Material& material = rules_.materials[rules_.world.material_of(wall.surface)];
     NetworkContact contact;
@@ -165,7 +163,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     const double approach = -dot(state.velocity - wall.carried, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
     contact.most_parting = most_parting(pulls_[index], member.radius, -contact.gap, approach);
-    warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface), memory);
+    warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface));
     surfaces_.push_back(wall.surface);
 }
 
@@ -185,8 +183,8 @@ void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, cons
     contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
-void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory) {
-    if (const NetworkImpulse* const before = memory.find(key)) {
+void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key) {
+    if (const NetworkImpulse* const before = NetworkMemory::find(before_[contact.a], key)) {
         contact.start = *before;
         contact.touched = before->normal > 0.0;
     }
@@ -279,6 +277,14 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
     return entries;
 }
 
+std::vector<NeighbourPair> NetworkIsland::pressing() const {
+    std::vector<NeighbourPair> pressing;
+    for (std::size_t i = 0; i < keys_.size() && !keys_[i].is_wall(); ++i) {  // walls come last
+        if (solver_.impulses()[i].normal > 0.0) pressing.push_back({contacts_[i].a, contacts_[i].b});
+    }
+    return pressing;
+}
+
 std::vector<NetworkKey> NetworkIsland::touching() const {
     std::vector<NetworkKey> touching;
     for (std::size_t i = 0; i < keys_.size(); ++i) {
@@ -298,16 +304,16 @@ double NetworkIsland::first_reach(const NetworkMember& member) const {
     return reach_of(member.stays() ? 0.0 : member.duration * length(velocity_in_flight(member)), member.radius);
 }
 
-bool NetworkIsland::reach_farther(std::span<NetworkMember> members) const {
-    bool is_any = false;
-    for (std::size_t i = 0; i < members.size(); ++i) {
+std::vector<std::uint32_t> NetworkIsland::reach_farther(std::span<NetworkMember> members) const {
+    std::vector<std::uint32_t> farther;
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
         NetworkMember& member = members[i];
         const double way = member.duration * length(bodies_[i].velocity);
         if (member.stays() || !(way > member.reach)) continue;
         member.reach = reach_of(way, member.radius);
-        is_any = true;
+        farther.push_back(i);
     }
-    return is_any;
+    return farther;
 }
 
 }  // namespace ricochet

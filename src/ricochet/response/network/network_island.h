@@ -2,12 +2,12 @@
 /// Private to the responses: spheres that are moved over a step together, by the problem of all their contacts.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/response/network/network_memory.h"
 #include "ricochet/response/network/network_solver.h"
 #include "ricochet/response/network/planned_move.h"
@@ -54,8 +54,8 @@ public:
     [[nodiscard]] double first_reach(const NetworkMember& member) const;
     /// Plans a step of `duration` seconds. pairs: those within reach of each other, by their numbers. memory: of the
     /// last step.
-    NetworkReport plan(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
-                       double duration, const NetworkMemory& memory, MoveScratch& scratch);
+    NetworkReport plan(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs, double duration,
+                       const NetworkMemory& memory, MoveScratch& scratch);
     /// Moves one of the members, by its number, as it has been planned. Several threads may move different ones.
     void move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const;
 
@@ -69,26 +69,26 @@ public:
     [[nodiscard]] std::vector<WallPush> pushes_of(std::size_t index) const;
     /// What the contacts of the last plan do, for the memory of the next step.
     [[nodiscard]] std::vector<NetworkMemory::Entry> entries() const;
+    /// Members that press on each other, by their numbers.
+    [[nodiscard]] std::vector<NeighbourPair> pressing() const;
     /// By others that do not sleep, contact by contact.
     [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const NetworkMember> members) const;
     /// Pairs that hardly leave a gap between them, whether they press or not.
     [[nodiscard]] std::vector<NetworkKey> touching() const;
-    /// Lets members that others push farther than their contacts have been looked for reach as far; false where there
-    /// are none: what is planned then leads into nothing.
-    bool reach_farther(std::span<NetworkMember> members) const;
+    /// Lets members that others push farther than their contacts have been looked for reach as far: their numbers,
+    /// ascending. Where there are none what is planned leads into nothing.
+    [[nodiscard]] std::vector<std::uint32_t> reach_farther(std::span<NetworkMember> members) const;
 
 private:
     void set_part(std::span<const NetworkMember> members);
     [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
-    void add_bodies(std::span<const NetworkMember> members);
-    void add_pairs(std::span<const NetworkMember> members, std::span<const std::array<std::uint32_t, 2>> pairs,
-                   const NetworkMemory& memory);
-    void add_walls(std::span<const NetworkMember> members, const NetworkMemory& memory, MoveScratch& scratch);
-    void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall,
-                  const NetworkMemory& memory);
+    void add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory);
+    void add_pairs(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs);
+    void add_walls(std::span<const NetworkMember> members, MoveScratch& scratch);
+    void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall);
     void carry(NetworkContact& contact, const WallContact& wall, const Material& material,
                const ForceInput& state) const;
-    void warm_start(NetworkContact& contact, const NetworkKey& key, const NetworkMemory& memory);
+    void warm_start(NetworkContact& contact, const NetworkKey& key);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] Vec3 velocity_in_flight(const NetworkMember& member) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
@@ -98,7 +98,8 @@ private:
     double duration_ = 0.0;
     double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
-    std::vector<double> pulls_;  // m/s^2, of each member, of the forces on it
+    std::vector<double> pulls_;                                  // m/s^2, of each member, of the forces on it
+    std::vector<std::span<const NetworkMemory::Entry>> before_;  // of each member, what its contacts did
     std::vector<NetworkContact> contacts_;
     std::vector<NetworkKey> keys_;  // of the contacts
     std::vector<WallContact> walls_;

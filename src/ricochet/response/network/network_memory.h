@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -37,36 +39,48 @@ public:
     };
 
     /// Takes entries in any order, each key once.
-    void replace(std::vector<Entry> entries) {
-        entries_ = std::move(entries);
-        std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    void replace(const std::vector<Entry>& entries) {
+        std::vector<std::pair<NetworkKey, std::size_t>> order;  // entries are too large to be moved about
+        order.reserve(entries.size());
+        for (const Entry& entry : entries) order.emplace_back(entry.key, order.size());
+        std::sort(order.begin(), order.end());
+        entries_.clear();
+        entries_.reserve(entries.size());
+        for (const auto& [key, at] : order) entries_.push_back(entries[at]);
+        find_particles();
     }
     /// Adds more of the same step.
     void add(const std::vector<Entry>& more) {
         if (more.empty()) return;
         std::vector<Entry> all = std::move(entries_);
         all.insert(all.end(), more.begin(), more.end());
-        replace(std::move(all));
+        replace(all);
     }
     /// Null where there was no such contact.
     [[nodiscard]] const NetworkImpulse* find(const NetworkKey& key) const {
-        const auto found = std::lower_bound(entries_.begin(), entries_.end(), key,
+        return find(of_particle(key.particle), key);
+    }
+    /// Of a particle that comes first in their keys, ascending.
+    [[nodiscard]] std::span<const Entry> of_particle(std::uint64_t particle) const {
+        const auto found = std::lower_bound(particles_.begin(), particles_.end(), particle);
+        if (found == particles_.end() || *found != particle) return {};
+        const auto k = static_cast<std::size_t>(found - particles_.begin());
+        return {entries_.data() + first_[k], first_[k + 1] - first_[k]};
+    }
+    /// Among those of its particle.
+    [[nodiscard]] static const NetworkImpulse* find(std::span<const Entry> own, const NetworkKey& key) {
+        const auto found = std::lower_bound(own.begin(), own.end(), key,
                                             [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
-        return found != entries_.end() && found->key == key ? &found->impulse : nullptr;
+        return found != own.end() && found->key == key ? &found->impulse : nullptr;
     }
     /// True where one of a list of particles pressed on another one, and did not part from it.
     template <class Iterator, class IdOf>
     [[nodiscard]] bool has_pair_of(Iterator begin, Iterator end, const IdOf& id_of) const {
         if (entries_.empty()) return false;
         return std::any_of(begin, end, [&](const auto& particle) {
-            const NetworkKey first = NetworkKey::of_pair(id_of(particle), 0);
-            auto at = std::lower_bound(entries_.begin(), entries_.end(), first,
-                                       [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
-            const auto is_its = [&] {
-                return at != entries_.end() && at->key.particle == first.particle && !at->key.is_wall();
-            };
-            while (is_its() && at->rebounds) ++at;
-            return is_its();
+            const std::span<const Entry> own = of_particle(id_of(particle));
+            return std::any_of(own.begin(), own.end(),
+                               [](const Entry& entry) { return !entry.key.is_wall() && !entry.rebounds; });
         });
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
@@ -80,10 +94,24 @@ public:
             a(entry.key.particle), a(entry.key.other);
             a(entry.impulse.normal), a(entry.impulse.tangential), a(entry.impulse.moment), a(entry.rebounds);
         });
+        find_particles();
     }
 
 private:
-    std::vector<Entry> entries_;  // ascending
+    void find_particles() {
+        particles_.clear();
+        first_.clear();
+        for (std::size_t i = 0; i < entries_.size(); ++i) {
+            if (!particles_.empty() && particles_.back() == entries_[i].key.particle) continue;
+            particles_.push_back(entries_[i].key.particle);
+            first_.push_back(i);
+        }
+        first_.push_back(entries_.size());
+    }
+
+    std::vector<Entry> entries_;            // ascending
+    std::vector<std::uint64_t> particles_;  // that come first in their keys, ascending: close together for searches
+    std::vector<std::size_t> first_;        // of each of those among the entries, and the end
 };
 
 }  // namespace ricochet

@@ -5,6 +5,7 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/geometry/sweep/point_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -18,7 +19,9 @@ struct Near {
 /// Calls visit(surface) for all whose distance from a point is at most `within`, and perhaps others.
 template <class Visit>
 void visit_near(const CollisionWorld& world, const Vec3& p, double within, const Visit& visit) {
-    for (const CollisionWorld::PlaneSurface& plane : world.planes()) visit(plane.surface);
+    for (const CollisionWorld::PlaneSurface& plane : world.planes()) {
+        if (!is_farther_than(plane.plane, p, within)) visit(plane.surface);
+    }
     for (const CollisionWorld::ShapeSurface& shape : world.shapes()) {
         for (SurfaceId part = 0; part < shape.shape.part_count(); ++part) visit(shape.surface + part);
     }

@@ -358,6 +358,87 @@ TEST(NetworkSolver, KeepsMomentum) {
     }
 }
 
+/// Sweeps with momentum carry bodies and contacts along apart from each other.
+TEST(NetworkSolver, BodiesHaveGotWhatTheContactsSay) {
+    NetworkSolver solver;
+    for (int seed = 0; seed < test::scaled(100); ++seed) {
+        SCOPED_TRACE(seed);
+        const Heap heap = random_heap(static_cast<std::uint64_t>(seed), 60, true);
+        NetworkSettings settings = exactly(1e-10);
+        settings.most_sweeps = seed % 2 == 0 ? 10 + seed : 2000;
+        std::vector<NetworkBody> bodies = heap.bodies;
+        static_cast<void>(solver.solve(bodies, heap.contacts, settings));
+        std::vector<NetworkBody> expected = heap.bodies;
+        const auto give = [&](std::uint32_t k, const Vec3& impulse, const Vec3& turn) {
+            expected[k].velocity += expected[k].inverse_mass * impulse;
+            expected[k].spin += expected[k].inverse_inertia * turn;
+        };
+        double pushed = 0.0;
+        for (std::size_t i = 0; i < heap.contacts.size(); ++i) {
+            const NetworkContact& contact = heap.contacts[i];
+            const NetworkImpulse& got = solver.impulses()[i];
+            const Vec3 impulse = got.normal * contact.normal + got.tangential;
+            const Vec3 arm = -cross(contact.normal, got.tangential);
+            give(contact.a, impulse, heap.bodies[contact.a].radius * arm + got.moment);
+            if (contact.b != NetworkContact::kWall)
+                give(contact.b, -impulse, heap.bodies[contact.b].radius * arm - got.moment);
+            pushed = std::max(pushed, length(impulse));
+        }
+        for (std::size_t k = 0; k < bodies.size(); ++k) {
+            EXPECT_LT(length(bodies[k].velocity - expected[k].velocity), 1e-12 * (1.0 + pushed)) << k;
+            EXPECT_LT(length(bodies[k].spin - expected[k].spin), 1e-12 * (1.0 + pushed)) << k;
+        }
+    }
+}
+
+TEST(NetworkSolver, TheLoadOfAColumnTakesSweepsLikeItsHeight) {
+    NetworkSolver solver;
+    const auto sweeps_of = [&](std::uint32_t count) {
+        std::vector<NetworkBody> bodies(count, ball(1.0, 0.1, -kGravity * kStep * kUp));
+        std::vector<NetworkContact> contacts{on_wall(0, kUp)};
+        for (std::uint32_t k = 1; k < count; ++k) contacts.push_back(between(k, k - 1, kUp));
+        const NetworkReport report = solver.solve(bodies, contacts, exactly(1e-3 * kGravity * kStep));
+        EXPECT_TRUE(report.is_converged);
+        return report.sweeps;
+    };
+    const int low = sweeps_of(20);
+    const int high = sweeps_of(80);
+    EXPECT_LT(high, 6 * low) << low;  // not sixteen times as many
+    EXPECT_LT(high, 240);
+}
+
+TEST(NetworkSolver, SlipMayBeWrongByALimitOfItsOwnAndApproachMayNot) {
+    NetworkSolver solver;
+    int all = 0;
+    int fewer = 0;
+    for (int seed = 0; seed < test::scaled(60); ++seed) {
+        SCOPED_TRACE(seed);
+        Heap heap = random_heap(static_cast<std::uint64_t>(seed), 60, true);
+        for (NetworkContact& contact : heap.contacts) {
+            contact.restitution = contact.rolling_friction = 0.0;
+            contact.friction = 0.5;
+        }
+        std::vector<NetworkBody> bodies = heap.bodies;
+        all += solver.solve(bodies, heap.contacts, exactly(1e-8)).sweeps;
+        NetworkSettings settings = exactly(1e-8);
+        settings.slip = 1e-3;
+        bodies = heap.bodies;
+        const NetworkReport report = solver.solve(bodies, heap.contacts, settings);
+        fewer += report.sweeps;
+        EXPECT_TRUE(report.is_converged);
+        for (std::size_t i = 0; i < heap.contacts.size(); ++i) {
+            const NetworkContact& contact = heap.contacts[i];
+            const Vec3 other = contact.b == NetworkContact::kWall ? Vec3{} : bodies[contact.b].velocity;
+            const double opening = dot(contact.normal, bodies[contact.a].velocity - other) + contact.gap / kStep;
+            EXPECT_GT(opening, -1e-7) << i;
+            if (solver.impulses()[i].normal > 0.0) {
+                EXPECT_LT(opening, 1e-7) << i;
+            }
+        }
+    }
+    EXPECT_LT(fewer, all);
+}
+
 TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
     const Heap heap = random_heap(5, 3000, true);
     ASSERT_GT(heap.contacts.size(), 3000U);

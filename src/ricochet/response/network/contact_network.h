@@ -80,6 +80,7 @@ struct NetworkSettings {
     double duration = 1.0;     ///< s, of the step
     double tolerance = 1e-12;  ///< m/s, velocity by which the conditions may be violated
     double enough = 0.0;       ///< m/s, the same
+    double slip = 0.0;         ///< m/s, the same of slip and rolling, where it is more: they lead to no overlap
     double connecting = 0.0;   ///< m/s, the same of the impact without rebound, where it only says what is connected
     int sweeps = 10000;
     int most_sweeps = 10000;

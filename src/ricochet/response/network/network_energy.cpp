@@ -25,7 +25,8 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
         const double approach = approach_of(row, before[row.a], before[row.b]);
         if (row.push.normal == 0.0 || !(approach < 0.0)) continue;
         const double own = own_restitution(contacts[order[i]]);
-        if (own == 0.0 && row.push.normal <= -kHoldsOnly * row.normal_mass * approach) continue;
+        if (own == 0.0 && row.push.normal * mobility_of(before[row.a], before[row.b]) <= -kHoldsOnly * approach)
+            continue;
         double& e = least[impacts.of(row)];
         e = std::min(e, own);
     }

@@ -217,6 +217,7 @@ NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) 
     if (is_few) {
         settings.tolerance = std::min(still, kRounding * fastest);
     } else {
+        settings.slip = kNetworkResidual * fastest;
         settings.connecting = kConnecting * settings.enough;
     }
     settings.sweeps = kSweeps;

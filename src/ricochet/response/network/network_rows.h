@@ -26,21 +26,21 @@ struct alignas(64) NetworkState {
 struct NetworkPush {
     double normal = 0.0;
     Vec3 tangential;
+
+    friend bool operator==(const NetworkPush&, const NetworkPush&) = default;
 };
 
-/// What a contact needs in every sweep.
-struct NetworkRow {
+/// What a contact needs in every sweep: two lines of memory, since to read them is most of what a sweep costs. Masses
+/// are those of its two bodies, which are at hand.
+struct alignas(64) NetworkRow {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     Vec3 normal;
-    double bound = 0.0;    ///< m/s, with which it may still approach; < 0: with which it has to leave
-    double parting = 0.0;  ///< m/s, >= 0, with which what overlaps is parted
+    double bound = 0.0;  ///< m/s, with which it may still approach; < 0: with which it has to leave
     double friction = 0.0;
-    double normal_mass = 0.0;    ///< kg, impulse that changes the approach by 1 m/s
-    double slip_mass = 0.0;      ///< kg, the same of the slip
-    double mobility = 0.0;       ///< 1/kg, the inverse of the first: sweeps need not divide
-    double slip_mobility = 0.0;  ///< 1/kg, of the second
     NetworkPush push;
+    NetworkPush direction;      ///< by what the last sweep has changed it, with the momentum before it
+    double parting = 0.0;       ///< m/s, >= 0, with which what overlaps is parted
     std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
 
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
@@ -55,20 +55,30 @@ struct RollingRow {
     Vec3 wall_turning;     ///< rad/s, of the wall
     double inertia = 0.0;  ///< kg m^2, moment that changes the rolling by 1 rad/s
     Vec3 moment;           ///< N m s
-    Vec3 change;           ///< by the last sweep
-    Vec3 direction;        ///< in which the sweeps go on
+    Vec3 direction;        ///< by what the last sweep has changed it, with the momentum before it
+};
+
+/// m/s, by which the conditions of contacts may be violated.
+struct NetworkLimits {
+    double approach = 0.0;
+    double slip = 0.0;  ///< the same of rolling
 };
 
 /// How much a sweep has changed.
 struct SweepChange {
-    double squared = 0.0;        ///< J, sum of impulses times the velocities that they change
-    double worst_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's velocity
+    double squared = 0.0;           ///< J, sum of impulses times the velocities that they change
+    double approach_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's approach
+    double slip_squared = 0.0;      ///< m^2/s^2, of the largest change of its slip
 
     void add(const SweepChange& other) {
         squared += other.squared;
-        worst_squared = std::max(worst_squared, other.worst_squared);
+        approach_squared = std::max(approach_squared, other.approach_squared);
+        slip_squared = std::max(slip_squared, other.slip_squared);
     }
-    [[nodiscard]] double worst() const { return std::sqrt(worst_squared); }
+    [[nodiscard]] double worst() const { return std::sqrt(std::max(approach_squared, slip_squared)); }
+    [[nodiscard]] bool is_within(const NetworkLimits& limits) const {
+        return std::sqrt(approach_squared) <= limits.approach && std::sqrt(slip_squared) <= limits.slip;
+    }
 };
 
 [[nodiscard]] inline double approach_of(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
@@ -115,41 +125,63 @@ inline void apply_moment(const RollingRow& rolling, const Vec3& moment, NetworkS
 /// v, shortened to a length where it is longer.
 [[nodiscard]] inline Vec3 shortened(const Vec3& v, double most) { return length_kept(v, most) * v; }
 
-/// Puts a row right for the state that there is; returns by what it has changed its impulse.
-[[nodiscard]] inline NetworkPush relax(NetworkRow& row, NetworkState& a, NetworkState& b, SweepChange& change) {
+/// 1/kg, of the approach of two.
+[[nodiscard]] inline double mobility_of(const NetworkState& a, const NetworkState& b) {
+    return a.mobility + b.mobility;
+}
+
+/// 1/kg, of their slip.
+[[nodiscard]] inline double slip_mobility_of(const NetworkState& a, const NetworkState& b) {
+    return mobility_of(a, b) + a.turnability + b.turnability;
+}
+
+/// Goes on with a row by a factor of its direction, as its bodies have gone already, and puts it right for the state
+/// that there is.
+inline void relax(NetworkRow& row, double factor, NetworkState& a, NetworkState& b, SweepChange& change) {
+    const double violation = approach_of(row, a, b) + row.bound;
+    const NetworkPush step{factor * row.direction.normal, factor * row.direction.tangential};
+    const double mobility = mobility_of(a, b);
+    const double start = row.push.normal + step.normal;
     NetworkPush by;
-    by.normal =
-        std::max(-row.push.normal, -kNetworkOverRelaxation * row.normal_mass * (approach_of(row, a, b) + row.bound));
-    const bool pushes = row.push.normal > 0.0 || by.normal != 0.0;
-    if (!pushes) return by;
-    row.push.normal += by.normal;
-    const double velocity = by.normal * row.mobility;
+    by.normal = std::max(-start, -kNetworkOverRelaxation * (1.0 / mobility) * violation);
+    row.push.normal = start + by.normal;
+    row.push.tangential += step.tangential;
+    const double velocity = by.normal * mobility;
     change.squared += by.normal * velocity;
-    change.worst_squared = std::max(change.worst_squared, velocity * velocity);
+    change.approach_squared = std::max(change.approach_squared, velocity * velocity);
     if (row.friction > 0.0) {
-        const Vec3 wish = row.push.tangential - row.slip_mass * slip_of(row, a, b);
+        const double slip_mobility = slip_mobility_of(a, b);
+        const Vec3 wish = row.push.tangential - (1.0 / slip_mobility) * slip_of(row, a, b);
         const Vec3 cut = length_kept(wish, row.friction * row.push.normal) * wish;
         by.tangential = cut - row.push.tangential;
         row.push.tangential = cut;
-        const double squared = length_squared(by.tangential) * row.slip_mobility;
+        const double squared = length_squared(by.tangential) * slip_mobility;
         change.squared += squared;
-        change.worst_squared = std::max(change.worst_squared, squared * row.slip_mobility);
+        change.slip_squared = std::max(change.slip_squared, squared * slip_mobility);
     }
+    row.direction = {step.normal + by.normal, step.tangential + by.tangential};
     apply(row, by, a, b);
-    return by;
 }
 
 /// The same of its resistance to rolling; as a velocity counts that of the smaller sphere's surface.
-inline void relax(const NetworkRow& row, RollingRow& rolling, NetworkState& a, NetworkState& b, SweepChange& change) {
-    const Vec3 wish = rolling.moment - rolling.inertia * rolling_of(row, rolling, a, b);
-    const Vec3 cut = shortened(wish, rolling.friction * row.push.normal);
-    rolling.change = cut - rolling.moment;
-    rolling.moment = cut;
-    apply_moment(rolling, rolling.change, a, b);
-    const double squared = length_squared(rolling.change) / rolling.inertia;
+inline void relax(const NetworkRow& row, RollingRow& rolling, double factor, NetworkState& a, NetworkState& b,
+                  SweepChange& change) {
+    const Vec3 step = factor * rolling.direction;
+    const Vec3 start = rolling.moment + step;
+    const Vec3 wish = start - rolling.inertia * rolling_of(row, rolling, a, b);
+    rolling.moment = shortened(wish, rolling.friction * row.push.normal);
+    const Vec3 by = rolling.moment - start;
+    rolling.direction = step + by;
+    apply_moment(rolling, by, a, b);
+    const double squared = length_squared(by) / rolling.inertia;
     change.squared += squared;
     const double per_radius = std::max(rolling.per_radius_a, rolling.per_radius_b);
-    change.worst_squared = std::max(change.worst_squared, squared / (rolling.inertia * per_radius * per_radius));
+    change.slip_squared = std::max(change.slip_squared, squared / (rolling.inertia * per_radius * per_radius));
+}
+
+/// It does nothing, has done nothing in the last sweep, and need not do anything now.
+[[nodiscard]] inline bool is_idle(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
+    return row.push.normal == 0.0 && row.direction == NetworkPush{} && approach_of(row, a, b) + row.bound >= 0.0;
 }
 
 }  // namespace ricochet

@@ -23,8 +23,17 @@ constexpr double kUnlikeMasses = 100.0;
 /// Part of the error that is enough that what is solved directly may leave: sweeps do the rest.
 constexpr double kDirect = 0.25;
 
+/// Where momentum begins anew again and again, as where friction leads it in a circle, one sweep without it is made for
+/// so many times, each time: large networks that come to an answer begin a few dozen times.
+constexpr int kRestartsAPlainSweep = 64;
+
 /// Ratio from which on more sweeps are not tried first.
 constexpr double kVeryUnlikeMasses = 1e4;
+
+/// tolerance: m/s.
+NetworkLimits limits_of(const NetworkSettings& settings, double tolerance) {
+    return {tolerance, std::max(tolerance, settings.slip)};
+}
 
 /// Of two masses that touch, the heavier over the lighter; 1 where one of them is that of a wall.
 double ratio_of(const NetworkState& a, const NetworkState& b) {
@@ -68,8 +77,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     mass_ratio_ = 1.0;
     for (const NetworkRow& row : rows_) mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
     states_ = before_;
-    changes_.assign(rows_.size(), {});
-    directions_.assign(rows_.size(), {});
+    last_.resize(bodies_);
     impulses_.assign(contacts.size(), {});
     rebounds_.assign(contacts.size(), 0);
 }
@@ -92,14 +100,8 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
     row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
     row.parting = std::min(row.parting, contact.most_parting);
     row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
+    if (mobility_of(before_[row.a], before_[row.b]) == 0.0) row.bound = INFINITY;  // nothing could part them
     row.friction = contact.friction;
-    const NetworkState& a = before_[row.a];
-    const NetworkState& b = before_[row.b];
-    const double mobility = a.mobility + b.mobility;
-    row.normal_mass = mobility > 0.0 ? 1.0 / mobility : 0.0;
-    row.mobility = mobility;
-    row.slip_mobility = mobility + a.turnability + b.turnability;
-    row.slip_mass = mobility > 0.0 ? 1.0 / row.slip_mobility : 0.0;
     row.push.normal = std::max(0.0, contact.start.normal);
     const Vec3& friction = contact.start.tangential;
     row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
@@ -189,99 +191,86 @@ void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& repo
 
 /// False where `most` sweeps do not come to what is asked for.
 bool NetworkSolver::sweep_until(const NetworkSettings& settings, int most, NetworkReport& report) {
+    const NetworkLimits wished = limits_of(settings, settings.tolerance);
+    const NetworkLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));
     double before = 0.0;
+    double factor = 0.0;
+    int momentum = 0;  // sweeps since it last began anew
+    int restarts = 0;
+    int plain = 0;  // sweeps without it to come
     for (int k = 1;; ++k) {
-        const SweepChange change = sweep();
+        const SweepChange change = sweep(factor);
         ++report.sweeps;
         report.residual = change.worst();
-        const double enough = k < settings.sweeps ? settings.tolerance : std::max(settings.tolerance, settings.enough);
-        report.is_converged = report.residual <= std::max(settings.tolerance, settings.enough);
-        if (report.residual <= enough) return true;
+        report.is_converged = change.is_within(enough);
+        if (change.is_within(k < settings.sweeps ? wished : enough)) return true;
         if (k >= most) return false;
-        if (before > 0.0 && change.squared <= before) {
-            go_on(static_cast<double>(momentum_) / (momentum_ + 3));
-        } else {
-            begin_anew();
+        if (before > 0.0 && change.squared > before) {
+            plain = ++restarts / kRestartsAPlainSweep;
+            momentum = 0;
+        } else if (plain > 0) {
+            --plain;
+        } else if (before > 0.0) {
+            ++momentum;
         }
+        factor = static_cast<double>(momentum) / (momentum + 3);
         before = change.squared;
     }
 }
 
-template <class Work>
-void NetworkSolver::for_each_color(const Work& work) {
-    for (std::size_t color = 0; color < coloring_.colors(); ++color) {
-        const std::size_t first = coloring_.begin_of(color);
-        const std::size_t count = coloring_.end_of(color) - first;
-        if (count <= kBlock || coloring_.is_serial(color)) {
-            work(0, first, first + count);
-            continue;
-        }
-        parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            work(k, first + begin, first + end);
-        });
-    }
-}
-
-SweepChange NetworkSolver::sweep() {
+/// All contacts once, after they and the bodies have gone on by a factor of what the last sweep and the momentum before
+/// it have changed.
+SweepChange NetworkSolver::sweep(double factor) {
+    go_on(factor);
     SweepChange all;
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
         if (count <= kBlock || coloring_.is_serial(color)) {
-            all.add(sweep_rows(first, first + count));
+            all.add(sweep_rows(factor, first, first + count));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_rows(first + begin, first + end);
+            blocks_[k] = sweep_rows(factor, first + begin, first + end);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
     return all;
 }
 
-SweepChange NetworkSolver::sweep_rows(std::size_t begin, std::size_t end) {
+/// Of the bodies: impulses and what they do to bodies are linear, so that rows need only do the same when it is their
+/// turn.
+void NetworkSolver::go_on(double factor) {
+    const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            NetworkState& state = states_[i];
+            const Motion now{state.velocity, state.turning};
+            if (factor != 0.0) {
+                state.velocity += factor * (now.velocity - last_[i].velocity);
+                state.turning += factor * (now.turning - last_[i].turning);
+            }
+            last_[i] = now;
+        }
+    };
+    if (bodies_ <= kBlock) {
+        go(0, 0, bodies_);
+    } else {
+        parallel_for_blocks(bodies_, kBlock, go);
+    }
+}
+
+SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end) {
     SweepChange change;
     for (std::size_t i = begin; i < end; ++i) {
         NetworkRow& row = rows_[i];
         NetworkState& a = states_[row.a];
         NetworkState& b = states_[row.b];
-        changes_[i] = relax(row, a, b, change);
-        if (row.rolling != NetworkRow::kNone) relax(row, rolling_[row.rolling], a, b, change);
+        if (is_idle(row, a, b)) continue;
+        relax(row, factor, a, b, change);
+        if (row.rolling != NetworkRow::kNone) relax(row, rolling_[row.rolling], factor, a, b, change);
     }
     return change;
-}
-
-/// By a factor of what the last sweep and the momentum before it have changed.
-void NetworkSolver::go_on(double factor) {
-    ++momentum_;
-    for_each_color([&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            NetworkRow& row = rows_[i];
-            NetworkPush& direction = directions_[i];
-            NetworkState& a = states_[row.a];
-            NetworkState& b = states_[row.b];
-            const NetworkPush step{factor * direction.normal, factor * direction.tangential};
-            direction = {step.normal + changes_[i].normal, step.tangential + changes_[i].tangential};
-            if (step.normal != 0.0 || step.tangential != Vec3{}) {
-                row.push.normal += step.normal;
-                row.push.tangential += step.tangential;
-                apply(row, step, a, b);
-            }
-            if (row.rolling == NetworkRow::kNone) continue;
-            RollingRow& rolling = rolling_[row.rolling];
-            const Vec3 turn = factor * rolling.direction;
-            rolling.direction = turn + rolling.change;
-            rolling.moment += turn;
-            apply_moment(rolling, turn, a, b);
-        }
-    });
-}
-
-void NetworkSolver::begin_anew() {
-    momentum_ = 1;
-    directions_ = changes_;
-    for (RollingRow& rolling : rolling_) rolling.direction = rolling.change;
 }
 
 }  // namespace ricochet

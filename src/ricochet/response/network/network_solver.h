@@ -37,6 +37,12 @@ private:
         [[nodiscard]] double factor() const;
     };
 
+    /// Of a body.
+    struct Motion {
+        Vec3 velocity;
+        Vec3 turning;
+    };
+
     /// All that sweeps change.
     struct Impulses {
         std::vector<NetworkRow> rows;
@@ -52,12 +58,9 @@ private:
     [[nodiscard]] double gain_of_impulses() const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
-    [[nodiscard]] SweepChange sweep();
-    [[nodiscard]] SweepChange sweep_rows(std::size_t begin, std::size_t end);
+    [[nodiscard]] SweepChange sweep(double factor);
+    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end);
     void go_on(double factor);
-    void begin_anew();
-    template <class Work>
-    void for_each_color(const Work& work);
     [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
     [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);
     void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
@@ -71,9 +74,7 @@ private:
     std::size_t bodies_ = 0;
     std::vector<NetworkRow> rows_;  // in the order of the colours
     std::vector<RollingRow> rolling_;
-    std::vector<NetworkPush> changes_;     // of the rows, by the last sweep
-    std::vector<NetworkPush> directions_;  // in which the sweeps go on
-    int momentum_ = 0;                     // sweeps since it last began anew
+    std::vector<Motion> last_;  // of the bodies, after the sweep before the last
     std::vector<SweepChange> blocks_;
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch

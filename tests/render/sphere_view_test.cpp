@@ -188,6 +188,22 @@ TEST(SphereView, OutlinesAreFoundInPixelsThatSeeDifferentThings) {
     EXPECT_LT(needless, outlines / 2);
 }
 
+// A ray to the left comes from a sphere on the right, beside the camera, and goes on along the rim of a small one.
+TEST(SphereView, SpheresBehindARayHideNoOutlines) {
+    const Camera camera{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 100.0};
+    const PreviewRay ray{camera.position, normalized(Vec3{-1.7, 1, 0})};
+    const Vec3 rim = 10.0 * ray.direction + Vec3{0, 0, 0.5};
+    const Spheres spheres({{rim, {3, -0.2, 0}}, {0.5, 1.5}, {{}, {}}});
+    const SphereView view(spheres.preview.spheres(), camera, kWidth, kHeight, WithinPixel::anywhere);
+    const SphereTiles tiles = view.tiles(kHeight / 2, kHeight / 2 + kTileHeight, kTileWidth);
+    bool is_found = false;
+    for (std::size_t tile = 0; tile + 1 < tiles.first.size(); ++tile) {
+        ASSERT_GE(tiles.of(tile).size(), 1U) << "the sphere beside the camera is everywhere";
+        if (tiles.of(tile).size() == 2) is_found = outlines_about(std::span(&ray, 1), tiles.of(tile), 1e-3)[0];
+    }
+    EXPECT_TRUE(is_found);
+}
+
 TEST(SphereView, SeesSpheresAroundAndBesideTheCameraAndNoneBehindIt) {
     const Camera camera{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 60.0};
     EXPECT_EQ(compare_all_pixels({{{0, 0.5, 0}}, {3.0}, {{}}}, camera), kWidth * kHeight);

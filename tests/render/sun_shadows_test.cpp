@@ -75,6 +75,18 @@ TEST(SunShadows, CoverWhatStandsBeforeASlantedRay) {
     EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0}, {0, 0, 1}));
 }
 
+// From dust to the distances between planets: the shadow of a sphere on a plane is where the slanted ray has it.
+TEST(SunShadows, SlantedRaysDoNotDependOnTheUnitOfLength) {
+    for (const double unit : {1e-9, 1.0, 1e13}) {
+        const DrawnSpheres pair{{{0, 0, 10.0 * unit}, {20.0 * unit, 0, 0}}, {unit, unit}, {}, {}};
+        const SunShadows shadows(pair, {0, 0, 1});
+        const Vec3 direction = normalized(Vec3{0.2, 0.1, 1});
+        EXPECT_TRUE(shadows.covers(unit * Vec3{-2, -1, 0}, direction)) << unit;
+        EXPECT_FALSE(shadows.covers({}, direction)) << unit;
+        EXPECT_TRUE(shadows.covers(unit * Vec3{20, 0, -5}, {0, 0, 1})) << unit;
+    }
+}
+
 TEST(SunShadows, GridsPayForNarrowLightsAndThinClouds) {
     const SunShadows thin(cloud(6, 400, 0.05), {0, 0, 1});
     EXPECT_TRUE(thin.pays(0.02));
@@ -85,6 +97,14 @@ TEST(SunShadows, GridsPayForNarrowLightsAndThinClouds) {
         pile.radii.push_back(0.05);
     }
     EXPECT_FALSE(SunShadows(pile, {0, 0, 1}).pays(0.0));
+    EXPECT_TRUE(SunShadows(pile, {0, 0, 1}).pays()) << "looked at from the top";
+}
+
+TEST(SunShadows, GridsDoNotPayWhereAStrayStretchesThem) {
+    DrawnSpheres spheres = cloud(7, 4000, 0.15);
+    EXPECT_TRUE(SunShadows(spheres, {0, 0, 1}).pays());
+    spheres.centers[0] = {1e6, 0, 0};
+    EXPECT_FALSE(SunShadows(spheres, {0, 0, 1}).pays());
 }
 
 TEST(SunShadows, ThePointOfASphereThatFacesTheLightIsLit) {

@@ -110,8 +110,10 @@ public:
     DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
         : width_(options.width), view_(preview.spheres(), camera, options.width, options.height) {
         pays_ = view_.pays() && !view_.empty();
-        if (const auto sun = painter.sun_middle(); sun && pays_) shadows_.emplace(preview.spheres(), *sun);
-        if (!pays_) preview.prepare_sphere_rays();
+        const auto sun = painter.sun_middle();
+        if (sun && pays_) shadows_.emplace(preview.spheres(), *sun);
+        if (shadows_ && !shadows_->pays()) shadows_.reset();
+        if (!pays_ || (sun && !shadows_)) preview.prepare_sphere_rays();
     }
 
     // The rows [begin, end) of one band of the view.
@@ -149,7 +151,7 @@ public:
             view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
             if (!view_->pays()) view_.reset();
         }
-        // The grid takes up to 320 bytes for each sphere; rays to a wide sun come through too many of its cells.
+        // The grid takes up to 400 bytes for each sphere; rays to a wide sun come through too many of its cells.
         constexpr std::size_t kMostSpheres = 500000;
         constexpr double kWidestSun = 0.1;
         if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;

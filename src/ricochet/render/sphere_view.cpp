@@ -218,7 +218,8 @@ std::array<bool, kPacketRays> outlines_about(std::span<const PreviewRay> rays, s
         for (std::size_t k = 0; k < rays.size(); ++k) {
             if (done[k] || sphere.nearest > rays[k].reach) continue;
             const double middle = dot(rays[k].direction, sphere.away);
-            const double off = square - middle * middle;  // squared distance of the ray from the centre
+            if (middle <= 0.0 && sphere.power > 0.0) continue;  // behind the camera on this ray
+            const double off = square - middle * middle;        // squared distance of the ray from the centre
             const double margin = slope * middle;
             const double outer = sphere.radius + margin;
             const double inner = sphere.radius - margin;

@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 1e-12;         // cells per m of height, the least slope
+constexpr double kFlat = 1e-12;         // the least tangent of a ray to the light, along a coordinate: none is zero
 constexpr double kEntries = 10.0;       // cells that a sphere is in, at most in the mean
 constexpr double kMostAcross = 2048.0;  // cells
 constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work
@@ -26,9 +26,10 @@ struct GridWalk {
     std::size_t cell = 0;
     double next = 0.0;  // the height at which the ray leaves the cell
 
-    GridWalk(double start, double slope_of_ray, std::size_t cells)
+    // tangent: of the ray to the light, along the coordinate; per_size: cells per m.
+    GridWalk(double start, double tangent, double per_size, std::size_t cells)
         : at(start),
-          slope(std::copysign(std::max(std::fabs(slope_of_ray), kFlat), slope_of_ray)),
+          slope(std::copysign(std::max(std::fabs(tangent), kFlat), tangent) * per_size),
           per_slope(1.0 / slope),
           ahead(slope > 0.0 ? 1.0 : 0.0),
           count(cells),
@@ -162,16 +163,27 @@ bool SunShadows::covers(const Vec3& point) const {
     return false;
 }
 
+// Spheres over a cell, as a sphere finds it in the mean.
+double SunShadows::crowd() const {
+    double sum = 0.0;
+    for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
+        const auto here = static_cast<double>(first_[cell + 1] - first_[cell]);
+        sum += here * here / static_cast<double>(over_.size());
+    }
+    return sum;
+}
+
+// Most rays stop at one of the first spheres of their cell; not where all are in one, as strays far away make it.
+bool SunShadows::pays() const {
+    constexpr double kMostCrowded = 2000.0;
+    return over_.empty() || crowd() < kMostCrowded;
+}
+
 // By what a ray looks at: the spheres over the cells that it comes through.
 bool SunShadows::pays(double slope) const {
     constexpr double kMostLooks = 150.0;
     if (over_.empty()) return true;
-    double crowd = 0.0;  // spheres over a cell, as a sphere finds it in the mean
-    for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
-        const auto here = static_cast<double>(first_[cell + 1] - first_[cell]);
-        crowd += here * here / static_cast<double>(over_.size());
-    }
-    return crowd * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
+    return crowd() * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
 }
 
 // Between two heights over the ray's start.
@@ -195,9 +207,8 @@ bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
     if (direction == to_light_) return covers(point);
     if (over_.empty()) return false;
     const Slanted ray{shade_of(point, 0.0), dot(direction, across_), dot(direction, along_), dot(direction, to_light_)};
-    const double cells_per_rise = per_size_ / ray.rise;
-    GridWalk u((ray.from.u - left_) * per_size_, ray.across * cells_per_rise, columns_);
-    GridWalk v((ray.from.v - low_) * per_size_, ray.along * cells_per_rise, rows_);
+    GridWalk u((ray.from.u - left_) * per_size_, ray.across / ray.rise, per_size_, columns_);
+    GridWalk v((ray.from.v - low_) * per_size_, ray.along / ray.rise, per_size_, rows_);
     double height = std::max({0.0, u.enters, v.enters});
     const double end = std::min({top_ - ray.from.height, u.leaves, v.leaves});
     if (!(height < end)) return false;

@@ -23,7 +23,9 @@ public:
     [[nodiscard]] bool covers(const Vec3& point) const;
     /// The same for a ray along a unit vector, less than a right angle from the light.
     [[nodiscard]] bool covers(const Vec3& point, const Vec3& direction) const;
-    /// Whether that is faster than rays where the tangent of this angle is up to `slope`.
+    /// Whether the first is faster than rays.
+    [[nodiscard]] bool pays() const;
+    /// Whether the second is faster than rays where the tangent of this angle is up to `slope`.
     [[nodiscard]] bool pays(double slope) const;
 
 private:
@@ -43,6 +45,7 @@ private:
 
     void choose_grid(const std::vector<Shade>& shades);
     void fill(const std::vector<Shade>& shades);
+    [[nodiscard]] double crowd() const;
     [[nodiscard]] double entries(const std::vector<Shade>& shades, double size) const;
     [[nodiscard]] Shade shade_of(const Vec3& center, double radius) const;
     [[nodiscard]] Cells cells_of(const Shade& shade) const;

@@ -245,7 +245,9 @@ void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
 
 Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                      std::span<const Sprites> layers) {
-    if (!options.quick || !layers.empty()) preview.prepare_sphere_rays();
+    const bool are_drawn =
+        std::any_of(layers.begin(), layers.end(), [](const Sprites& layer) { return !layer.empty(); });
+    if (!options.quick || are_drawn) preview.prepare_sphere_rays();
     const LaidOver over = laid_over_each_other(layers, preview, camera, options);
     Sampled all = sampled(preview, camera, options, lamps_in(layers));
     if (options.filter && !options.quick) filter_noise(all.picture);

@@ -201,6 +201,22 @@ TEST(Painter, APictureIsTheSameWhetherRaysOrTilesAndTheGridFindTheSpheres) {
     EXPECT_LT(differing, kSize * kSize / 500);
 }
 
+// Its surface and its middle are the same number.
+TEST(Painter, AGrainThatIsSmallerThanNumbersTellApartIsLit) {
+    Preview preview({}, {}, {});
+    preview.set_spheres({{{0, 1e14, 0}}, {1e-3}, {{0.5, 0.5, 0.5}}});
+    PictureOptions options;
+    options.width = options.height = 1;
+    options.background = Vec3{};
+    const Camera camera{{0, 0, 0}, {0, 1e14, 0}, {0, 0, 1}, 45.0};
+    const Painter painter(preview, camera, options);
+    const PixelPlace place{0, 0};
+    const SphereFind find{1e14, 0};
+    PixelLight light;
+    painter.quick_pixels(std::span(&place, 1), std::span(&light, 1), std::span(&find, 1));
+    EXPECT_GT(luminance(light.light), 0.01);
+}
+
 // Some pixels at edges, where single precision decides, may differ.
 TEST(Painter, ADraftIsTheSameWhetherRaysOrTheViewFindTheSpheres) {
     constexpr int kSize = 96;

@@ -190,10 +190,11 @@ void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<
     }
 }
 
+// From the centre to the point that is hit; what is smaller than numbers tell apart faces the ray.
 PreviewHit Painter::sphere_hit(const SphereFind& find, const PreviewRay& ray) const {
-    const Vec3 point = ray.origin + find.distance * ray.direction;
-    return preview_.sphere_hit(find.sphere, find.distance, normalized(point - preview_.spheres().centers[find.sphere]),
-                               ray);
+    const Vec3 outward = ray.origin - preview_.spheres().centers[find.sphere] + find.distance * ray.direction;
+    const double size = length(outward);
+    return preview_.sphere_hit(find.sphere, find.distance, size > 0.0 ? outward / size : -ray.direction, ray);
 }
 
 PreviewRay Painter::camera_ray(double x, double y, const SamplePair& lens) const {

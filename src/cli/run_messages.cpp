@@ -91,6 +91,10 @@ void print_report(const RunSummary& summary, const std::string& output) {
           statistics.emitted, summary.particles_alive, statistics.particle_steps,
           rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
           statistics.bounces_per_step_max);
+    if (summary.spheres_meet) {
+        print("  {} {} of spheres on each other, besides those that are planned together\n", statistics.pair_impacts,
+              statistics.pair_impacts == 1 ? "impact" : "impacts");
+    }
     print_notes(statistics);
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;

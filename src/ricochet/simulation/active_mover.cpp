@@ -182,6 +182,8 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
         parts_.schedule.leave_alone(i);
         return;
     }
+    // One that slept on walls alone has weighed on them until now.
+    if (parts_.store.is_asleep(i)) record.lost_impulses += add_weight(i, life.begin, 1.0);
     take_over(i, moving, member.outcome, life.end, record);
 }
 

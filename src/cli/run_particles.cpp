@@ -13,6 +13,7 @@
 #include "ricochet/io/picture_files.h"
 #include "ricochet/io/vtk_reader.h"
 #include "ricochet/render/motion_path.h"
+#include "ricochet/render/streaks.h"
 
 namespace ricochet::cli {
 namespace {
@@ -79,7 +80,10 @@ std::vector<bool> RunPictures::add_springs(const VtkPolyData& frame, const std::
         moving.lines.ends.push_back({a, b});
         moving.lines.radii.push_back(radius);
         moving.lines.colors.push_back(kRopeColor);
-        if (!emissions_.empty()) moving.lines.emissions.emplace_back();
+        if (!emissions_.empty()) {
+            moving.lines.emissions.emplace_back();
+            moving.lines.parts.push_back(1.0);
+        }
         thread[a] = std::max(thread[a], radius);
         thread[b] = std::max(thread[b], radius);
     }
@@ -122,18 +126,10 @@ void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::siz
 /// Spheres as threads along their ways.
 void RunPictures::add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
                               const PreviewSpheres& spheres, PreviewMoving& moving) {
-    constexpr double kSagitta = 0.05;  // of a thread's radius
     for (std::size_t k = 0; k < shown.size(); ++k) {
-        const std::vector<Vec3> points =
-            path_points(paths.nodes[shown[k]], paths.born[shown[k]], paths.close, kSagitta * spheres.radii[k]);
-        const auto first = static_cast<std::uint32_t>(moving.lines.points.size());
-        moving.lines.points.insert(moving.lines.points.end(), points.begin(), points.end());
-        for (std::uint32_t i = 0; i + 1 < points.size(); ++i) {
-            moving.lines.ends.push_back({first + i, first + i + 1});
-            moving.lines.radii.push_back(spheres.radii[k]);
-            moving.lines.colors.push_back(spheres.colors[k]);
-            if (!spheres.emissions.empty()) moving.lines.emissions.push_back(spheres.emissions[k]);
-        }
+        Streak streak{paths.nodes[shown[k]], paths.born[shown[k]], paths.close, spheres.radii[k], spheres.colors[k]};
+        if (!spheres.emissions.empty()) streak.emission = spheres.emissions[k];
+        add_streak(streak, moving.lines);
     }
 }
 

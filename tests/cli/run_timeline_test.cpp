@@ -73,8 +73,8 @@ TEST(RunTimeline, AShutterSeesTheWayWithTheImpactsInIt) {
     EXPECT_DOUBLE_EQ(moment.paths.open, 0.1);
     EXPECT_LT(length(position_on_path(moment.paths.nodes[0], hit) - Vec3(3.0 * hit, 0, 0.1)), 1e-9);
     bool has_corner = false;
-    for (const Vec3& p : path_points(moment.paths.nodes[0], 0.1, 0.3, 1e-3)) {
-        has_corner = has_corner || length(p - Vec3(3.0 * hit, 0, 0.1)) < 1e-9;
+    for (const auto& [time, p] : path_points(moment.paths.nodes[0], 0.1, 0.3, 1e-3)) {
+        has_corner = has_corner || (length(p - Vec3(3.0 * hit, 0, 0.1)) < 1e-9 && std::fabs(time - hit) < 1e-9);
     }
     EXPECT_TRUE(has_corner);
     EXPECT_TRUE(coarse.at(0.3, 0.0).paths.empty());

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
 #include <vector>
 
 #include "ricochet/render/picture.h"
+#include "ricochet/render/streaks.h"
 
 namespace ricochet {
 namespace {
@@ -33,16 +33,17 @@ TEST(MotionPath, HasItsCornerWhereTheImpactWas) {
                                       {hit, {hit, 0, 0}, {1, 0, -speed}, {1, 0, speed}},
                                       node(2.0 * hit, {2.0 * hit, 0, 1}, {1, 0, 0})};
     const auto points = path_points(nodes, 0.0, 2.0 * hit, 1e-3);
-    EXPECT_EQ(points.front(), Vec3(0, 0, 1));
-    EXPECT_NE(std::find(points.begin(), points.end(), Vec3(hit, 0, 0)), points.end());
-    for (const Vec3& p : points) {
-        const double t = p.x;
+    EXPECT_EQ(points.front().position, Vec3(0, 0, 1));
+    const auto at_impact = [&](const PathPoint& point) { return point.position == Vec3(hit, 0, 0); };
+    EXPECT_TRUE(std::any_of(points.begin(), points.end(), at_impact));
+    for (const auto& [t, p] : points) {
+        EXPECT_NEAR(t, p.x, 1e-15);
         const double fallen = t < hit ? t : 2.0 * hit - t;
         EXPECT_NEAR(p.z, 1.0 - 0.5 * 9.81 * fallen * fallen, 1e-12);
     }
     // Between the points the path leaves the lines by less than was asked for.
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
-        const Vec3 middle = 0.5 * (points[k] + points[k + 1]);
+        const Vec3 middle = 0.5 * (points[k].position + points[k + 1].position);
         EXPECT_LT(length(position_on_path(nodes, middle.x) - middle), 1e-3);
     }
     EXPECT_LT(points.size(), 40U);
@@ -52,8 +53,8 @@ TEST(MotionPath, APartOfItBeginsAndEndsOnIt) {
     const std::vector<PathNode> nodes{node(0.0, {0, 0, 0}, {1, 0, 0}), node(1.0, {1, 0, 0}, {1, 0, 0})};
     const auto points = path_points(nodes, 0.25, 0.75, 1e-3);
     ASSERT_EQ(points.size(), 2U);
-    EXPECT_LT(length(points[0] - Vec3(0.25, 0, 0)), 1e-15);
-    EXPECT_LT(length(points[1] - Vec3(0.75, 0, 0)), 1e-15);
+    EXPECT_LT(length(points[0].position - Vec3(0.25, 0, 0)), 1e-15);
+    EXPECT_LT(length(points[1].position - Vec3(0.75, 0, 0)), 1e-15);
     EXPECT_LT(length(position_on_path(nodes, 1.5) - Vec3(1.5, 0, 0)), 1e-15);
     EXPECT_LT(length(position_on_path(nodes, -0.5) - Vec3(-0.5, 0, 0)), 1e-15);
 }
@@ -65,7 +66,7 @@ TEST(MotionPath, TwoImpactsAtTheSameTimeAreOneCorner) {
                                       node(2.0, {1, 1, 0}, {1, 1, 0})};
     EXPECT_LT(length(position_on_path(nodes, 1.5) - Vec3(0.5, 0.5, 0)), 1e-15);
     EXPECT_LT(length(position_on_path(nodes, 1.0)), 1e-15);
-    for (const Vec3& p : path_points(nodes, 0.0, 2.0, 1e-3)) EXPECT_LT(std::fabs(p.x - p.y), 1e-15);
+    for (const auto& [t, p] : path_points(nodes, 0.0, 2.0, 1e-3)) EXPECT_LT(std::fabs(p.x - p.y), 1e-15) << t;
 }
 
 // The lowest lit pixel of the streak of a rebound is where the camera sees the place of impact, less the radius.
@@ -77,14 +78,8 @@ TEST(MotionPath, TheDrawnCornerOfABounceLiesWhereTheImpactWasToAPixel) {
         const std::vector<PathNode> nodes{node(0.0, hit - 0.1 * Vec3{3, 0, -4}, {3, 0, -4}),
                                           {0.1, hit, {3, 0, -4}, {3, 0, 2.4}},
                                           node(0.2, hit + 0.1 * Vec3{3, 0, 2.4}, {3, 0, 2.4})};
-        const auto points = path_points(nodes, 0.0, 0.2, 1e-4);
         PreviewLines lines;
-        lines.points = points;
-        for (std::uint32_t k = 0; k + 1 < points.size(); ++k) {
-            lines.ends.push_back({k, k + 1});
-            lines.radii.push_back(kRadius);
-            lines.colors.push_back({0.8, 0.8, 0.8});
-        }
+        add_streak({nodes, 0.0, 0.2, kRadius, {0.8, 0.8, 0.8}}, lines);
         Preview preview({}, {}, {});
         preview.set_moving({{}, lines, {}});
         PictureOptions options;

@@ -37,9 +37,9 @@ Vec3 position_on_path(std::span<const PathNode> nodes, double time) {
     return between(before, *next, time);
 }
 
-std::vector<Vec3> path_points(std::span<const PathNode> nodes, double from, double to, double sagitta) {
+std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to, double sagitta) {
     constexpr double kMostPieces = 64.0;
-    std::vector<Vec3> points{position_on_path(nodes, from)};
+    std::vector<PathPoint> points{{from, position_on_path(nodes, from)}};
     for (std::size_t k = 0; k <= nodes.size(); ++k) {
         const double begin = k == 0 ? from : std::max(from, nodes[k - 1].time);
         const double end = k == nodes.size() ? to : std::min(to, nodes[k].time);
@@ -51,11 +51,12 @@ std::vector<Vec3> path_points(std::span<const PathNode> nodes, double from, doub
             pieces = std::clamp(std::ceil(needed), 1.0, kMostPieces);
         }
         for (double i = 1.0; i < pieces; i += 1.0) {
-            points.push_back(position_on_path(nodes, begin + i / pieces * (end - begin)));
+            const double time = begin + i / pieces * (end - begin);
+            points.push_back({time, position_on_path(nodes, time)});
         }
         // The node itself, not what the rounded time makes of it: the corner of an impact.
         const bool at_node = k < nodes.size() && end == nodes[k].time;
-        points.push_back(at_node ? nodes[k].position : position_on_path(nodes, end));
+        points.push_back({end, at_node ? nodes[k].position : position_on_path(nodes, end)});
     }
     return points;
 }

@@ -22,8 +22,15 @@ struct PathNode {
 /// in the order of time.
 [[nodiscard]] Vec3 position_on_path(std::span<const PathNode> nodes, double time);
 
+/// Where the particle is at a moment.
+struct PathPoint {
+    double time = 0.0;  ///< s
+    Vec3 position;      ///< m
+};
+
 /// The path from one time to a later one as points: both ends, every node in between, and between them as many that the
 /// path bends less than `sagitta`, m, away from the lines that join them (at most 64 a piece).
-[[nodiscard]] std::vector<Vec3> path_points(std::span<const PathNode> nodes, double from, double to, double sagitta);
+[[nodiscard]] std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
+                                                 double sagitta);
 
 }  // namespace ricochet

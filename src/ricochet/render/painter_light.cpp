@@ -129,7 +129,8 @@ void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) co
                        look.hit->time};
         whose[count++] = &look;
     }
-    preview_.trace(std::span(rays.data(), count), std::span(others.data(), count));
+    // What lamps stand for is left out: its light is theirs.
+    preview_.trace(std::span(rays.data(), count), std::span(others.data(), count), SphereRays::met, GlowRays::left_out);
     for (std::size_t k = 0; k < count; ++k) {
         asks[k] = {};
         if (!others[k]) {

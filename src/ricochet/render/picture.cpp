@@ -51,10 +51,10 @@ struct Sampled {
 };
 
 // Of what glows.
-std::vector<Lamp> lamps_in(std::span<const Sprites> layers) {
+std::vector<Lamp> lamps_in(std::span<const Sprites> layers, const Preview& preview) {
     constexpr std::size_t kMostLamps = 48;
     const auto glowing = std::find_if(layers.begin(), layers.end(), [](const Sprites& layer) { return layer.glow; });
-    return glowing == layers.end() ? std::vector<Lamp>{} : lamps_of(*glowing, kMostLamps);
+    return lamps_of(glowing == layers.end() ? Sprites{} : *glowing, preview.glowing_lines(), kMostLamps);
 }
 
 // All layers: what covers as one, and what only adds light, which no cover bounds. Empty where nothing is drawn.
@@ -249,7 +249,7 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
         std::any_of(layers.begin(), layers.end(), [](const Sprites& layer) { return !layer.empty(); });
     if (!options.quick || are_drawn) preview.prepare_sphere_rays();
     const LaidOver over = laid_over_each_other(layers, preview, camera, options);
-    Sampled all = sampled(preview, camera, options, lamps_in(layers));
+    Sampled all = sampled(preview, camera, options, options.quick ? std::vector<Lamp>{} : lamps_in(layers, preview));
     if (options.filter && !options.quick) filter_noise(all.picture);
     const std::size_t pixels = pixel_count(options);
     Image image{options.width, options.height, {}, {}};

@@ -34,7 +34,7 @@ struct PictureOptions {
 };
 
 /// sprites: laid over the picture of everything else, brought to the display's range by themselves; each layer over
-/// those before it. The first of those that glow lights what is around.
+/// those before it. The first of those that glow lights what is around, as lines of the preview that shine do.
 [[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                                    std::span<const Sprites> layers);
 [[nodiscard]] inline Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,

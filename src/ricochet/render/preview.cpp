@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ricochet/render/preview_impl.h"
+#include "ricochet/render/tone.h"
 
 namespace ricochet {
 
@@ -23,6 +24,22 @@ embree::Scene new_scene(RTCDevice device) {
     embree::Scene scene(rtcNewScene(device));
     rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
     return scene;
+}
+
+// What is darker gives no light that could be seen: the display's first step is 3e-4.
+bool shines(const PreviewLines& lines, std::size_t i) {
+    constexpr double kDarkest = 1e-3;
+    return !lines.emissions.empty() && luminance(lines.emissions[i]) > kDarkest;
+}
+
+// A convex body of the surface A and the brightness L shines in all directions together as a ball of that surface: its
+// intensity is L A / (4 pi) in the mean.
+GlowingLine glowing_line(const PreviewLines& lines, std::size_t i) {
+    const auto [a, b] = lines.ends[i];
+    const double radius = lines.radii[i];
+    const double size = lines.parts.empty() ? radius * radius + 0.5 * radius * length(lines.points[b] - lines.points[a])
+                                            : lines.parts[i] * radius * radius;
+    return {lines.points[a], lines.points[b], radius, size * lines.emissions[i]};
 }
 
 // Gives a finished geometry to the scene under the given number.
@@ -104,18 +121,38 @@ void Preview::Impl::build_spheres() {
     embree::check_device(device.get(), "building the picture's particles");
 }
 
-// Every line has two points of its own, since lines that share one may differ in radius.
+// Lines that shine are in a scene of their own, so that rays that look for light can leave them out.
 void Preview::Impl::add_lines(const PreviewLines& lines) {
-    std::vector<std::size_t> drawn;
+    std::vector<std::size_t> dark, bright;
+    glowing_lines.clear();
     for (std::size_t i = 0; i < lines.ends.size(); ++i) {
         const auto [a, b] = lines.ends[i];
-        if (drawable(lines.points[a]) && drawable(lines.points[b]) && lines.radii[i] > 0.0 &&
-            lines.radii[i] < kLargestDrawn)
-            drawn.push_back(i);
+        if (!drawable(lines.points[a]) || !drawable(lines.points[b]) || !(lines.radii[i] > 0.0) ||
+            lines.radii[i] >= kLargestDrawn) {
+            continue;
+        }
+        const bool glows = shines(lines, i);
+        (glows ? bright : dark).push_back(i);
+        if (glows) glowing_lines.push_back(glowing_line(lines, i));
     }
-    line_colors.clear();
-    line_emissions.clear();
-    if (drawn.empty()) return;
+    dark_lines = bright_lines = {};
+    if (!dark.empty()) {
+        dark_lines = attach_lines(lines, dark, moving_scene.get(), kLines);
+        has_moving = true;
+    }
+    if (bright.empty()) {
+        glow_scene = {};
+        return;
+    }
+    glow_scene = new_scene(device.get());
+    bright_lines = attach_lines(lines, bright, glow_scene.get(), kGlowingLines);
+    rtcCommitScene(glow_scene.get());
+}
+
+// Every line has two points of its own, since lines that share one may differ in radius.
+LineGroup Preview::Impl::attach_lines(const PreviewLines& lines, const std::vector<std::size_t>& drawn, RTCScene scene,
+                                      MovingGeometry id) const {
+    LineGroup group;
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
     auto* points = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
                                                                4 * sizeof(float), 2 * drawn.size()));
@@ -129,11 +166,11 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
             point[3] = static_cast<float>(lines.radii[drawn[k]]);
         }
         firsts[k] = static_cast<std::uint32_t>(2 * k);
-        line_colors.push_back(lines.colors[drawn[k]]);
-        if (!lines.emissions.empty()) line_emissions.push_back(lines.emissions[drawn[k]]);
+        group.colors.push_back(lines.colors[drawn[k]]);
+        if (!lines.emissions.empty()) group.emissions.push_back(lines.emissions[drawn[k]]);
     }
-    attach(moving_scene.get(), geometry, kLines);
-    has_moving = true;
+    attach(scene, geometry, id);
+    return group;
 }
 
 void Preview::Impl::add_cloth(PreviewMesh source) {
@@ -177,6 +214,8 @@ void Preview::prepare_sphere_rays() const {
 }
 
 const DrawnSpheres& Preview::spheres() const { return impl_->spheres; }
+
+const std::vector<GlowingLine>& Preview::glowing_lines() const { return impl_->glowing_lines; }
 
 bool Preview::spheres_move() const { return !impl_->sphere_ways.empty(); }
 

@@ -55,13 +55,24 @@ struct DrawnSpheres {
     std::vector<Vec3> emissions;  ///< or empty
 };
 
-/// Straight threads with round ends; all vectors but points have the same length, the last may be empty.
+/// Straight threads with round ends; all vectors but points have the same length, the last two may be empty. Those that
+/// shine (GlowingLine) are seen and mirrored; they throw no shadows, and light what is around them as lamps.
 struct PreviewLines {
     std::vector<std::array<std::uint32_t, 2>> ends;  ///< indices into points
     std::vector<Vec3> points;
     std::vector<double> radii;  ///< m, > 0
     std::vector<Vec3> colors;
     std::vector<Vec3> emissions{};  ///< light of their own; empty: none has any
+    /// Where lines are the way of a ball while the shutter is open, the part of that time that it is on each, 0..1: the
+    /// line then gives as much light as the ball does in that part. Empty: each is a thread that shines all over.
+    std::vector<double> parts{};
+};
+
+/// A line that gives light to what is around it.
+struct GlowingLine {
+    Vec3 from, to;        ///< m
+    double radius = 0.0;  ///< m
+    Vec3 intensity;       ///< light times m^2, as that of a lamp, of the whole line
 };
 
 /// Copies of the shapes of Preview::set_shapes(), or of a ball of radius 1; all vectors have the same length, the last
@@ -86,6 +97,9 @@ struct PreviewMoving {
 
 /// Whether rays meet spheres; those who find them by other means leave them out.
 enum class SphereRays { met, left_out };
+
+/// Whether rays meet lines that shine; those that look for light leave them out, which comes from them as from lamps.
+enum class GlowRays { met, left_out };
 
 /// A ray from a point along a unit vector.
 struct PreviewRay {
@@ -143,15 +157,17 @@ public:
     /// The same for up to kPacketRays rays at once, which is faster where they start and point alike. The last digits
     /// may differ from those of rays alone, and are the same whenever the packet is. hits: as many.
     void trace(std::span<const PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
-               SphereRays spheres = SphereRays::met) const;
+               SphereRays spheres = SphereRays::met, GlowRays glow = GlowRays::met) const;
     /// The first glass mesh on the ray; may be called from any thread.
     [[nodiscard]] std::optional<PreviewHit> trace_glass(const PreviewRay& ray) const;
-    /// True when a mesh or something that moves stands on the ray; planes throw no shadow.
+    /// True when a mesh or something that moves stands on the ray; planes and lines that shine throw no shadow.
     [[nodiscard]] bool occluded(const PreviewRay& ray) const;
     /// The same for up to kPacketRays rays at once, in their order.
     [[nodiscard]] std::array<bool, kPacketRays> occluded(std::span<const PreviewRay> rays,
                                                          SphereRays spheres = SphereRays::met) const;
     [[nodiscard]] const DrawnSpheres& spheres() const;
+    /// The drawn lines that shine.
+    [[nodiscard]] const std::vector<GlowingLine>& glowing_lines() const;
     /// Whether spheres move while the shutter is open.
     [[nodiscard]] bool spheres_move() const;
     /// What a ray meets at that distance on a sphere, given the unit normal of the surface there.

@@ -12,8 +12,14 @@
 
 namespace ricochet {
 
-/// Geometries of the scene of what moves, but for spheres, which have one of their own.
-enum MovingGeometry : unsigned { kLines, kCloth, kCopies };
+/// Geometries of the scene of what moves, but for spheres and lines that shine, which have scenes of their own.
+enum MovingGeometry : unsigned { kLines, kCloth, kCopies, kGlowingLines };
+
+/// Lines that are traced together, in the order of their primitives.
+struct LineGroup {
+    std::vector<Vec3> colors;
+    std::vector<Vec3> emissions;  // the same, or empty
+};
 
 /// Meshes that are traced together; geometry k of the scene is mesh k.
 struct MeshGroup {
@@ -36,13 +42,13 @@ struct Preview::Impl {
     embree::Device device = embree::make_device();
     MeshGroup solid, glass;
     MeshGroup moving_solid, moving_glass;
-    embree::Scene moving_scene, sphere_scene;
+    embree::Scene moving_scene, sphere_scene, glow_scene;
     std::vector<PreviewPlane> planes;
     DrawnSpheres spheres;
     std::vector<std::vector<Vec3>> sphere_ways;  // of the drawn spheres while the shutter is open; empty at rest
     bool has_sphere_rays = false;
-    std::vector<Vec3> line_colors;     // in the order of the drawn lines
-    std::vector<Vec3> line_emissions;  // the same, or empty
+    LineGroup dark_lines, bright_lines;
+    std::vector<GlowingLine> glowing_lines;  // in the order of bright_lines
     DrawnMesh cloth;
     ShapeCopies copies;
     bool has_moving = false;
@@ -52,6 +58,8 @@ struct Preview::Impl {
     void take_spheres(PreviewSpheres&& source);
     void build_spheres();
     void add_lines(const PreviewLines& lines);
+    [[nodiscard]] LineGroup attach_lines(const PreviewLines& lines, const std::vector<std::size_t>& drawn,
+                                         RTCScene scene, MovingGeometry id) const;
     void add_cloth(PreviewMesh source);
     void add_copies(const PreviewCopies& source);
     void add_mesh(MeshGroup& group, PreviewMesh mesh) const;
@@ -63,6 +71,7 @@ struct Preview::Impl {
     static void meet(const MeshGroup& group, RayFind& find);
     void meet_spheres(RayFind& find) const;
     void meet_moving(RayFind& find) const;
+    void meet_glow(RayFind& find) const;
     [[nodiscard]] PreviewHit hit_of(const RayFind& find, const PreviewRay& ray) const;
     [[nodiscard]] PreviewHit sphere_hit(std::size_t sphere, double distance, const Vec3& normal,
                                         const PreviewRay& ray) const;

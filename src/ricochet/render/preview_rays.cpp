@@ -160,6 +160,14 @@ void Preview::Impl::meet_moving(RayFind& find) const {
     note_source(find, nullptr, false);
 }
 
+void Preview::Impl::meet_glow(RayFind& find) const {
+    if (glowing_lines.empty()) return;
+    embree::QueryContext context;
+    embree::init_context(context, nullptr);
+    embree::intersect1(glow_scene.get(), context, find.query);
+    note_source(find, nullptr, false);
+}
+
 PreviewHit Preview::Impl::hit_of(const RayFind& find, const PreviewRay& ray) const {
     const RTCRayHit& hit = find.query;
     if (find.group != nullptr) return mesh_hit(find.group->meshes[find.geometry], hit, ray);
@@ -182,8 +190,9 @@ PreviewHit Preview::Impl::moving_hit(const RayFind& find, const PreviewRay& ray)
     out.face = face_of(hit.hit, ray);
     out.normal = out.face;
     out.time = ray.time;
-    out.color = line_colors[hit.hit.primID];
-    if (!line_emissions.empty()) out.emission = line_emissions[hit.hit.primID];
+    const LineGroup& lines = find.geometry == kGlowingLines ? bright_lines : dark_lines;
+    out.color = lines.colors[hit.hit.primID];
+    if (!lines.emissions.empty()) out.emission = lines.emissions[hit.hit.primID];
     return out;
 }
 
@@ -229,14 +238,15 @@ std::optional<PreviewHit> Preview::trace(const PreviewRay& ray) const {
     Impl::meet(impl_->moving_solid, find);
     impl_->meet_spheres(find);
     impl_->meet_moving(find);
+    impl_->meet_glow(find);
     std::optional<PreviewHit> nearest;
     if (find.geometry != RTC_INVALID_GEOMETRY_ID) nearest = impl_->hit_of(find, ray);
     impl_->trace_planes(ray, nearest);
     return nearest;
 }
 
-void Preview::trace(std::span<const PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
-                    SphereRays spheres) const {
+void Preview::trace(std::span<const PreviewRay> rays, std::span<std::optional<PreviewHit>> hits, SphereRays spheres,
+                    GlowRays glow) const {
     PacketFind find;
     for (std::size_t lane = 0; lane < rays.size(); ++lane) {
         if (!impl_->is_traceable(rays[lane])) continue;
@@ -248,6 +258,7 @@ void Preview::trace(std::span<const PreviewRay> rays, std::span<std::optional<Pr
     }
     if (impl_->traces(spheres)) find.meet(impl_->sphere_scene.get(), nullptr, true);
     if (impl_->has_moving) find.meet(impl_->moving_scene.get(), nullptr, false);
+    if (glow == GlowRays::met && !impl_->glowing_lines.empty()) find.meet(impl_->glow_scene.get(), nullptr, false);
     for (std::size_t lane = 0; lane < rays.size(); ++lane) {
         hits[lane].reset();
         if (find.valid[lane] == 0) continue;

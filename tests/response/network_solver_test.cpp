@@ -439,6 +439,21 @@ TEST(NetworkSolver, SlipMayBeWrongByALimitOfItsOwnAndApproachMayNot) {
     EXPECT_LT(fewer, all);
 }
 
+TEST(NetworkSolver, TwoThatNothingMovesDoNothingWhateverTheyDidBefore) {
+    std::vector<NetworkBody> bodies(3, ball(1.0, 0.1));
+    bodies[0].inverse_mass = bodies[0].inverse_inertia = bodies[1].inverse_mass = bodies[1].inverse_inertia = 0.0;
+    bodies[2].velocity = -kGravity * kStep * kUp;
+    NetworkContact fixed = between(0, 1, kUp, 0.5);
+    fixed.start.normal = 1.0;
+    fixed.start.tangential = {0.1, 0, 0};
+    const std::vector<NetworkContact> contacts{fixed, between(2, 0, kUp, 0.5)};
+    NetworkSolver solver;
+    EXPECT_TRUE(solver.solve(bodies, contacts, exactly()).is_converged);
+    EXPECT_EQ(solver.impulses()[0], NetworkImpulse{});
+    EXPECT_NEAR(solver.impulses()[1].normal, kGravity * kStep, 1e-15);
+    EXPECT_NEAR(bodies[2].velocity.z, 0.0, 1e-15);
+}
+
 TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
     const Heap heap = random_heap(5, 3000, true);
     ASSERT_GT(heap.contacts.size(), 3000U);

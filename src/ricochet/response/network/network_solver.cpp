@@ -100,12 +100,15 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
     row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
     row.parting = std::min(row.parting, contact.most_parting);
     row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
-    if (mobility_of(before_[row.a], before_[row.b]) == 0.0) row.bound = INFINITY;  // nothing could part them
+    row.rolling = NetworkRow::kNone;
     row.friction = contact.friction;
+    if (mobility_of(before_[row.a], before_[row.b]) == 0.0) {
+        row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
+        return row;
+    }
     row.push.normal = std::max(0.0, contact.start.normal);
     const Vec3& friction = contact.start.tangential;
     row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
-    row.rolling = NetworkRow::kNone;
     return row;
 }
 

@@ -108,6 +108,21 @@ TEST(BlockCholesky, SolvesForAStarAndForAllWithAll) {
     EXPECT_LT(error_of(60, all, random), 1e-13);
 }
 
+TEST(BlockCholesky, SaysHowManyOperationsItTakes) {
+    const auto chain = [](std::uint32_t rows) {
+        std::vector<Pair> pairs;
+        for (std::uint32_t k = 1; k < rows; ++k) pairs.push_back({k - 1, k});
+        return BlockCholesky(rows, pairs).operations();
+    };
+    EXPECT_LT(chain(2000), 2.1 * chain(1000));
+    std::vector<Pair> all;
+    for (std::uint32_t i = 0; i < 60; ++i) {
+        for (std::uint32_t j = 0; j < i; ++j) all.push_back({j, i});
+    }
+    const double size = 3.0 * 60.0;
+    EXPECT_NEAR(BlockCholesky(60, all).operations() / (size * size * size / 6.0), 1.0, 0.1);
+}
+
 TEST(BlockCholesky, RefusesWhatIsNotDefiniteAndGoesOnAfterwards) {
     RandomSequence random(33, 0, 0);
     const std::vector<Pair> pairs = grid(9);

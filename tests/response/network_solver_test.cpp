@@ -454,6 +454,39 @@ TEST(NetworkSolver, TwoThatNothingMovesDoNothingWhateverTheyDidBefore) {
     EXPECT_NEAR(bodies[2].velocity.z, 0.0, 1e-15);
 }
 
+/// A cube of balls, each of which touches six: factorizations would take minutes.
+TEST(NetworkSolver, WhatWouldTakeTooLongToSolveDirectlyIsLeftToSweeps) {
+    constexpr std::uint32_t kSide = 16;
+    NetworkState ball;
+    ball.velocity = {0, 0, -1};
+    ball.mobility = 1.0;
+    ball.turnability = 2.5;
+    std::vector<NetworkState> states(std::size_t{kSide} * kSide * kSide, ball);
+    std::vector<NetworkRow> rows;
+    const auto touch = [&](std::uint32_t a, std::uint32_t b, const Vec3& normal) {
+        NetworkRow row;
+        row.a = a;
+        row.b = b;
+        row.normal = normal;
+        row.friction = 0.5;
+        row.rolling = NetworkRow::kNone;
+        rows.push_back(row);
+    };
+    const auto count = static_cast<std::uint32_t>(states.size());
+    for (std::uint32_t k = 0; k < count; ++k) {
+        if (k % kSide > 0) touch(k, k - 1, {1, 0, 0});
+        if (k / kSide % kSide > 0) touch(k, k - kSide, {0, 1, 0});
+        touch(k, k < kSide * kSide ? count : k - kSide * kSide, kUp);
+    }
+    states.push_back({});  // the floor
+    const std::vector<NetworkState> before = states;
+    std::vector<RollingRow> rolling;
+    DirectNetwork direct;
+    EXPECT_FALSE(direct.improve({before, states, count, rows, rolling}, 1e-6));
+    for (std::uint32_t k = 0; k < count; ++k) ASSERT_EQ(states[k].velocity, before[k].velocity);
+    for (const NetworkRow& row : rows) ASSERT_EQ(row.push, NetworkPush{});
+}
+
 TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
     const Heap heap = random_heap(5, 3000, true);
     ASSERT_GT(heap.contacts.size(), 3000U);

@@ -182,6 +182,16 @@ void BlockCholesky::place_entries(std::span<const Pair> pairs) {
     }
 }
 
+double BlockCholesky::operations() const {
+    double sum = 0.0;
+    for (const Front& front : fronts_) {
+        const auto rows = static_cast<double>(front.rows());
+        const auto left = rows - static_cast<double>(front.columns());
+        sum += (rows * rows * rows - left * left * left) / 6.0 + rows * rows;
+    }
+    return sum;
+}
+
 bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     updates_.clear();
     for (const Front& front : fronts_) {

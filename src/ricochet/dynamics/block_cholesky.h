@@ -41,6 +41,8 @@ public:
 
     /// False where the matrix is not positive definite; there is nothing to solve with then.
     [[nodiscard]] bool factorize(const BlockMatrix& matrix);
+    /// Of a factorization: multiplications, about. It is the pairs alone that decide.
+    [[nodiscard]] double operations() const;
     /// Replaces the right side, three numbers a row of blocks, by the solution.
     void solve(std::span<double> values) const;
 

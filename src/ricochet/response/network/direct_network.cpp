@@ -32,6 +32,11 @@ constexpr double kViolated = 0.5;
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
+/// Operations of all factorizations of a network, at most: a second or so. Reason: those of a network grow with the
+/// third power of the contacts that a cut through it crosses, and a thousand spheres with some that are a thousand
+/// times as heavy took minutes a step.
+constexpr double kMostOperations = 1e9;
+
 /// Part of its stiffness that friction which slips keeps along the slip, so that no matrix is singular.
 constexpr double kSlipStiffness = 1e-9;
 
@@ -63,6 +68,8 @@ bool DirectNetwork::improve(const NetworkParts& parts, double tolerance) {
     number_unknowns();
     if (moving_ == 0) return false;
     find_places();
+    operations_left_ = kMostOperations;
+    if (cholesky_.operations() > operations_left_) return false;
     begin_passes(kDefect * tolerance);
     double violated = take_multipliers();
     bool is_solved = false;
@@ -275,6 +282,8 @@ bool DirectNetwork::minimise(double most_defect, int most_steps) {
     ahead_.assign(parts_.rows.size(), 0);
     evaluate();
     for (int step = 0; step < most_steps && largest_defect() > most_defect; ++step) {
+        operations_left_ -= cholesky_.operations();
+        if (operations_left_ < 0.0) return false;
         assemble();
         if (!cholesky_.factorize(matrix_)) return false;
         std::vector<double> direction = gradient_;

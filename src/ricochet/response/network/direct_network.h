@@ -41,7 +41,7 @@ struct NetworkParts {
 class DirectNetwork {
 public:
     /// Improves the impulses of a network, and its states with them, until the conditions are violated by no more than
-    /// the tolerance, m/s. False where it does not come to that.
+    /// the tolerance, m/s. False where it does not come to that, or would cost too much.
     [[nodiscard]] bool improve(const NetworkParts& parts, double tolerance);
 
 private:
@@ -86,6 +86,7 @@ private:
     std::vector<Places> places_;
     std::vector<BlockCholesky::Pair> pairs_;
     BlockCholesky cholesky_;
+    double operations_left_ = 0.0;  // that factorizations may still take
     BlockMatrix matrix_;
     std::vector<Answer> answers_;      // by row
     std::vector<std::uint8_t> ahead_;  // by row: 1 where the last step, gone to its end, would press the two together

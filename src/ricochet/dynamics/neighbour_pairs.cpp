@@ -26,6 +26,7 @@ const std::vector<NeighbourPair>& NeighbourPairs::find(std::span<const Box3> box
 
 const std::vector<NeighbourPair>& NeighbourPairs::update(std::span<const Box3> boxes,
                                                          std::span<const std::uint32_t> changed) {
+    if (changed.empty()) return pairs_;
     if (changed.size() + later_.size() > boxes.size() / kFew) return find(boxes);
     for (const std::uint32_t k : changed) {
         if (is_later_[k] == 0) later_.push_back(k);

@@ -135,44 +135,15 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
     rolling_.push_back(rolling);
 }
 
-/// With as much of the start's impulses as lets energy fall most: none of them where they do not fit any more.
+/// Whole, whatever they fit: most of a network goes on pressing as it did, and sweeps put right soon what single
+/// contacts begin with wrongly. To begin with a part of all of them would shake all that lies still.
 void NetworkSolver::apply_start() {
-    const double before = gain_of_impulses();
-    for (NetworkRow& row : rows_) {
+    for (const NetworkRow& row : rows_) {
         if (row.push.normal == 0.0) continue;
         apply(row, row.push, states_[row.a], states_[row.b]);
         if (row.rolling != NetworkRow::kNone)
             apply_moment(rolling_[row.rolling], rolling_[row.rolling].moment, states_[row.a], states_[row.b]);
     }
-    const double curvature = gain_of_impulses() - before;
-    if (!(curvature > 0.0)) return;
-    const double factor = std::clamp(-before / curvature, 0.0, 1.0);
-    if (factor == 1.0) return;
-    for (std::size_t i = 0; i < bodies_; ++i) {
-        states_[i].velocity = before_[i].velocity + factor * (states_[i].velocity - before_[i].velocity);
-        states_[i].turning = before_[i].turning + factor * (states_[i].turning - before_[i].turning);
-    }
-    for (NetworkRow& row : rows_) {
-        row.push.normal *= factor;
-        row.push.tangential *= factor;
-    }
-    for (RollingRow& rolling : rolling_) rolling.moment *= factor;
-}
-
-/// J, of all impulses times what they act against.
-double NetworkSolver::gain_of_impulses() const {
-    double sum = 0.0;
-    for (const NetworkRow& row : rows_) {
-        if (row.push.normal == 0.0) continue;
-        const NetworkState& a = states_[row.a];
-        const NetworkState& b = states_[row.b];
-        sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
-        if (row.rolling != NetworkRow::kNone) {
-            const RollingRow& rolling = rolling_[row.rolling];
-            sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
-        }
-    }
-    return sum;
 }
 
 /// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few

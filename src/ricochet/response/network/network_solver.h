@@ -55,7 +55,6 @@ private:
                                     double duration);
     void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
     void apply_start();
-    [[nodiscard]] double gain_of_impulses() const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);

@@ -20,7 +20,7 @@ constexpr double kSlow = 0.1;
 constexpr std::size_t kFewContacts = 64;
 
 /// Part of the overlap that many contacts may leave that so few may.
-constexpr double kOfFew = 0.5;
+constexpr double kOfFew = 1.0 / 3.0;
 constexpr double kRounding = 1e-12;
 
 /// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.

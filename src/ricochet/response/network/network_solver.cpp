@@ -135,15 +135,37 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
     rolling_.push_back(rolling);
 }
 
-/// Whole, whatever they fit: most of a network goes on pressing as it did, and sweeps put right soon what single
-/// contacts begin with wrongly. To begin with a part of all of them would shake all that lies still.
+/// All of them or, where they do not act against what happens, as when forces have turned round, none. Most of a
+/// network goes on pressing as it did, and sweeps put right soon what single contacts begin with wrongly: to begin with
+/// a part of all of them would shake all that lies still.
 void NetworkSolver::apply_start() {
+    if (work_of_start() > 0.0) {
+        for (NetworkRow& row : rows_) row.push = {};
+        for (RollingRow& rolling : rolling_) rolling.moment = {};
+        return;
+    }
     for (const NetworkRow& row : rows_) {
         if (row.push.normal == 0.0) continue;
         apply(row, row.push, states_[row.a], states_[row.b]);
         if (row.rolling != NetworkRow::kNone)
             apply_moment(rolling_[row.rolling], rolling_[row.rolling].moment, states_[row.a], states_[row.b]);
     }
+}
+
+/// J, of all impulses on what moves without them.
+double NetworkSolver::work_of_start() const {
+    double sum = 0.0;
+    for (const NetworkRow& row : rows_) {
+        if (row.push.normal == 0.0) continue;
+        const NetworkState& a = states_[row.a];
+        const NetworkState& b = states_[row.b];
+        sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
+        if (row.rolling != NetworkRow::kNone) {
+            const RollingRow& rolling = rolling_[row.rolling];
+            sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
+        }
+    }
+    return sum;
 }
 
 /// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few

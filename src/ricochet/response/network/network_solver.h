@@ -55,6 +55,7 @@ private:
                                     double duration);
     void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
     void apply_start();
+    [[nodiscard]] double work_of_start() const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);

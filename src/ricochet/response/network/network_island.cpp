@@ -14,7 +14,7 @@ constexpr int kSweeps = 30;
 constexpr int kMostSweeps = 300;
 
 /// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
-constexpr double kSlow = 0.1;
+constexpr double kSlow = 0.02;
 
 /// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
 constexpr std::size_t kFewContacts = 64;

@@ -5,6 +5,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/network/network_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -229,13 +230,14 @@ SweepChange NetworkSolver::sweep(double factor) {
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
-        if (count <= kBlock || coloring_.is_serial(color)) {
-            all.add(sweep_rows(factor, first, first + count));
+        const bool apart = !coloring_.is_serial(color);
+        if (count <= kBlock || !apart) {
+            all.add(sweep_rows(factor, first, first + count, apart));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_rows(factor, first + begin, first + end);
+            blocks_[k] = sweep_rows(factor, first + begin, first + end, apart);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
@@ -263,17 +265,10 @@ void NetworkSolver::go_on(double factor) {
     }
 }
 
-SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end) {
-    SweepChange change;
-    for (std::size_t i = begin; i < end; ++i) {
-        NetworkRow& row = rows_[i];
-        NetworkState& a = states_[row.a];
-        NetworkState& b = states_[row.b];
-        if (is_idle(row, a, b)) continue;
-        relax(row, factor, a, b, change);
-        if (row.rolling != NetworkRow::kNone) relax(row, rolling_[row.rolling], factor, a, b, change);
-    }
-    return change;
+/// apart: no two of them have a body that moves in common.
+SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end, bool apart) {
+    const SweptRows swept{std::span(rows_).subspan(begin, end - begin), rolling_, states_};
+    return apart ? sweep_apart(swept, factor) : sweep_in_order(swept, factor);
 }
 
 }  // namespace ricochet

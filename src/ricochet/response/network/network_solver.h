@@ -59,7 +59,7 @@ private:
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);
-    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end);
+    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end, bool apart);
     void go_on(double factor);
     [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
     [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);

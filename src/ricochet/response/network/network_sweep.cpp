@@ -1,6 +1,7 @@
 #include "ricochet/response/network/network_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
 #include "ricochet/response/network/network_quads.h"
@@ -8,99 +9,100 @@
 namespace ricochet {
 namespace {
 
-RICOCHET_INLINE void sweep_one(const SweptRows& swept, double factor, NetworkRow& row, SweepChange& change) {
-    NetworkState& a = swept.states[row.a];
-    NetworkState& b = swept.states[row.b];
-    if (is_idle(row, a, b)) return;
-    change.add(relax(row, factor, a, b));
-    if (row.rolling != NetworkRow::kNone) relax(row, swept.rolling[row.rolling], factor, a, b, change);
+[[nodiscard]] RICOCHET_INLINE bool is_idle(const SweptRows& swept, const NetworkRow& row) {
+    return is_idle(row, swept.states[row.a], swept.states[row.b]);
 }
 
-RICOCHET_INLINE void sweep_rest(const SweptRows& swept, double factor, std::size_t begin, SweepChange& change) {
-    for (NetworkRow& row : swept.rows.subspan(begin)) sweep_one(swept, factor, row, change);
+RICOCHET_INLINE void relax_rolling(const SweptRows& swept, double factor, const NetworkRow& row, SweepChange& change) {
+    if (row.rolling == NetworkRow::kNone) return;
+    relax(row, swept.rolling[row.rolling], factor, swept.states[row.a], swept.states[row.b], change);
+}
+
+RICOCHET_INLINE void relax_one(const SweptRows& swept, double factor, NetworkRow& row, SweepChange& change) {
+    change.add(relax(row, factor, swept.states[row.a], swept.states[row.b]));
+    relax_rolling(swept, factor, row, change);
 }
 
 #if defined(__x86_64__)
 
-/// Rows ahead whose bodies are fetched.
-constexpr std::size_t kAhead = 16;
+/// Rows whose work is looked for together: they and their bodies stay in the first level of memory meanwhile.
+constexpr std::size_t kLookAhead = 64;
 
-/// What four rows and their bodies that do nothing are stored to.
-struct Spare {
-    NetworkRow row;
-    NetworkState state;
-};
-
-/// Where each of four is stored to.
-template <class T>
-RICOCHET_INLINE FourOf<T> where(const QuadMask& mask, const FourOf<T>& there, T& spare) {
-    FourOf<T> to;
-    for (std::size_t k = 0; k < kQuad; ++k) to[k] = mask.lanes[k] != 0 ? there[k] : &spare;
+/// Where each of four bodies is stored to: what nothing moves nowhere.
+RICOCHET_INLINE FourOf<NetworkState> written(const QuadState& states, const FourOf<NetworkState>& at,
+                                             NetworkState& nowhere) {
+    const QuadMask moves = states.mobility != 0.0;
+    FourOf<NetworkState> to;
+    for (std::size_t k = 0; k < kQuad; ++k) to[k] = moves.lanes[k] != 0 ? at[k] : &nowhere;
     return to;
 }
 
-RICOCHET_INLINE void fetch_bodies(const SweptRows& swept, std::size_t i) {
-    if (i + kQuad > swept.rows.size()) return;
-    for (std::size_t k = i; k < i + kQuad; ++k) {
-        __builtin_prefetch(&swept.states[swept.rows[k].a], 1);
-        __builtin_prefetch(&swept.states[swept.rows[k].b], 1);
-    }
-}
+class QuadSweep {
+public:
+    RICOCHET_INLINE QuadSweep(const SweptRows& swept, double factor) : swept_(swept), factor_(factor) {}
 
-/// Sums in the order of the rows, each of which may resist rolling.
-RICOCHET_INLINE void add_up(const SweptRows& swept, double factor, std::size_t begin, const QuadMask& works,
-                            const RowChange<Quad>& quad, SweepChange& change) {
-    for (std::size_t k = 0; k < kQuad; ++k) {
-        change.squared += quad.pushing.lanes[k];
-        change.squared += quad.rubbing.lanes[k];
-        NetworkRow& row = swept.rows[begin + k];
-        if (row.rolling == NetworkRow::kNone || works.lanes[k] == 0) continue;
-        relax(row, swept.rolling[row.rolling], factor, swept.states[row.a], swept.states[row.b], change);
+    /// All rows.
+    RICOCHET_INLINE SweepChange run() {
+        for (std::size_t begin = 0; begin < swept_.rows.size(); begin += kLookAhead) {
+            find_work(begin, std::min(begin + kLookAhead, swept_.rows.size()));
+            std::size_t done = 0;
+            for (; done + kQuad <= count_; done += kQuad) relax_four(&work_[done]);
+            std::copy(&work_[done], &work_[count_], work_.data());
+            count_ -= done;
+        }
+        for (std::size_t k = 0; k < count_; ++k) relax_one(swept_, factor_, *work_[k], change_);
+        for (std::size_t k = 0; k < kQuad; ++k) {
+            change_.approach_squared = std::max(change_.approach_squared, most_.approach_squared.lanes[k]);
+            change_.slip_squared = std::max(change_.slip_squared, most_.slip_squared.lanes[k]);
+        }
+        return change_;
     }
-}
 
-RICOCHET_INLINE void sweep_four(const SweptRows& swept, double factor, std::size_t begin, Spare& spare,
-                                RowChange<Quad>& most, SweepChange& change) {
-    FourOf<NetworkRow> rows;
-    FourOf<NetworkState> at_a;
-    FourOf<NetworkState> at_b;
-    for (std::size_t k = 0; k < kQuad; ++k) {
-        rows[k] = &swept.rows[begin + k];
-        at_a[k] = &swept.states[rows[k]->a];
-        at_b[k] = &swept.states[rows[k]->b];
+private:
+    RICOCHET_INLINE void find_work(std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            NetworkRow& row = swept_.rows[i];
+            work_[count_] = &row;
+            count_ += is_idle(swept_, row) ? 0 : 1;
+        }
     }
-    QuadRow row = load_rows(rows);
-    QuadState a = load_states(at_a);
-    QuadState b = load_states(at_b);
-    const QuadMask works = ~is_idle(row, a, b);
-    if (!any(works)) return;
-    RowChange<Quad> quad = relax(row, factor, a, b);
-    store_rows(row, where(works, rows, spare.row));
-    store_states(a, where(works & (a.mobility != 0.0), at_a, spare.state));
-    store_states(b, where(works & (b.mobility != 0.0), at_b, spare.state));
-    const Quad none{};
-    most.approach_squared = larger(most.approach_squared, select(works, quad.approach_squared, none));
-    most.slip_squared = larger(most.slip_squared, select(works, quad.slip_squared, none));
-    quad.pushing = select(works, quad.pushing, none);
-    quad.rubbing = select(works, quad.rubbing, none);
-    add_up(swept, factor, begin, works, quad, change);
-}
+
+    RICOCHET_INLINE void relax_four(NetworkRow* const* work) {
+        FourOf<NetworkRow> rows;
+        FourOf<NetworkState> at_a;
+        FourOf<NetworkState> at_b;
+        for (std::size_t k = 0; k < kQuad; ++k) {
+            rows[k] = work[k];
+            at_a[k] = &swept_.states[rows[k]->a];
+            at_b[k] = &swept_.states[rows[k]->b];
+        }
+        QuadRow row = load_rows(rows);
+        QuadState a = load_states(at_a);
+        QuadState b = load_states(at_b);
+        const RowChange<Quad> change = relax(row, factor_, a, b);
+        store_rows(row, rows);
+        store_states(a, written(a, at_a, nowhere_));
+        store_states(b, written(b, at_b, nowhere_));
+        most_.approach_squared = larger(most_.approach_squared, change.approach_squared);
+        most_.slip_squared = larger(most_.slip_squared, change.slip_squared);
+        for (std::size_t k = 0; k < kQuad; ++k) {
+            change_.squared += change.pushing.lanes[k];
+            change_.squared += change.rubbing.lanes[k];
+            relax_rolling(swept_, factor_, *rows[k], change_);
+        }
+    }
+
+    const SweptRows swept_;
+    double factor_ = 0.0;
+    SweepChange change_;
+    RowChange<Quad> most_;
+    NetworkState nowhere_;
+    std::array<NetworkRow*, kLookAhead + kQuad> work_;  // rows that are not idle, and not relaxed yet
+    std::size_t count_ = 0;
+};
 
 [[gnu::target("avx2")]] SweepChange sweep_by_four(const SweptRows& swept, double factor) {
-    SweepChange change;
-    RowChange<Quad> most;
-    Spare spare;
-    std::size_t i = 0;
-    for (; i + kQuad <= swept.rows.size(); i += kQuad) {
-        fetch_bodies(swept, i + kAhead);
-        sweep_four(swept, factor, i, spare, most, change);
-    }
-    sweep_rest(swept, factor, i, change);
-    for (std::size_t k = 0; k < kQuad; ++k) {
-        change.approach_squared = std::max(change.approach_squared, most.approach_squared.lanes[k]);
-        change.slip_squared = std::max(change.slip_squared, most.slip_squared.lanes[k]);
-    }
-    return change;
+    return QuadSweep(swept, factor).run();
 }
 
 #endif
@@ -109,7 +111,9 @@ RICOCHET_INLINE void sweep_four(const SweptRows& swept, double factor, std::size
 
 SweepChange sweep_in_order(const SweptRows& swept, double factor) {
     SweepChange change;
-    sweep_rest(swept, factor, 0, change);
+    for (NetworkRow& row : swept.rows) {
+        if (!is_idle(swept, row)) relax_one(swept, factor, row, change);
+    }
     return change;
 }
 

@@ -16,12 +16,14 @@ inline constexpr std::size_t kQuad = 4;
 template <class T>
 using FourOf = std::array<T*, kQuad>;
 
-/// Four NetworkState.
+/// Four NetworkState, and what is to be added to them.
 struct QuadState {
     QuadVec3 velocity;
     QuadVec3 turning;
     Quad mobility;
     Quad turnability;
+    QuadVec3 velocity_change;
+    QuadVec3 turning_change;
 };
 
 /// Four NetworkPush.
@@ -37,12 +39,12 @@ struct QuadRow {
     Quad friction;
     QuadPush push;
     QuadPush direction;
-    Quad parting;
-    Quad rolling;  ///< the bits of the number, no double
 };
 
-/// Of those of four that nothing moves the copies are changed, and not stored.
-[[nodiscard]] RICOCHET_INLINE bool is_written(const QuadState&) { return true; }
+RICOCHET_INLINE void apply(const QuadVec3& impulse, const QuadVec3& turn, QuadState& body) {
+    body.velocity_change = body.mobility * impulse;
+    body.turning_change = body.turnability * turn;
+}
 
 /// The part of four vectors' lengths that is left where they may be no longer than `most`.
 [[nodiscard]] RICOCHET_INLINE Quad length_kept(const QuadVec3& v, const Quad& most) {
@@ -50,60 +52,82 @@ struct QuadRow {
     return select(squared > most * most, most / root(squared), quad_of(1.0));
 }
 
-/// Doubles part * 4 ... part * 4 + 3 of each of four, transposed.
-template <std::size_t part, class T>
-RICOCHET_INLINE void load_part(const FourOf<T>& from, Quad& a, Quad& b, Quad& c, Quad& d) {
-    static_assert(sizeof(T) % sizeof(Quad) == 0);
-    const auto begin = [&](std::size_t k) { return reinterpret_cast<const double*>(from[k]) + part * kQuad; };
-    a = load_quad(begin(0));
-    b = load_quad(begin(1));
-    c = load_quad(begin(2));
-    d = load_quad(begin(3));
-    transpose(a, b, c, d);
-}
-
-template <std::size_t part, class T>
-RICOCHET_INLINE void store_part(const Quad& a, const Quad& b, const Quad& c, const Quad& d, const FourOf<T>& to) {
-    std::array<Quad, kQuad> rows{a, b, c, d};
-    transpose(rows[0], rows[1], rows[2], rows[3]);
-    for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], reinterpret_cast<double*>(to[k]) + part * kQuad);
-}
-
-static_assert(sizeof(NetworkState) == 8 * sizeof(double) && offsetof(NetworkState, turning) == 3 * sizeof(double) &&
+static_assert(sizeof(NetworkState) == 8 * sizeof(double) && offsetof(NetworkState, velocity) == 0 &&
+              offsetof(NetworkState, turning) == 3 * sizeof(double) &&
               offsetof(NetworkState, mobility) == 6 * sizeof(double));
+static_assert(sizeof(NetworkRow) == 16 * sizeof(double) && offsetof(NetworkRow, normal) == sizeof(double) &&
+              offsetof(NetworkRow, bound) == 4 * sizeof(double) &&
+              offsetof(NetworkRow, friction) == 5 * sizeof(double) &&
+              offsetof(NetworkRow, push) == 8 * sizeof(double) &&
+              offsetof(NetworkRow, direction) == 12 * sizeof(double));
+
+/// Doubles number part * 4 and the three after it of one of the four.
+template <class T>
+[[nodiscard]] RICOCHET_INLINE double* part_of(T* one, std::size_t part) {
+    return reinterpret_cast<double*>(one) + part * kQuad;
+}
+
+/// The first of these doubles of all four, the second of all, ...
+template <class T>
+[[nodiscard]] RICOCHET_INLINE std::array<Quad, kQuad> load_part(const FourOf<T>& from, std::size_t part) {
+    std::array<Quad, kQuad> rows{load_quad(part_of(from[0], part)), load_quad(part_of(from[1], part)),
+                                 load_quad(part_of(from[2], part)), load_quad(part_of(from[3], part))};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    return rows;
+}
 
 [[nodiscard]] RICOCHET_INLINE QuadState load_states(const FourOf<NetworkState>& from) {
-    QuadState s;
-    load_part<0>(from, s.velocity.x, s.velocity.y, s.velocity.z, s.turning.x);
-    load_part<1>(from, s.turning.y, s.turning.z, s.mobility, s.turnability);
-    return s;
+    const std::array<Quad, kQuad> first = load_part(from, 0);
+    const std::array<Quad, kQuad> second = load_part(from, 1);
+    QuadState states{};
+    states.velocity = {first[0], first[1], first[2]};
+    states.turning = {first[3], second[0], second[1]};
+    states.mobility = second[2];
+    states.turnability = second[3];
+    return states;
 }
 
-RICOCHET_INLINE void store_states(const QuadState& s, const FourOf<NetworkState>& to) {
-    store_part<0>(s.velocity.x, s.velocity.y, s.velocity.z, s.turning.x, to);
-    store_part<1>(s.turning.y, s.turning.z, s.mobility, s.turnability, to);
+/// Adds the changes to those that something moves: threads share the others.
+RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<NetworkState>& to) {
+    const Quad none{};
+    const QuadVec3& v = states.velocity_change;
+    const QuadVec3& t = states.turning_change;
+    std::array<Quad, kQuad> first{v.x, v.y, v.z, t.x};
+    std::array<Quad, kQuad> second{t.y, t.z, none, none};
+    transpose(first[0], first[1], first[2], first[3]);
+    transpose(second[0], second[1], second[2], second[3]);
+    NetworkState nowhere;
+    for (std::size_t k = 0; k < kQuad; ++k) {
+        NetworkState* state = to[k]->mobility != 0.0 ? to[k] : &nowhere;
+        store(load_quad(part_of(to[k], 0)) + first[k], part_of(state, 0));
+        store(load_quad(part_of(to[k], 1)) + second[k], part_of(state, 1));
+    }
 }
-
-static_assert(sizeof(NetworkRow) == 16 * sizeof(double) && offsetof(NetworkRow, normal) == sizeof(double) &&
-              offsetof(NetworkRow, bound) == 4 * sizeof(double) && offsetof(NetworkRow, push) == 6 * sizeof(double) &&
-              offsetof(NetworkRow, direction) == 10 * sizeof(double) &&
-              offsetof(NetworkRow, rolling) == 15 * sizeof(double));
 
 [[nodiscard]] RICOCHET_INLINE QuadRow load_rows(const FourOf<NetworkRow>& from) {
-    QuadRow r;
-    Quad bodies;
-    load_part<0>(from, bodies, r.normal.x, r.normal.y, r.normal.z);
-    load_part<1>(from, r.bound, r.friction, r.push.normal, r.push.tangential.x);
-    load_part<2>(from, r.push.tangential.y, r.push.tangential.z, r.direction.normal, r.direction.tangential.x);
-    load_part<3>(from, r.direction.tangential.y, r.direction.tangential.z, r.parting, r.rolling);
-    return r;
+    const std::array<Quad, kQuad> first = load_part(from, 0);
+    const std::array<Quad, kQuad> second = load_part(from, 1);
+    const std::array<Quad, kQuad> push = load_part(from, 2);
+    const std::array<Quad, kQuad> direction = load_part(from, 3);
+    QuadRow rows;
+    rows.normal = {first[1], first[2], first[3]};
+    rows.bound = second[0];
+    rows.friction = second[1];
+    rows.push = {push[0], {push[1], push[2], push[3]}};
+    rows.direction = {direction[0], {direction[1], direction[2], direction[3]}};
+    return rows;
 }
 
-/// What relax() may have changed, with what lies between.
-RICOCHET_INLINE void store_rows(const QuadRow& r, const FourOf<NetworkRow>& to) {
-    store_part<1>(r.bound, r.friction, r.push.normal, r.push.tangential.x, to);
-    store_part<2>(r.push.tangential.y, r.push.tangential.z, r.direction.normal, r.direction.tangential.x, to);
-    store_part<3>(r.direction.tangential.y, r.direction.tangential.z, r.parting, r.rolling, to);
+RICOCHET_INLINE void store_push(const QuadPush& push, const FourOf<NetworkRow>& to, std::size_t part) {
+    std::array<Quad, kQuad> rows{push.normal, push.tangential.x, push.tangential.y, push.tangential.z};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], part_of(to[k], part));
+}
+
+/// What relax() changes.
+RICOCHET_INLINE void store_pushes(const QuadRow& rows, const FourOf<NetworkRow>& to) {
+    store_push(rows.push, to, 2);
+    store_push(rows.direction, to, 3);
 }
 
 }  // namespace ricochet

@@ -24,9 +24,6 @@ struct alignas(64) NetworkState {
     double turnability = 0;  ///< radius^2 / moment of inertia, 1/kg
 };
 
-/// False of what nothing moves, which threads share.
-[[nodiscard]] RICOCHET_INLINE bool is_written(const NetworkState& body) { return body.mobility != 0.0; }
-
 /// A contact's impulse but for its moment, or a change of it.
 struct NetworkPush {
     double normal = 0.0;
@@ -43,10 +40,10 @@ struct alignas(64) NetworkRow {
     Vec3 normal;
     double bound = 0.0;  ///< m/s, with which it may still approach; < 0: with which it has to leave
     double friction = 0.0;
-    NetworkPush push;
-    NetworkPush direction;      ///< by what the last sweep has changed it, with the momentum before it
     double parting = 0.0;       ///< m/s, >= 0, with which what overlaps is parted
     std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
+    NetworkPush push;
+    NetworkPush direction;  ///< by what the last sweep has changed it, with the momentum before it
 
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 };
@@ -120,8 +117,9 @@ template <class Row, class State>
     return between - dot(row.normal, between) * row.normal;
 }
 
-template <class Vector, class State>
-RICOCHET_INLINE void apply(const Vector& impulse, const Vector& turn, State& body) {
+/// What nothing moves is not written to: threads share it.
+RICOCHET_INLINE void apply(const Vec3& impulse, const Vec3& turn, NetworkState& body) {
+    if (body.mobility == 0.0) return;
     body.velocity += body.mobility * impulse;
     body.turning += body.turnability * turn;
 }
@@ -130,8 +128,8 @@ template <class Row, class Push, class State>
 RICOCHET_INLINE void apply(const Row& row, const Push& push, State& a, State& b) {
     const auto impulse = push.normal * row.normal + push.tangential;
     const auto turn = -cross(row.normal, push.tangential);
-    if (is_written(a)) apply(impulse, turn, a);
-    if (is_written(b)) apply(-impulse, turn, b);
+    apply(impulse, turn, a);
+    apply(-impulse, turn, b);
 }
 
 inline void apply_moment(const RollingRow& rolling, const Vec3& moment, NetworkState& a, NetworkState& b) {

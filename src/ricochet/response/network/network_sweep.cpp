@@ -28,14 +28,11 @@ RICOCHET_INLINE void relax_one(const SweptRows& swept, double factor, NetworkRow
 /// Rows whose work is looked for together: they and their bodies stay in the first level of memory meanwhile.
 constexpr std::size_t kLookAhead = 64;
 
-/// Where each of four bodies is stored to: what nothing moves nowhere.
-RICOCHET_INLINE FourOf<NetworkState> written(const QuadState& states, const FourOf<NetworkState>& at,
-                                             NetworkState& nowhere) {
-    const QuadMask moves = states.mobility != 0.0;
-    FourOf<NetworkState> to;
-    for (std::size_t k = 0; k < kQuad; ++k) to[k] = moves.lanes[k] != 0 ? at[k] : &nowhere;
-    return to;
-}
+/// Four rows and the bodies of each.
+struct Places {
+    FourOf<NetworkRow> rows;
+    FourOf<NetworkState> a, b;
+};
 
 class QuadSweep {
 public:
@@ -59,36 +56,48 @@ public:
     }
 
 private:
+    /// rows: pointers to them, or they themselves, side by side.
+    [[nodiscard]] RICOCHET_INLINE Places places_of(const FourOf<NetworkRow>& rows) const {
+        Places places;
+        for (std::size_t k = 0; k < kQuad; ++k) {
+            places.rows[k] = rows[k];
+            places.a[k] = &swept_.states[rows[k]->a];
+            places.b[k] = &swept_.states[rows[k]->b];
+        }
+        return places;
+    }
+
     RICOCHET_INLINE void find_work(std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            NetworkRow& row = swept_.rows[i];
+        for (; begin + kQuad <= end; begin += kQuad) {
+            NetworkRow* row = &swept_.rows[begin];
+            const Places at = places_of({row, row + 1, row + 2, row + 3});
+            const QuadMask idle = ricochet::is_idle(load_rows(at.rows), load_states(at.a), load_states(at.b));
+            for (std::size_t k = 0; k < kQuad; ++k) {
+                work_[count_] = at.rows[k];
+                count_ += idle.lanes[k] == 0 ? 1 : 0;
+            }
+        }
+        for (NetworkRow& row : swept_.rows.subspan(begin, end - begin)) {
             work_[count_] = &row;
             count_ += is_idle(swept_, row) ? 0 : 1;
         }
     }
 
     RICOCHET_INLINE void relax_four(NetworkRow* const* work) {
-        FourOf<NetworkRow> rows;
-        FourOf<NetworkState> at_a;
-        FourOf<NetworkState> at_b;
-        for (std::size_t k = 0; k < kQuad; ++k) {
-            rows[k] = work[k];
-            at_a[k] = &swept_.states[rows[k]->a];
-            at_b[k] = &swept_.states[rows[k]->b];
-        }
-        QuadRow row = load_rows(rows);
-        QuadState a = load_states(at_a);
-        QuadState b = load_states(at_b);
+        const Places at = places_of({work[0], work[1], work[2], work[3]});
+        QuadRow row = load_rows(at.rows);
+        QuadState a = load_states(at.a);
+        QuadState b = load_states(at.b);
         const RowChange<Quad> change = relax(row, factor_, a, b);
-        store_rows(row, rows);
-        store_states(a, written(a, at_a, nowhere_));
-        store_states(b, written(b, at_b, nowhere_));
+        store_pushes(row, at.rows);
+        store_changes(a, at.a);
+        store_changes(b, at.b);
         most_.approach_squared = larger(most_.approach_squared, change.approach_squared);
         most_.slip_squared = larger(most_.slip_squared, change.slip_squared);
         for (std::size_t k = 0; k < kQuad; ++k) {
             change_.squared += change.pushing.lanes[k];
             change_.squared += change.rubbing.lanes[k];
-            relax_rolling(swept_, factor_, *rows[k], change_);
+            relax_rolling(swept_, factor_, *at.rows[k], change_);
         }
     }
 
@@ -96,7 +105,6 @@ private:
     double factor_ = 0.0;
     SweepChange change_;
     RowChange<Quad> most_;
-    NetworkState nowhere_;
     std::array<NetworkRow*, kLookAhead + kQuad> work_;  // rows that are not idle, and not relaxed yet
     std::size_t count_ = 0;
 };

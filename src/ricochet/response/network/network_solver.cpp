@@ -5,7 +5,6 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/network/network_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -230,14 +229,15 @@ SweepChange NetworkSolver::sweep(double factor) {
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
-        const bool apart = !coloring_.is_serial(color);
-        if (count <= kBlock || !apart) {
-            all.add(sweep_rows(factor, first, first + count, apart));
+        const bool is_serial = coloring_.is_serial(color);
+        const SweepWay way = is_serial ? SweepWay::one_by_one : sweep_ways().back();
+        if (count <= kBlock || is_serial) {
+            all.add(sweep_rows(factor, first, first + count, way));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_rows(factor, first + begin, first + end, apart);
+            blocks_[k] = sweep_rows(factor, first + begin, first + end, way);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
@@ -248,15 +248,9 @@ SweepChange NetworkSolver::sweep(double factor) {
 /// turn.
 void NetworkSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            NetworkState& state = states_[i];
-            const Motion now{state.velocity, state.turning};
-            if (factor != 0.0) {
-                state.velocity += factor * (now.velocity - last_[i].velocity);
-                state.turning += factor * (now.turning - last_[i].turning);
-            }
-            last_[i] = now;
-        }
+        const std::size_t count = end - begin;
+        ricochet::go_on(std::span(states_).subspan(begin, count), std::span(last_).subspan(begin, count), factor,
+                        sweep_ways().back());
     };
     if (bodies_ <= kBlock) {
         go(0, 0, bodies_);
@@ -265,10 +259,8 @@ void NetworkSolver::go_on(double factor) {
     }
 }
 
-/// apart: no two of them have a body that moves in common.
-SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end, bool apart) {
-    const SweptRows swept{std::span(rows_).subspan(begin, end - begin), rolling_, states_};
-    return apart ? sweep_apart(swept, factor) : sweep_in_order(swept, factor);
+SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end, SweepWay way) {
+    return ricochet::sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, way);
 }
 
 }  // namespace ricochet

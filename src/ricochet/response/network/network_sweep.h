@@ -1,5 +1,5 @@
 /// \file
-/// Private to the solver of contact networks: the rows of a network, each once.
+/// Private to the solver of contact networks: all rows once, as fast as the processor can.
 #pragma once
 
 #include <span>
@@ -15,12 +15,22 @@ struct SweptRows {
     std::span<NetworkState> states;
 };
 
-/// Relaxes the rows one after the other, after they have gone on by a factor of what the last sweep and the momentum
-/// before it have changed.
-[[nodiscard]] SweepChange sweep_in_order(const SweptRows& swept, double factor);
+/// How it is done. All ways lead to the same bits.
+enum class SweepWay {
+    one_by_one,
+    avx2,   ///< four at once: no two of the rows may have a body that moves in common
+    avx512  ///< the same, with twice as many registers
+};
 
-/// The same, with the same bits, of rows no two of which have a body that moves in common: four at a time where the
-/// processor can (AVX2).
-[[nodiscard]] SweepChange sweep_apart(const SweptRows& swept, double factor);
+/// Those that this processor can; the fastest is the last.
+[[nodiscard]] std::span<const SweepWay> sweep_ways();
+
+/// Relaxes each row that is not idle, after it has gone on by a factor of what the last sweep and the momentum before
+/// it have changed.
+[[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, SweepWay way);
+
+/// Bodies go on by a factor of how they have changed since they were `last`, which is what they were before from now
+/// on.
+void go_on(std::span<NetworkState> states, std::span<NetworkState> last, double factor, SweepWay way);
 
 }  // namespace ricochet

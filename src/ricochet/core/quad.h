@@ -1,8 +1,9 @@
 /// \file
 /// Four doubles at once, and three-component vectors of them: each of the four gets the bits that doubles get.
 ///
-/// By the vector extensions of GCC and clang, which are fast in functions that are compiled for AVX2. All is inlined
-/// whatever the optimisation, since vectors of 32 bytes are passed on differently with and without AVX.
+/// By the vector extensions of GCC and clang, which are fast in functions that are compiled for AVX2: for processors
+/// without it GCC takes vectors apart element by element. All is inlined whatever the optimisation, since vectors of 32
+/// bytes are passed on differently with and without AVX.
 #pragma once
 
 #include <algorithm>
@@ -15,12 +16,8 @@
 
 #include "ricochet/core/vec3.h"
 
-/// Of functions that code for several kinds of processors is made of: they become a part of what calls them.
+/// For functions that code for several kinds of processors is made of: they become a part of what calls them.
 #define RICOCHET_INLINE [[gnu::always_inline]] inline
-
-// Nothing here is ever called, so no calling convention matters.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace ricochet {
 
@@ -54,19 +51,13 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 [[nodiscard]] RICOCHET_INLINE Quad operator*(double a, const Quad& b) { return {a * b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE Quad operator/(const Quad& a, const Quad& b) { return {a.lanes / b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE Quad operator/(double a, const Quad& b) { return {a / b.lanes}; }
-RICOCHET_INLINE Quad& operator+=(Quad& a, const Quad& b) {
-    a.lanes += b.lanes;
-    return a;
-}
 
 [[nodiscard]] RICOCHET_INLINE QuadMask operator==(const Quad& a, double b) { return {a.lanes == b}; }
-[[nodiscard]] RICOCHET_INLINE QuadMask operator!=(const Quad& a, double b) { return {a.lanes != b}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, double b) { return {a.lanes > b}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator>=(const Quad& a, double b) { return {a.lanes >= b}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator<(const Quad& a, const Quad& b) { return {a.lanes < b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, const Quad& b) { return {a.lanes > b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator&(const QuadMask& a, const QuadMask& b) { return {a.lanes & b.lanes}; }
-[[nodiscard]] RICOCHET_INLINE QuadMask operator~(const QuadMask& a) { return {~a.lanes}; }
 /// True where it is of one of them.
 [[nodiscard]] RICOCHET_INLINE bool any(const QuadMask& a) {
     return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
@@ -138,5 +129,3 @@ RICOCHET_INLINE void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
 }
 
 }  // namespace ricochet
-
-#pragma GCC diagnostic pop

@@ -10,10 +10,6 @@
 #include <cmath>
 #include <cstdint>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include "ricochet/core/vec3.h"
 
 /// For functions that code for several kinds of processors is made of: they become a part of what calls them.
@@ -70,10 +66,13 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 /// The larger one, as std::max() tells it.
 [[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
 [[nodiscard]] RICOCHET_INLINE Quad root(const Quad& a) {
-#if defined(__SSE2__)
-    // Compilers make four calls of std::sqrt(), since these may set errno.
-    const __m128d low = _mm_sqrt_pd(__builtin_shufflevector(a.lanes, a.lanes, 0, 1));
-    const __m128d high = _mm_sqrt_pd(__builtin_shufflevector(a.lanes, a.lanes, 2, 3));
+    // Of four std::sqrt() GCC makes four calls, since these may set errno.
+#if __has_builtin(__builtin_elementwise_sqrt)
+    return {__builtin_elementwise_sqrt(a.lanes)};
+#elif defined(__SSE2__)
+    using Half = double __attribute__((vector_size(16)));
+    const Half low = __builtin_ia32_sqrtpd(__builtin_shufflevector(a.lanes, a.lanes, 0, 1));
+    const Half high = __builtin_ia32_sqrtpd(__builtin_shufflevector(a.lanes, a.lanes, 2, 3));
     return {__builtin_shufflevector(low, high, 0, 1, 2, 3)};
 #else
     return {Quad::Lanes{std::sqrt(a.lanes[0]), std::sqrt(a.lanes[1]), std::sqrt(a.lanes[2]), std::sqrt(a.lanes[3])}};

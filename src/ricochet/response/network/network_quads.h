@@ -96,11 +96,10 @@ RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<Network
     std::array<Quad, kQuad> second{t.y, t.z, none, none};
     transpose(first[0], first[1], first[2], first[3]);
     transpose(second[0], second[1], second[2], second[3]);
-    NetworkState nowhere;
     for (std::size_t k = 0; k < kQuad; ++k) {
-        NetworkState* state = to[k]->mobility != 0.0 ? to[k] : &nowhere;
-        store(load_quad(part_of(to[k], 0)) + first[k], part_of(state, 0));
-        store(load_quad(part_of(to[k], 1)) + second[k], part_of(state, 1));
+        if (to[k]->mobility == 0.0) continue;
+        store(load_quad(part_of(to[k], 0)) + first[k], part_of(to[k], 0));
+        store(load_quad(part_of(to[k], 1)) + second[k], part_of(to[k], 1));
     }
 }
 

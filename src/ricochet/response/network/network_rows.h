@@ -32,8 +32,8 @@ struct NetworkPush {
     friend bool operator==(const NetworkPush&, const NetworkPush&) = default;
 };
 
-/// What a contact needs in every sweep: two lines of memory, of which a sweep writes the second. Masses are those of its
-/// two bodies, which are at hand.
+/// What a contact needs in every sweep: two lines of memory, of which a sweep writes the second. Masses are those of
+/// its two bodies, which are at hand.
 struct alignas(64) NetworkRow {
     std::uint32_t a = 0;
     std::uint32_t b = 0;

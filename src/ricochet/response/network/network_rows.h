@@ -1,5 +1,6 @@
 /// \file
-/// Private to the solver of contact networks: one contact, solved with all others as they are.
+/// Private to the solver of contact networks: one contact, solved with all others as they are. What is a template does
+/// the same for four at once (network_quads.h), with the same bits.
 ///
 /// Arms are parallel to normals, so that of a contact's own impulses the normal one changes the approach alone, and
 /// friction the slip alone: each has its answer in closed form. Spins enter as surface speeds, radius times spin.
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "ricochet/core/quad.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/network/contact_network.h"
 
@@ -30,18 +32,18 @@ struct NetworkPush {
     friend bool operator==(const NetworkPush&, const NetworkPush&) = default;
 };
 
-/// What a contact needs in every sweep: two lines of memory, since to read them is most of what a sweep costs. Masses
-/// are those of its two bodies, which are at hand.
+/// What a contact needs in every sweep: two lines of memory, of which a sweep writes the second. Masses are those of
+/// its two bodies, which are at hand.
 struct alignas(64) NetworkRow {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     Vec3 normal;
     double bound = 0.0;  ///< m/s, with which it may still approach; < 0: with which it has to leave
     double friction = 0.0;
-    NetworkPush push;
-    NetworkPush direction;      ///< by what the last sweep has changed it, with the momentum before it
     double parting = 0.0;       ///< m/s, >= 0, with which what overlaps is parted
     std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
+    NetworkPush push;
+    NetworkPush direction;  ///< by what the last sweep has changed it, with the momentum before it
 
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 };
@@ -64,6 +66,15 @@ struct NetworkLimits {
     double slip = 0.0;  ///< the same of rolling
 };
 
+/// How much a row has changed, or each of four, see SweepChange.
+template <class Number>
+struct RowChange {
+    Number pushing{};  ///< J, by the normal impulse
+    Number rubbing{};  ///< J, by friction
+    Number approach_squared{};
+    Number slip_squared{};
+};
+
 /// How much a sweep has changed.
 struct SweepChange {
     double squared = 0.0;           ///< J, sum of impulses times the velocities that they change
@@ -75,19 +86,27 @@ struct SweepChange {
         approach_squared = std::max(approach_squared, other.approach_squared);
         slip_squared = std::max(slip_squared, other.slip_squared);
     }
+    void add(const RowChange<double>& row) {
+        squared += row.pushing;
+        squared += row.rubbing;
+        approach_squared = std::max(approach_squared, row.approach_squared);
+        slip_squared = std::max(slip_squared, row.slip_squared);
+    }
     [[nodiscard]] double worst() const { return std::sqrt(std::max(approach_squared, slip_squared)); }
     [[nodiscard]] bool is_within(const NetworkLimits& limits) const {
         return std::sqrt(approach_squared) <= limits.approach && std::sqrt(slip_squared) <= limits.slip;
     }
 };
 
-[[nodiscard]] inline double approach_of(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
+template <class Row, class State>
+[[nodiscard]] RICOCHET_INLINE auto approach_of(const Row& row, const State& a, const State& b) {
     return dot(row.normal, a.velocity - b.velocity);
 }
 
 /// Slip of a over b.
-[[nodiscard]] inline Vec3 slip_of(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
-    const Vec3 between = a.velocity - b.velocity;
+template <class Row, class State>
+[[nodiscard]] RICOCHET_INLINE auto slip_of(const Row& row, const State& a, const State& b) {
+    const auto between = a.velocity - b.velocity;
     return between - dot(row.normal, between) * row.normal - cross(a.turning + b.turning, row.normal);
 }
 
@@ -99,16 +118,18 @@ struct SweepChange {
 }
 
 /// What nothing moves is not written to: threads share it.
-inline void apply(const Vec3& impulse, const Vec3& turn, NetworkState& body) {
+RICOCHET_INLINE void apply(const Vec3& impulse, const Vec3& turn, NetworkState& body) {
+    if (body.mobility == 0.0) return;
     body.velocity += body.mobility * impulse;
     body.turning += body.turnability * turn;
 }
 
-inline void apply(const NetworkRow& row, const NetworkPush& push, NetworkState& a, NetworkState& b) {
-    const Vec3 impulse = push.normal * row.normal + push.tangential;
-    const Vec3 turn = -cross(row.normal, push.tangential);
-    if (a.mobility != 0.0) apply(impulse, turn, a);
-    if (b.mobility != 0.0) apply(-impulse, turn, b);
+template <class Row, class Push, class State>
+RICOCHET_INLINE void apply(const Row& row, const Push& push, State& a, State& b) {
+    const auto impulse = push.normal * row.normal + push.tangential;
+    const auto turn = -cross(row.normal, push.tangential);
+    apply(impulse, turn, a);
+    apply(-impulse, turn, b);
 }
 
 inline void apply_moment(const RollingRow& rolling, const Vec3& moment, NetworkState& a, NetworkState& b) {
@@ -126,41 +147,45 @@ inline void apply_moment(const RollingRow& rolling, const Vec3& moment, NetworkS
 [[nodiscard]] inline Vec3 shortened(const Vec3& v, double most) { return length_kept(v, most) * v; }
 
 /// 1/kg, of the approach of two.
-[[nodiscard]] inline double mobility_of(const NetworkState& a, const NetworkState& b) {
+template <class State>
+[[nodiscard]] RICOCHET_INLINE auto mobility_of(const State& a, const State& b) {
     return a.mobility + b.mobility;
 }
 
 /// 1/kg, of their slip.
-[[nodiscard]] inline double slip_mobility_of(const NetworkState& a, const NetworkState& b) {
+template <class State>
+[[nodiscard]] RICOCHET_INLINE auto slip_mobility_of(const State& a, const State& b) {
     return mobility_of(a, b) + a.turnability + b.turnability;
 }
 
 /// Goes on with a row by a factor of its direction, as its bodies have gone already, and puts it right for the state
 /// that there is.
-inline void relax(NetworkRow& row, double factor, NetworkState& a, NetworkState& b, SweepChange& change) {
-    const double violation = approach_of(row, a, b) + row.bound;
-    const NetworkPush step{factor * row.direction.normal, factor * row.direction.tangential};
-    const double mobility = mobility_of(a, b);
-    const double start = row.push.normal + step.normal;
-    NetworkPush by;
-    by.normal = std::max(-start, -kNetworkOverRelaxation * (1.0 / mobility) * violation);
+template <class Row, class State>
+RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
+    RowChange<decltype(row.bound)> change;
+    const auto violation = approach_of(row, a, b) + row.bound;
+    const decltype(row.push) step{factor * row.direction.normal, factor * row.direction.tangential};
+    const auto mobility = mobility_of(a, b);
+    const auto start = row.push.normal + step.normal;
+    decltype(row.push) by{};
+    by.normal = larger(-start, -kNetworkOverRelaxation * (1.0 / mobility) * violation);
     row.push.normal = start + by.normal;
     row.push.tangential += step.tangential;
-    const double velocity = by.normal * mobility;
-    change.squared += by.normal * velocity;
-    change.approach_squared = std::max(change.approach_squared, velocity * velocity);
-    if (row.friction > 0.0) {
-        const double slip_mobility = slip_mobility_of(a, b);
-        const Vec3 wish = row.push.tangential - (1.0 / slip_mobility) * slip_of(row, a, b);
-        const Vec3 cut = length_kept(wish, row.friction * row.push.normal) * wish;
-        by.tangential = cut - row.push.tangential;
+    const auto velocity = by.normal * mobility;
+    change.pushing = by.normal * velocity;
+    change.approach_squared = velocity * velocity;
+    if (const auto rubs = row.friction > 0.0; any(rubs)) {
+        const auto slip_mobility = slip_mobility_of(a, b);
+        const auto wish = row.push.tangential - (1.0 / slip_mobility) * slip_of(row, a, b);
+        const auto cut = select(rubs, length_kept(wish, row.friction * row.push.normal) * wish, row.push.tangential);
+        by.tangential = select(rubs, cut - row.push.tangential, by.tangential);
         row.push.tangential = cut;
-        const double squared = length_squared(by.tangential) * slip_mobility;
-        change.squared += squared;
-        change.slip_squared = std::max(change.slip_squared, squared * slip_mobility);
+        change.rubbing = length_squared(by.tangential) * slip_mobility;
+        change.slip_squared = change.rubbing * slip_mobility;
     }
     row.direction = {step.normal + by.normal, step.tangential + by.tangential};
     apply(row, by, a, b);
+    return change;
 }
 
 /// The same of its resistance to rolling; as a velocity counts that of the smaller sphere's surface.
@@ -180,8 +205,12 @@ inline void relax(const NetworkRow& row, RollingRow& rolling, double factor, Net
 }
 
 /// It does nothing, has done nothing in the last sweep, and need not do anything now.
-[[nodiscard]] inline bool is_idle(const NetworkRow& row, const NetworkState& a, const NetworkState& b) {
-    return row.push.normal == 0.0 && row.direction == NetworkPush{} && approach_of(row, a, b) + row.bound >= 0.0;
+template <class Row, class State>
+[[nodiscard]] RICOCHET_INLINE auto is_idle(const Row& row, const State& a, const State& b) {
+    const auto& direction = row.direction.tangential;
+    const auto has_rested = (row.push.normal == 0.0) & (row.direction.normal == 0.0) & (direction.x == 0.0) &
+                            (direction.y == 0.0) & (direction.z == 0.0);
+    return has_rested & (approach_of(row, a, b) + row.bound >= 0.0);
 }
 
 }  // namespace ricochet

@@ -222,13 +222,15 @@ SweepChange NetworkSolver::sweep(double factor) {
     for (std::size_t color = 0; color < coloring_.colors(); ++color) {
         const std::size_t first = coloring_.begin_of(color);
         const std::size_t count = coloring_.end_of(color) - first;
-        if (count <= kBlock || coloring_.is_serial(color)) {
-            all.add(sweep_rows(factor, first, first + count));
+        const bool is_serial = coloring_.is_serial(color);
+        const SweepWay way = is_serial ? SweepWay::one_by_one : sweep_ways().back();
+        if (count <= kBlock || is_serial) {
+            all.add(sweep_rows(factor, first, first + count, way));
             continue;
         }
         blocks_.assign((count + kBlock - 1) / kBlock, {});
         parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
-            blocks_[k] = sweep_rows(factor, first + begin, first + end);
+            blocks_[k] = sweep_rows(factor, first + begin, first + end, way);
         });
         for (const SweepChange& block : blocks_) all.add(block);
     }
@@ -239,15 +241,9 @@ SweepChange NetworkSolver::sweep(double factor) {
 /// turn.
 void NetworkSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            NetworkState& state = states_[i];
-            const Motion now{state.velocity, state.turning};
-            if (factor != 0.0) {
-                state.velocity += factor * (now.velocity - last_[i].velocity);
-                state.turning += factor * (now.turning - last_[i].turning);
-            }
-            last_[i] = now;
-        }
+        const std::size_t count = end - begin;
+        ricochet::go_on(std::span(states_).subspan(begin, count), std::span(last_).subspan(begin, count), factor,
+                        sweep_ways().back());
     };
     if (bodies_ <= kBlock) {
         go(0, 0, bodies_);
@@ -256,17 +252,8 @@ void NetworkSolver::go_on(double factor) {
     }
 }
 
-SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end) {
-    SweepChange change;
-    for (std::size_t i = begin; i < end; ++i) {
-        NetworkRow& row = rows_[i];
-        NetworkState& a = states_[row.a];
-        NetworkState& b = states_[row.b];
-        if (is_idle(row, a, b)) continue;
-        relax(row, factor, a, b, change);
-        if (row.rolling != NetworkRow::kNone) relax(row, rolling_[row.rolling], factor, a, b, change);
-    }
-    return change;
+SweepChange NetworkSolver::sweep_rows(double factor, std::size_t begin, std::size_t end, SweepWay way) {
+    return ricochet::sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, way);
 }
 
 }  // namespace ricochet

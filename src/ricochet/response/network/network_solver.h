@@ -10,6 +10,7 @@
 #include "ricochet/response/network/contact_network.h"
 #include "ricochet/response/network/direct_network.h"
 #include "ricochet/response/network/network_rows.h"
+#include "ricochet/response/network/network_sweep.h"
 
 namespace ricochet {
 
@@ -37,12 +38,6 @@ private:
         [[nodiscard]] double factor() const;
     };
 
-    /// Of a body.
-    struct Motion {
-        Vec3 velocity;
-        Vec3 turning;
-    };
-
     /// All that sweeps change.
     struct Impulses {
         std::vector<NetworkRow> rows;
@@ -59,7 +54,7 @@ private:
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);
-    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end);
+    [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end, SweepWay way);
     void go_on(double factor);
     [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
     [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);
@@ -74,7 +69,7 @@ private:
     std::size_t bodies_ = 0;
     std::vector<NetworkRow> rows_;  // in the order of the colours
     std::vector<RollingRow> rolling_;
-    std::vector<Motion> last_;  // of the bodies, after the sweep before the last
+    std::vector<NetworkState> last_;  // of the bodies, after the sweep before the last
     std::vector<SweepChange> blocks_;
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch

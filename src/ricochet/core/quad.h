@@ -1,0 +1,130 @@
+/// \file
+/// Four doubles at once, and three-component vectors of them: each of the four gets the bits that doubles get.
+///
+/// By the vector extensions of GCC and clang, which are fast in functions that are compiled for AVX2: for processors
+/// without it GCC takes vectors apart element by element. All is inlined whatever the optimisation, since vectors of 32
+/// bytes are passed on differently with and without AVX.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "ricochet/core/vec3.h"
+
+/// For functions that code for several kinds of processors is made of: they become a part of what calls them.
+#define RICOCHET_INLINE [[gnu::always_inline]] inline
+
+namespace ricochet {
+
+/// What is true of each of four.
+struct QuadMask {
+    std::int64_t lanes __attribute__((vector_size(32)));  ///< all bits of a lane are alike
+};
+
+/// Four numbers.
+struct Quad {
+    using Lanes = double __attribute__((vector_size(32)));
+
+    /// The same anywhere in memory where there are doubles.
+    using Stored = double __attribute__((vector_size(32), aligned(8), may_alias));
+
+    Lanes lanes;
+};
+
+/// Four doubles that follow each other in memory. Not memcpy(): GCC makes two halves of it where it knows no AVX yet.
+[[nodiscard]] RICOCHET_INLINE Quad load_quad(const double* from) {
+    return {*reinterpret_cast<const Quad::Stored*>(from)};
+}
+RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::Stored*>(to) = a.lanes; }
+
+[[nodiscard]] RICOCHET_INLINE Quad quad_of(double all) { return {Quad::Lanes{all, all, all, all}}; }
+
+[[nodiscard]] RICOCHET_INLINE Quad operator+(const Quad& a, const Quad& b) { return {a.lanes + b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator-(const Quad& a, const Quad& b) { return {a.lanes - b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator-(const Quad& a) { return {-a.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator*(const Quad& a, const Quad& b) { return {a.lanes * b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator*(double a, const Quad& b) { return {a * b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator/(const Quad& a, const Quad& b) { return {a.lanes / b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE Quad operator/(double a, const Quad& b) { return {a / b.lanes}; }
+
+[[nodiscard]] RICOCHET_INLINE QuadMask operator==(const Quad& a, double b) { return {a.lanes == b}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, double b) { return {a.lanes > b}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator>=(const Quad& a, double b) { return {a.lanes >= b}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator<(const Quad& a, const Quad& b) { return {a.lanes < b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, const Quad& b) { return {a.lanes > b.lanes}; }
+[[nodiscard]] RICOCHET_INLINE QuadMask operator&(const QuadMask& a, const QuadMask& b) { return {a.lanes & b.lanes}; }
+/// True where it is of one of them.
+[[nodiscard]] RICOCHET_INLINE bool any(const QuadMask& a) {
+    return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
+}
+
+/// a where the mask is true, else b.
+[[nodiscard]] RICOCHET_INLINE Quad select(const QuadMask& mask, const Quad& a, const Quad& b) {
+    return {mask.lanes ? a.lanes : b.lanes};
+}
+/// The larger one, as std::max() tells it.
+[[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
+[[nodiscard]] RICOCHET_INLINE Quad root(const Quad& a) {
+    // Of four std::sqrt() GCC makes four calls, since these may set errno.
+#if __has_builtin(__builtin_elementwise_sqrt)
+    return {__builtin_elementwise_sqrt(a.lanes)};
+#elif defined(__SSE2__)
+    using Half = double __attribute__((vector_size(16)));
+    const Half low = __builtin_ia32_sqrtpd(__builtin_shufflevector(a.lanes, a.lanes, 0, 1));
+    const Half high = __builtin_ia32_sqrtpd(__builtin_shufflevector(a.lanes, a.lanes, 2, 3));
+    return {__builtin_shufflevector(low, high, 0, 1, 2, 3)};
+#else
+    return {Quad::Lanes{std::sqrt(a.lanes[0]), std::sqrt(a.lanes[1]), std::sqrt(a.lanes[2]), std::sqrt(a.lanes[3])}};
+#endif
+}
+
+/// The same of one number, for code that does for four what it does for one.
+[[nodiscard]] RICOCHET_INLINE bool any(bool a) { return a; }
+template <class T>
+[[nodiscard]] RICOCHET_INLINE T select(bool mask, const T& a, const T& b) {
+    return mask ? a : b;
+}
+[[nodiscard]] RICOCHET_INLINE double larger(double a, double b) { return std::max(a, b); }
+
+/// Four vectors.
+struct QuadVec3 {
+    Quad x, y, z;
+};
+
+[[nodiscard]] RICOCHET_INLINE QuadVec3 operator+(const QuadVec3& a, const QuadVec3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+[[nodiscard]] RICOCHET_INLINE QuadVec3 operator-(const QuadVec3& a, const QuadVec3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+[[nodiscard]] RICOCHET_INLINE QuadVec3 operator-(const QuadVec3& a) { return {-a.x, -a.y, -a.z}; }
+[[nodiscard]] RICOCHET_INLINE QuadVec3 operator*(const Quad& s, const QuadVec3& a) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+[[nodiscard]] RICOCHET_INLINE QuadVec3 operator*(double s, const QuadVec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+RICOCHET_INLINE QuadVec3& operator+=(QuadVec3& a, const QuadVec3& b) { return a = a + b; }
+[[nodiscard]] RICOCHET_INLINE Quad dot(const QuadVec3& a, const QuadVec3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+[[nodiscard]] RICOCHET_INLINE QuadVec3 cross(const QuadVec3& a, const QuadVec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+[[nodiscard]] RICOCHET_INLINE Quad length_squared(const QuadVec3& a) { return dot(a, a); }
+[[nodiscard]] RICOCHET_INLINE QuadVec3 select(const QuadMask& mask, const QuadVec3& a, const QuadVec3& b) {
+    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+/// Rows and columns change places.
+RICOCHET_INLINE void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
+    const Quad::Lanes low_ab = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 2, 6);
+    const Quad::Lanes high_ab = __builtin_shufflevector(a.lanes, b.lanes, 1, 5, 3, 7);
+    const Quad::Lanes low_cd = __builtin_shufflevector(c.lanes, d.lanes, 0, 4, 2, 6);
+    const Quad::Lanes high_cd = __builtin_shufflevector(c.lanes, d.lanes, 1, 5, 3, 7);
+    a.lanes = __builtin_shufflevector(low_ab, low_cd, 0, 1, 4, 5);
+    b.lanes = __builtin_shufflevector(high_ab, high_cd, 0, 1, 4, 5);
+    c.lanes = __builtin_shufflevector(low_ab, low_cd, 2, 3, 6, 7);
+    d.lanes = __builtin_shufflevector(high_ab, high_cd, 2, 3, 6, 7);
+}
+
+}  // namespace ricochet

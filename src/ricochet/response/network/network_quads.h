@@ -1,0 +1,132 @@
+/// \file
+/// Private to the solver of contact networks: four rows, or four bodies, at once, see network_rows.h.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "ricochet/core/quad.h"
+#include "ricochet/response/network/network_rows.h"
+
+namespace ricochet {
+
+inline constexpr std::size_t kQuad = 4;
+
+/// Four of something, wherever they are.
+template <class T>
+using FourOf = std::array<T*, kQuad>;
+
+/// Four NetworkState, and what is to be added to them.
+struct QuadState {
+    QuadVec3 velocity;
+    QuadVec3 turning;
+    Quad mobility;
+    Quad turnability;
+    QuadVec3 velocity_change;
+    QuadVec3 turning_change;
+};
+
+/// Four NetworkPush.
+struct QuadPush {
+    Quad normal;
+    QuadVec3 tangential;
+};
+
+/// Four NetworkRow.
+struct QuadRow {
+    QuadVec3 normal;
+    Quad bound;
+    Quad friction;
+    QuadPush push;
+    QuadPush direction;
+};
+
+RICOCHET_INLINE void apply(const QuadVec3& impulse, const QuadVec3& turn, QuadState& body) {
+    body.velocity_change = body.mobility * impulse;
+    body.turning_change = body.turnability * turn;
+}
+
+/// The part of four vectors' lengths that is left where they may be no longer than `most`.
+[[nodiscard]] RICOCHET_INLINE Quad length_kept(const QuadVec3& v, const Quad& most) {
+    const Quad squared = length_squared(v);
+    return select(squared > most * most, most / root(squared), quad_of(1.0));
+}
+
+static_assert(sizeof(NetworkState) == 8 * sizeof(double) && offsetof(NetworkState, velocity) == 0 &&
+              offsetof(NetworkState, turning) == 3 * sizeof(double) &&
+              offsetof(NetworkState, mobility) == 6 * sizeof(double));
+static_assert(sizeof(NetworkRow) == 16 * sizeof(double) && offsetof(NetworkRow, normal) == sizeof(double) &&
+              offsetof(NetworkRow, bound) == 4 * sizeof(double) &&
+              offsetof(NetworkRow, friction) == 5 * sizeof(double) &&
+              offsetof(NetworkRow, push) == 8 * sizeof(double) &&
+              offsetof(NetworkRow, direction) == 12 * sizeof(double));
+
+/// Doubles number part * 4 and the three after it of one of the four.
+template <class T>
+[[nodiscard]] RICOCHET_INLINE double* part_of(T* one, std::size_t part) {
+    return reinterpret_cast<double*>(one) + part * kQuad;
+}
+
+/// The first of these doubles of all four, the second of all, ...
+template <class T>
+[[nodiscard]] RICOCHET_INLINE std::array<Quad, kQuad> load_part(const FourOf<T>& from, std::size_t part) {
+    std::array<Quad, kQuad> rows{load_quad(part_of(from[0], part)), load_quad(part_of(from[1], part)),
+                                 load_quad(part_of(from[2], part)), load_quad(part_of(from[3], part))};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    return rows;
+}
+
+[[nodiscard]] RICOCHET_INLINE QuadState load_states(const FourOf<NetworkState>& from) {
+    const std::array<Quad, kQuad> first = load_part(from, 0);
+    const std::array<Quad, kQuad> second = load_part(from, 1);
+    QuadState states{};
+    states.velocity = {first[0], first[1], first[2]};
+    states.turning = {first[3], second[0], second[1]};
+    states.mobility = second[2];
+    states.turnability = second[3];
+    return states;
+}
+
+/// Adds the changes to those that something moves: threads share the others.
+RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<NetworkState>& to) {
+    const Quad none{};
+    const QuadVec3& v = states.velocity_change;
+    const QuadVec3& t = states.turning_change;
+    std::array<Quad, kQuad> first{v.x, v.y, v.z, t.x};
+    std::array<Quad, kQuad> second{t.y, t.z, none, none};
+    transpose(first[0], first[1], first[2], first[3]);
+    transpose(second[0], second[1], second[2], second[3]);
+    for (std::size_t k = 0; k < kQuad; ++k) {
+        if (to[k]->mobility == 0.0) continue;
+        store(load_quad(part_of(to[k], 0)) + first[k], part_of(to[k], 0));
+        store(load_quad(part_of(to[k], 1)) + second[k], part_of(to[k], 1));
+    }
+}
+
+[[nodiscard]] RICOCHET_INLINE QuadRow load_rows(const FourOf<NetworkRow>& from) {
+    const std::array<Quad, kQuad> first = load_part(from, 0);
+    const std::array<Quad, kQuad> second = load_part(from, 1);
+    const std::array<Quad, kQuad> push = load_part(from, 2);
+    const std::array<Quad, kQuad> direction = load_part(from, 3);
+    QuadRow rows;
+    rows.normal = {first[1], first[2], first[3]};
+    rows.bound = second[0];
+    rows.friction = second[1];
+    rows.push = {push[0], {push[1], push[2], push[3]}};
+    rows.direction = {direction[0], {direction[1], direction[2], direction[3]}};
+    return rows;
+}
+
+RICOCHET_INLINE void store_push(const QuadPush& push, const FourOf<NetworkRow>& to, std::size_t part) {
+    std::array<Quad, kQuad> rows{push.normal, push.tangential.x, push.tangential.y, push.tangential.z};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], part_of(to[k], part));
+}
+
+/// What relax() changes.
+RICOCHET_INLINE void store_pushes(const QuadRow& rows, const FourOf<NetworkRow>& to) {
+    store_push(rows.push, to, 2);
+    store_push(rows.direction, to, 3);
+}
+
+}  // namespace ricochet

@@ -12,19 +12,16 @@ namespace {
 /// part in what others do: it holds a sphere that another one hits along the floor.
 constexpr double kHoldsOnly = 1.5;
 
-/// Without those that others of the same impact may take away.
-double own_restitution(const NetworkContact& contact) { return contact.touched ? 0.0 : contact.restitution; }
-
-/// Of contacts that push and are approached; 1 where there is none.
+/// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const NetworkState> before,
-                                 std::span<const NetworkRow> rows, std::span<const std::uint32_t> order,
-                                 std::span<const NetworkContact> contacts) {
+                                 std::span<const NetworkRow> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const NetworkRow& row = rows[i];
+        if (row.push.normal == 0.0) continue;
         const double approach = approach_of(row, before[row.a], before[row.b]);
-        if (row.push.normal == 0.0 || !(approach < 0.0)) continue;
-        const double own = own_restitution(contacts[order[i]]);
+        if (!(approach < 0.0)) continue;
+        const double own = all_own[i];
         if (own == 0.0 && row.push.normal * mobility_of(before[row.a], before[row.b]) <= -kHoldsOnly * approach)
             continue;
         double& e = least[impacts.of(row)];
@@ -35,9 +32,8 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
 
 }  // namespace
 
-bool NetworkSolver::may_rebound(std::span<const NetworkContact> contacts) {
-    return std::any_of(contacts.begin(), contacts.end(),
-                       [](const NetworkContact& contact) { return contact.restitution > 0.0 && !contact.touched; });
+bool NetworkSolver::may_rebound() const {
+    return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
 }
 
 /// The impact without rebound says what is connected.
@@ -46,14 +42,13 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     NetworkSettings first = settings;
     first.tolerance = std::max(settings.tolerance, settings.connecting);
     iterate(first, report);
-    const bool any = let_rebound(contacts);
+    const bool any = let_rebound();
     if (any || first.tolerance > settings.tolerance) iterate(settings, report);
     if (!any) return;
     const std::vector<Gain> gains = gains_of_impacts();
     bool gained = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Gain& gain = gains[impacts_.of(rows_[i])];
-        if (rows_[i].bound >= -rows_[i].parting || !gain.is_gain()) continue;
+        if (rows_[i].bound >= -rows_[i].parting || !gains[impacts_.of(rows_[i])].is_gain()) continue;
         rows_[i].bound = std::max(-rows_[i].parting, contacts[coloring_.order()[i]].gap / settings.duration);
         gained = true;
     }
@@ -61,15 +56,16 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
 }
 
 /// Sets the speeds with which contacts have to leave; false where none has to.
-bool NetworkSolver::let_rebound(std::span<const NetworkContact> contacts) {
+bool NetworkSolver::let_rebound() {
     impacts_.assign(before_, rows_);
-    const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
+    const std::vector<double> least = restitutions(impacts_, before_, rows_, restitutions_);
     bool any = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         NetworkRow& row = rows_[i];
+        if (restitutions_[i] == 0.0 || row.push.normal == 0.0) continue;
         const double approach = approach_of(row, before_[row.a], before_[row.b]);
-        const double e = own_restitution(contacts[coloring_.order()[i]]) == 0.0 ? 0.0 : least[impacts_.of(row)];
-        if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
+        const double e = least[impacts_.of(row)];
+        if (!(approach < 0.0) || e == 0.0) continue;
         row.bound = std::min(row.bound, e * approach);
         any = true;
     }

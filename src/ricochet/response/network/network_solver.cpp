@@ -30,6 +30,16 @@ constexpr int kRestartsAPlainSweep = 64;
 /// Ratio from which on more sweeps are not tried first.
 constexpr double kVeryUnlikeMasses = 1e4;
 
+/// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
+constexpr std::size_t kPrefetchDistance = 8;
+
+/// Begins to fetch a whole contact.
+void prefetch(const NetworkContact& contact) {
+    constexpr std::size_t kLine = 64;
+    const char* const begin = reinterpret_cast<const char*>(&contact);
+    for (std::size_t at = 0; at < sizeof(NetworkContact); at += kLine) __builtin_prefetch(begin + at);
+}
+
 /// tolerance: m/s.
 NetworkLimits limits_of(const NetworkSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
@@ -48,7 +58,7 @@ NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<cons
     NetworkReport report;
     set_up(bodies, contacts, settings.duration);
     apply_start();
-    if (may_rebound(contacts)) {
+    if (may_rebound()) {
         rebound(contacts, settings, report);
     } else {
         iterate(settings, report);
@@ -70,20 +80,31 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     before_.push_back({});  // all walls at rest
     rows_.clear();
     rolling_.clear();
-    for (const std::uint32_t i : coloring_.order()) {
-        rows_.push_back(row_of(contacts[i], bodies, duration));
-        if (contacts[i].rolling_friction > 0.0) add_rolling(contacts[i], bodies);
-    }
+    restitutions_.clear();
     mass_ratio_ = 1.0;
-    for (const NetworkRow& row : rows_) mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
+    against_start_ = 0.0;
+    const std::span<const std::uint32_t> order = coloring_.order();
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k + kPrefetchDistance < order.size()) prefetch(contacts[order[k + kPrefetchDistance]]);
+        add_row(contacts[order[k]], bodies, duration);
+    }
     states_ = before_;
     last_.resize(bodies_);
     impulses_.assign(contacts.size(), {});
     rebounds_.assign(contacts.size(), 0);
 }
 
-NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
-    NetworkRow row;
+void NetworkSolver::add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
+    NetworkRow& row = rows_.emplace_back();
+    set_row(row, contact, bodies, duration);
+    if (contact.rolling_friction > 0.0) add_rolling(contact, bodies);
+    restitutions_.push_back(contact.touched ? 0.0 : contact.restitution);
+    mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
+    add_gain(row, before_, against_start_);
+}
+
+void NetworkSolver::set_row(NetworkRow& row, const NetworkContact& contact, std::span<const NetworkBody> bodies,
+                            double duration) {
     row.a = contact.a;
     row.b = contact.b;
     if (contact.b == NetworkContact::kWall) {
@@ -94,22 +115,25 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
         }
     }
     row.normal = contact.normal;
-    const bool is_pair = contact.b != NetworkContact::kWall;
-    const double radius =
-        is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
-    row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
-    row.parting = std::min(row.parting, contact.most_parting);
-    row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
     row.rolling = NetworkRow::kNone;
     row.friction = contact.friction;
+    if (contact.gap > 0.0) {
+        row.bound = contact.gap / duration;
+    } else {
+        const bool is_pair = contact.b != NetworkContact::kWall;
+        const double radius =
+            is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
+        row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
+        row.parting = std::min(row.parting, contact.most_parting);
+        row.bound = -row.parting;
+    }
     if (mobility_of(before_[row.a], before_[row.b]) == 0.0) {
         row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
-        return row;
+        return;
     }
     row.push.normal = std::max(0.0, contact.start.normal);
     const Vec3& friction = contact.start.tangential;
     row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
-    return row;
 }
 
 void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies) {
@@ -137,7 +161,7 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
 
 /// With as much of the start's impulses as lets energy fall most: none of them where they do not fit any more.
 void NetworkSolver::apply_start() {
-    const double before = gain_of_impulses();
+    const double before = against_start_;
     for (NetworkRow& row : rows_) {
         if (row.push.normal == 0.0) continue;
         apply(row, row.push, states_[row.a], states_[row.b]);
@@ -162,17 +186,19 @@ void NetworkSolver::apply_start() {
 /// J, of all impulses times what they act against.
 double NetworkSolver::gain_of_impulses() const {
     double sum = 0.0;
-    for (const NetworkRow& row : rows_) {
-        if (row.push.normal == 0.0) continue;
-        const NetworkState& a = states_[row.a];
-        const NetworkState& b = states_[row.b];
-        sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
-        if (row.rolling != NetworkRow::kNone) {
-            const RollingRow& rolling = rolling_[row.rolling];
-            sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
-        }
-    }
+    for (const NetworkRow& row : rows_) add_gain(row, states_, sum);
     return sum;
+}
+
+/// The same of one contact.
+void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState> states, double& sum) const {
+    if (row.push.normal == 0.0) return;
+    const NetworkState& a = states[row.a];
+    const NetworkState& b = states[row.b];
+    sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
+    if (row.rolling == NetworkRow::kNone) return;
+    const RollingRow& rolling = rolling_[row.rolling];
+    sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
 /// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few

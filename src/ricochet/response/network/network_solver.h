@@ -51,18 +51,19 @@ private:
     };
 
     void set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts, double duration);
-    [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies,
-                                    double duration);
+    void add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration);
+    void set_row(NetworkRow& row, const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration);
     void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
     void apply_start();
     [[nodiscard]] double gain_of_impulses() const;
+    void add_gain(const NetworkRow& row, std::span<const NetworkState> states, double& sum) const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);
     [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end);
     void go_on(double factor);
-    [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
-    [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);
+    [[nodiscard]] bool may_rebound() const;
+    [[nodiscard]] bool let_rebound();
     void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
     [[nodiscard]] std::vector<Gain> gains_of_impacts();
     void take_back_gains(NetworkReport& report);
@@ -74,7 +75,9 @@ private:
     std::size_t bodies_ = 0;
     std::vector<NetworkRow> rows_;  // in the order of the colours
     std::vector<RollingRow> rolling_;
-    std::vector<Motion> last_;  // of the bodies, after the sweep before the last
+    std::vector<double> restitutions_;  // of the rows, without those that others of the same impact may take away
+    double against_start_ = 0.0;        // J, of the impulses to begin with times what they act against before them
+    std::vector<Motion> last_;          // of the bodies, after the sweep before the last
     std::vector<SweepChange> blocks_;
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch

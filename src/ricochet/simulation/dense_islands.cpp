@@ -173,7 +173,7 @@ DenseTrace DenseIslands::run(std::vector<IslandMember>& members, const TimeSpan&
     DenseTrace trace;
     trace.is_unsolved = !report.is_converged;
     trace.pressed = work->network.entries();
-    trace.onto_sleepers = work->network.pushes_on_sleepers(work->members);
+    trace.onto_sleepers = work->network.pushes_on_sleepers();
     if (report.is_converged) contacts_.let_lie(work->members, work->network, step, trace);
     if (!trace.falling_asleep.empty()) trace.touching = work->network.touching();
     move(members, *work, trace);

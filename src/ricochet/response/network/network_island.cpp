@@ -45,6 +45,9 @@ double most_parting(double pull, double radius, double overlap, double approach)
 /// m, for a sphere that goes a way, m.
 double reach_of(double way, double radius) { return 2.0 * way + NetworkIsland::kReach * radius; }
 
+/// Contacts that are added from the prefetch of what one did before to its use.
+constexpr std::size_t kPrefetchDistance = 8;
+
 /// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
@@ -58,12 +61,15 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::s
     duration_ = duration;
     contacts_.clear();
     keys_.clear();
+    before_.clear();
+    edges_of_sleep_.clear();
     surfaces_.clear();
     first_wall_.clear();
     clear_.clear();
     add_bodies(members, memory);
     add_pairs(pairs);
     add_walls(members, scratch);
+    for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
     return solver_.solve(bodies_, contacts_, settings(members));
 }
 
@@ -75,12 +81,12 @@ void NetworkIsland::set_part(bool is_coupled) {
 void NetworkIsland::add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory) {
     bodies_.clear();
     places_.clear();
-    before_.clear();
+    memories_.clear();
     bool is_coupled = false;
     for (const NetworkMember& member : members) {
         const ForceInput& state = member.moving->state;
         is_coupled = is_coupled || state.coupling != nullptr;
-        before_.push_back(memory.of_particle(member.moving->id));
+        memories_.push_back(memory.of_particle(member.moving->id));
         Place& place = places_.emplace_back();
         place.position = state.position;
         place.id = member.moving->id;
@@ -138,7 +144,8 @@ void NetworkIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     const double approach = -dot(a.velocity - b.velocity, contact.normal);
     contact.restitution = rebound(law.restitution, approach);
     contact.most_parting = most_parting(std::max(a.pull, b.pull), std::min(a.radius, b.radius), -gap, approach);
-    warm_start(contact, NetworkKey::of_pair(a.id, b.id));
+    if (a.is_asleep != b.is_asleep) edges_of_sleep_.push_back(contacts_.size() - 1);
+    add_key(NetworkKey::of_pair(a.id, b.id));
 }
 
 void NetworkIsland::add_walls(std::span<const NetworkMember> members, MoveScratch& scratch) {
@@ -177,7 +184,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     const double approach = -dot(state.velocity - wall.carried, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
     contact.most_parting = most_parting(places_[index].pull, member.radius, -contact.gap, approach);
-    warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface));
+    add_key(NetworkKey::of_wall(member.moving->id, wall.surface));
     surfaces_.push_back(wall.surface);
 }
 
@@ -197,12 +204,25 @@ void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, cons
     contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
-void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key) {
-    if (const NetworkImpulse* const before = before_[contact.a].find(key.other)) {
-        contact.start = *before;
-        contact.touched = before->normal > 0.0;
-    }
+/// Has added the last contact; what it begins with is looked up while others are added.
+void NetworkIsland::add_key(const NetworkKey& key) {
     keys_.push_back(key);
+    before_.push_back(nullptr);
+    warm_start(keys_.size() - 1);
+}
+
+/// Three stages, each for an earlier contact: what is remembered lies anywhere, and takes time to be fetched.
+void NetworkIsland::warm_start(std::size_t at) {
+    const std::size_t count = keys_.size();
+    if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
+    if (const std::size_t k = at - kPrefetchDistance; at >= kPrefetchDistance && k < count) {
+        before_[k] = memories_[contacts_[k].a].find(keys_[k].other);
+        if (before_[k] != nullptr) __builtin_prefetch(&before_[k]->normal), __builtin_prefetch(&before_[k]->moment.z);
+    }
+    const std::size_t k = at - 2 * kPrefetchDistance;
+    if (at < 2 * kPrefetchDistance || before_[k] == nullptr) return;
+    contacts_[k].start = *before_[k];
+    contacts_[k].touched = before_[k]->normal > 0.0;
 }
 
 /// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
@@ -270,15 +290,13 @@ std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
 
 std::vector<SleeperPush> NetworkIsland::pushes_on_sleepers() const {
     std::vector<SleeperPush> pushes;
-    if (std::none_of(places_.begin(), places_.end(), [](const Place& place) { return place.is_asleep; })) return pushes;
-    for (std::size_t i = 0; i < keys_.size() && !keys_[i].is_wall(); ++i) {  // walls come last
+    for (const std::size_t i : edges_of_sleep_) {
         const NetworkContact& contact = contacts_[i];
         const NetworkImpulse& impulse = solver_.impulses()[i];
-        const Place& a = places_[contact.a];
-        const Place& b = places_[contact.b];
-        if (impulse.normal == 0.0 || a.is_asleep == b.is_asleep) continue;
+        if (impulse.normal == 0.0) continue;
+        const bool is_first = places_[contact.a].is_asleep;
         const Vec3 onto_first = impulse.normal * contact.normal + impulse.tangential;
-        pushes.push_back({a.is_asleep ? a.id : b.id, a.is_asleep ? onto_first : -onto_first});
+        pushes.push_back({places_[is_first ? contact.a : contact.b].id, is_first ? onto_first : -onto_first});
     }
     return pushes;
 }

@@ -102,7 +102,8 @@ private:
     void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall);
     void carry(NetworkContact& contact, const WallContact& wall, const Material& material,
                const ForceInput& state) const;
-    void warm_start(NetworkContact& contact, const NetworkKey& key);
+    void add_key(const NetworkKey& key);
+    void warm_start(std::size_t at);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] Vec3 velocity_in_flight(const NetworkMember& member) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
@@ -112,10 +113,12 @@ private:
     double duration_ = 0.0;
     double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
-    std::vector<Place> places_;                      // of the members
-    std::vector<NetworkMemory::OfParticle> before_;  // of each member, what its contacts did
+    std::vector<Place> places_;                        // of the members
+    std::vector<NetworkMemory::OfParticle> memories_;  // of each member
     std::vector<NetworkContact> contacts_;
-    std::vector<NetworkKey> keys_;  // of the contacts
+    std::vector<NetworkKey> keys_;               // of the contacts
+    std::vector<const NetworkImpulse*> before_;  // of the contacts, what they did; null where there were none
+    std::vector<std::size_t> edges_of_sleep_;    // contacts of one that sleeps with one that does not
     std::vector<WallContact> walls_;
     std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
     std::vector<SurfaceId> surfaces_;      // of the contacts; of walls

@@ -100,7 +100,8 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
-    if (scratch.record_flown) note_departure(i, particle, outcome, scratch.flown, pushed_by(std::span(scratch.hits).subspan(first_hit)));
+    if (scratch.record_flown)
+        note_departure(i, particle, outcome, scratch.flown, pushed_by(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.meter != nullptr) {
         parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
     }
@@ -143,18 +144,17 @@ void ActiveMover::grow_core(std::size_t i, double time) {
     }
 }
 
-std::optional<IslandMember> ActiveMover::member_of(std::size_t i, const TimeSpan& step) {
+bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& member) {
     const TimeSpan life = life_in(i, step);
-    if (life.end <= life.begin) return std::nullopt;
+    if (life.end <= life.begin) return false;
     grow_core(i, life.begin);
-    IslandMember member;
     member.particle = i;
     member.moving = load(i, life.begin);
     if (life.begin != step.begin || life.end != step.end) member.moving.planned = nullptr;
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
     member.is_free = parts_.schedule.is_in_free_flight(i);
-    return member;
+    return true;
 }
 
 void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record) {

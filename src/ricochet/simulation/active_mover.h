@@ -129,11 +129,11 @@ public:
 
     // For spheres that meet each other, which are moved together.
 
-    /// A particle as it sets out; nothing where it does not live in the step.
-    [[nodiscard]] std::optional<IslandMember> member_of(std::size_t i, const TimeSpan& step);
+    /// Makes a new member a particle as it sets out. False where it does not live in the step.
+    [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Takes over where it has gone and what it has done.
     void take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record);
-    /// Begins to fetch from memory what member_of() and take_over() use of a particle.
+    /// Begins to fetch from memory what set_out() and take_over() use of a particle.
     void prefetch(std::size_t i) const {
         parts_.store.prefetch(i);
         parts_.schedule.prefetch(i);

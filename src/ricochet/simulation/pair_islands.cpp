@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 
 namespace ricochet {
 namespace {
@@ -137,11 +138,13 @@ void PairIslands::take_members(Island& island, const TimeSpan& step) {
     for (std::size_t n = 0; n < order.size(); ++n) {
         if (n + kPrefetchDistance < order.size()) parts_.mover.prefetch(first_ + order[n + kPrefetchDistance].number);
         const std::uint32_t k = order[n].number;
-        auto member = parts_.mover.member_of(first_ + k, step);
-        if (!member) continue;
-        member->is_fixed = member->is_fixed || contacts_.sleeps(first_ + k);
-        member->material = parts_.material_of(first_ + k);
-        island.members.push_back(std::move(*member));
+        IslandMember& member = island.members.emplace_back();
+        if (!parts_.mover.set_out(first_ + k, step, member)) {
+            island.members.pop_back();
+            continue;
+        }
+        member.is_fixed = member.is_fixed || contacts_.sleeps(first_ + k);
+        member.material = parts_.material_of(first_ + k);
     }
 }
 
@@ -160,8 +163,14 @@ PairIslands::OffPlan PairIslands::members_off_plan() const {
     for (const Island& island : islands_) {
         const bool is_new = island.round == round_;
         if (!is_new && island.round == 0) continue;
-        for (const IslandMember& member : island.members) {
-            if (is_off_plan(island, member)) (is_new ? off.members : earlier).push_back(&member);
+        const std::vector<IslandMember>& members = island.members;
+        for (std::size_t m = 0; m < members.size(); ++m) {
+            if (m + kPrefetchDistance < members.size()) {
+                const IslandMember& later = members[m + kPrefetchDistance];
+                prefetch_whole(later.swept);
+                prefetch_whole(plans_.box(static_cast<std::uint32_t>(later.particle - first_)));
+            }
+            if (is_off_plan(island, members[m])) (is_new ? off.members : earlier).push_back(&members[m]);
         }
     }
     off.of_this_round = off.members.size();

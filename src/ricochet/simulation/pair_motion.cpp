@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 
 namespace ricochet {
 namespace {
@@ -98,7 +99,10 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
 
 void PairMotion::take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
     for (std::size_t m = 0; m < members.size(); ++m) {
-        if (m + kPrefetchDistance < members.size()) parts_.mover.prefetch(members[m + kPrefetchDistance].particle);
+        if (m + kPrefetchDistance < members.size()) {
+            prefetch_whole(members[m + kPrefetchDistance]);
+            parts_.mover.prefetch(members[m + kPrefetchDistance].particle);
+        }
         parts_.mover.take_over(members[m], step, record);
     }
 }

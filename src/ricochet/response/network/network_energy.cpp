@@ -45,14 +45,16 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     const bool any = let_rebound();
     if (any || first.tolerance > settings.tolerance) iterate(settings, report);
     if (!any) return;
-    const std::vector<Gain> gains = gains_of_impacts();
+    find_gains();
     bool gained = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (rows_[i].bound >= -rows_[i].parting || !gains[impacts_.of(rows_[i])].is_gain()) continue;
+        if (rows_[i].bound >= -rows_[i].parting || !gains_[impacts_.of(rows_[i])].is_gain()) continue;
         rows_[i].bound = std::max(-rows_[i].parting, contacts[coloring_.order()[i]].gap / settings.duration);
         gained = true;
     }
-    if (gained) iterate(settings, report);
+    if (!gained) return;
+    gains_.clear();
+    iterate(settings, report);
 }
 
 /// Sets the speeds with which contacts have to leave; false where none has to.
@@ -73,9 +75,9 @@ bool NetworkSolver::let_rebound() {
 }
 
 /// By connected impact, which are found anew. The work that parts what overlaps is no gain.
-std::vector<NetworkSolver::Gain> NetworkSolver::gains_of_impacts() {
+void NetworkSolver::find_gains() {
     impacts_.assign(before_, rows_);
-    std::vector<Gain> gains(impacts_.size());
+    gains_.assign(impacts_.size(), {});
     for (const NetworkRow& row : rows_) {
         if (row.push.normal == 0.0) continue;
         const auto work_in = [&](const std::vector<NetworkState>& states) {
@@ -90,12 +92,11 @@ std::vector<NetworkSolver::Gain> NetworkSolver::gains_of_impacts() {
         };
         const double before = work_in(before_);
         const double after = work_in(states_);
-        Gain& gain = gains[impacts_.of(row)];
+        Gain& gain = gains_[impacts_.of(row)];
         gain.against += before - row.push.normal * row.parting;
         gain.curvature += after - before;
         gain.size += std::fabs(before) + std::fabs(after);
     }
-    return gains;
 }
 
 bool NetworkSolver::Gain::is_gain() const { return against + 0.5 * curvature > kNetworkEnergyRounding * size; }
@@ -105,17 +106,18 @@ double NetworkSolver::Gain::factor() const { return std::clamp(-2.0 * against / 
 /// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
 /// them does not.
 void NetworkSolver::take_back_gains(NetworkReport& report) {
-    const std::vector<Gain> gains = gains_of_impacts();
     report.energy_change = 0.0;
     bool any = false;
-    for (const Gain& gain : gains) {
+    for (const Gain& gain : gains_) {
         const double factor = gain.is_gain() ? gain.factor() : 1.0;
         report.energy_change += factor * (gain.against + 0.5 * factor * gain.curvature);
         any = any || factor < 1.0;
     }
     if (!any) return;
     report.is_converged = false;
-    const auto factor_of = [&](std::uint32_t impact) { return gains[impact].is_gain() ? gains[impact].factor() : 1.0; };
+    const auto factor_of = [&](std::uint32_t impact) {
+        return gains_[impact].is_gain() ? gains_[impact].factor() : 1.0;
+    };
     for (NetworkRow& row : rows_) {
         const double factor = factor_of(impacts_.of(row));
         row.push.normal *= factor;

@@ -4,7 +4,15 @@
 #include <array>
 #include <utility>
 
+#include "ricochet/core/prefetch.h"
+
 namespace ricochet {
+namespace {
+
+/// Entries from the prefetch of one to its use.
+constexpr std::size_t kPrefetchDistance = 8;
+
+}  // namespace
 
 /// Sorts their numbers, by their particles and then the few of each: entries are too large to be moved about.
 void NetworkMemory::replace(std::span<const std::vector<Entry>* const> lists) {
@@ -27,7 +35,10 @@ void NetworkMemory::replace(std::span<const std::vector<Entry>* const> lists) {
     }
     entries_.clear();
     entries_.reserve(all.size());
-    for (const KeyedIndex& k : order_) entries_.push_back(*all[k.index]);
+    for (std::size_t n = 0; n < order_.size(); ++n) {
+        if (n + kPrefetchDistance < order_.size()) prefetch_whole(*all[order_[n + kPrefetchDistance].index]);
+        entries_.push_back(*all[order_[n].index]);
+    }
     find_particles();
 }
 

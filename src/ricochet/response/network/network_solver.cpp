@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -33,13 +34,6 @@ constexpr double kVeryUnlikeMasses = 1e4;
 /// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Begins to fetch a whole contact.
-void prefetch(const NetworkContact& contact) {
-    constexpr std::size_t kLine = 64;
-    const char* const begin = reinterpret_cast<const char*>(&contact);
-    for (std::size_t at = 0; at < sizeof(NetworkContact); at += kLine) __builtin_prefetch(begin + at);
-}
-
 /// tolerance: m/s.
 NetworkLimits limits_of(const NetworkSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
@@ -58,11 +52,13 @@ NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<cons
     NetworkReport report;
     set_up(bodies, contacts, settings.duration);
     apply_start();
+    gains_.clear();
     if (may_rebound()) {
         rebound(contacts, settings, report);
     } else {
         iterate(settings, report);
     }
+    if (gains_.empty()) find_gains();
     take_back_gains(report);
     hand_over(bodies);
     return report;
@@ -85,7 +81,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     against_start_ = 0.0;
     const std::span<const std::uint32_t> order = coloring_.order();
     for (std::size_t k = 0; k < order.size(); ++k) {
-        if (k + kPrefetchDistance < order.size()) prefetch(contacts[order[k + kPrefetchDistance]]);
+        if (k + kPrefetchDistance < order.size()) prefetch_whole(contacts[order[k + kPrefetchDistance]]);
         add_row(contacts[order[k]], bodies, duration);
     }
     states_ = before_;

@@ -65,7 +65,7 @@ private:
     [[nodiscard]] bool may_rebound() const;
     [[nodiscard]] bool let_rebound();
     void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
-    [[nodiscard]] std::vector<Gain> gains_of_impacts();
+    void find_gains();
     void take_back_gains(NetworkReport& report);
     void hand_over(std::span<NetworkBody> bodies);
 
@@ -82,6 +82,7 @@ private:
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch
     ConnectedImpacts impacts_;
+    std::vector<Gain> gains_;  // of the impacts, by their numbers; empty where impulses have changed since
     std::vector<NetworkImpulse> impulses_;
     std::vector<std::uint8_t> rebounds_;
 };

@@ -44,6 +44,19 @@ bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
 }
 
+/// Adds pairs to others; both ascending.
+void merge_into(std::vector<NeighbourPair>& pairs, const std::vector<NeighbourPair>& news) {
+    auto end = static_cast<std::ptrdiff_t>(pairs.size());
+    pairs.resize(pairs.size() + news.size());
+    for (auto k = static_cast<std::ptrdiff_t>(news.size()) - 1; k >= 0; --k) {  // from the last, with all behind it
+        const NeighbourPair& pair = news[static_cast<std::size_t>(k)];
+        const auto at = std::upper_bound(pairs.begin(), pairs.begin() + end, pair, comes_before);
+        std::move_backward(at, pairs.begin() + end, pairs.begin() + end + k + 1);
+        end = at - pairs.begin();
+        pairs[static_cast<std::size_t>(end + k)] = pair;
+    }
+}
+
 /// Moves what blocks have left at their begins together; returns how much there is.
 template <class T>
 std::size_t close_gaps(std::vector<T>& items, const std::vector<std::size_t>& left) {
@@ -170,9 +183,7 @@ void NeighbourPairs::add_pairs_of(std::span<const std::uint32_t> some) {
     }
     for (const std::uint32_t k : some) is_changed_[k] = 0;
     std::sort(news.begin(), news.end(), comes_before);
-    const auto middle = static_cast<std::ptrdiff_t>(pairs_.size());
-    pairs_.insert(pairs_.end(), news.begin(), news.end());
-    std::inplace_merge(pairs_.begin(), pairs_.begin() + middle, pairs_.end(), comes_before);
+    merge_into(pairs_, news);
 }
 
 void NeighbourPairs::find_near(const Box3& box, std::vector<std::uint32_t>& found) const {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/network/network_solver.h"
 
@@ -137,13 +138,14 @@ void NetworkSolver::hand_over(std::span<NetworkBody> bodies) {
         bodies[i].velocity = states_[i].velocity;
         if (bodies[i].radius > 0.0) bodies[i].spin = states_[i].turning / bodies[i].radius;
     }
+    const std::span<const std::uint32_t> order = coloring_.order();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (i + kPrefetchDistance < rows_.size()) prefetch_whole(impulses_[order[i + kPrefetchDistance]]);
         const NetworkRow& row = rows_[i];
-        rebounds_[coloring_.order()[i]] = row.bound < -row.parting ? 1 : 0;
-        NetworkImpulse& impulse = impulses_[coloring_.order()[i]];
-        impulse.normal = row.push.normal;
-        impulse.tangential = row.push.tangential;
-        if (row.rolling != NetworkRow::kNone) impulse.moment = rolling_[row.rolling].moment;
+        rebounds_[order[i]] = row.bound < -row.parting ? 1 : 0;
+        const bool resists_rolling = row.rolling != NetworkRow::kNone;
+        impulses_[order[i]] = {row.push.normal, row.push.tangential,
+                               resists_rolling ? rolling_[row.rolling].moment : Vec3{}};
     }
 }
 

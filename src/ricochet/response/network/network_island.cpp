@@ -313,6 +313,7 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
 
 std::vector<NeighbourPair> NetworkIsland::pressing() const {
     std::vector<NeighbourPair> pressing;
+    pressing.reserve(keys_.size());
     for (std::size_t i = 0; i < keys_.size() && !keys_[i].is_wall(); ++i) {  // walls come last
         if (solver_.impulses()[i].normal > 0.0) pressing.push_back({contacts_[i].a, contacts_[i].b});
     }

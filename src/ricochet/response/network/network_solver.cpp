@@ -31,9 +31,6 @@ constexpr int kRestartsAPlainSweep = 64;
 /// Ratio from which on more sweeps are not tried first.
 constexpr double kVeryUnlikeMasses = 1e4;
 
-/// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
-constexpr std::size_t kPrefetchDistance = 8;
-
 /// tolerance: m/s.
 NetworkLimits limits_of(const NetworkSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
@@ -86,8 +83,8 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     }
     states_ = before_;
     last_.resize(bodies_);
-    impulses_.assign(contacts.size(), {});
-    rebounds_.assign(contacts.size(), 0);
+    impulses_.resize(contacts.size());
+    rebounds_.resize(contacts.size());
 }
 
 void NetworkSolver::add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {

@@ -26,6 +26,9 @@ public:
     [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
+    /// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
+    static constexpr std::size_t kPrefetchDistance = 8;
+
     /// Of a connected impact: with the part f of its impulses energy changes by f (against + f curvature / 2), J.
     struct Gain {
         double against = 0.0;

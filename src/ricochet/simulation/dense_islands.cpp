@@ -86,6 +86,7 @@ void DenseIslands::take_members(std::vector<IslandMember>& members, Work& work) 
         const bool sleeps = contacts_.sleeps(member.particle);
         work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps});
         work.members.back().material = member.material;
+        work.members.back().reach = work.network.first_reach(work.members.back());
     }
 }
 
@@ -133,7 +134,6 @@ std::vector<std::uint32_t> DenseIslands::expect_pushes(Work& work) {
 
 /// Again where a sphere is pushed farther than its contacts have been looked for.
 NetworkReport DenseIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
-    for (NetworkMember& member : work.members) member.reach = work.network.first_reach(member);
     MoveScratch scratch;
     find_pairs(members, work);
     find_pairs(work, expect_pushes(work));

@@ -113,9 +113,10 @@ void PairMotion::measure_overlaps(double time) {
     const auto measure = [&](std::size_t i, std::size_t j) {
         const double distance = length(particles.position[i] - particles.position[j]);
         const double overlap = particles.radius[i] + particles.radius[j] - distance;
-        if (!(overlap > 0.0) || parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
-        const double smaller = std::min(particles.radius[i], particles.radius[j]);
-        counts_.largest_overlap = std::max(counts_.largest_overlap, overlap / smaller);
+        const double part = overlap / std::min(particles.radius[i], particles.radius[j]);
+        if (!(part > counts_.largest_overlap)) return;
+        if (parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
+        counts_.largest_overlap = part;
     };
     for (const NeighbourPair& pair : plans_.pairs()) measure(first_ + pair.first, first_ + pair.second);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/network/planned_move.h"
 
@@ -45,7 +46,7 @@ double most_parting(double pull, double radius, double overlap, double approach)
 /// m, for a sphere that goes a way, m.
 double reach_of(double way, double radius) { return 2.0 * way + NetworkIsland::kReach * radius; }
 
-/// Contacts that are added from the prefetch of what one did before to its use.
+/// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
 /// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
@@ -62,6 +63,7 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::s
     contacts_.clear();
     keys_.clear();
     before_.clear();
+    ends_.clear();
     edges_of_sleep_.clear();
     surfaces_.clear();
     first_wall_.clear();
@@ -83,7 +85,9 @@ void NetworkIsland::add_bodies(std::span<const NetworkMember> members, const Net
     places_.clear();
     memories_.clear();
     bool is_coupled = false;
-    for (const NetworkMember& member : members) {
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (i + kPrefetchDistance < members.size()) prefetch_whole(members[i + kPrefetchDistance].moving->state);
+        const NetworkMember& member = members[i];
         const ForceInput& state = member.moving->state;
         is_coupled = is_coupled || state.coupling != nullptr;
         memories_.push_back(memory.of_particle(member.moving->id));
@@ -134,6 +138,7 @@ void NetworkIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
     if (gap > a.reach + b.reach) return;
     NetworkContact& contact = contacts_.emplace_back();
+    ends_.push_back({first, second});
     contact.a = first;
     contact.b = second;
     contact.gap = gap;
@@ -313,9 +318,9 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
 
 std::vector<NeighbourPair> NetworkIsland::pressing() const {
     std::vector<NeighbourPair> pressing;
-    pressing.reserve(keys_.size());
-    for (std::size_t i = 0; i < keys_.size() && !keys_[i].is_wall(); ++i) {  // walls come last
-        if (solver_.impulses()[i].normal > 0.0) pressing.push_back({contacts_[i].a, contacts_[i].b});
+    pressing.reserve(ends_.size());
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+        if (solver_.impulses()[i].normal > 0.0) pressing.push_back(ends_[i]);
     }
     return pressing;
 }

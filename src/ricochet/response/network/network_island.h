@@ -119,6 +119,7 @@ private:
     std::vector<NetworkKey> keys_;               // of the contacts
     std::vector<const NetworkImpulse*> before_;  // of the contacts, what they did; null where there were none
     std::vector<std::size_t> edges_of_sleep_;    // contacts of one that sleeps with one that does not
+    std::vector<NeighbourPair> ends_;            // of the contacts of two, which come first: their members
     std::vector<WallContact> walls_;
     std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
     std::vector<SurfaceId> surfaces_;      // of the contacts; of walls

@@ -55,5 +55,45 @@ TEST(NeighbourPairs, FewThatChangeAgainAndAgainAreFoundAsIfAllWereLookedForAnew)
     }
 }
 
+/// m, by which a box goes on in a call.
+Box3 moved(const Box3& box, RandomSequence& random, double way) {
+    if (box.empty()) return box;
+    const auto step = [&] { return way * (2.0 * random.uniform() - 1.0); };
+    const Vec3 by{step(), step(), step()};
+    return {box.lower + by, box.upper + by};
+}
+
+// Boxes that go little, of which a few go far or come and go, and then all far: whatever has been kept, the same pairs.
+TEST(NeighbourPairs, ThoseOfBoxesThatDriftAreFoundAsIfAllWereLookedForAnew) {
+    NeighbourPairs kept;
+    NeighbourGrid anew;
+    for (int seed = 1; seed <= test::scaled(12); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        RandomSequence random(static_cast<std::uint64_t>(seed), 2, 0);
+        std::vector<Box3> boxes(static_cast<std::size_t>(500 + 60 * (seed % 6)));
+        for (Box3& box : boxes) box = random_box(random);
+        for (int call = 0; call < 30; ++call) {
+            const double way = call % 10 == 9 ? 0.1 : 1e-3;
+            for (Box3& box : boxes) {
+                const bool is_made_anew = random.uniform() < (seed % 3 == 0 ? 0.06 : 0.01);
+                box = is_made_anew ? random_box(random) : moved(box, random, way);
+            }
+            ASSERT_TRUE(kept.find(boxes) == anew.find_pairs(boxes)) << call;
+            std::vector<std::uint32_t> changed;
+            for (std::uint32_t k = 0; k < boxes.size(); ++k) {
+                if (random.uniform() >= 0.01) continue;
+                changed.push_back(k);
+                boxes[k] = random_box(random);
+            }
+            ASSERT_TRUE(kept.update(boxes, changed) == anew.find_pairs(boxes)) << call;
+            const Box3 box = ball_box({random.uniform(), random.uniform(), random.uniform()}, 0.3);
+            std::vector<std::uint32_t> near;
+            kept.find_near(box, near);
+            std::sort(near.begin(), near.end());
+            ASSERT_TRUE(near == near_by_brute_force(boxes, box)) << call;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -413,9 +413,9 @@ inline constexpr double kNetworkPushOut = 0.5;
 inline constexpr double kNetworkOverRelaxation = 1.2;
 
 /// Overlap, as a part of the smallest radius, that a step may leave when sweeps end early (the speed by which contacts
-/// still close, times the step). Reason: three fifths of what may show while grains are poured (5e-3): 10 000 that are
-/// poured show 3.1e-3. Smaller: more sweeps (1.5 times as many with 2e-3). Larger: hard impacts of many spheres overlap.
-inline constexpr double kNetworkOverlap = 3e-3;
+/// still close, times the step). Reason: half of what may show while grains are poured (5e-3): 10 000 that are poured
+/// show 2.8e-3. Smaller: more sweeps. Larger: hard impacts of many spheres overlap.
+inline constexpr double kNetworkOverlap = 2.5e-3;
 
 /// Speed by which the conditions of a contact network may be violated, as a part of its fastest sphere's, so that what
 /// comes to rest is solved ever more closely. Smaller: more sweeps for what moves anyway. Larger: piles creep.

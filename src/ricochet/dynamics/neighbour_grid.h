@@ -39,6 +39,8 @@ public:
     /// All pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty (lower >
     /// upper); an empty box meets none. At most 2^32 - 1 boxes. Valid until the next call.
     const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
+    /// The same again.
+    [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
 
     /// Appends the numbers of all boxes of the last search that have a point in common with a box, in the order of the
     /// cells. From any number of threads.

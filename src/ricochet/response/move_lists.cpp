@@ -22,11 +22,6 @@ void MoveLists::take(MoveScratch& scratch) {
     scratch.motions.clear(), scratch.loads.clear();
 }
 
-void MoveLists::put_into(MoveScratch& scratch) {
-    hits.swap(scratch.hits), records.swap(scratch.records), segments.swap(scratch.segments);
-    motions.swap(scratch.motions), loads.swap(scratch.loads);
-}
-
 void MoveLists::append(const MoveLists& more) {
     ricochet::append(hits, more.hits);
     ricochet::append(records, more.records);

@@ -20,8 +20,6 @@ struct MoveLists {
     /// Takes what a move has left in the scratch memory.
     void take(MoveScratch& scratch);
     void append(const MoveLists& more);
-    /// Leaves them in scratch memory.
-    void put_into(MoveScratch& scratch);
 };
 
 /// Adds what a further move of the same particle has come to.

@@ -100,7 +100,8 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
-    if (scratch.record_flown) note_departure(i, particle, outcome, scratch.flown, pushed_since(first_hit, scratch));
+    if (scratch.record_flown)
+        note_departure(i, particle, outcome, scratch.flown, pushed_by(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.meter != nullptr) {
         parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
     }
@@ -143,18 +144,17 @@ void ActiveMover::grow_core(std::size_t i, double time) {
     }
 }
 
-std::optional<IslandMember> ActiveMover::member_of(std::size_t i, const TimeSpan& step) {
+bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& member) {
     const TimeSpan life = life_in(i, step);
-    if (life.end <= life.begin) return std::nullopt;
+    if (life.end <= life.begin) return false;
     grow_core(i, life.begin);
-    IslandMember member;
     member.particle = i;
     member.moving = load(i, life.begin);
     if (life.begin != step.begin || life.end != step.end) member.moving.planned = nullptr;
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
     member.is_free = parts_.schedule.is_in_free_flight(i);
-    return member;
+    return true;
 }
 
 void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record) {
@@ -173,10 +173,8 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
     for (ContactRecord& contact : member.lists.records) {
         if (moving.state.whole_radius > 0.0) contact.radius = moving.state.whole_radius;
     }
-    MoveScratch scratch;
-    member.lists.put_into(scratch);
-    record_lists(scratch, record);
-    if (!member.is_fixed && life.begin == step.begin && life.end == step.end) note_departure(member, scratch);
+    record_lists(member.lists.hits, member.lists.loads, member.lists.records, record);
+    if (!member.is_fixed && life.begin == step.begin && life.end == step.end) note_departure(member);
     if (i < bounces_.size()) bounces_[i] += member.outcome.bounces;
     if (member.is_fixed) {
         parts_.schedule.leave_alone(i);
@@ -355,19 +353,20 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
 }
 
 void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) {
-    record.lost_impulses += parts_.recorder.totals().add(scratch.hits);
-    record.loads.insert(record.loads.end(), scratch.loads.begin(), scratch.loads.end());
-    record.contact_records.insert(record.contact_records.end(), scratch.records.begin(), scratch.records.end());
+    record_lists(scratch.hits, scratch.loads, scratch.records, record);
+}
+
+void ActiveMover::record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
+                               std::span<const ContactRecord> contacts, BlockRecord& record) {
+    record.lost_impulses += parts_.recorder.totals().add(hits);
+    record.loads.insert(record.loads.end(), loads.begin(), loads.end());
+    record.contact_records.insert(record.contact_records.end(), contacts.begin(), contacts.end());
 }
 
 // Neighbours in space lie anywhere in memory. What load() and store() use first, then the candidates, then their
 // corners.
 void ActiveMover::prefetch(std::span<const std::uint32_t> active, std::size_t k) const {
-    if (k + kPrefetchDistance < active.size()) {
-        const std::size_t i = active[k + kPrefetchDistance];
-        parts_.store.prefetch(i);
-        parts_.schedule.prefetch(i);
-    }
+    if (k + kPrefetchDistance < active.size()) prefetch(active[k + kPrefetchDistance]);
     if (k + kTrianglePrefetchDistance < active.size()) prefetch_triangles(active[k + kTrianglePrefetchDistance]);
     if (k + kVertexPrefetchDistance < active.size()) prefetch_vertices(active[k + kVertexPrefetchDistance]);
 }

@@ -129,10 +129,15 @@ public:
 
     // For spheres that meet each other, which are moved together.
 
-    /// A particle as it sets out; nothing where it does not live in the step.
-    [[nodiscard]] std::optional<IslandMember> member_of(std::size_t i, const TimeSpan& step);
+    /// Makes a new member a particle as it sets out. False where it does not live in the step.
+    [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Takes over where it has gone and what it has done.
     void take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record);
+    /// Begins to fetch from memory what set_out() and take_over() use of a particle.
+    void prefetch(std::size_t i) const {
+        parts_.store.prefetch(i);
+        parts_.schedule.prefetch(i);
+    }
     /// Scratch memory that records what the run asks for.
     void prepare(MoveScratch& scratch) const;
 
@@ -159,8 +164,10 @@ private:
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
     void note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                         std::vector<FlownPiece>& flown, const Vec3& pushed);
-    void note_departure(IslandMember& member, const MoveScratch& scratch);
-    [[nodiscard]] static Vec3 pushed_since(std::size_t first_hit, const MoveScratch& scratch);
+    void note_departure(IslandMember& member);
+    [[nodiscard]] static Vec3 pushed_by(std::span<const SurfaceHit> hits);
+    void record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
+                      std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     /// is_pulled: others lead it, so that it neither sleeps nor flies by what is known of forces.

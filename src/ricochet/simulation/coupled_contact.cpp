@@ -28,10 +28,10 @@ bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<co
 
 }  // namespace
 
-/// N s, that surfaces have given a particle with the hits from this one on.
-Vec3 ActiveMover::pushed_since(std::size_t first_hit, const MoveScratch& scratch) {
+/// N s, that surfaces have given a particle.
+Vec3 ActiveMover::pushed_by(std::span<const SurfaceHit> hits) {
     Vec3 sum;
-    for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) sum -= scratch.hits[k].impulse;
+    for (const SurfaceHit& hit : hits) sum -= hit.impulse;
     return sum;
 }
 
@@ -46,12 +46,11 @@ void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, con
     }
 }
 
-/// scratch: with what its moves have left.
-void ActiveMover::note_departure(IslandMember& member, const MoveScratch& scratch) {
+void ActiveMover::note_departure(IslandMember& member) {
     const std::size_t i = member.particle;
     if (!parts_.coupled.wants_departure_of(i)) return;
     const MovingParticle& moving = member.moving;
-    const Vec3 pushed = pushed_since(0, scratch) + moving.state.mass * member.pair_push;
+    const Vec3 pushed = pushed_by(member.lists.hits) + moving.state.mass * member.pair_push;
     const bool is_there = !member.is_gone() && member.outcome.unsimulated_time == 0.0;
     if (!member.is_planned) {
         note_departure(i, moving, member.outcome, member.way, pushed);

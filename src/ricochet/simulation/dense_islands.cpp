@@ -86,55 +86,60 @@ void DenseIslands::take_members(std::vector<IslandMember>& members, Work& work) 
         const bool sleeps = contacts_.sleeps(member.particle);
         work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_squeezed, sleeps});
         work.members.back().material = member.material;
+        work.members.back().reach = work.network.first_reach(work.members.back());
     }
 }
 
-void DenseIslands::find_pairs(Work& work) {
+void DenseIslands::find_pairs(std::span<const IslandMember> members, Work& work) {
     work.boxes.clear();
     for (const NetworkMember& member : work.members) work.boxes.push_back(box_within_reach(member));
-    static_cast<void>(work.near.find(work.boxes));
+    work.near.find(members, work.boxes);
 }
 
 /// Again, where some reach farther; by their numbers, ascending.
 void DenseIslands::find_pairs(Work& work, std::span<const std::uint32_t> changed) {
     for (const std::uint32_t i : changed) work.boxes[i] = box_within_reach(work.members[i]);
-    static_cast<void>(work.near.update(work.boxes, changed));
+    work.near.update(work.boxes, changed);
 }
 
 /// What is near something that goes far may be pushed by it: then the first plan is the last one. Those that reach
 /// farther by that, ascending.
 std::vector<std::uint32_t> DenseIslands::expect_pushes(Work& work) {
-    std::vector<double> pushed(work.members.size(), 0.0);
-    const auto push = [&](std::size_t i, const NetworkMember& by) {
-        const NetworkMember& member = work.members[i];
-        // A large sphere looks farther about it than it goes, which is no push for small ones.
-        const bool is_large = by.radius > kLarge * member.radius;
-        const double beside = is_large ? NetworkIsland::kReach * (by.radius - member.radius) : 0.0;
-        pushed[i] = std::max(pushed[i], kPushed * (by.reach - beside));
+    struct Sphere {
+        double radius;
+        double reach;
+        double pushed;
     };
-    for (const auto& [first, second] : work.near.all()) {
-        push(first, work.members[second]);
-        push(second, work.members[first]);
-    }
+    std::vector<Sphere> spheres;
+    spheres.reserve(work.members.size());
+    for (const NetworkMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
+    const auto push = [&](Sphere& sphere, const Sphere& by) {
+        // A large sphere looks farther about it than it goes, which is no push for small ones.
+        const bool is_large = by.radius > kLarge * sphere.radius;
+        const double beside = is_large ? NetworkIsland::kReach * (by.radius - sphere.radius) : 0.0;
+        sphere.pushed = std::max(sphere.pushed, kPushed * (by.reach - beside));
+    };
+    work.near.for_each([&](std::uint32_t a, std::uint32_t b) {
+        push(spheres[a], spheres[b]);
+        push(spheres[b], spheres[a]);
+    });
     std::vector<std::uint32_t> changed;
-    for (std::uint32_t i = 0; i < pushed.size(); ++i) {
-        NetworkMember& member = work.members[i];
-        if (member.stays() || !(pushed[i] > member.reach)) continue;
-        member.reach = pushed[i];
+    for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+        if (!(spheres[i].pushed > spheres[i].reach) || work.members[i].stays()) continue;
+        work.members[i].reach = spheres[i].pushed;
         changed.push_back(i);
     }
     return changed;
 }
 
 /// Again where a sphere is pushed farther than its contacts have been looked for.
-NetworkReport DenseIslands::plan(Work& work, double duration) const {
-    for (NetworkMember& member : work.members) member.reach = work.network.first_reach(member);
+NetworkReport DenseIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
     MoveScratch scratch;
-    find_pairs(work);
+    find_pairs(members, work);
     find_pairs(work, expect_pushes(work));
     NetworkReport report;
     for (int k = 0; k < kMostPlans; ++k) {
-        report = work.network.plan(work.members, work.near.all(), duration, contacts_.memory(), scratch);
+        report = work.network.plan(work.members, work.near.sorted(), duration, contacts_.memory(), scratch);
         const std::vector<std::uint32_t> changed = work.network.reach_farther(work.members);
         if (changed.empty()) break;
         find_pairs(work, changed);
@@ -169,11 +174,11 @@ void DenseIslands::move(std::vector<IslandMember>& members, Work& work, const De
 DenseTrace DenseIslands::run(std::vector<IslandMember>& members, const TimeSpan& step) {
     std::unique_ptr<Work> work = take_work();
     take_members(members, *work);
-    const NetworkReport report = plan(*work, step.end - step.begin);
+    const NetworkReport report = plan(members, *work, step.end - step.begin);
     DenseTrace trace;
     trace.is_unsolved = !report.is_converged;
     trace.pressed = work->network.entries();
-    trace.onto_sleepers = work->network.pushes_on_sleepers(work->members);
+    trace.onto_sleepers = work->network.pushes_on_sleepers();
     if (report.is_converged) contacts_.let_lie(work->members, work->network, step, trace);
     if (!trace.falling_asleep.empty()) trace.touching = work->network.touching();
     move(members, *work, trace);

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/dynamics/neighbour_pairs.h"
 #include "ricochet/response/network/network_island.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/lasting_contacts.h"
+#include "ricochet/simulation/member_pairs.h"
 #include "ricochet/simulation/pair_parts.h"
 
 namespace ricochet {
@@ -37,16 +37,16 @@ private:
     struct Work {
         Work(const ResponseRules& rules, const PairMaterials& materials) : network(rules, materials) {}
         NetworkIsland network;
-        NeighbourPairs near;
+        MemberPairs near;
         std::vector<Box3> boxes;
         std::vector<NetworkMember> members;
     };
     [[nodiscard]] std::unique_ptr<Work> take_work();
     void take_members(std::vector<IslandMember>& members, Work& work) const;
-    static void find_pairs(Work& work);
+    static void find_pairs(std::span<const IslandMember> members, Work& work);
     static void find_pairs(Work& work, std::span<const std::uint32_t> changed);
     [[nodiscard]] static std::vector<std::uint32_t> expect_pushes(Work& work);
-    [[nodiscard]] NetworkReport plan(Work& work, double duration) const;
+    [[nodiscard]] NetworkReport plan(std::span<const IslandMember> members, Work& work, double duration) const;
     void move(std::vector<IslandMember>& members, Work& work, const DenseTrace& trace) const;
 
     PairParts parts_;

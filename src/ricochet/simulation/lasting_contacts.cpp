@@ -262,14 +262,16 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
 void LastingContacts::end(std::span<const DenseTrace* const> traces, std::span<const PairImpactRecord> impacts,
                           const TimeSpan& step) {
     if (first_ == 0) loads_.pass_on(piles_, pushes_on_sleepers(traces, impacts), step);
-    std::vector<NetworkMemory::Entry> pressed;
-    for (const DenseTrace* const trace : traces) {
-        pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
-    }
     if (first_ != 0) {
+        std::vector<NetworkMemory::Entry> pressed;
+        for (const DenseTrace* const trace : traces) {
+            pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
+        }
         memory_.add(pressed);
         return;
     }
+    std::vector<const std::vector<NetworkMemory::Entry>*> pressed;
+    for (const DenseTrace* const trace : traces) pressed.push_back(&trace->pressed);
     memory_.replace(pressed);
     put_to_sleep(traces, step);
     std::vector<SleeperPush> stopped;

@@ -6,12 +6,16 @@
 #include <utility>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 
 namespace ricochet {
 namespace {
 
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
+
+/// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
+constexpr std::size_t kPrefetchDistance = 6;
 
 /// Rounds in which only those are joined that have met. Beyond them what touches those that are joined is joined as
 /// well: of a pile whose lowest layer has just come to lie, or that begins so, each round finds one layer more else,
@@ -115,21 +119,32 @@ void PairIslands::run(const TimeSpan& step) {
 
 /// As they are at the step's begin. By place, not by id, so that ids do not decide.
 void PairIslands::take_members(Island& island, const TimeSpan& step) {
+    struct Placed {
+        double x;
+        std::uint32_t number;
+    };
     const std::vector<Vec3>& position = parts_.store.particles().position;
-    std::vector<std::uint32_t> order = island.particles;
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const Vec3& p = position[first_ + a];
-        const Vec3& q = position[first_ + b];
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+    std::vector<Placed> order;
+    order.reserve(island.particles.size());
+    for (const std::uint32_t k : island.particles) order.push_back({position[first_ + k].x, k});
+    std::sort(order.begin(), order.end(), [&](const Placed& a, const Placed& b) {
+        if (a.x != b.x) return a.x < b.x;
+        const Vec3& p = position[first_ + a.number];
+        const Vec3& q = position[first_ + b.number];
+        return p.y != q.y ? p.y < q.y : p.z < q.z;
     });
     island.members.clear();
     island.members.reserve(order.size());
-    for (const std::uint32_t k : order) {
-        auto member = parts_.mover.member_of(first_ + k, step);
-        if (!member) continue;
-        member->is_fixed = member->is_fixed || contacts_.sleeps(first_ + k);
-        member->material = parts_.material_of(first_ + k);
-        island.members.push_back(std::move(*member));
+    for (std::size_t n = 0; n < order.size(); ++n) {
+        if (n + kPrefetchDistance < order.size()) parts_.mover.prefetch(first_ + order[n + kPrefetchDistance].number);
+        const std::uint32_t k = order[n].number;
+        IslandMember& member = island.members.emplace_back();
+        if (!parts_.mover.set_out(first_ + k, step, member)) {
+            island.members.pop_back();
+            continue;
+        }
+        member.is_fixed = member.is_fixed || contacts_.sleeps(first_ + k);
+        member.material = parts_.material_of(first_ + k);
     }
 }
 
@@ -148,8 +163,14 @@ PairIslands::OffPlan PairIslands::members_off_plan() const {
     for (const Island& island : islands_) {
         const bool is_new = island.round == round_;
         if (!is_new && island.round == 0) continue;
-        for (const IslandMember& member : island.members) {
-            if (is_off_plan(island, member)) (is_new ? off.members : earlier).push_back(&member);
+        const std::vector<IslandMember>& members = island.members;
+        for (std::size_t m = 0; m < members.size(); ++m) {
+            if (m + kPrefetchDistance < members.size()) {
+                const IslandMember& later = members[m + kPrefetchDistance];
+                prefetch_whole(later.swept);
+                prefetch_whole(plans_.box(static_cast<std::uint32_t>(later.particle - first_)));
+            }
+            if (is_off_plan(island, members[m])) (is_new ? off.members : earlier).push_back(&members[m]);
         }
     }
     off.of_this_round = off.members.size();

@@ -6,12 +6,16 @@
 #include <string_view>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 
 namespace ricochet {
 namespace {
 
 /// Islands per unit of parallel work.
 constexpr std::size_t kBlock = 16;
+
+/// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
+constexpr std::size_t kPrefetchDistance = 6;
 
 /// Without the table that spheres are moved by.
 verify::PairBooks books_of(const PairParts& parts) {
@@ -75,10 +79,7 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     const std::size_t first_block = blocks.size();
     blocks.resize(first_block + (islands.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(islands.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) {
-            for (IslandMember& member : islands[n].members)
-                parts_.mover.take_over(member, step, blocks[first_block + block]);
-        }
+        for (std::size_t n = begin; n < end; ++n) take_over(islands[n].members, step, blocks[first_block + block]);
     });
     impacts_.clear();
     meetings_.clear();
@@ -96,15 +97,26 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     islands.clear();
 }
 
+void PairMotion::take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
+    for (std::size_t m = 0; m < members.size(); ++m) {
+        if (m + kPrefetchDistance < members.size()) {
+            prefetch_whole(members[m + kPrefetchDistance]);
+            parts_.mover.prefetch(members[m + kPrefetchDistance].particle);
+        }
+        parts_.mover.take_over(members[m], step, record);
+    }
+}
+
 /// Of those that are there at the end of a step.
 void PairMotion::measure_overlaps(double time) {
     const Particles& particles = parts_.store.particles();
     const auto measure = [&](std::size_t i, std::size_t j) {
-        if (parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
         const double distance = length(particles.position[i] - particles.position[j]);
         const double overlap = particles.radius[i] + particles.radius[j] - distance;
-        const double smaller = std::min(particles.radius[i], particles.radius[j]);
-        counts_.largest_overlap = std::max(counts_.largest_overlap, overlap / smaller);
+        const double part = overlap / std::min(particles.radius[i], particles.radius[j]);
+        if (!(part > counts_.largest_overlap)) return;
+        if (parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
+        counts_.largest_overlap = part;
     };
     for (const NeighbourPair& pair : plans_.pairs()) measure(first_ + pair.first, first_ + pair.second);
 }

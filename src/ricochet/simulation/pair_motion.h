@@ -62,6 +62,7 @@ public:
 
 private:
     [[nodiscard]] bool wake_those_pushed(const TimeSpan& step);
+    void take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);
     void measure_overlaps(double time);
 
     PairParts parts_;

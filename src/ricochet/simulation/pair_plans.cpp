@@ -224,13 +224,14 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     const std::size_t i = first_ + k;
     const bool touches = parts_.store.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
     if (touches || !lives_through(i)) return false;
-    std::optional<IslandMember> member = parts_.mover.member_of(i, step_);
-    if (!member || member->is_fixed || member->moving.state.time > step_.begin) return false;
-    MovingParticle& moving = member->moving;
-    moving.step_end = member->end;
+    IslandMember member;
+    if (!parts_.mover.set_out(i, step_, member)) return false;
+    MovingParticle& moving = member.moving;
+    if (member.is_fixed || moving.state.time > step_.begin) return false;
+    moving.step_end = member.end;
     scratch.segments.clear();
     scratch.records.clear();
-    const MoveOutcome outcome = parts_.response.move(moving, member->time_left(), scratch);
+    const MoveOutcome outcome = parts_.response.move(moving, member.time_left(), scratch);
     scratch.hits.clear();
     scratch.loads.clear();
     scratch.motions.clear();
@@ -266,10 +267,12 @@ void PairPlans::add_pairs_with_sleepers() {
     const std::vector<std::uint8_t>& asleep = traces_->is_asleep;
     if (grid_version_ != traces_->version || in_grid_ != asleep) {
         sleeper_boxes_.assign(asleep.size(), {});
+        sleepers_ = {};
         for (std::size_t k = 0; k < asleep.size(); ++k) {
             const std::size_t i = first_ + k;
-            if (asleep[k] != 0)
-                sleeper_boxes_[k] = ball_box(parts_.store.particles().position[i], parts_.store.particles().radius[i]);
+            if (asleep[k] == 0) continue;
+            sleeper_boxes_[k] = ball_box(parts_.store.particles().position[i], parts_.store.particles().radius[i]);
+            sleepers_.include(sleeper_boxes_[k]);
         }
         static_cast<void>(sleeper_grid_.find_pairs(sleeper_boxes_));
         in_grid_ = asleep;
@@ -278,7 +281,7 @@ void PairPlans::add_pairs_with_sleepers() {
     if (std::find(asleep.begin(), asleep.end(), 1) == asleep.end()) return;
     std::vector<std::uint32_t> near;
     for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
-        if (boxes_[k].empty() || !moves(k)) continue;
+        if (boxes_[k].empty() || !overlap(boxes_[k], sleepers_) || !moves(k)) continue;
         near.clear();
         sleeper_grid_.find_near(boxes_[k], near);
         for (const std::uint32_t other : near) pairs_.push_back({std::min(k, other), std::max(k, other)});

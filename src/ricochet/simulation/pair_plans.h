@@ -91,6 +91,7 @@ private:
     std::vector<std::uint8_t> met_;  // of the pairs
     NeighbourGrid sleeper_grid_;
     std::vector<Box3> sleeper_boxes_;
+    Box3 sleepers_;                      // around all of those
     std::vector<std::uint8_t> in_grid_;  // who sleeps, as that grid has it
     std::uint64_t grid_version_ = 0;     // of the piles in it
 };

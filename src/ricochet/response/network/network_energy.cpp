@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/network/network_solver.h"
 
@@ -12,19 +13,16 @@ namespace {
 /// part in what others do: it holds a sphere that another one hits along the floor.
 constexpr double kHoldsOnly = 1.5;
 
-/// Without those that others of the same impact may take away.
-double own_restitution(const NetworkContact& contact) { return contact.touched ? 0.0 : contact.restitution; }
-
-/// Of contacts that push and are approached; 1 where there is none.
+/// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const NetworkState> before,
-                                 std::span<const NetworkRow> rows, std::span<const std::uint32_t> order,
-                                 std::span<const NetworkContact> contacts) {
+                                 std::span<const NetworkRow> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const NetworkRow& row = rows[i];
+        if (row.push.normal == 0.0) continue;
         const double approach = approach_of(row, before[row.a], before[row.b]);
-        if (row.push.normal == 0.0 || !(approach < 0.0)) continue;
-        const double own = own_restitution(contacts[order[i]]);
+        if (!(approach < 0.0)) continue;
+        const double own = all_own[i];
         if (own == 0.0 && row.push.normal * mobility_of(before[row.a], before[row.b]) <= -kHoldsOnly * approach)
             continue;
         double& e = least[impacts.of(row)];
@@ -35,9 +33,8 @@ std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<cons
 
 }  // namespace
 
-bool NetworkSolver::may_rebound(std::span<const NetworkContact> contacts) {
-    return std::any_of(contacts.begin(), contacts.end(),
-                       [](const NetworkContact& contact) { return contact.restitution > 0.0 && !contact.touched; });
+bool NetworkSolver::may_rebound() const {
+    return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
 }
 
 /// The impact without rebound says what is connected.
@@ -46,30 +43,32 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     NetworkSettings first = settings;
     first.tolerance = std::max(settings.tolerance, settings.connecting);
     iterate(first, report);
-    const bool any = let_rebound(contacts);
+    const bool any = let_rebound();
     if (any || first.tolerance > settings.tolerance) iterate(settings, report);
     if (!any) return;
-    const std::vector<Gain> gains = gains_of_impacts();
+    find_gains();
     bool gained = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const Gain& gain = gains[impacts_.of(rows_[i])];
-        if (rows_[i].bound >= -rows_[i].parting || !gain.is_gain()) continue;
+        if (rows_[i].bound >= -rows_[i].parting || !gains_[impacts_.of(rows_[i])].is_gain()) continue;
         rows_[i].bound = std::max(-rows_[i].parting, contacts[coloring_.order()[i]].gap / settings.duration);
         gained = true;
     }
-    if (gained) iterate(settings, report);
+    if (!gained) return;
+    gains_.clear();
+    iterate(settings, report);
 }
 
 /// Sets the speeds with which contacts have to leave; false where none has to.
-bool NetworkSolver::let_rebound(std::span<const NetworkContact> contacts) {
+bool NetworkSolver::let_rebound() {
     impacts_.assign(before_, rows_);
-    const std::vector<double> least = restitutions(impacts_, before_, rows_, coloring_.order(), contacts);
+    const std::vector<double> least = restitutions(impacts_, before_, rows_, restitutions_);
     bool any = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         NetworkRow& row = rows_[i];
+        if (restitutions_[i] == 0.0 || row.push.normal == 0.0) continue;
         const double approach = approach_of(row, before_[row.a], before_[row.b]);
-        const double e = own_restitution(contacts[coloring_.order()[i]]) == 0.0 ? 0.0 : least[impacts_.of(row)];
-        if (row.push.normal == 0.0 || !(approach < 0.0) || e == 0.0) continue;
+        const double e = least[impacts_.of(row)];
+        if (!(approach < 0.0) || e == 0.0) continue;
         row.bound = std::min(row.bound, e * approach);
         any = true;
     }
@@ -77,9 +76,9 @@ bool NetworkSolver::let_rebound(std::span<const NetworkContact> contacts) {
 }
 
 /// By connected impact, which are found anew. The work that parts what overlaps is no gain.
-std::vector<NetworkSolver::Gain> NetworkSolver::gains_of_impacts() {
+void NetworkSolver::find_gains() {
     impacts_.assign(before_, rows_);
-    std::vector<Gain> gains(impacts_.size());
+    gains_.assign(impacts_.size(), {});
     for (const NetworkRow& row : rows_) {
         if (row.push.normal == 0.0) continue;
         const auto work_in = [&](const std::vector<NetworkState>& states) {
@@ -94,12 +93,11 @@ std::vector<NetworkSolver::Gain> NetworkSolver::gains_of_impacts() {
         };
         const double before = work_in(before_);
         const double after = work_in(states_);
-        Gain& gain = gains[impacts_.of(row)];
+        Gain& gain = gains_[impacts_.of(row)];
         gain.against += before - row.push.normal * row.parting;
         gain.curvature += after - before;
         gain.size += std::fabs(before) + std::fabs(after);
     }
-    return gains;
 }
 
 bool NetworkSolver::Gain::is_gain() const { return against + 0.5 * curvature > kNetworkEnergyRounding * size; }
@@ -109,17 +107,18 @@ double NetworkSolver::Gain::factor() const { return std::clamp(-2.0 * against / 
 /// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
 /// them does not.
 void NetworkSolver::take_back_gains(NetworkReport& report) {
-    const std::vector<Gain> gains = gains_of_impacts();
     report.energy_change = 0.0;
     bool any = false;
-    for (const Gain& gain : gains) {
+    for (const Gain& gain : gains_) {
         const double factor = gain.is_gain() ? gain.factor() : 1.0;
         report.energy_change += factor * (gain.against + 0.5 * factor * gain.curvature);
         any = any || factor < 1.0;
     }
     if (!any) return;
     report.is_converged = false;
-    const auto factor_of = [&](std::uint32_t impact) { return gains[impact].is_gain() ? gains[impact].factor() : 1.0; };
+    const auto factor_of = [&](std::uint32_t impact) {
+        return gains_[impact].is_gain() ? gains_[impact].factor() : 1.0;
+    };
     for (NetworkRow& row : rows_) {
         const double factor = factor_of(impacts_.of(row));
         row.push.normal *= factor;
@@ -139,13 +138,14 @@ void NetworkSolver::hand_over(std::span<NetworkBody> bodies) {
         bodies[i].velocity = states_[i].velocity;
         if (bodies[i].radius > 0.0) bodies[i].spin = states_[i].turning / bodies[i].radius;
     }
+    const std::span<const std::uint32_t> order = coloring_.order();
     for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (i + kPrefetchDistance < rows_.size()) prefetch_whole(impulses_[order[i + kPrefetchDistance]]);
         const NetworkRow& row = rows_[i];
-        rebounds_[coloring_.order()[i]] = row.bound < -row.parting ? 1 : 0;
-        NetworkImpulse& impulse = impulses_[coloring_.order()[i]];
-        impulse.normal = row.push.normal;
-        impulse.tangential = row.push.tangential;
-        if (row.rolling != NetworkRow::kNone) impulse.moment = rolling_[row.rolling].moment;
+        rebounds_[order[i]] = row.bound < -row.parting ? 1 : 0;
+        const bool resists_rolling = row.rolling != NetworkRow::kNone;
+        impulses_[order[i]] = {row.push.normal, row.push.tangential,
+                               resists_rolling ? rolling_[row.rolling].moment : Vec3{}};
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/network/planned_move.h"
 
@@ -37,94 +38,119 @@ constexpr double kPartingFall = 0.2;
 /// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
 /// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
 double most_parting(double pull, double radius, double overlap, double approach) {
-    const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * std::max(0.0, overlap));
+    if (!(overlap > 0.0)) return std::max(0.0, approach);
+    const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
     return std::sqrt(pull * fall) + std::max(0.0, approach);
 }
 
 /// m, for a sphere that goes a way, m.
 double reach_of(double way, double radius) { return 2.0 * way + NetworkIsland::kReach * radius; }
 
+/// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
+constexpr std::size_t kPrefetchDistance = 8;
+
+/// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
+constexpr double kOutOfReach = 1.0 + 1e-9;
+
 /// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
 constexpr double kClear = 0.9;
-
-Vec3 velocity_of(const NetworkMember& member) { return member.stays() ? Vec3{} : member.moving->state.velocity; }
 
 }  // namespace
 
 NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs,
                                   double duration, const NetworkMemory& memory, MoveScratch& scratch) {
     duration_ = duration;
-    set_part(members);
     contacts_.clear();
     keys_.clear();
+    before_.clear();
+    ends_.clear();
+    edges_of_sleep_.clear();
     surfaces_.clear();
     first_wall_.clear();
     clear_.clear();
     add_bodies(members, memory);
-    add_pairs(members, pairs);
+    add_pairs(pairs);
     add_walls(members, scratch);
+    for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
     return solver_.solve(bodies_, contacts_, settings(members));
 }
 
 /// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
-void NetworkIsland::set_part(std::span<const NetworkMember> members) {
-    const bool is_coupled = std::any_of(members.begin(), members.end(), [](const NetworkMember& member) {
-        return member.moving->state.coupling != nullptr;
-    });
+void NetworkIsland::set_part(bool is_coupled) {
     part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
 
 void NetworkIsland::add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory) {
     bodies_.clear();
-    pulls_.clear();
-    before_.clear();
-    for (const NetworkMember& member : members) {
-        before_.push_back(memory.of_particle(member.moving->id));
+    places_.clear();
+    memories_.clear();
+    bool is_coupled = false;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (i + kPrefetchDistance < members.size()) prefetch_whole(members[i + kPrefetchDistance].moving->state);
+        const NetworkMember& member = members[i];
         const ForceInput& state = member.moving->state;
-        pulls_.push_back(0.0);
-        NetworkBody body;
+        is_coupled = is_coupled || state.coupling != nullptr;
+        memories_.push_back(memory.of_particle(member.moving->id));
+        Place& place = places_.emplace_back();
+        place.position = state.position;
+        place.id = member.moving->id;
+        place.radius = member.radius;
+        place.reach = member.reach;
+        place.material = member.material;
+        place.stays = member.stays();
+        place.is_asleep = member.is_asleep;
+        NetworkBody& body = bodies_.emplace_back();
         body.radius = member.radius;
-        if (member.stays()) {
+        if (place.stays) {
             body.inverse_mass = 0.0;
-        } else {
-            body.velocity = velocity_in_flight(member);
-            const Vec3 gained = body.velocity - state.velocity;
-            if (member.duration > 0.0) pulls_.back() = length(gained) / member.duration;
-            body.spin = (state.radius / member.radius) * member.moving->spin;
-            body.inverse_mass = 1.0 / state.mass;
-            body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
+            continue;
         }
-        bodies_.push_back(body);
+        place.velocity = state.velocity;
+        body.velocity = velocity_in_flight(member);
+        const Vec3 gained = body.velocity - state.velocity;
+        if (member.duration > 0.0) place.pull = length(gained) / member.duration;
+        body.spin = (state.radius / member.radius) * member.moving->spin;
+        body.inverse_mass = 1.0 / state.mass;
+        body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
+    }
+    set_part(is_coupled);
+}
+
+void NetworkIsland::add_pairs(std::span<const NeighbourPair> pairs) {
+    for (const auto& [first, second] : pairs) {
+        if (places_[first].stays && places_[second].stays) continue;
+        const bool in_order = places_[first].id < places_[second].id;
+        add_pair(in_order ? first : second, in_order ? second : first);
     }
 }
 
-void NetworkIsland::add_pairs(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs) {
-    for (const auto& [first, second] : pairs) {
-        if (members[first].stays() && members[second].stays()) continue;
-        const bool in_order = members[first].moving->id < members[second].moving->id;
-        NetworkContact contact;
-        contact.a = in_order ? first : second;
-        contact.b = in_order ? second : first;
-        const NetworkMember& a = members[contact.a];
-        const NetworkMember& b = members[contact.b];
-        const Vec3 apart = a.moving->state.position - b.moving->state.position;
-        const double distance = length(apart);
-        if (!(distance > 0.0)) continue;  // no direction parts them
-        contact.gap = parted(distance - a.radius - b.radius);
-        // Between two sleepers there may be no room to part from both.
-        if (a.is_asleep || b.is_asleep) contact.gap = std::max(0.0, contact.gap);
-        if (contact.gap > a.reach + b.reach) continue;
-        contact.normal = apart / distance;
-        const PairMaterial& law = materials_.of(a.material, b.material);
-        contact.friction = law.friction;
-        contact.rolling_friction = law.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
-        const Vec3 arriving = velocity_of(a) - velocity_of(b);
-        const double approach = -dot(arriving, contact.normal);
-        contact.restitution = rebound(law.restitution, approach);
-        contact.most_parting = most_parting(std::max(pulls_[contact.a], pulls_[contact.b]),
-                                            std::min(a.radius, b.radius), -contact.gap, approach);
-        warm_start(contact, NetworkKey::of_pair(a.moving->id, b.moving->id));
-    }
+void NetworkIsland::add_pair(std::uint32_t first, std::uint32_t second) {
+    const Place& a = places_[first];
+    const Place& b = places_[second];
+    const Vec3 apart = a.position - b.position;
+    const double squared = length_squared(apart);
+    const double farthest = kOutOfReach * (a.radius + b.radius + a.reach + b.reach);
+    if (squared > farthest * farthest) return;
+    const double distance = std::sqrt(squared);
+    if (!(distance > 0.0)) return;  // no direction parts them
+    double gap = parted(distance - a.radius - b.radius);
+    // Between two sleepers there may be no room to part from both.
+    if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
+    if (gap > a.reach + b.reach) return;
+    NetworkContact& contact = contacts_.emplace_back();
+    ends_.push_back({first, second});
+    contact.a = first;
+    contact.b = second;
+    contact.gap = gap;
+    contact.normal = apart / distance;
+    const PairMaterial& law = materials_.of(a.material, b.material);
+    contact.friction = law.friction;
+    contact.rolling_friction = law.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
+    const double approach = -dot(a.velocity - b.velocity, contact.normal);
+    contact.restitution = rebound(law.restitution, approach);
+    contact.most_parting = most_parting(std::max(a.pull, b.pull), std::min(a.radius, b.radius), -gap, approach);
+    if (a.is_asleep != b.is_asleep) edges_of_sleep_.push_back(contacts_.size() - 1);
+    add_key(NetworkKey::of_pair(a.id, b.id));
 }
 
 void NetworkIsland::add_walls(std::span<const NetworkMember> members, MoveScratch& scratch) {
@@ -152,7 +178,7 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, MoveScratc
 void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall) {
     const ForceInput& state = member.moving->state;
     const Material& material = rules_.materials[rules_.world.material_of(wall.surface)];
-    NetworkContact contact;
+    NetworkContact& contact = contacts_.emplace_back();
     contact.a = index;
     contact.normal = wall.normal;
     contact.gap = parted(wall.gap);
@@ -162,8 +188,8 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     carry(contact, wall, material, state);
     const double approach = -dot(state.velocity - wall.carried, wall.normal);
     contact.restitution = rebound(material.restitution_at(approach), approach);
-    contact.most_parting = most_parting(pulls_[index], member.radius, -contact.gap, approach);
-    warm_start(contact, NetworkKey::of_wall(member.moving->id, wall.surface));
+    contact.most_parting = most_parting(places_[index].pull, member.radius, -contact.gap, approach);
+    add_key(NetworkKey::of_wall(member.moving->id, wall.surface));
     surfaces_.push_back(wall.surface);
 }
 
@@ -183,13 +209,25 @@ void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, cons
     contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
-void NetworkIsland::warm_start(NetworkContact& contact, const NetworkKey& key) {
-    if (const NetworkImpulse* const before = NetworkMemory::find(before_[contact.a], key)) {
-        contact.start = *before;
-        contact.touched = before->normal > 0.0;
-    }
-    contacts_.push_back(contact);
+/// Has added the last contact; what it begins with is looked up while others are added.
+void NetworkIsland::add_key(const NetworkKey& key) {
     keys_.push_back(key);
+    before_.push_back(nullptr);
+    warm_start(keys_.size() - 1);
+}
+
+/// Three stages, each for an earlier contact: what is remembered lies anywhere, and takes time to be fetched.
+void NetworkIsland::warm_start(std::size_t at) {
+    const std::size_t count = keys_.size();
+    if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
+    if (const std::size_t k = at - kPrefetchDistance; at >= kPrefetchDistance && k < count) {
+        before_[k] = memories_[contacts_[k].a].find(keys_[k].other);
+        if (before_[k] != nullptr) __builtin_prefetch(&before_[k]->normal), __builtin_prefetch(&before_[k]->moment.z);
+    }
+    const std::size_t k = at - 2 * kPrefetchDistance;
+    if (at < 2 * kPrefetchDistance || before_[k] == nullptr) return;
+    contacts_[k].start = *before_[k];
+    contacts_[k].touched = before_[k]->normal > 0.0;
 }
 
 /// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
@@ -255,22 +293,22 @@ std::vector<WallPush> NetworkIsland::pushes_of(std::size_t index) const {
     return pushes;
 }
 
-std::vector<SleeperPush> NetworkIsland::pushes_on_sleepers(std::span<const NetworkMember> members) const {
+std::vector<SleeperPush> NetworkIsland::pushes_on_sleepers() const {
     std::vector<SleeperPush> pushes;
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
+    for (const std::size_t i : edges_of_sleep_) {
         const NetworkContact& contact = contacts_[i];
         const NetworkImpulse& impulse = solver_.impulses()[i];
-        if (keys_[i].is_wall() || impulse.normal == 0.0) continue;
-        const bool is_first = members[contact.a].is_asleep;
-        if (is_first == members[contact.b].is_asleep) continue;
+        if (impulse.normal == 0.0) continue;
+        const bool is_first = places_[contact.a].is_asleep;
         const Vec3 onto_first = impulse.normal * contact.normal + impulse.tangential;
-        pushes.push_back({members[is_first ? contact.a : contact.b].moving->id, is_first ? onto_first : -onto_first});
+        pushes.push_back({places_[is_first ? contact.a : contact.b].id, is_first ? onto_first : -onto_first});
     }
     return pushes;
 }
 
 std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
     std::vector<NetworkMemory::Entry> entries;
+    entries.reserve(keys_.size());
     for (std::size_t i = 0; i < keys_.size(); ++i) {
         const NetworkImpulse& impulse = solver_.impulses()[i];
         if (impulse.normal > 0.0) entries.push_back({keys_[i], impulse, solver_.rebounds()[i] != 0});
@@ -280,8 +318,9 @@ std::vector<NetworkMemory::Entry> NetworkIsland::entries() const {
 
 std::vector<NeighbourPair> NetworkIsland::pressing() const {
     std::vector<NeighbourPair> pressing;
-    for (std::size_t i = 0; i < keys_.size() && !keys_[i].is_wall(); ++i) {  // walls come last
-        if (solver_.impulses()[i].normal > 0.0) pressing.push_back({contacts_[i].a, contacts_[i].b});
+    pressing.reserve(ends_.size());
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+        if (solver_.impulses()[i].normal > 0.0) pressing.push_back(ends_[i]);
     }
     return pressing;
 }

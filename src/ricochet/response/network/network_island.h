@@ -72,7 +72,7 @@ public:
     /// Members that press on each other, by their numbers.
     [[nodiscard]] std::vector<NeighbourPair> pressing() const;
     /// By others that do not sleep, contact by contact.
-    [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const NetworkMember> members) const;
+    [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers() const;
     /// Pairs that hardly leave a gap between them, whether they press or not.
     [[nodiscard]] std::vector<NetworkKey> touching() const;
     /// Lets members that others push farther than their contacts have been looked for reach as far: their numbers,
@@ -80,15 +80,30 @@ public:
     [[nodiscard]] std::vector<std::uint32_t> reach_farther(std::span<NetworkMember> members) const;
 
 private:
-    void set_part(std::span<const NetworkMember> members);
+    /// What contacts need of a member, close together.
+    struct Place {
+        Vec3 position;  ///< m
+        Vec3 velocity;  ///< m/s, with which it sets out
+        std::uint64_t id = 0;
+        double radius = 0.0;  ///< m
+        double reach = 0.0;   ///< m
+        double pull = 0.0;    ///< m/s^2, of the forces on it
+        std::uint32_t material = 0;
+        bool stays = false;
+        bool is_asleep = false;
+    };
+
+    void set_part(bool is_coupled);
     [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
     void add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory);
-    void add_pairs(std::span<const NetworkMember> members, std::span<const NeighbourPair> pairs);
+    void add_pairs(std::span<const NeighbourPair> pairs);
+    void add_pair(std::uint32_t first, std::uint32_t second);
     void add_walls(std::span<const NetworkMember> members, MoveScratch& scratch);
     void add_wall(std::uint32_t index, const NetworkMember& member, const WallContact& wall);
     void carry(NetworkContact& contact, const WallContact& wall, const Material& material,
                const ForceInput& state) const;
-    void warm_start(NetworkContact& contact, const NetworkKey& key);
+    void add_key(const NetworkKey& key);
+    void warm_start(std::size_t at);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] Vec3 velocity_in_flight(const NetworkMember& member) const;
     [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
@@ -98,10 +113,13 @@ private:
     double duration_ = 0.0;
     double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
     std::vector<NetworkBody> bodies_;
-    std::vector<double> pulls_;                                  // m/s^2, of each member, of the forces on it
-    std::vector<std::span<const NetworkMemory::Entry>> before_;  // of each member, what its contacts did
+    std::vector<Place> places_;                        // of the members
+    std::vector<NetworkMemory::OfParticle> memories_;  // of each member
     std::vector<NetworkContact> contacts_;
-    std::vector<NetworkKey> keys_;  // of the contacts
+    std::vector<NetworkKey> keys_;               // of the contacts
+    std::vector<const NetworkImpulse*> before_;  // of the contacts, what they did; null where there were none
+    std::vector<std::size_t> edges_of_sleep_;    // contacts of one that sleeps with one that does not
+    std::vector<NeighbourPair> ends_;            // of the contacts of two, which come first: their members
     std::vector<WallContact> walls_;
     std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
     std::vector<SurfaceId> surfaces_;      // of the contacts; of walls

@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "ricochet/core/binary_archive.h"
+#include "ricochet/core/parallel.h"
 #include "ricochet/response/network/contact_network.h"
 
 namespace ricochet {
@@ -38,47 +38,43 @@ public:
         bool rebounds = false;  ///< an impact: the two part
     };
 
+    /// Those of a particle that comes first in their keys, ascending.
+    struct OfParticle {
+        std::span<const std::uint64_t> others;  ///< of their keys: close together for searches
+        const Entry* first = nullptr;
+
+        [[nodiscard]] std::span<const Entry> entries() const { return {first, others.size()}; }
+        /// Null where there was no such contact.
+        [[nodiscard]] const NetworkImpulse* find(std::uint64_t other) const {
+            const auto found = std::lower_bound(others.begin(), others.end(), other);
+            return found != others.end() && *found == other ? &first[found - others.begin()].impulse : nullptr;
+        }
+    };
+
     /// Takes entries in any order, each key once.
+    void replace(std::span<const std::vector<Entry>* const> lists);
     void replace(const std::vector<Entry>& entries) {
-        std::vector<std::pair<NetworkKey, std::size_t>> order;  // entries are too large to be moved about
-        order.reserve(entries.size());
-        for (const Entry& entry : entries) order.emplace_back(entry.key, order.size());
-        std::sort(order.begin(), order.end());
-        entries_.clear();
-        entries_.reserve(entries.size());
-        for (const auto& [key, at] : order) entries_.push_back(entries[at]);
-        find_particles();
+        const std::vector<Entry>* const list = &entries;
+        replace({&list, 1});
     }
     /// Adds more of the same step.
-    void add(const std::vector<Entry>& more) {
-        if (more.empty()) return;
-        std::vector<Entry> all = std::move(entries_);
-        all.insert(all.end(), more.begin(), more.end());
-        replace(all);
-    }
+    void add(const std::vector<Entry>& more);
     /// Null where there was no such contact.
     [[nodiscard]] const NetworkImpulse* find(const NetworkKey& key) const {
-        return find(of_particle(key.particle), key);
+        return of_particle(key.particle).find(key.other);
     }
-    /// Of a particle that comes first in their keys, ascending.
-    [[nodiscard]] std::span<const Entry> of_particle(std::uint64_t particle) const {
+    [[nodiscard]] OfParticle of_particle(std::uint64_t particle) const {
         const auto found = std::lower_bound(particles_.begin(), particles_.end(), particle);
         if (found == particles_.end() || *found != particle) return {};
         const auto k = static_cast<std::size_t>(found - particles_.begin());
-        return {entries_.data() + first_[k], first_[k + 1] - first_[k]};
-    }
-    /// Among those of its particle.
-    [[nodiscard]] static const NetworkImpulse* find(std::span<const Entry> own, const NetworkKey& key) {
-        const auto found = std::lower_bound(own.begin(), own.end(), key,
-                                            [](const Entry& entry, const NetworkKey& k) { return entry.key < k; });
-        return found != own.end() && found->key == key ? &found->impulse : nullptr;
+        return {std::span(others_).subspan(first_[k], first_[k + 1] - first_[k]), entries_.data() + first_[k]};
     }
     /// True where one of a list of particles pressed on another one, and did not part from it.
     template <class Iterator, class IdOf>
     [[nodiscard]] bool has_pair_of(Iterator begin, Iterator end, const IdOf& id_of) const {
         if (entries_.empty()) return false;
         return std::any_of(begin, end, [&](const auto& particle) {
-            const std::span<const Entry> own = of_particle(id_of(particle));
+            const std::span<const Entry> own = of_particle(id_of(particle)).entries();
             return std::any_of(own.begin(), own.end(),
                                [](const Entry& entry) { return !entry.key.is_wall() && !entry.rebounds; });
         });
@@ -98,20 +94,14 @@ public:
     }
 
 private:
-    void find_particles() {
-        particles_.clear();
-        first_.clear();
-        for (std::size_t i = 0; i < entries_.size(); ++i) {
-            if (!particles_.empty() && particles_.back() == entries_[i].key.particle) continue;
-            particles_.push_back(entries_[i].key.particle);
-            first_.push_back(i);
-        }
-        first_.push_back(entries_.size());
-    }
+    void find_particles();
 
     std::vector<Entry> entries_;            // ascending
     std::vector<std::uint64_t> particles_;  // that come first in their keys, ascending: close together for searches
     std::vector<std::size_t> first_;        // of each of those among the entries, and the end
+    std::vector<std::uint64_t> others_;     // of the entries' keys
+    std::vector<KeyedIndex> order_;         // in replace(), as the next one
+    std::vector<KeyedIndex> spare_;
 };
 
 }  // namespace ricochet

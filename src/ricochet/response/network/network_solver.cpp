@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -48,11 +49,13 @@ NetworkReport NetworkSolver::solve(std::span<NetworkBody> bodies, std::span<cons
     NetworkReport report;
     set_up(bodies, contacts, settings.duration);
     apply_start();
-    if (may_rebound(contacts)) {
+    gains_.clear();
+    if (may_rebound()) {
         rebound(contacts, settings, report);
     } else {
         iterate(settings, report);
     }
+    if (gains_.empty()) find_gains();
     take_back_gains(report);
     hand_over(bodies);
     return report;
@@ -70,20 +73,31 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     before_.push_back({});  // all walls at rest
     rows_.clear();
     rolling_.clear();
-    for (const std::uint32_t i : coloring_.order()) {
-        rows_.push_back(row_of(contacts[i], bodies, duration));
-        if (contacts[i].rolling_friction > 0.0) add_rolling(contacts[i], bodies);
-    }
+    restitutions_.clear();
     mass_ratio_ = 1.0;
-    for (const NetworkRow& row : rows_) mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
+    against_start_ = 0.0;
+    const std::span<const std::uint32_t> order = coloring_.order();
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k + kPrefetchDistance < order.size()) prefetch_whole(contacts[order[k + kPrefetchDistance]]);
+        add_row(contacts[order[k]], bodies, duration);
+    }
     states_ = before_;
     last_.resize(bodies_);
-    impulses_.assign(contacts.size(), {});
-    rebounds_.assign(contacts.size(), 0);
+    impulses_.resize(contacts.size());
+    rebounds_.resize(contacts.size());
 }
 
-NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
-    NetworkRow row;
+void NetworkSolver::add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
+    NetworkRow& row = rows_.emplace_back();
+    set_row(row, contact, bodies, duration);
+    if (contact.rolling_friction > 0.0) add_rolling(contact, bodies);
+    restitutions_.push_back(contact.touched ? 0.0 : contact.restitution);
+    mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
+    add_gain(row, before_, against_start_);
+}
+
+void NetworkSolver::set_row(NetworkRow& row, const NetworkContact& contact, std::span<const NetworkBody> bodies,
+                            double duration) {
     row.a = contact.a;
     row.b = contact.b;
     if (contact.b == NetworkContact::kWall) {
@@ -94,22 +108,25 @@ NetworkRow NetworkSolver::row_of(const NetworkContact& contact, std::span<const 
         }
     }
     row.normal = contact.normal;
-    const bool is_pair = contact.b != NetworkContact::kWall;
-    const double radius =
-        is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
-    row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
-    row.parting = std::min(row.parting, contact.most_parting);
-    row.bound = contact.gap > 0.0 ? contact.gap / duration : -row.parting;
     row.rolling = NetworkRow::kNone;
     row.friction = contact.friction;
+    if (contact.gap > 0.0) {
+        row.bound = contact.gap / duration;
+    } else {
+        const bool is_pair = contact.b != NetworkContact::kWall;
+        const double radius =
+            is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
+        row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
+        row.parting = std::min(row.parting, contact.most_parting);
+        row.bound = -row.parting;
+    }
     if (mobility_of(before_[row.a], before_[row.b]) == 0.0) {
         row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
-        return row;
+        return;
     }
     row.push.normal = std::max(0.0, contact.start.normal);
     const Vec3& friction = contact.start.tangential;
     row.push.tangential = shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.push.normal);
-    return row;
 }
 
 void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies) {
@@ -139,7 +156,7 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
 /// network goes on pressing as it did, and sweeps put right soon what single contacts begin with wrongly: to begin with
 /// a part of all of them would shake all that lies still.
 void NetworkSolver::apply_start() {
-    if (work_of_start() > 0.0) {
+    if (against_start_ > 0.0) {
         for (NetworkRow& row : rows_) row.push = {};
         for (RollingRow& rolling : rolling_) rolling.moment = {};
         return;
@@ -152,20 +169,15 @@ void NetworkSolver::apply_start() {
     }
 }
 
-/// J, of all impulses on what moves without them.
-double NetworkSolver::work_of_start() const {
-    double sum = 0.0;
-    for (const NetworkRow& row : rows_) {
-        if (row.push.normal == 0.0) continue;
-        const NetworkState& a = states_[row.a];
-        const NetworkState& b = states_[row.b];
-        sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
-        if (row.rolling != NetworkRow::kNone) {
-            const RollingRow& rolling = rolling_[row.rolling];
-            sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
-        }
-    }
-    return sum;
+/// Adds what a contact's impulses act against, J.
+void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState> states, double& sum) const {
+    if (row.push.normal == 0.0) return;
+    const NetworkState& a = states[row.a];
+    const NetworkState& b = states[row.b];
+    sum += row.push.normal * (approach_of(row, a, b) + row.bound) + dot(row.push.tangential, slip_of(row, a, b));
+    if (row.rolling == NetworkRow::kNone) return;
+    const RollingRow& rolling = rolling_[row.rolling];
+    sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
 /// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few

@@ -27,6 +27,9 @@ public:
     [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
+    /// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
+    static constexpr std::size_t kPrefetchDistance = 8;
+
     /// Of a connected impact: with the part f of its impulses energy changes by f (against + f curvature / 2), J.
     struct Gain {
         double against = 0.0;
@@ -46,20 +49,20 @@ private:
     };
 
     void set_up(std::span<const NetworkBody> bodies, std::span<const NetworkContact> contacts, double duration);
-    [[nodiscard]] NetworkRow row_of(const NetworkContact& contact, std::span<const NetworkBody> bodies,
-                                    double duration);
+    void add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration);
+    void set_row(NetworkRow& row, const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration);
     void add_rolling(const NetworkContact& contact, std::span<const NetworkBody> bodies);
     void apply_start();
-    [[nodiscard]] double work_of_start() const;
+    void add_gain(const NetworkRow& row, std::span<const NetworkState> states, double& sum) const;
     void iterate(const NetworkSettings& settings, NetworkReport& report);
     bool sweep_until(const NetworkSettings& settings, int most, NetworkReport& report);
     [[nodiscard]] SweepChange sweep(double factor);
     [[nodiscard]] SweepChange sweep_rows(double factor, std::size_t begin, std::size_t end, SweepWay way);
     void go_on(double factor);
-    [[nodiscard]] static bool may_rebound(std::span<const NetworkContact> contacts);
-    [[nodiscard]] bool let_rebound(std::span<const NetworkContact> contacts);
+    [[nodiscard]] bool may_rebound() const;
+    [[nodiscard]] bool let_rebound();
     void rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings, NetworkReport& report);
-    [[nodiscard]] std::vector<Gain> gains_of_impacts();
+    void find_gains();
     void take_back_gains(NetworkReport& report);
     void hand_over(std::span<NetworkBody> bodies);
 
@@ -69,11 +72,14 @@ private:
     std::size_t bodies_ = 0;
     std::vector<NetworkRow> rows_;  // in the order of the colours
     std::vector<RollingRow> rolling_;
+    std::vector<double> restitutions_;  // of the rows, without those that others of the same impact may take away
+    double against_start_ = 0.0;        // J, of the impulses to begin with times what they act against before them
     std::vector<NetworkState> last_;  // of the bodies, after the sweep before the last
     std::vector<SweepChange> blocks_;
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch
     ConnectedImpacts impacts_;
+    std::vector<Gain> gains_;  // of the impacts, by their numbers; empty where impulses have changed since
     std::vector<NetworkImpulse> impulses_;
     std::vector<std::uint8_t> rebounds_;
 };

@@ -1,0 +1,81 @@
+#include "ricochet/simulation/member_pairs.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace ricochet {
+namespace {
+
+/// Fewer members are looked for anew as fast.
+constexpr std::size_t kMany = 512;
+
+/// So many times as many numbers as members may lie between their lowest and their highest.
+constexpr std::size_t kMostSlots = 2;
+
+}  // namespace
+
+void MemberPairs::take_numbers(std::span<const IslandMember> members) {
+    is_by_particle_ = members.size() >= kMany;
+    if (!is_by_particle_) return;
+    const auto [lowest, highest] =
+        std::minmax_element(members.begin(), members.end(),
+                            [](const IslandMember& a, const IslandMember& b) { return a.particle < b.particle; });
+    const std::size_t first = lowest->particle;
+    const std::size_t slots = highest->particle - first + 1;
+    is_by_particle_ = slots <= kMostSlots * members.size();
+    if (!is_by_particle_) return;
+    slots_.resize(members.size());
+    member_at_.resize(slots);
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+        slots_[i] = static_cast<std::uint32_t>(members[i].particle - first);
+        member_at_[slots_[i]] = i;
+    }
+}
+
+void MemberPairs::find(std::span<const IslandMember> members, std::span<const Box3> boxes) {
+    take_numbers(members);
+    if (!is_by_particle_) {
+        static_cast<void>(near_.find(boxes));
+        return;
+    }
+    boxes_.assign(member_at_.size(), {});
+    for (std::size_t i = 0; i < boxes.size(); ++i) boxes_[slots_[i]] = boxes[i];
+    static_cast<void>(near_.find(boxes_));
+}
+
+void MemberPairs::update(std::span<const Box3> boxes, std::span<const std::uint32_t> changed) {
+    if (!is_by_particle_) {
+        static_cast<void>(near_.update(boxes, changed));
+        return;
+    }
+    changed_.clear();
+    for (const std::uint32_t i : changed) {
+        boxes_[slots_[i]] = boxes[i];
+        changed_.push_back(slots_[i]);
+    }
+    std::sort(changed_.begin(), changed_.end());
+    static_cast<void>(near_.update(boxes_, changed_));
+}
+
+/// By the second, and then by the first, which keeps the order of the seconds.
+std::span<const NeighbourPair> MemberPairs::sorted() {
+    const std::vector<NeighbourPair>& all = near_.all();
+    if (!is_by_particle_) return all;
+    first_ends_.assign(slots_.size(), 0);
+    second_ends_.assign(slots_.size(), 0);
+    sorted_.resize(all.size());
+    by_second_.resize(all.size());
+    for (std::size_t n = 0; n < all.size(); ++n) {
+        const auto [first, second] = std::minmax(member_at_[all[n].first], member_at_[all[n].second]);
+        sorted_[n] = {first, second};
+        ++first_ends_[first];
+        ++second_ends_[second];
+    }
+    std::exclusive_scan(first_ends_.begin(), first_ends_.end(), first_ends_.begin(), 0U);
+    std::exclusive_scan(second_ends_.begin(), second_ends_.end(), second_ends_.begin(), 0U);
+    for (const NeighbourPair& pair : sorted_) by_second_[second_ends_[pair.second]++] = pair;
+    for (const NeighbourPair& pair : by_second_) sorted_[first_ends_[pair.first]++] = pair;
+    return sorted_;
+}
+
+}  // namespace ricochet

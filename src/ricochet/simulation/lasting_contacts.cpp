@@ -153,15 +153,19 @@ std::vector<std::uint8_t> LastingContacts::pressing() const {
 }
 
 /// Slow ones that only press it onto what holds it do not: their contacts say how much. hitting, sleeping: indices.
-bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const {
+bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
-    const double pull = length(parts_.response.rules().forces.acceleration(parts_.store.force_input(hitting, time)));
+    const double duration = step.end - step.begin;
+    const ForceInput state = parts_.store.force_input(hitting, step.begin);
+    const double pull = length(parts_.response.rules().forces.acceleration(state));
+    const Vec3& velocity = particles.velocity[hitting];
+    const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
+    const double gap = length(towards) - particles.radius[hitting] - particles.radius[sleeping];
+    if (gap > duration * (length(velocity) + duration * pull)) return false;  // not in this step
     const double resting = parts_.response.rules().settings.resting_speed;
     const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
-    const Vec3& velocity = particles.velocity[hitting];
     if (length(velocity) > slow) return true;
-    const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
-    return is_aside(sleeping, towards, time) && dot(velocity, towards) > resting * length(towards);
+    return is_aside(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
 }
 
 /// Whether a push in a direction moves it where nothing but friction holds it.
@@ -178,7 +182,7 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
         if (!plans.may_meet(n) || is_asleep(pair.first) == is_asleep(pair.second)) continue;
         const std::uint32_t sleeping = is_asleep(pair.first) ? pair.first : pair.second;
         const std::uint32_t hitting = is_asleep(pair.first) ? pair.second : pair.first;
-        if (hits_sleeper(first_ + hitting, first_ + sleeping, step.begin))
+        if (hits_sleeper(first_ + hitting, first_ + sleeping, step))
             hit.push_back(parts_.store.particles().id[first_ + sleeping]);
     }
     for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);

@@ -80,7 +80,7 @@ private:
     [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const DenseTrace* const> traces,
                                                               std::span<const PairImpactRecord> impacts) const;
     void wake_pile(std::uint64_t particle, double time);
-    [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, double time) const;
+    [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
     [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;

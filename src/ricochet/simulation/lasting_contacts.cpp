@@ -156,12 +156,14 @@ std::vector<std::uint8_t> LastingContacts::pressing() const {
 bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
     const double duration = step.end - step.begin;
-    const ForceInput state = parts_.store.force_input(hitting, step.begin);
+    ForceInput state = parts_.store.force_input(hitting, step.begin);
     const double pull = length(parts_.response.rules().forces.acceleration(state));
+    state.coupling = parts_.coupled.coupling_of(hitting);
+    const double gained = duration * length(parts_.response.rules().forces.acceleration(state));
     const Vec3& velocity = particles.velocity[hitting];
     const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
     const double gap = length(towards) - particles.radius[hitting] - particles.radius[sleeping];
-    if (gap > duration * (length(velocity) + duration * pull)) return false;  // not in this step
+    if (gap > duration * (length(velocity) + gained)) return false;  // not in this step
     const double resting = parts_.response.rules().settings.resting_speed;
     const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
     if (length(velocity) > slow) return true;

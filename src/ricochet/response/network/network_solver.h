@@ -74,7 +74,7 @@ private:
     std::vector<RollingRow> rolling_;
     std::vector<double> restitutions_;  // of the rows, without those that others of the same impact may take away
     double against_start_ = 0.0;        // J, of the impulses to begin with times what they act against before them
-    std::vector<NetworkState> last_;  // of the bodies, after the sweep before the last
+    std::vector<NetworkState> last_;    // of the bodies, after the sweep before the last
     std::vector<SweepChange> blocks_;
     DirectNetwork direct_;
     double mass_ratio_ = 1.0;  // largest of two that touch

@@ -1,0 +1,61 @@
+// What sweeps over a contact network begin with: the impulses of the last step.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/response/network/network_solver.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
+const Vec3 kUp{0, 0, 1};
+
+NetworkBody ball(double velocity) { return {velocity * kUp, {}, 1.0, 250.0, 0.1}; }
+
+/// Of a ball of 1 kg on a floor, which has pushed it so in the last step.
+NetworkContact on_floor(std::uint32_t body, double start) {
+    NetworkContact contact;
+    contact.a = body;
+    contact.normal = kUp;
+    contact.touched = true;
+    contact.start.normal = start;
+    return contact;
+}
+
+NetworkSettings one_sweep() {
+    NetworkSettings settings;
+    settings.duration = 1e-3;
+    settings.sweeps = settings.most_sweeps = 1;
+    return settings;
+}
+
+TEST(NetworkStart, AContactThatBeginsWronglyShakesNoOther) {
+    for (const double wrong : {0.0, 0.1, 3.0, 100.0}) {
+        SCOPED_TRACE(wrong);
+        std::vector<NetworkBody> bodies = {ball(-kKick), ball(-kKick)};
+        const std::vector<NetworkContact> contacts = {on_floor(0, kKick), on_floor(1, wrong * kKick)};
+        NetworkSolver().solve(bodies, contacts, one_sweep());
+        EXPECT_EQ(bodies[0].velocity.z, 0.0);
+    }
+}
+
+// Else what has wedged it would go on, and rub.
+TEST(NetworkStart, ABallBetweenTwoWallsThatHaveHeldItFallsUpwardsWhereGravityTurnsRound) {
+    std::vector<NetworkBody> bodies = {ball(kKick)};
+    std::vector<NetworkContact> contacts;
+    for (const double side : {-1.0, 1.0}) {
+        NetworkContact& wall = contacts.emplace_back(on_floor(0, kKick));
+        wall.normal = {side, 0, 0};
+        wall.friction = 0.5;
+        wall.start.tangential = 0.5 * kKick * kUp;
+    }
+    NetworkSettings settings = one_sweep();
+    settings.sweeps = settings.most_sweeps = 100;
+    NetworkSolver().solve(bodies, contacts, settings);
+    EXPECT_EQ(bodies[0].velocity.z, kKick);
+}
+
+}  // namespace
+}  // namespace ricochet

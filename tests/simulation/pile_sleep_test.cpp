@@ -197,7 +197,7 @@ TEST(PileSleep, WhatRollsOnSleepersWeighsOnTheFloorThroughThem) {
             given_to_colliders(simulation, 5) - given + momentum_of(simulation) - before + Vec3{0, 0, weight * time};
         EXPECT_LT(length(missing), 1e-7 * weight * time) << part << ", " << asleep << " asleep";
     }
-    EXPECT_GT(together, 500U);
+    EXPECT_GT(together, 400U);  // then all sleep
 }
 
 // Without others it sleeps by itself, and is in no pile.

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kStepsToSleep = 50;
 
 /// Parts of the radius that what lies still may move in a step.
-constexpr double kStillWay = 1e-5;
+constexpr double kStillWay = 4e-5;
 
 /// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
 /// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
@@ -24,14 +24,15 @@ constexpr double kStillTime = 0.1;
 /// What falls from so many parts of a radius, or is faster, wakes those that it hits.
 constexpr double kWakingFall = 0.01;
 
-/// A contact of a sleeper wakes it where it presses by so much more than when the pile fell asleep, and than so many of
-/// the sphere's weights. Where it does not press any more it may only have changed which of several contacts carries
+/// A contact of a sleeper wakes it where it presses by so much more than the one that pressed it most when it fell
+/// asleep, and than so many of the sphere's weights: forces in a pile go now this way and now that, and a sleeper that
+/// carries much holds much. Where it does not press any more it may only have changed which of several contacts carries
 /// what: then it wakes the sleeper once the other sphere has gone.
 constexpr double kMorePressed = 4.0;
 constexpr double kWeights = 2.0;
 
-/// The same of what pushes it aside, not onto what holds it: more than what leans on it.
-constexpr double kWeightsAside = 2.0;
+/// Weights of the same of what pushes it aside, not onto what holds it.
+constexpr double kWeightsAside = 0.5;
 
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
@@ -105,24 +106,49 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
         if (bodies != nullptr && !bodies->all_stay_out(near)) disturbed.push_back(particle);
     }
-    for (const std::uint64_t particle : disturbed) wake_pile(particle, step.begin);
+    wake(disturbed, step.begin);
 }
 
-void LastingContacts::wake_pile(std::uint64_t particle, double time) {
-    const std::vector<std::uint64_t> pile = piles_.pile_of(particle);
-    if (pile.empty()) return;
-    for (const std::uint64_t member : pile) {
-        const std::optional<std::size_t> i = parts_.store.index_of(member);
+/// Those, where they sleep, and what touches them. What lies farther away is woken when it is pushed; what nothing
+/// holds any more, at once.
+void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time) {
+    if (particles.empty()) return;
+    wake_alone(piles_.around(particles), time);
+    std::vector<std::uint64_t> held;
+    for (const NetworkMemory::Entry& entry : piles_.edges()) {
+        const std::uint64_t sleeper = sleeper_of(entry.key);
+        if (is_pinned(entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
+    }
+    wake_alone(piles_.not_held(held), time);
+}
+
+void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double time) {
+    if (woken.empty()) return;
+    for (const std::uint64_t particle : woken) {
+        const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i) continue;
         parts_.mover.wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
-    piles_.wake(pile, memory_);
+    std::vector<NetworkMemory::Entry> contacts = piles_.wake(woken);
+    // What somebody awake does to them is remembered already, or has ended.
+    const auto has_lain = [&](std::uint64_t particle) {
+        return std::binary_search(woken.begin(), woken.end(), particle) || piles_.has(particle) || is_pinned(particle);
+    };
+    std::erase_if(contacts, [&](const NetworkMemory::Entry& entry) {
+        const NetworkKey& key = entry.key;
+        const bool goes_on = memory_.find(key) != nullptr;
+        return goes_on || !has_lain(key.particle) || !(key.is_wall() || has_lain(key.other));
+    });
+    memory_.add(contacts);
 }
 
-void LastingContacts::wake_all(double time) {
-    while (!piles_.empty()) wake_pile(piles_.particles().front(), time);
+bool LastingContacts::is_pinned(std::uint64_t particle) const {
+    const std::optional<std::size_t> i = parts_.store.index_of(particle);
+    return i && parts_.store.is_fixed(*i);
 }
+
+void LastingContacts::wake_all(double time) { wake_alone(piles_.particles(), time); }
 
 const PairTraces& LastingContacts::find_traces() {
     const std::size_t size = traces_.is_asleep.size();
@@ -187,14 +213,14 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
         if (hits_sleeper(first_ + hitting, first_ + sleeping, step))
             hit.push_back(parts_.store.particles().id[first_ + sleeping]);
     }
-    for (const std::uint64_t particle : hit) wake_pile(particle, step.begin);
+    wake(hit, step.begin);
     return !hit.empty();
 }
 
-bool LastingContacts::wake_those_pushed(std::span<const PairImpactRecord> impacts, const DenseTrace& trace,
-                                        const TimeSpan& step) {
-    if (piles_.empty() || first_ != 0) return false;
+std::vector<std::uint64_t> LastingContacts::those_pushed(std::span<const PairImpactRecord> impacts,
+                                                         const DenseTrace& trace, const TimeSpan& step) const {
     std::vector<std::uint64_t> pushed;
+    if (piles_.empty() || first_ != 0) return pushed;
     for (const PairImpactRecord& impact : impacts) {
         if (piles_.has(impact.first) == piles_.has(impact.second)) continue;
         if (impact.approach > parts_.response.rules().settings.resting_speed)
@@ -203,8 +229,7 @@ bool LastingContacts::wake_those_pushed(std::span<const PairImpactRecord> impact
     for (const NetworkMemory::Entry& entry : trace.pressed) {
         if (is_pressed_more(entry, step)) pushed.push_back(sleeper_of(entry.key));
     }
-    for (const std::uint64_t particle : pushed) wake_pile(particle, step.begin);
-    return !pushed.empty();
+    return pushed;
 }
 
 /// What belts and the like drive is pushed by them for good.
@@ -347,19 +372,16 @@ bool LastingContacts::is_at_edge_of_sleep(const NetworkKey& key) const {
 
 bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
     if (!is_at_edge_of_sleep(entry.key)) return false;
-    const std::optional<std::size_t> i = parts_.store.index_of(sleeper_of(entry.key));
-    if (!i) return false;
-    const NetworkImpulse* const before = piles_.contacts().find(entry.key);
+    const std::uint64_t sleeper = sleeper_of(entry.key);
+    const std::optional<std::size_t> i = parts_.store.index_of(sleeper);
+    const std::optional<std::size_t> other = parts_.store.index_of(entry.key.particle + entry.key.other - sleeper);
+    if (!i || !other) return false;
     const ForceInput state = parts_.store.force_input(*i, step.begin);
-    const double weight =
-        state.mass * length(parts_.response.rules().forces.acceleration(state)) * (step.end - step.begin);
-    const double held = before != nullptr ? before->normal : 0.0;
-    const std::optional<std::size_t> other =
-        parts_.store.index_of(entry.key.particle + entry.key.other - sleeper_of(entry.key));
+    const double pull = length(parts_.response.rules().forces.acceleration(state));
     const std::vector<Vec3>& position = parts_.store.particles().position;
-    if (other && is_aside(*i, position[*i] - position[*other], step.begin))
-        return entry.impulse.normal > kMorePressed * held + kWeightsAside * weight;
-    return entry.impulse.normal > kMorePressed * (held + kWeights * weight);
+    const bool goes_aside = is_aside(*i, position[*i] - position[*other], step.begin);
+    const double weights = (goes_aside ? kWeightsAside : kWeights) * state.mass * pull * (step.end - step.begin);
+    return entry.impulse.normal > kMorePressed * (piles_.load_of(sleeper) + weights);
 }
 
 /// Of a contact at the edge of sleep: the one of two that does not sleep has gone, or there is a gap between them.
@@ -379,7 +401,7 @@ void LastingContacts::wake_those_left(const TimeSpan& step) {
     for (const NetworkMemory::Entry& entry : piles_.edges()) {
         if (has_parted(entry.key)) parted.push_back(sleeper_of(entry.key));
     }
-    for (const std::uint64_t particle : parted) wake_pile(particle, step.end);
+    wake(parted, step.end);
 }
 
 }  // namespace ricochet

@@ -37,17 +37,19 @@ class LastingContacts {
 public:
     explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) { parts_.mover.set_piles(&piles_); }
 
-    /// A step begins for the particles of a range: says who sleeps; wakes piles that have lost a sphere, and those that
-    /// colliders come near.
+    /// A step begins for the particles of a range: says who sleeps; wakes those beside one that has gone, and those
+    /// that colliders come near.
     void begin(const ParticleRange& range, const TimeSpan& step);
     /// What plans depend on; again after somebody has woken.
     [[nodiscard]] const PairTraces& find_traces();
-    /// Wakes piles that are hit, by what is planned; false where there are none.
+    /// Wakes sleepers that are hit, by what is planned; false where there are none.
     [[nodiscard]] bool wake_those_hit(const PairPlans& plans, const TimeSpan& step);
-    /// Wakes piles of which an island, as it has been worked off, has hit or pushed one; false where there are none.
-    /// Else the step has to begin anew: they were walls to it.
-    [[nodiscard]] bool wake_those_pushed(std::span<const PairImpactRecord> impacts, const DenseTrace& trace,
-                                         const TimeSpan& step);
+    /// Sleepers that an island, as it has been worked off, has hit or pushed. Where there are any they have to be
+    /// woken, and the step begins anew: they were walls to it.
+    [[nodiscard]] std::vector<std::uint64_t> those_pushed(std::span<const PairImpactRecord> impacts,
+                                                          const DenseTrace& trace, const TimeSpan& step) const;
+    /// Wakes some, where they sleep, and what touches them, at a time, s.
+    void wake(const std::vector<std::uint64_t>& particles, double time);
     /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
     /// Of each particle: contacts of the last step's dense islands have held it, and have not thrown it off.
@@ -79,7 +81,8 @@ private:
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
     [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const DenseTrace* const> traces,
                                                               std::span<const PairImpactRecord> impacts) const;
-    void wake_pile(std::uint64_t particle, double time);
+    void wake_alone(const std::vector<std::uint64_t>& woken, double time);
+    [[nodiscard]] bool is_pinned(std::uint64_t particle) const;
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;

@@ -67,11 +67,13 @@ void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
 
 /// Whom islands have pushed that was asleep: nothing has been taken over yet.
 bool PairMotion::wake_those_pushed(const TimeSpan& step) {
-    bool have_woken = false;
+    std::vector<std::uint64_t> pushed;
     for (const PairIslands::Island& island : islands_.all()) {
-        if (contacts_.wake_those_pushed(island.impacts, island.trace, step)) have_woken = true;
+        const std::vector<std::uint64_t> own = contacts_.those_pushed(island.impacts, island.trace, step);
+        pushed.insert(pushed.end(), own.begin(), own.end());
     }
-    return have_woken;
+    contacts_.wake(pushed, step.begin);
+    return !pushed.empty();
 }
 
 void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {

@@ -1,6 +1,8 @@
 #include "ricochet/simulation/sleeping_piles.h"
 
 #include <algorithm>
+#include <numeric>
+#include <unordered_set>
 #include <utility>
 
 namespace ricochet {
@@ -20,9 +22,9 @@ auto range_of(List& list, std::uint64_t particle) {
 
 }  // namespace
 
-const SleepingPiles::Sleeper* SleepingPiles::find(std::uint64_t particle) const {
-    const auto [begin, end] = range_of(sleepers_, particle);
-    return begin == end ? nullptr : &*begin;
+void SleepingPiles::find_slots() {
+    slots_.clear();
+    for (const Sleeper& sleeper : sleepers_) slots_.emplace(sleeper.particle, slot_of(sleeper));
 }
 
 std::vector<std::uint64_t> SleepingPiles::particles() const {
@@ -43,22 +45,23 @@ void SleepingPiles::set_still(std::vector<Still> still) {
 
 void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::vector<NetworkMemory::Entry>& contacts,
                         const std::vector<Weight>& weights) {
+    const std::unordered_set<std::uint64_t> falling(particles.begin(), particles.end());
+    // Of those that fall asleep nothing counts but what their contacts do now.
+    std::vector<NetworkMemory::Entry> all = contacts;
+    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
+        const bool is_of_falling = falling.contains(entry.key.particle) || falling.contains(entry.key.other);
+        if (!is_of_falling) all.push_back(entry);
+    }
+    contacts_.replace(all);
     for (const std::uint64_t particle : particles) sleepers_.push_back({particle, particle});
     std::sort(sleepers_.begin(), sleepers_.end(), by_particle);
-    NetworkMemory all;
-    all.replace(contacts);
-    std::vector<NetworkMemory::Entry> before;
-    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        if (all.find(entry.key) == nullptr) before.push_back(entry);
-    }
-    all.add(before);
-    contacts_ = std::move(all);
+    find_slots();
     weights_.insert(weights_.end(), weights.begin(), weights.end());
     std::stable_sort(weights_.begin(), weights_.end(), by_particle);
     std::vector<NetworkKey> joined;
     for (const NetworkMemory::Entry& entry : contacts) joined.push_back(entry.key);
     join(joined);
-    find_edges();
+    look_at_contacts();
     ++version_;
 }
 
@@ -85,39 +88,97 @@ void SleepingPiles::join(const std::vector<NetworkKey>& touching) {
     for (std::size_t i = 0; i < parents.size(); ++i) sleepers_[i].pile = sleepers_[root_of(i)].pile;
 }
 
-void SleepingPiles::find_edges() {
+/// What is at the edge of sleep, how strongly sleepers are pressed, and by whom.
+void SleepingPiles::look_at_contacts() {
     edges_.clear();
+    for (Sleeper& sleeper : sleepers_) sleeper.load = 0.0;
+    const auto press = [&](const Sleeper* sleeper, double normal) {
+        if (sleeper == nullptr) return;
+        Sleeper& own = sleepers_[slot_of(*sleeper)];
+        own.load = std::max(own.load, normal);
+    };
     for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        if (!entry.key.is_wall() && has(entry.key.particle) != has(entry.key.other)) edges_.push_back(entry);
+        const Sleeper* const first = find(entry.key.particle);
+        press(first, entry.impulse.normal);
+        if (entry.key.is_wall()) continue;
+        const Sleeper* const second = find(entry.key.other);
+        press(second, entry.impulse.normal);
+        if ((first != nullptr) != (second != nullptr)) edges_.push_back(entry);
     }
+    find_neighbours();
 }
 
-std::vector<std::uint64_t> SleepingPiles::pile_of(std::uint64_t particle) const {
-    std::vector<std::uint64_t> members;
-    const Sleeper* const first = find(particle);
-    if (first == nullptr) return members;
+void SleepingPiles::find_neighbours() {
+    const auto for_each = [&](const auto& visit) {
+        for (const NetworkMemory::Entry& entry : contacts_.entries()) {
+            if (entry.key.is_wall()) continue;
+            if (const Sleeper* const sleeper = find(entry.key.particle)) visit(slot_of(*sleeper), entry.key.other);
+            if (const Sleeper* const sleeper = find(entry.key.other)) visit(slot_of(*sleeper), entry.key.particle);
+        }
+    };
+    first_.assign(sleepers_.size() + 1, 0);
+    for_each([&](std::uint32_t slot, std::uint64_t) { ++first_[slot + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    neighbours_.resize(first_.back());
+    std::vector<std::uint32_t> next = first_;
+    for_each([&](std::uint32_t slot, std::uint64_t other) { neighbours_[next[slot]++] = other; });
+}
+
+std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles) const {
+    std::vector<std::uint64_t> found;
+    for (const std::uint64_t particle : particles) {
+        const Sleeper* const sleeper = find(particle);
+        if (sleeper == nullptr) continue;
+        found.push_back(particle);
+        for (const std::uint64_t other : neighbours_of(*sleeper)) {
+            if (has(other)) found.push_back(other);
+        }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
+std::vector<std::uint64_t> SleepingPiles::not_held(const std::vector<std::uint64_t>& by_others) const {
+    std::vector<std::uint8_t> held(sleepers_.size(), 0);
+    std::vector<std::uint64_t> open;
+    const auto hold = [&](std::uint64_t particle) {
+        const Sleeper* const sleeper = find(particle);
+        if (sleeper == nullptr || held[slot_of(*sleeper)] != 0) return;
+        held[slot_of(*sleeper)] = 1;
+        open.push_back(particle);
+    };
+    for (const Weight& weight : weights_) hold(weight.particle);
+    for (const std::uint64_t particle : by_others) hold(particle);
+    while (!open.empty()) {
+        const std::uint64_t particle = open.back();
+        open.pop_back();
+        for (const std::uint64_t other : neighbours_of(*find(particle))) hold(other);
+    }
+    std::vector<std::uint64_t> others;
     for (const Sleeper& sleeper : sleepers_) {
-        if (sleeper.pile == first->pile) members.push_back(sleeper.particle);
+        if (held[slot_of(sleeper)] == 0) others.push_back(sleeper.particle);
     }
-    return members;
+    return others;
 }
 
-void SleepingPiles::wake(const std::vector<std::uint64_t>& pile, NetworkMemory& memory) {
-    const auto is_woken = [&](std::uint64_t id) { return std::binary_search(pile.begin(), pile.end(), id); };
-    std::erase_if(sleepers_, [&](const Sleeper& sleeper) { return is_woken(sleeper.particle); });
-    std::erase_if(weights_, [&](const Weight& weight) { return is_woken(weight.particle); });
+std::vector<NetworkMemory::Entry> SleepingPiles::wake(const std::vector<std::uint64_t>& woken) {
+    const std::unordered_set<std::uint64_t> waking(woken.begin(), woken.end());
+    std::erase_if(sleepers_, [&](const Sleeper& sleeper) { return waking.contains(sleeper.particle); });
+    std::erase_if(weights_, [&](const Weight& weight) { return waking.contains(weight.particle); });
+    find_slots();
     std::vector<NetworkMemory::Entry> theirs;
     std::vector<NetworkMemory::Entry> others;
     for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        const bool is_theirs = is_woken(entry.key.particle) || (!entry.key.is_wall() && is_woken(entry.key.other));
-        (is_theirs ? theirs : others).push_back(entry);
+        const NetworkKey& key = entry.key;
+        const bool is_theirs = waking.contains(key.particle) || waking.contains(key.other);
+        if (is_theirs) theirs.push_back(entry);
+        if (!is_theirs || has(key.particle) || has(key.other)) others.push_back(entry);
     }
-    // What has gone on meanwhile is remembered already.
-    std::erase_if(theirs, [&](const NetworkMemory::Entry& entry) { return memory.find(entry.key) != nullptr; });
-    contacts_.replace(std::move(others));
-    memory.add(theirs);
-    find_edges();
+    contacts_.replace(others);
+    look_at_contacts();
     ++version_;
+    return theirs;
 }
 
 void SleepingPiles::add_weight(std::uint64_t particle, double duration, std::vector<SurfaceHit>& hits) const {

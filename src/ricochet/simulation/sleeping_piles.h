@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "ricochet/core/binary_archive.h"
@@ -33,8 +34,11 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
     /// Changes whenever sleepers do.
     [[nodiscard]] std::uint64_t version() const { return version_; }
-    /// The number of a sleeper's pile: the lowest particle that was in it when it was joined.
+    /// The number of a sleeper's pile: the lowest particle that was in it when it was joined. Where some have woken in
+    /// its middle it is one pile still.
     [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->pile; }
+    /// N s, of a step: with which the contact that presses a sleeper most did so when it fell asleep.
+    [[nodiscard]] double load_of(std::uint64_t sleeper) const { return find(sleeper)->load; }
     /// What sleepers do to surfaces, ascending by particle.
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
     /// Contacts of sleepers, as they were when they fell asleep.
@@ -51,10 +55,13 @@ public:
              const std::vector<Weight>& weights);
     /// Pairs of spheres that touch: their piles are one, where both sleep.
     void join(const std::vector<NetworkKey>& touching);
-    /// All of the pile that a particle is of, ascending; nobody where it does not sleep.
-    [[nodiscard]] std::vector<std::uint64_t> pile_of(std::uint64_t particle) const;
-    /// Wakes a whole pile, and adds its contacts to a memory.
-    void wake(const std::vector<std::uint64_t>& pile, NetworkMemory& memory);
+    /// Sleepers among some particles, and those that a contact joins to one of them: ascending.
+    [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles) const;
+    /// Sleepers that contacts join neither to a surface nor to one of others that hold, nor to such sleepers:
+    /// ascending.
+    [[nodiscard]] std::vector<std::uint64_t> not_held(const std::vector<std::uint64_t>& by_others) const;
+    /// Wakes some, ascending. Says what their contacts did when they fell asleep.
+    [[nodiscard]] std::vector<NetworkMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
     /// Appends what a sleeper gives to surfaces in a time, s.
     void add_weight(std::uint64_t particle, double duration, std::vector<SurfaceHit>& hits) const;
 
@@ -65,7 +72,8 @@ public:
         archive_entries(a, still_, [&](Still& still) { a(still.particle), a(still.steps); });
         archive_entries(a, weights_, [&](Weight& weight) { a(weight.particle), a(weight.surface), a(weight.force); });
         contacts_.archive(a);
-        find_edges();
+        find_slots();
+        look_at_contacts();
         ++version_;
     }
 
@@ -73,15 +81,31 @@ private:
     struct Sleeper {
         std::uint64_t particle = 0;
         std::uint64_t pile = 0;  ///< number_of()
+        double load = 0.0;       ///< load_of()
     };
-    [[nodiscard]] const Sleeper* find(std::uint64_t particle) const;
-    void find_edges();
+    [[nodiscard]] const Sleeper* find(std::uint64_t particle) const {
+        const auto at = slots_.find(particle);
+        return at == slots_.end() ? nullptr : &sleepers_[at->second];
+    }
+    [[nodiscard]] std::uint32_t slot_of(const Sleeper& sleeper) const {
+        return static_cast<std::uint32_t>(&sleeper - sleepers_.data());
+    }
+    [[nodiscard]] std::span<const std::uint64_t> neighbours_of(const Sleeper& sleeper) const {
+        const std::uint32_t slot = slot_of(sleeper);
+        return std::span(neighbours_).subspan(first_[slot], first_[slot + 1] - first_[slot]);
+    }
+    void find_slots();
+    void look_at_contacts();
+    void find_neighbours();
 
-    std::vector<Sleeper> sleepers_;  // ascending, as the others
+    std::vector<Sleeper> sleepers_;                           // ascending, as the others
+    std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // of those among them, by particle
     std::vector<Still> still_;
     std::vector<Weight> weights_;
     NetworkMemory contacts_;
     std::vector<NetworkMemory::Entry> edges_;
+    std::vector<std::uint64_t> neighbours_;  // particles that sleepers have contacts with, sleeper by sleeper
+    std::vector<std::uint32_t> first_;       // of each sleeper's among those, and the end
     std::uint64_t version_ = 0;
 };
 

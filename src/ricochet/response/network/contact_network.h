@@ -69,9 +69,10 @@ struct NetworkContact {
     double rolling_friction = 0.0;  ///< m, moment over normal force
     double restitution = 0.0;       ///< 0..1
     double most_parting =
-        INFINITY;          ///< m/s, speed with which what overlaps is parted at most, beside what sweeps leave
-    bool touched = false;  ///< it was closed at the begin of the step already
-    NetworkImpulse start;  ///< what it did in the last step, to begin with
+        INFINITY;            ///< m/s, speed with which what overlaps is parted at most, beside what sweeps leave
+    double exactness = 1.0;  ///< >= 1: of the tolerances it may use only a part, 1 over this
+    bool touched = false;    ///< it was closed at the begin of the step already
+    NetworkImpulse start;    ///< what it did in the last step, to begin with
 };
 
 /// When the solver ends: when the conditions are met to the tolerance; or after `sweeps` of them, when they are met to

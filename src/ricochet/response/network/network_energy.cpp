@@ -49,8 +49,8 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     find_gains();
     bool gained = false;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (rows_[i].bound >= -rows_[i].parting || !gains_[impacts_.of(rows_[i])].is_gain()) continue;
-        rows_[i].bound = std::max(-rows_[i].parting, contacts[coloring_.order()[i]].gap / settings.duration);
+        if (rows_[i].bound >= -partings_[i] || !gains_[impacts_.of(rows_[i])].is_gain()) continue;
+        rows_[i].bound = std::max(-partings_[i], contacts[coloring_.order()[i]].gap / settings.duration);
         gained = true;
     }
     if (!gained) return;
@@ -79,7 +79,8 @@ bool NetworkSolver::let_rebound() {
 void NetworkSolver::find_gains() {
     impacts_.assign(before_, rows_);
     gains_.assign(impacts_.size(), {});
-    for (const NetworkRow& row : rows_) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const NetworkRow& row = rows_[i];
         if (row.push.normal == 0.0) continue;
         const auto work_in = [&](const std::vector<NetworkState>& states) {
             const NetworkState& a = states[row.a];
@@ -94,7 +95,7 @@ void NetworkSolver::find_gains() {
         const double before = work_in(before_);
         const double after = work_in(states_);
         Gain& gain = gains_[impacts_.of(row)];
-        gain.against += before - row.push.normal * row.parting;
+        gain.against += before - row.push.normal * partings_[i];
         gain.curvature += after - before;
         gain.size += std::fabs(before) + std::fabs(after);
     }
@@ -142,7 +143,7 @@ void NetworkSolver::hand_over(std::span<NetworkBody> bodies) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         if (i + kPrefetchDistance < rows_.size()) prefetch_whole(impulses_[order[i + kPrefetchDistance]]);
         const NetworkRow& row = rows_[i];
-        rebounds_[order[i]] = row.bound < -row.parting ? 1 : 0;
+        rebounds_[order[i]] = row.bound < -partings_[i] ? 1 : 0;
         const bool resists_rolling = row.rolling != NetworkRow::kNone;
         impulses_[order[i]] = {row.push.normal, row.push.tangential,
                                resists_rolling ? rolling_[row.rolling].moment : Vec3{}};

@@ -17,6 +17,16 @@ constexpr int kMostSweeps = 300;
 /// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
 constexpr double kSlow = 0.02;
 
+/// The same of what forces give in a step: what lies, and is solved to such a part of that, sleeps. Smaller: networks
+/// that hardly move are swept to the end for nothing.
+constexpr double kLying = 0.05;
+
+/// Contacts may leave errors of the size of their own two speeds, or of so many times what forces give in a step, or of
+/// such a part of the fastest sphere's speed, if that is more. Smaller: what rests beside what moves is stiller, and
+/// takes more sweeps, many times more while all fall.
+constexpr double kRestingKicks = 8.0;
+constexpr double kOthersSpeed = 0.6;
+
 /// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
 constexpr std::size_t kFewContacts = 64;
 
@@ -72,7 +82,10 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::s
     add_pairs(pairs);
     add_walls(members, scratch);
     for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
-    return solver_.solve(bodies_, contacts_, settings(members));
+    const Pace pace = pace_of(members);
+    const NetworkSettings wished = settings(pace);
+    if (contacts_.size() > kFewContacts) set_exactness(pace, wished.enough);
+    return solver_.solve(bodies_, contacts_, wished);
 }
 
 /// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
@@ -237,30 +250,48 @@ double NetworkIsland::rebound(double restitution, double approach) const {
 }
 
 /// What moves fast may be less exact; what comes to rest is solved ever more closely.
-NetworkSettings NetworkIsland::settings(std::span<const NetworkMember> members) const {
-    double fastest = 0.0;
-    double smallest = INFINITY;
-    for (const NetworkMember& member : members) {
-        if (member.is_fixed) continue;
-        fastest = std::max(fastest, length(member.moving->state.velocity));
-        smallest = std::min(smallest, member.radius);
-    }
+NetworkSettings NetworkIsland::settings(const Pace& pace) const {
     NetworkSettings settings;
     settings.duration = duration_;
-    const double still = kNetworkStill * smallest / duration_;
+    const double still = kNetworkStill * pace.smallest / duration_;
     const bool is_few = contacts_.size() <= kFewContacts;
     const double overlap = (is_few ? kOfFew : 1.0) * kNetworkOverlap;
-    settings.enough = std::min(overlap * smallest / duration_, std::max(kSlow * fastest, still));
-    settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * fastest, still));
+    const double slow = kSlow * std::max(pace.fastest, kLying * pace.kick);
+    settings.enough = std::min(overlap * pace.smallest / duration_, std::max(slow, still));
+    settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * pace.fastest, still));
     if (is_few) {
-        settings.tolerance = std::min(still, kRounding * fastest);
+        settings.tolerance = std::min(still, kRounding * pace.fastest);
     } else {
-        settings.slip = kNetworkResidual * fastest;
+        settings.slip = kNetworkResidual * pace.fastest;
         settings.connecting = kConnecting * settings.enough;
     }
     settings.sweeps = kSweeps;
     settings.most_sweeps = kMostSweeps;
     return settings;
+}
+
+NetworkIsland::Pace NetworkIsland::pace_of(std::span<const NetworkMember> members) const {
+    Pace pace;
+    for (const NetworkMember& member : members) {
+        if (member.is_fixed) continue;
+        pace.fastest = std::max(pace.fastest, length(member.moving->state.velocity));
+        pace.smallest = std::min(pace.smallest, member.radius);
+    }
+    for (const Place& place : places_) pace.kick = std::max(pace.kick, duration_ * place.pull);
+    return pace;
+}
+
+/// Errors that something fast may leave would keep all that lies beside it awake.
+void NetworkIsland::set_exactness(const Pace& pace, double enough) {
+    const double still = kNetworkStill * pace.smallest / duration_;
+    const auto speed_of = [&](const Place& place) {
+        return std::max(length(place.velocity), kRestingKicks * duration_ * place.pull);
+    };
+    for (NetworkContact& contact : contacts_) {
+        double speed = std::max(kOthersSpeed * pace.fastest, speed_of(places_[contact.a]));
+        if (contact.b != NetworkContact::kWall) speed = std::max(speed, speed_of(places_[contact.b]));
+        contact.exactness = std::max(1.0, enough / std::max(kSlow * speed, still));
+    }
 }
 
 void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const {

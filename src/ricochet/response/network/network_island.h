@@ -2,6 +2,7 @@
 /// Private to the responses: spheres that are moved over a step together, by the problem of all their contacts.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <utility>
@@ -93,6 +94,13 @@ private:
         bool is_asleep = false;
     };
 
+    /// What errors are measured by.
+    struct Pace {
+        double fastest = 0.0;        ///< m/s, with which one sets out
+        double kick = 0.0;           ///< m/s, that forces give one in the step at most
+        double smallest = INFINITY;  ///< m, radius
+    };
+
     void set_part(bool is_coupled);
     [[nodiscard]] double parted(double gap) const { return gap < 0.0 ? part_ * gap : gap; }
     void add_bodies(std::span<const NetworkMember> members, const NetworkMemory& memory);
@@ -106,7 +114,9 @@ private:
     void warm_start(std::size_t at);
     [[nodiscard]] double rebound(double restitution, double approach) const;
     [[nodiscard]] Vec3 velocity_in_flight(const NetworkMember& member) const;
-    [[nodiscard]] NetworkSettings settings(std::span<const NetworkMember> members) const;
+    [[nodiscard]] Pace pace_of(std::span<const NetworkMember> members) const;
+    [[nodiscard]] NetworkSettings settings(const Pace& pace) const;
+    void set_exactness(const Pace& pace, double enough);
 
     const ResponseRules& rules_;
     const PairMaterials& materials_;

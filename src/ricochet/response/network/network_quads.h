@@ -37,6 +37,7 @@ struct QuadRow {
     QuadVec3 normal;
     Quad bound;
     Quad friction;
+    Quad strictness;
     QuadPush push;
     QuadPush direction;
 };
@@ -58,6 +59,7 @@ static_assert(sizeof(NetworkState) == 8 * sizeof(double) && offsetof(NetworkStat
 static_assert(sizeof(NetworkRow) == 16 * sizeof(double) && offsetof(NetworkRow, normal) == sizeof(double) &&
               offsetof(NetworkRow, bound) == 4 * sizeof(double) &&
               offsetof(NetworkRow, friction) == 5 * sizeof(double) &&
+              offsetof(NetworkRow, strictness) == 6 * sizeof(double) &&
               offsetof(NetworkRow, push) == 8 * sizeof(double) &&
               offsetof(NetworkRow, direction) == 12 * sizeof(double));
 
@@ -112,6 +114,7 @@ RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<Network
     rows.normal = {first[1], first[2], first[3]};
     rows.bound = second[0];
     rows.friction = second[1];
+    rows.strictness = second[2];
     rows.push = {push[0], {push[1], push[2], push[3]}};
     rows.direction = {direction[0], {direction[1], direction[2], direction[3]}};
     return rows;

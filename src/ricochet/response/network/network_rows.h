@@ -40,7 +40,7 @@ struct alignas(64) NetworkRow {
     Vec3 normal;
     double bound = 0.0;  ///< m/s, with which it may still approach; < 0: with which it has to leave
     double friction = 0.0;
-    double parting = 0.0;       ///< m/s, >= 0, with which what overlaps is parted
+    double strictness = 1.0;    ///< >= 1, squared: so many times larger its errors count
     std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
     NetworkPush push;
     NetworkPush direction;  ///< by what the last sweep has changed it, with the momentum before it
@@ -69,17 +69,17 @@ struct NetworkLimits {
 /// How much a row has changed, or each of four, see SweepChange.
 template <class Number>
 struct RowChange {
-    Number pushing{};  ///< J, by the normal impulse
-    Number rubbing{};  ///< J, by friction
-    Number approach_squared{};
+    Number pushing{};           ///< J, by the normal impulse
+    Number rubbing{};           ///< J, by friction
+    Number approach_squared{};  ///< m^2/s^2, as it counts
     Number slip_squared{};
 };
 
 /// How much a sweep has changed.
 struct SweepChange {
     double squared = 0.0;           ///< J, sum of impulses times the velocities that they change
-    double approach_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's approach
-    double slip_squared = 0.0;      ///< m^2/s^2, of the largest change of its slip
+    double approach_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's approach, as it counts
+    double slip_squared = 0.0;      ///< m^2/s^2, of the largest change of its slip, as it counts
 
     void add(const SweepChange& other) {
         squared += other.squared;
@@ -173,7 +173,7 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     row.push.tangential += step.tangential;
     const auto velocity = by.normal * mobility;
     change.pushing = by.normal * velocity;
-    change.approach_squared = velocity * velocity;
+    change.approach_squared = row.strictness * (velocity * velocity);
     if (const auto rubs = row.friction > 0.0; any(rubs)) {
         const auto slip_mobility = slip_mobility_of(a, b);
         const auto wish = row.push.tangential - (1.0 / slip_mobility) * slip_of(row, a, b);
@@ -181,7 +181,7 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
         by.tangential = select(rubs, cut - row.push.tangential, by.tangential);
         row.push.tangential = cut;
         change.rubbing = length_squared(by.tangential) * slip_mobility;
-        change.slip_squared = change.rubbing * slip_mobility;
+        change.slip_squared = row.strictness * (change.rubbing * slip_mobility);
     }
     row.direction = {step.normal + by.normal, step.tangential + by.tangential};
     apply(row, by, a, b);
@@ -201,7 +201,8 @@ inline void relax(const NetworkRow& row, RollingRow& rolling, double factor, Net
     const double squared = length_squared(by) / rolling.inertia;
     change.squared += squared;
     const double per_radius = std::max(rolling.per_radius_a, rolling.per_radius_b);
-    change.slip_squared = std::max(change.slip_squared, squared / (rolling.inertia * per_radius * per_radius));
+    const double speed_squared = squared / (rolling.inertia * per_radius * per_radius);
+    change.slip_squared = std::max(change.slip_squared, row.strictness * speed_squared);
 }
 
 /// It does nothing, has done nothing in the last sweep, and need not do anything now.

@@ -28,6 +28,10 @@ constexpr double kDirect = 0.25;
 /// so many times, each time: large networks that come to an answer begin a few dozen times.
 constexpr int kRestartsAPlainSweep = 64;
 
+/// Contacts of a network up to which what sweeps do not solve is solved directly, whatever its masses: spheres between
+/// others that sleep, to which sweeps come slowly where friction holds much. Few cost little.
+constexpr std::size_t kDirectContacts = 400;
+
 /// Ratio from which on more sweeps are not tried first.
 constexpr double kVeryUnlikeMasses = 1e4;
 
@@ -73,6 +77,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
     before_.push_back({});  // all walls at rest
     rows_.clear();
     rolling_.clear();
+    partings_.clear();
     restitutions_.clear();
     mass_ratio_ = 1.0;
     against_start_ = 0.0;
@@ -89,6 +94,7 @@ void NetworkSolver::set_up(std::span<const NetworkBody> bodies, std::span<const 
 
 void NetworkSolver::add_row(const NetworkContact& contact, std::span<const NetworkBody> bodies, double duration) {
     NetworkRow& row = rows_.emplace_back();
+    partings_.push_back(0.0);
     set_row(row, contact, bodies, duration);
     if (contact.rolling_friction > 0.0) add_rolling(contact, bodies);
     restitutions_.push_back(contact.touched ? 0.0 : contact.restitution);
@@ -110,15 +116,16 @@ void NetworkSolver::set_row(NetworkRow& row, const NetworkContact& contact, std:
     row.normal = contact.normal;
     row.rolling = NetworkRow::kNone;
     row.friction = contact.friction;
+    row.strictness = contact.exactness * contact.exactness;
     if (contact.gap > 0.0) {
         row.bound = contact.gap / duration;
     } else {
         const bool is_pair = contact.b != NetworkContact::kWall;
         const double radius =
             is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
-        row.parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
-        row.parting = std::min(row.parting, contact.most_parting);
-        row.bound = -row.parting;
+        const double parting = std::clamp(-kNetworkPushOut * contact.gap, 0.0, kMostParting * radius) / duration;
+        partings_.back() = std::min(parting, contact.most_parting);
+        row.bound = -partings_.back();
     }
     if (mobility_of(before_[row.a], before_[row.b]) == 0.0) {
         row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
@@ -180,12 +187,14 @@ void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
-/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few
-/// sweeps do not solve where masses differ much is solved directly, and a few sweeps more say whether it is.
+/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What they do
+/// not solve where masses differ much, or contacts are few, is solved directly, and a few sweeps more say whether it
+/// is.
 void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& report) {
     const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
-    if (sweep_until(settings, first, report) || !(mass_ratio_ > kUnlikeMasses)) return;
+    const bool may_be_direct = mass_ratio_ > kUnlikeMasses || rows_.size() <= kDirectContacts;
+    if (sweep_until(settings, first, report) || !may_be_direct) return;
     const double residual = report.residual;
     const Impulses swept{rows_, rolling_, states_};
     const double tolerance = std::max(settings.tolerance, kDirect * settings.enough);

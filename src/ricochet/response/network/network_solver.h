@@ -72,6 +72,7 @@ private:
     std::size_t bodies_ = 0;
     std::vector<NetworkRow> rows_;  // in the order of the colours
     std::vector<RollingRow> rolling_;
+    std::vector<double> partings_;      // m/s, >= 0, of the rows: with which what overlaps is parted
     std::vector<double> restitutions_;  // of the rows, without those that others of the same impact may take away
     double against_start_ = 0.0;        // J, of the impulses to begin with times what they act against before them
     std::vector<NetworkState> last_;    // of the bodies, after the sweep before the last

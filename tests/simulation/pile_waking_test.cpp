@@ -105,5 +105,73 @@ TEST(PileWaking, APileFallsWhereItsLowestSphereHasLivedItsLife) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
 }
 
+/// A layer of ten by ten in a bin, and one of nine by nine in its hollows.
+SimulationSetup bed_setup(double duration) {
+    SimulationSetup setup = setup_of(1e-3, duration, {"", 0.3, 0.5}, {0, 0, -9.81});
+    const double side = 20 * kRadius;
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
+                       {"left", PlaneShape{{0, 0, 0}, {1, 0, 0}}},
+                       {"right", PlaneShape{{side, 0, 0}, {-1, 0, 0}}},
+                       {"front", PlaneShape{{0, 0, 0}, {0, 1, 0}}},
+                       {"back", PlaneShape{{0, side, 0}, {0, -1, 0}}}};
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = 0.5};
+    setup.options.verify = true;
+    for (int layer = 0; layer < 2; ++layer) {
+        for (int i = 0; i < 10 - layer; ++i) {
+            for (int k = 0; k < 10 - layer; ++k) {
+                const Vec3 place{2.0 * i + 1.0 + layer, 2.0 * k + 1.0 + layer, 1.0 + 1.4142135623730951 * layer};
+                setup.particles.push_back(particle_of(kRadius * place, {}, kRadius));
+            }
+        }
+    }
+    return setup;
+}
+
+/// N s, upwards: what the colliders have been given and the spheres have, less what gravity has given since they stood.
+double momentum_missing(const Simulation& simulation) {
+    const Particles& p = simulation.particles();
+    double sum = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) sum += p.mass[i] * (p.velocity[i].z + 9.81 * simulation.time());
+    for (std::size_t c = 0; c < 5; ++c) {
+        for (const Vec3& impulse : simulation.triangle_totals(c).impulse) sum += impulse.z;
+    }
+    return sum;
+}
+
+TEST(PileWaking, WhatFallsOntoAPileWakesWhatIsNearItAlone) {
+    SimulationSetup setup = bed_setup(2.0);
+    const std::uint64_t bed = setup.particles.size();
+    setup.particles.push_back(particle_of({10.3 * kRadius, 9.8 * kRadius, 0.5}, {}, kRadius));
+    Simulation simulation(std::move(setup));
+    std::uint64_t most = 0;
+    std::uint64_t least = bed;  // asleep since all of the bed have been
+    while (!simulation.finished()) {
+        simulation.step();
+        const std::uint64_t asleep = simulation.statistics().asleep;
+        most = std::max(most, asleep);
+        if (most >= bed) least = std::min(least, asleep);
+    }
+    EXPECT_GE(most, bed);
+    EXPECT_LT(least, bed - 5);
+    EXPECT_GT(least, bed / 2);
+    EXPECT_EQ(simulation.statistics().asleep, bed + 1);
+    EXPECT_NEAR(momentum_missing(simulation), 0.0, 1e-9 * 9.81 * 2.0 * static_cast<double>(bed));
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+    EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
+}
+
+// It is held by what sleeps around it, or falls with what is woken below it.
+TEST(PileWaking, WhatNothingHoldsAnyMoreFalls) {
+    SimulationSetup setup = bed_setup(1.5);
+    const std::size_t bed = setup.particles.size();
+    for (std::size_t i = 0; i < 100; ++i) setup.particles[i].lifetime = 0.6;  // the whole lower layer
+    Simulation simulation(std::move(setup));
+    while (!simulation.finished()) simulation.step();
+    const Particles& p = simulation.particles();
+    ASSERT_EQ(p.size(), bed - 100);
+    for (std::size_t i = 0; i < p.size(); ++i) EXPECT_LT(p.position[i].z, 1.001 * kRadius) << i;
+    EXPECT_EQ(simulation.statistics().pair_violations, 0U);
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -1,0 +1,80 @@
+// Contacts that have to be solved more closely than others of their network.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/response/network/network_solver.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
+constexpr std::uint32_t kHeight = 20;
+const Vec3 kUp{0, 0, 1};
+
+struct Columns {
+    std::vector<NetworkBody> bodies;
+    std::vector<NetworkContact> contacts;
+};
+
+/// Of balls of 1 kg on a floor, which begin without what holds them; exactness: of each column's contacts.
+Columns columns(const std::vector<double>& exactness) {
+    Columns all;
+    for (const double own : exactness) {
+        for (std::uint32_t k = 0; k < kHeight; ++k) {
+            const auto body = static_cast<std::uint32_t>(all.bodies.size());
+            all.bodies.push_back({{0.1 * kKick, 0, -kKick}, {}, 1.0, 250.0, 0.1});
+            NetworkContact& contact = all.contacts.emplace_back();
+            contact.a = body;
+            if (k > 0) contact.b = body - 1;
+            contact.normal = kUp;
+            contact.friction = 0.3;
+            contact.exactness = own;
+        }
+    }
+    return all;
+}
+
+NetworkReport solve(Columns& network, double tolerance) {
+    NetworkSettings settings;
+    settings.duration = 1e-3;
+    settings.tolerance = tolerance;
+    return NetworkSolver().solve(network.bodies, network.contacts, settings);
+}
+
+double fall_of(const Columns& network, std::uint32_t column) {
+    double fall = 0.0;
+    for (std::uint32_t k = 0; k < kHeight; ++k) {
+        fall = std::max(fall, std::fabs(network.bodies[kHeight * column + k].velocity.z));
+    }
+    return fall;
+}
+
+// A power of two, so that nothing is rounded.
+TEST(NetworkExactness, OfAllContactsIsASmallerTolerance) {
+    Columns exact = columns({1024.0, 1024.0});
+    Columns plain = columns({1.0, 1.0});
+    const NetworkReport first = solve(exact, 1024.0 * 1e-9);
+    const NetworkReport second = solve(plain, 1e-9);
+    EXPECT_EQ(first.sweeps, second.sweeps);
+    EXPECT_EQ(first.residual, 1024.0 * second.residual);
+    for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
+        EXPECT_EQ(exact.bodies[i].velocity, plain.bodies[i].velocity) << i;
+        EXPECT_EQ(exact.bodies[i].spin, plain.bodies[i].spin) << i;
+    }
+}
+
+TEST(NetworkExactness, OfOneColumnTakesTheSweepsThatItNeedsAlone) {
+    Columns both = columns({1.0, 1000.0});
+    Columns coarse = columns({1.0});
+    const NetworkReport report = solve(both, 0.1 * kKick);
+    EXPECT_GT(report.sweeps, solve(coarse, 0.1 * kKick).sweeps);
+    EXPECT_LT(fall_of(both, 1), 0.01 * kKick);
+    EXPECT_GT(fall_of(coarse, 0), 0.1 * kKick);
+}
+
+}  // namespace
+}  // namespace ricochet

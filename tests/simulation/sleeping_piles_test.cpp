@@ -1,0 +1,72 @@
+// Who sleeps beside whom: a row of spheres, the first of which leans on a wall.
+#include "ricochet/simulation/sleeping_piles.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace ricochet {
+namespace {
+
+using Ids = std::vector<std::uint64_t>;
+
+NetworkMemory::Entry pair_of(std::uint64_t first, std::uint64_t second, double normal) {
+    return {NetworkKey::of_pair(first, second), {normal, {}, {}}, false};
+}
+
+/// 10 to 14, each pressed by the next with its number less 10, and 20, which is awake and presses 14 with 5.
+SleepingPiles row() {
+    SleepingPiles piles;
+    std::vector<NetworkMemory::Entry> contacts = {{NetworkKey::of_wall(10, 3), {9.0, {}, {}}, false}};
+    for (std::uint64_t k = 10; k < 14; ++k) contacts.push_back(pair_of(k, k + 1, static_cast<double>(k + 1 - 10)));
+    contacts.push_back(pair_of(14, 20, 5.0));
+    piles.add({12, 10, 14, 11, 13}, contacts, {{10, 3, {0, 0, -9}}});
+    return piles;
+}
+
+bool has(const std::vector<NetworkMemory::Entry>& entries, std::uint64_t first, std::uint64_t second) {
+    const NetworkKey key = NetworkKey::of_pair(first, second);
+    return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.key == key; });
+}
+
+TEST(SleepingPiles, KnowWhoTouchesWhom) {
+    const SleepingPiles piles = row();
+    EXPECT_EQ(piles.around({12}), (Ids{11, 12, 13}));
+    EXPECT_EQ(piles.around({10, 14}), (Ids{10, 11, 13, 14}));
+    EXPECT_EQ(piles.around({20}), Ids{});
+    EXPECT_EQ(piles.number_of(14), 10U);
+}
+
+TEST(SleepingPiles, KnowWhatPressesASleeperMost) {
+    const SleepingPiles piles = row();
+    EXPECT_EQ(piles.load_of(10), 9.0);
+    EXPECT_EQ(piles.load_of(12), 3.0);
+    EXPECT_EQ(piles.load_of(14), 5.0);
+}
+
+TEST(SleepingPiles, ThoseThatNothingHoldsAreThoseBeyondWhatHasWoken) {
+    SleepingPiles piles = row();
+    EXPECT_EQ(piles.not_held({}), Ids{});
+    const std::vector<NetworkMemory::Entry> contacts = piles.wake({12});
+    EXPECT_EQ(contacts.size(), 2U);
+    EXPECT_TRUE(has(contacts, 11, 12) && has(contacts, 12, 13));
+    EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
+    EXPECT_EQ(piles.not_held({14}), Ids{});
+    // The one that is awake still presses those beside it.
+    EXPECT_TRUE(has(piles.edges(), 11, 12) && has(piles.edges(), 12, 13) && has(piles.edges(), 14, 20));
+}
+
+TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
+    SleepingPiles piles = row();
+    static_cast<void>(piles.wake({12}));
+    piles.add({12}, {pair_of(11, 12, 7.0)}, {});
+    EXPECT_EQ(piles.load_of(12), 7.0);
+    EXPECT_EQ(piles.contacts().find(NetworkKey::of_pair(12, 13)), nullptr);
+    EXPECT_EQ(piles.around({12}), (Ids{11, 12}));
+    EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -33,9 +33,10 @@ bool has(const std::vector<NetworkMemory::Entry>& entries, std::uint64_t first, 
 
 TEST(SleepingPiles, KnowWhoTouchesWhom) {
     const SleepingPiles piles = row();
-    EXPECT_EQ(piles.around({12}), (Ids{11, 12, 13}));
-    EXPECT_EQ(piles.around({10, 14}), (Ids{10, 11, 13, 14}));
-    EXPECT_EQ(piles.around({20}), Ids{});
+    EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12, 13}));
+    EXPECT_EQ(piles.around({10, 14}, 1), (Ids{10, 11, 13, 14}));
+    EXPECT_EQ(piles.around({10}, 2), (Ids{10, 11, 12}));
+    EXPECT_EQ(piles.around({20}, 1), Ids{});
     EXPECT_EQ(piles.number_of(14), 10U);
 }
 
@@ -64,7 +65,7 @@ TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});
     EXPECT_EQ(piles.load_of(12), 7.0);
     EXPECT_EQ(piles.contacts().find(NetworkKey::of_pair(12, 13)), nullptr);
-    EXPECT_EQ(piles.around({12}), (Ids{11, 12}));
+    EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12}));
     EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
 }
 

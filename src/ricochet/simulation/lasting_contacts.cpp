@@ -34,6 +34,11 @@ constexpr double kWeights = 2.0;
 /// Weights of the same of what pushes it aside, not onto what holds it.
 constexpr double kWeightsAside = 0.5;
 
+/// Times that a step wakes only what touches those that are hit or pushed; beyond them it wakes twice as far each time,
+/// as each time costs all that is awake again.
+constexpr int kWakingsAlone = 2;
+constexpr int kFarthest = 16;  // 2^16 contacts: all of a pile
+
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
 
@@ -90,6 +95,7 @@ void keep_those_held(std::vector<std::uint8_t>& falls, std::span<const NetworkMe
 
 void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
+    wakings_ = 0;
     traces_.is_asleep.assign(range.size(), 0);
     if (range.begin != 0 || piles_.empty()) return;
     std::vector<std::uint64_t> disturbed;
@@ -109,11 +115,11 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     wake(disturbed, step.begin);
 }
 
-/// Those, where they sleep, and what touches them. What lies farther away is woken when it is pushed; what nothing
-/// holds any more, at once.
+/// What lies farther away is woken when it is pushed; what nothing holds any more, at once.
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time) {
     if (particles.empty()) return;
-    wake_alone(piles_.around(particles), time);
+    const int farther = std::max(0, wakings_++ - kWakingsAlone);
+    wake_alone(piles_.around(particles, 1 << std::min(farther, kFarthest)), time);
     std::vector<std::uint64_t> held;
     for (const NetworkMemory::Entry& entry : piles_.edges()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);

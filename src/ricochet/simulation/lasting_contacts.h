@@ -48,7 +48,8 @@ public:
     /// woken, and the step begins anew: they were walls to it.
     [[nodiscard]] std::vector<std::uint64_t> those_pushed(std::span<const PairImpactRecord> impacts,
                                                           const DenseTrace& trace, const TimeSpan& step) const;
-    /// Wakes some, where they sleep, and what touches them, at a time, s.
+    /// Wakes some, where they sleep, and what touches them, at a time, s; what lies farther, too, where a step does so
+    /// again and again.
     void wake(const std::vector<std::uint64_t>& particles, double time);
     /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
@@ -100,6 +101,7 @@ private:
     NetworkMemory memory_;
     SleepingPiles piles_;
     PileLoads loads_;
+    int wakings_ = 0;  // calls of wake() in this step
 };
 
 }  // namespace ricochet

@@ -124,18 +124,24 @@ void SleepingPiles::find_neighbours() {
     for_each([&](std::uint32_t slot, std::uint64_t other) { neighbours_[next[slot]++] = other; });
 }
 
-std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles) const {
-    std::vector<std::uint64_t> found;
-    for (const std::uint64_t particle : particles) {
+std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles, int contacts) const {
+    std::vector<std::uint8_t> is_found(sleepers_.size(), 0);
+    std::vector<std::uint64_t> found;  // in the order of their distance
+    const auto add = [&](std::uint64_t particle) {
         const Sleeper* const sleeper = find(particle);
-        if (sleeper == nullptr) continue;
+        if (sleeper == nullptr || is_found[slot_of(*sleeper)] != 0) return;
+        is_found[slot_of(*sleeper)] = 1;
         found.push_back(particle);
-        for (const std::uint64_t other : neighbours_of(*sleeper)) {
-            if (has(other)) found.push_back(other);
+    };
+    for (const std::uint64_t particle : particles) add(particle);
+    std::size_t begin = 0;
+    for (int k = 0; k < contacts; ++k) {
+        const std::size_t end = found.size();
+        for (; begin < end; ++begin) {
+            for (const std::uint64_t other : neighbours_of(*find(found[begin]))) add(other);
         }
     }
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
     return found;
 }
 

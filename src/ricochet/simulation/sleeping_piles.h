@@ -55,8 +55,8 @@ public:
              const std::vector<Weight>& weights);
     /// Pairs of spheres that touch: their piles are one, where both sleep.
     void join(const std::vector<NetworkKey>& touching);
-    /// Sleepers among some particles, and those that a contact joins to one of them: ascending.
-    [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles) const;
+    /// Sleepers among some particles, and those that so many contacts in a row at most join to one of them: ascending.
+    [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
     /// Sleepers that contacts join neither to a surface nor to one of others that hold, nor to such sleepers:
     /// ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_held(const std::vector<std::uint64_t>& by_others) const;

@@ -5,6 +5,8 @@
 #include <unordered_set>
 #include <utility>
 
+#include "ricochet/core/algorithms.h"
+
 namespace ricochet {
 namespace {
 
@@ -90,30 +92,41 @@ void SleepingPiles::join(const std::vector<NetworkKey>& touching) {
 
 /// What is at the edge of sleep, how strongly sleepers are pressed, and by whom.
 void SleepingPiles::look_at_contacts() {
+    find_ends();
     edges_.clear();
     for (Sleeper& sleeper : sleepers_) sleeper.load = 0.0;
-    const auto press = [&](const Sleeper* sleeper, double normal) {
-        if (sleeper == nullptr) return;
-        Sleeper& own = sleepers_[slot_of(*sleeper)];
-        own.load = std::max(own.load, normal);
+    const auto press = [&](std::uint32_t slot, double normal) {
+        if (slot != kNobody) sleepers_[slot].load = std::max(sleepers_[slot].load, normal);
     };
-    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        const Sleeper* const first = find(entry.key.particle);
-        press(first, entry.impulse.normal);
-        if (entry.key.is_wall()) continue;
-        const Sleeper* const second = find(entry.key.other);
-        press(second, entry.impulse.normal);
-        if ((first != nullptr) != (second != nullptr)) edges_.push_back(entry);
+    const std::vector<NetworkMemory::Entry>& entries = contacts_.entries();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const auto& [first, second] = ends_[i];
+        press(first, entries[i].impulse.normal);
+        press(second, entries[i].impulse.normal);
+        if (!entries[i].key.is_wall() && (first == kNobody) != (second == kNobody)) edges_.push_back(entries[i]);
     }
     find_neighbours();
 }
 
+/// Contacts and sleepers are both in the order of particles.
+void SleepingPiles::find_ends() {
+    ends_.clear();
+    std::uint32_t slot = 0;
+    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
+        while (slot < sleepers_.size() && sleepers_[slot].particle < entry.key.particle) ++slot;
+        const bool sleeps = slot < sleepers_.size() && sleepers_[slot].particle == entry.key.particle;
+        const Sleeper* const other = entry.key.is_wall() ? nullptr : find(entry.key.other);
+        ends_.push_back({sleeps ? slot : kNobody, other != nullptr ? slot_of(*other) : kNobody});
+    }
+}
+
 void SleepingPiles::find_neighbours() {
+    const std::vector<NetworkMemory::Entry>& entries = contacts_.entries();
     const auto for_each = [&](const auto& visit) {
-        for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-            if (entry.key.is_wall()) continue;
-            if (const Sleeper* const sleeper = find(entry.key.particle)) visit(slot_of(*sleeper), entry.key.other);
-            if (const Sleeper* const sleeper = find(entry.key.other)) visit(slot_of(*sleeper), entry.key.particle);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            if (entries[i].key.is_wall()) continue;
+            if (ends_[i].first != kNobody) visit(ends_[i].first, entries[i].key.other);
+            if (ends_[i].second != kNobody) visit(ends_[i].second, entries[i].key.particle);
         }
     };
     first_.assign(sleepers_.size() + 1, 0);
@@ -169,18 +182,19 @@ std::vector<std::uint64_t> SleepingPiles::not_held(const std::vector<std::uint64
 }
 
 std::vector<NetworkMemory::Entry> SleepingPiles::wake(const std::vector<std::uint64_t>& woken) {
-    const std::unordered_set<std::uint64_t> waking(woken.begin(), woken.end());
-    std::erase_if(sleepers_, [&](const Sleeper& sleeper) { return waking.contains(sleeper.particle); });
-    std::erase_if(weights_, [&](const Weight& weight) { return waking.contains(weight.particle); });
-    find_slots();
+    std::vector<std::uint8_t> sleeps_on(sleepers_.size(), 1);
+    for (const std::uint64_t particle : woken) sleeps_on[slot_of(*find(particle))] = 0;
+    const auto is = [&](std::uint32_t slot, std::uint8_t mark) { return slot != kNobody && sleeps_on[slot] == mark; };
     std::vector<NetworkMemory::Entry> theirs;
     std::vector<NetworkMemory::Entry> others;
-    for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        const NetworkKey& key = entry.key;
-        const bool is_theirs = waking.contains(key.particle) || waking.contains(key.other);
-        if (is_theirs) theirs.push_back(entry);
-        if (!is_theirs || has(key.particle) || has(key.other)) others.push_back(entry);
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+        const auto& [first, second] = ends_[i];
+        if (is(first, 0) || is(second, 0)) theirs.push_back(contacts_.entries()[i]);
+        if (is(first, 1) || is(second, 1)) others.push_back(contacts_.entries()[i]);
     }
+    std::erase_if(weights_, [&](const Weight& weight) { return is(slot_of(*find(weight.particle)), 0); });
+    keep_marked(sleepers_, sleeps_on);
+    find_slots();
     contacts_.replace(others);
     look_at_contacts();
     ++version_;

@@ -83,6 +83,13 @@ private:
         std::uint64_t pile = 0;  ///< number_of()
         double load = 0.0;       ///< load_of()
     };
+    /// Of a contact: numbers of the sleepers that it is between, or kNobody.
+    struct Ends {
+        std::uint32_t first = 0;
+        std::uint32_t second = 0;
+    };
+    static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
+
     [[nodiscard]] const Sleeper* find(std::uint64_t particle) const {
         const auto at = slots_.find(particle);
         return at == slots_.end() ? nullptr : &sleepers_[at->second];
@@ -96,6 +103,7 @@ private:
     }
     void find_slots();
     void look_at_contacts();
+    void find_ends();
     void find_neighbours();
 
     std::vector<Sleeper> sleepers_;                           // ascending, as the others
@@ -103,6 +111,7 @@ private:
     std::vector<Still> still_;
     std::vector<Weight> weights_;
     NetworkMemory contacts_;
+    std::vector<Ends> ends_;  // of the contacts
     std::vector<NetworkMemory::Entry> edges_;
     std::vector<std::uint64_t> neighbours_;  // particles that sleepers have contacts with, sleeper by sleeper
     std::vector<std::uint32_t> first_;       // of each sleeper's among those, and the end

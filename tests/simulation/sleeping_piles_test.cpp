@@ -64,9 +64,20 @@ TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
     static_cast<void>(piles.wake({12}));
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});
     EXPECT_EQ(piles.load_of(12), 7.0);
-    EXPECT_EQ(piles.contacts().find(NetworkKey::of_pair(12, 13)), nullptr);
-    EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12}));
+    EXPECT_EQ(piles.load_of(13), 4.0);
     EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
+}
+
+// As it did not press it when it fell asleep again, it does not hold it either; yet where it goes it has to be woken.
+TEST(SleepingPiles, WhoHasLeantOnASleeperStaysBesideIt) {
+    SleepingPiles piles = row();
+    static_cast<void>(piles.wake({12}));
+    piles.add({12}, {pair_of(11, 12, 7.0)}, {});
+    EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12, 13}));
+    static_cast<void>(piles.wake({12}));
+    EXPECT_TRUE(has(piles.edges(), 12, 13));
+    static_cast<void>(piles.wake({13}));
+    EXPECT_FALSE(has(piles.edges(), 12, 13));
 }
 
 }  // namespace

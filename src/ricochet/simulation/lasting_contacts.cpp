@@ -137,14 +137,15 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<NetworkMemory::Entry> contacts = piles_.wake(woken);
-    // What somebody awake does to them is remembered already, or has ended.
+    // What somebody awake does to them is remembered already, or has ended; what only leans does nothing.
     const auto has_lain = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || piles_.has(particle) || is_pinned(particle);
     };
     std::erase_if(contacts, [&](const NetworkMemory::Entry& entry) {
         const NetworkKey& key = entry.key;
         const bool goes_on = memory_.find(key) != nullptr;
-        return goes_on || !has_lain(key.particle) || !(key.is_wall() || has_lain(key.other));
+        return goes_on || entry.impulse.normal == 0.0 || !has_lain(key.particle) ||
+               !(key.is_wall() || has_lain(key.other));
     });
     memory_.add(contacts);
 }

@@ -48,11 +48,16 @@ void SleepingPiles::set_still(std::vector<Still> still) {
 void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::vector<NetworkMemory::Entry>& contacts,
                         const std::vector<Weight>& weights) {
     const std::unordered_set<std::uint64_t> falling(particles.begin(), particles.end());
+    NetworkMemory now;
+    now.replace(contacts);
     // Of those that fall asleep nothing counts but what their contacts do now.
     std::vector<NetworkMemory::Entry> all = contacts;
     for (const NetworkMemory::Entry& entry : contacts_.entries()) {
-        const bool is_of_falling = falling.contains(entry.key.particle) || falling.contains(entry.key.other);
+        const NetworkKey& key = entry.key;
+        const bool is_of_falling = falling.contains(key.particle) || falling.contains(key.other);
+        const bool leans = !key.is_wall() && (has(key.particle) || has(key.other));
         if (!is_of_falling) all.push_back(entry);
+        if (is_of_falling && leans && now.find(key) == nullptr) all.push_back({key, {}, false});
     }
     contacts_.replace(all);
     for (const std::uint64_t particle : particles) sleepers_.push_back({particle, particle});
@@ -125,16 +130,17 @@ void SleepingPiles::find_neighbours() {
     const auto for_each = [&](const auto& visit) {
         for (std::size_t i = 0; i < entries.size(); ++i) {
             if (entries[i].key.is_wall()) continue;
-            if (ends_[i].first != kNobody) visit(ends_[i].first, entries[i].key.other);
-            if (ends_[i].second != kNobody) visit(ends_[i].second, entries[i].key.particle);
+            const bool presses = entries[i].impulse.normal > 0.0;
+            if (ends_[i].first != kNobody) visit(ends_[i].first, Neighbour{entries[i].key.other, presses});
+            if (ends_[i].second != kNobody) visit(ends_[i].second, Neighbour{entries[i].key.particle, presses});
         }
     };
     first_.assign(sleepers_.size() + 1, 0);
-    for_each([&](std::uint32_t slot, std::uint64_t) { ++first_[slot + 1]; });
+    for_each([&](std::uint32_t slot, const Neighbour&) { ++first_[slot + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     neighbours_.resize(first_.back());
     std::vector<std::uint32_t> next = first_;
-    for_each([&](std::uint32_t slot, std::uint64_t other) { neighbours_[next[slot]++] = other; });
+    for_each([&](std::uint32_t slot, const Neighbour& other) { neighbours_[next[slot]++] = other; });
 }
 
 std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles, int contacts) const {
@@ -151,7 +157,7 @@ std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t
     for (int k = 0; k < contacts; ++k) {
         const std::size_t end = found.size();
         for (; begin < end; ++begin) {
-            for (const std::uint64_t other : neighbours_of(*find(found[begin]))) add(other);
+            for (const Neighbour& other : neighbours_of(*find(found[begin]))) add(other.particle);
         }
     }
     std::sort(found.begin(), found.end());
@@ -172,7 +178,9 @@ std::vector<std::uint64_t> SleepingPiles::not_held(const std::vector<std::uint64
     while (!open.empty()) {
         const std::uint64_t particle = open.back();
         open.pop_back();
-        for (const std::uint64_t other : neighbours_of(*find(particle))) hold(other);
+        for (const Neighbour& other : neighbours_of(*find(particle))) {
+            if (other.presses) hold(other.particle);
+        }
     }
     std::vector<std::uint64_t> others;
     for (const Sleeper& sleeper : sleepers_) {

@@ -50,15 +50,16 @@ public:
     /// Of the step that ends, in any order; those not in the list have moved.
     void set_still(std::vector<Still> still);
 
-    /// Those fall asleep, with contacts of all of them. Piles that contacts join are one.
+    /// Those fall asleep, with contacts of all of them. What they have done to sleepers and do no more stays a contact
+    /// without an impulse: it says when they leave for good. Piles that contacts join are one.
     void add(const std::vector<std::uint64_t>& particles, const std::vector<NetworkMemory::Entry>& contacts,
              const std::vector<Weight>& weights);
     /// Pairs of spheres that touch: their piles are one, where both sleep.
     void join(const std::vector<NetworkKey>& touching);
     /// Sleepers among some particles, and those that so many contacts in a row at most join to one of them: ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Sleepers that contacts join neither to a surface nor to one of others that hold, nor to such sleepers:
-    /// ascending.
+    /// Sleepers that contacts that press join neither to a surface nor to one of others that hold, nor to such
+    /// sleepers: ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_held(const std::vector<std::uint64_t>& by_others) const;
     /// Wakes some, ascending. Says what their contacts did when they fell asleep.
     [[nodiscard]] std::vector<NetworkMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
@@ -88,6 +89,10 @@ private:
         std::uint32_t first = 0;
         std::uint32_t second = 0;
     };
+    struct Neighbour {
+        std::uint64_t particle = 0;
+        bool presses = false;
+    };
     static constexpr std::uint32_t kNobody = 0xFFFFFFFFU;
 
     [[nodiscard]] const Sleeper* find(std::uint64_t particle) const {
@@ -97,7 +102,7 @@ private:
     [[nodiscard]] std::uint32_t slot_of(const Sleeper& sleeper) const {
         return static_cast<std::uint32_t>(&sleeper - sleepers_.data());
     }
-    [[nodiscard]] std::span<const std::uint64_t> neighbours_of(const Sleeper& sleeper) const {
+    [[nodiscard]] std::span<const Neighbour> neighbours_of(const Sleeper& sleeper) const {
         const std::uint32_t slot = slot_of(sleeper);
         return std::span(neighbours_).subspan(first_[slot], first_[slot + 1] - first_[slot]);
     }
@@ -113,8 +118,8 @@ private:
     NetworkMemory contacts_;
     std::vector<Ends> ends_;  // of the contacts
     std::vector<NetworkMemory::Entry> edges_;
-    std::vector<std::uint64_t> neighbours_;  // particles that sleepers have contacts with, sleeper by sleeper
-    std::vector<std::uint32_t> first_;       // of each sleeper's among those, and the end
+    std::vector<Neighbour> neighbours_;  // particles that sleepers have contacts with, sleeper by sleeper
+    std::vector<std::uint32_t> first_;   // of each sleeper's among those, and the end
     std::uint64_t version_ = 0;
 };
 

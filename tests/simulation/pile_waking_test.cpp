@@ -160,6 +160,45 @@ TEST(PileWaking, WhatFallsOntoAPileWakesWhatIsNearItAlone) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
 }
 
+/// Spheres of 4.3 to 5.7 mm that fall into a bin of one layer, and others that drip onto them one after the other.
+SimulationSetup dripping_setup(std::uint64_t seed) {
+    SimulationSetup setup = setup_of(1e-3, 2.5, {"", 0.2, 0.4}, {0, 0, -9.81});
+    setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
+                       {"left", PlaneShape{{-0.02, 0, 0}, {1, 0, 0}}},
+                       {"right", PlaneShape{{0.02, 0, 0}, {-1, 0, 0}}},
+                       {"front", PlaneShape{{0, -0.006, 0}, {0, 1, 0}}},
+                       {"back", PlaneShape{{0, 0.006, 0}, {0, -1, 0}}}};
+    setup.options.particle_contacts = PairContactSettings{.restitution = 0.2, .friction = 0.4};
+    setup.options.verify = true;
+    EmitterDescription first;
+    first.name = "first";
+    first.seed = seed;
+    first.shape = BoxShape{{0, 0, 0.12}, {0.028, 1e-4, 0.2}};
+    first.burst = 20;
+    first.mass = {1e-3, 0.0};
+    first.radius = {0.005, 0.0007};
+    EmitterDescription later = first;
+    later.name = "later";
+    later.seed = seed + 1000;
+    later.shape = BoxShape{{0, 0, 0.2}, {0.03, 1e-4, 0.01}};
+    later.burst = 0;
+    later.rate = {30.0, 0.0};
+    later.start = 0.8;
+    later.radius = {0.005, 0.0};
+    setup.emitters = {first, later};
+    return setup;
+}
+
+// Between a sleeper and a wall it has no room to part, and each that drips would drive it in deeper.
+TEST(PileWaking, WhatIsDrivenIntoASleeperWakesIt) {
+    for (const std::uint64_t seed : {20U, 45U, 85U, 106U}) {
+        Simulation simulation(dripping_setup(seed));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_LT(simulation.statistics().overlap_largest, 4e-3) << seed;
+        EXPECT_EQ(simulation.statistics().pair_violations, 0U) << seed;
+    }
+}
+
 // It is held by what sleeps around it, or falls with what is woken below it.
 TEST(PileWaking, WhatNothingHoldsAnyMoreFalls) {
     SimulationSetup setup = bed_setup(1.5);

@@ -39,6 +39,11 @@ constexpr double kWeightsAside = 0.5;
 constexpr int kWakingsAlone = 2;
 constexpr int kFarthest = 16;  // 2^16 contacts: all of a pile
 
+/// A sphere that stands in a sleeper by such a part of the smaller radius wakes it: between a sleeper and a wall it may
+/// have no room to part, and all that pushes it would drive it in ever deeper. Smaller: hard impacts wake more than
+/// they move. Larger: as much overlap lasts.
+constexpr double kSunk = 0.002;
+
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
 
@@ -391,24 +396,27 @@ bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const T
     return entry.impulse.normal > kMorePressed * (piles_.load_of(sleeper) + weights);
 }
 
-/// Of a contact at the edge of sleep: the one of two that does not sleep has gone, or there is a gap between them.
-bool LastingContacts::has_parted(const NetworkKey& key) const {
+/// Of a pair: the gap between its spheres over the smaller radius. What one of them has left is wide open.
+double LastingContacts::relative_gap(const NetworkKey& key) const {
     const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
     const std::optional<std::size_t> k = parts_.store.index_of(key.other);
-    if (!i || !k) return true;
+    if (!i || !k) return INFINITY;
     const Particles& p = parts_.store.particles();
     const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];
-    return gap > kWakingFall * std::min(p.radius[*i], p.radius[*k]);
+    return gap / std::min(p.radius[*i], p.radius[*k]);
 }
 
-/// Those that have lost what leant on them, or held them.
+/// Those that have lost what leant on them, or held them, and those that others stand in.
 void LastingContacts::wake_those_left(const TimeSpan& step) {
     if (piles_.empty()) return;
-    std::vector<std::uint64_t> parted;
+    std::vector<std::uint64_t> left;
     for (const NetworkMemory::Entry& entry : piles_.edges()) {
-        if (has_parted(entry.key)) parted.push_back(sleeper_of(entry.key));
+        if (relative_gap(entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
     }
-    wake(parted, step.end);
+    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+        if (is_at_edge_of_sleep(entry.key) && relative_gap(entry.key) < -kSunk) left.push_back(sleeper_of(entry.key));
+    }
+    wake(left, step.end);
 }
 
 }  // namespace ricochet

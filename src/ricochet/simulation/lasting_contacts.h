@@ -93,7 +93,7 @@ private:
     [[nodiscard]] std::uint64_t sleeper_of(const NetworkKey& key) const;
     [[nodiscard]] bool is_at_edge_of_sleep(const NetworkKey& key) const;
     [[nodiscard]] bool is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const;
-    [[nodiscard]] bool has_parted(const NetworkKey& key) const;
+    [[nodiscard]] double relative_gap(const NetworkKey& key) const;
 
     PairParts parts_;
     std::size_t first_ = 0;  // of the range: numbers count from it

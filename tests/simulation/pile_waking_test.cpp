@@ -189,6 +189,27 @@ SimulationSetup dripping_setup(std::uint64_t seed) {
     return setup;
 }
 
+// Smooth walls carry none of it, whatever has been woken and has fallen asleep again meanwhile.
+TEST(PileWaking, TheFloorOfASmoothBinCarriesAllThatSleeps) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {  // all that is awake lies on top
+        SCOPED_TRACE(seed);
+        SimulationSetup setup = dripping_setup(seed);
+        setup.materials[0].friction = 0.0;
+        setup.emitters[1].limit = 30;
+        setup.options.duration = 3.5;
+        Simulation simulation(std::move(setup));
+        const auto on_floor = [&] { return simulation.triangle_totals(0).impulse[0].z; };
+        while (simulation.time() < 3.0) simulation.step();
+        const double before = on_floor();
+        const double begin = simulation.time();
+        const double asleep = static_cast<double>(simulation.statistics().asleep);
+        while (!simulation.finished()) simulation.step();
+        const double weight = 9.81e-3 * static_cast<double>(simulation.particles().size());
+        EXPECT_GT(asleep, 20.0);
+        EXPECT_NEAR((on_floor() - before) / (begin - simulation.time()), weight, 1e-3 * weight);
+    }
+}
+
 // Between a sleeper and a wall it has no room to part, and each that drips would drive it in deeper.
 TEST(PileWaking, WhatIsDrivenIntoASleeperWakesIt) {
     for (const std::uint64_t seed : {20U, 45U, 85U, 106U}) {

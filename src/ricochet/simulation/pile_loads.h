@@ -33,10 +33,11 @@ public:
 private:
     /// Of a pile without pushes.
     struct Balance {
-        Vec3 missing;       ///< N, its weight, and what pinned spheres do to it, less what its sleepers press with
-        double held = 0.0;  ///< N, sum of the strengths with which its sleepers press on surfaces
+        Vec3 weight;   ///< N
+        Vec3 missing;  ///< N, its weight, and what pinned spheres do to it, less what its sleepers press with
     };
     void find_balances(const SleepingPiles& piles, const TimeSpan& step);
+    void share_out_all(const SleepingPiles& piles, const std::map<std::uint64_t, Vec3>& totals);
     void share_out(const SleepingPiles& piles, const std::map<std::uint64_t, Vec3>& totals);
     void add_contacts(const SleepingPiles& piles, const TimeSpan& step);
 

@@ -66,7 +66,7 @@ void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::
     weights_.insert(weights_.end(), weights.begin(), weights.end());
     std::stable_sort(weights_.begin(), weights_.end(), by_particle);
     std::vector<NetworkKey> joined;
-    for (const NetworkMemory::Entry& entry : contacts) joined.push_back(entry.key);
+    for (const NetworkMemory::Entry& entry : contacts_.entries()) joined.push_back(entry.key);
     join(joined);
     look_at_contacts();
     ++version_;

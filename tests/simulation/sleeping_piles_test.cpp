@@ -49,12 +49,12 @@ TEST(SleepingPiles, KnowWhatPressesASleeperMost) {
 
 TEST(SleepingPiles, ThoseThatNothingHoldsAreThoseBeyondWhatHasWoken) {
     SleepingPiles piles = row();
-    EXPECT_EQ(piles.not_held({}), Ids{});
+    EXPECT_EQ(piles.not_joined_to({10}), Ids{});
     const std::vector<NetworkMemory::Entry> contacts = piles.wake({12});
     EXPECT_EQ(contacts.size(), 2U);
     EXPECT_TRUE(has(contacts, 11, 12) && has(contacts, 12, 13));
-    EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
-    EXPECT_EQ(piles.not_held({14}), Ids{});
+    EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
+    EXPECT_EQ(piles.not_joined_to({10, 14}), Ids{});
     // The one that is awake still presses those beside it.
     EXPECT_TRUE(has(piles.edges(), 11, 12) && has(piles.edges(), 12, 13) && has(piles.edges(), 14, 20));
 }
@@ -65,7 +65,7 @@ TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});
     EXPECT_EQ(piles.load_of(12), 7.0);
     EXPECT_EQ(piles.load_of(13), 4.0);
-    EXPECT_EQ(piles.not_held({}), (Ids{13, 14}));
+    EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
 }
 
 // As it did not press it when it fell asleep again, it does not hold it either; yet where it goes it has to be woken.

@@ -37,12 +37,17 @@ constexpr double kWeightsAside = 0.5;
 /// Times that a step wakes only what touches those that are hit or pushed; beyond them it wakes twice as far each time,
 /// as each time costs all that is awake again.
 constexpr int kWakingsAlone = 2;
-constexpr int kFarthest = 16;  // 2^16 contacts: all of a pile
+constexpr int kFarthest = 16;          // 2^16 contacts: all of a pile
+constexpr double kMostContacts = 1e4;  // at once
 
 /// A sphere that stands in a sleeper by such a part of the smaller radius wakes it: between a sleeper and a wall it may
 /// have no room to part, and all that pushes it would drive it in ever deeper. Smaller: hard impacts wake more than
 /// they move. Larger: as much overlap lasts.
 constexpr double kSunk = 0.002;
+
+/// Cosine of the angle between what a surface gives and the pull of forces beyond which it holds: a smooth wall beside a
+/// sphere does not, one that it rubs on does. Larger: what hangs on walls stays awake.
+constexpr double kHolding = 0.1;
 
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
@@ -69,24 +74,29 @@ std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
 }
 
-/// Leaves of those that would fall asleep those that surfaces hold, or what lies still: one that lies on others that
-/// stay awake would weigh on nobody. pressing: members that press on each other, by their numbers.
-void keep_those_held(std::vector<std::uint8_t>& falls, std::span<const NetworkMember> members,
-                     const NetworkIsland& network, std::span<const NeighbourPair> pressing) {
-    std::vector<std::vector<std::size_t>> touching(members.size());
+/// Whether a push holds against the pull of forces.
+bool holds(const Vec3& push, const Vec3& pull) {
+    return pull == Vec3{} || -dot(push, pull) > kHolding * length(push) * length(pull);
+}
+
+/// Leaves of those that would fall asleep those that are held, or rest on such: one that lies on others that
+/// stay awake would weigh on nobody. is_held: of each. pressing: members that press on each other, by their numbers.
+void keep_those_held(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,
+                     std::span<const NeighbourPair> pressing) {
+    std::vector<std::vector<std::size_t>> touching(falls.size());
     for (const auto& [a, b] : pressing) {
         if (falls[a] == 0 || falls[b] == 0) continue;
         touching[a].push_back(b);
         touching[b].push_back(a);
     }
-    std::vector<std::uint8_t> held(members.size(), 0);
+    std::vector<std::uint8_t> held(falls.size(), 0);
     std::vector<std::size_t> open;
     const auto hold = [&](std::size_t i) {
         if (held[i] == 0) open.push_back(i);
         held[i] = 1;
     };
-    for (std::size_t i = 0; i < members.size(); ++i) {
-        if (falls[i] != 0 && (members[i].is_fixed || !network.pushes_of(i).empty())) hold(i);
+    for (std::size_t i = 0; i < falls.size(); ++i) {
+        if (falls[i] != 0 && is_held[i] != 0) hold(i);
     }
     while (!open.empty()) {
         const std::size_t i = open.back();
@@ -103,34 +113,43 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     wakings_ = 0;
     traces_.is_asleep.assign(range.size(), 0);
     if (range.begin != 0 || piles_.empty()) return;
-    std::vector<std::uint64_t> disturbed;
+    std::vector<std::uint64_t> gone;
+    std::vector<std::uint64_t> carried;
     const MovingColliders* const bodies = parts_.response.rules().bodies;
     for (const std::uint64_t particle : piles_.particles()) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i || parts_.store.is_fixed(*i)) {
-            disturbed.push_back(particle);
+            gone.push_back(particle);
             continue;
         }
         traces_.is_asleep[*i] = 1;
         parts_.schedule.leave_alone(*i);
         const Particles& particles = parts_.store.particles();
         const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
-        if (bodies != nullptr && !bodies->all_stay_out(near)) disturbed.push_back(particle);
+        if (bodies != nullptr && !bodies->all_stay_out(near)) carried.push_back(particle);
     }
-    wake(disturbed, step.begin);
+    // What rests on a surface that moves goes with it, however slowly.
+    wake_alone(piles_.piles_of(carried), step.begin);
+    wake(gone, step.begin);
 }
 
 /// What lies farther away is woken when it is pushed; what nothing holds any more, at once.
-void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time) {
+void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, wakings_++ - kWakingsAlone);
-    wake_alone(piles_.around(particles, 1 << std::min(farther, kFarthest)), time);
+    wake_alone(piles_.around(particles, contacts << std::min(farther, kFarthest)), time);
     std::vector<std::uint64_t> held;
     for (const NetworkMemory::Entry& entry : piles_.edges()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);
         if (is_pinned(entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
     }
-    wake_alone(piles_.not_held(held), time);
+    for (const SleepingPiles::Weight& weight : piles_.weights()) {
+        const std::optional<std::size_t> i = parts_.store.index_of(weight.particle);
+        if (!i) continue;
+        const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(*i, time));
+        if (holds(-weight.force, pull)) held.push_back(weight.particle);
+    }
+    wake_alone(piles_.not_joined_to(held), time);
 }
 
 void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double time) {
@@ -217,15 +236,19 @@ bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, doub
 bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& step) {
     if (piles_.empty() || first_ != 0) return false;
     std::vector<std::uint64_t> hit;
+    double largest = 1.0;  // times the radius of one that is hit
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
         const NeighbourPair& pair = plans.pairs()[n];
         if (!plans.may_meet(n) || is_asleep(pair.first) == is_asleep(pair.second)) continue;
         const std::uint32_t sleeping = is_asleep(pair.first) ? pair.first : pair.second;
         const std::uint32_t hitting = is_asleep(pair.first) ? pair.second : pair.first;
-        if (hits_sleeper(first_ + hitting, first_ + sleeping, step))
-            hit.push_back(parts_.store.particles().id[first_ + sleeping]);
+        if (!hits_sleeper(first_ + hitting, first_ + sleeping, step)) continue;
+        const Particles& particles = parts_.store.particles();
+        hit.push_back(particles.id[first_ + sleeping]);
+        largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
-    wake(hit, step.begin);
+    // A large one pushes as many small ones as it covers, at once: each time that more wake costs all again.
+    wake(hit, step.begin, static_cast<int>(std::min(std::ceil(largest), kMostContacts)));
     return !hit.empty();
 }
 
@@ -251,6 +274,14 @@ bool LastingContacts::is_carried_by_material(const NetworkIsland& network, std::
     return std::any_of(pushes.begin(), pushes.end(), [&](const WallPush& push) {
         return rules.materials[rules.world.material_of(push.surface)].drives();
     });
+}
+
+bool LastingContacts::is_held_by_surfaces(const NetworkMember& member, const NetworkIsland& network,
+                                          std::size_t index) const {
+    const std::vector<WallPush> pushes = network.pushes_of(index);
+    const Vec3 pull = parts_.response.rules().forces.acceleration(member.moving->state);
+    return std::any_of(pushes.begin(), pushes.end(),
+                       [&](const WallPush& push) { return holds(push.velocity_change, pull); });
 }
 
 /// It lives through the whole step, and nothing that moves is near.
@@ -287,7 +318,11 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
         if (sleepy[a] == 0) falls[b] = 0;
         if (sleepy[b] == 0) falls[a] = 0;
     }
-    keep_those_held(falls, members, network, pressing);
+    std::vector<std::uint8_t> is_held(members.size(), 0);
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (falls[i] != 0) is_held[i] = members[i].is_fixed || is_held_by_surfaces(members[i], network, i) ? 1 : 0;
+    }
+    keep_those_held(falls, is_held, pressing);
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (falls[i] == 0 || members[i].is_fixed) continue;
         const std::uint64_t id = members[i].moving->id;

@@ -48,9 +48,9 @@ public:
     /// woken, and the step begins anew: they were walls to it.
     [[nodiscard]] std::vector<std::uint64_t> those_pushed(std::span<const PairImpactRecord> impacts,
                                                           const DenseTrace& trace, const TimeSpan& step) const;
-    /// Wakes some, where they sleep, and what touches them, at a time, s; what lies farther, too, where a step does so
-    /// again and again.
-    void wake(const std::vector<std::uint64_t>& particles, double time);
+    /// Wakes some, where they sleep, and what so many contacts in a row join to them, at a time, s; what lies farther,
+    /// too, where a step does so again and again.
+    void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
     /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
     /// Of each particle: contacts of the last step's dense islands have held it, and have not thrown it off.
@@ -87,6 +87,8 @@ private:
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
+    [[nodiscard]] bool is_held_by_surfaces(const NetworkMember& member, const NetworkIsland& network,
+                                           std::size_t index) const;
     [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;
     void put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step);
     void wake_those_left(const TimeSpan& step);

@@ -143,6 +143,16 @@ void SleepingPiles::find_neighbours() {
     for_each([&](std::uint32_t slot, const Neighbour& other) { neighbours_[next[slot]++] = other; });
 }
 
+std::vector<std::uint64_t> SleepingPiles::piles_of(const std::vector<std::uint64_t>& sleepers) const {
+    std::unordered_set<std::uint64_t> piles;
+    for (const std::uint64_t sleeper : sleepers) piles.insert(number_of(sleeper));
+    std::vector<std::uint64_t> members;
+    for (const Sleeper& sleeper : sleepers_) {
+        if (piles.contains(sleeper.pile)) members.push_back(sleeper.particle);
+    }
+    return members;
+}
+
 std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles, int contacts) const {
     std::vector<std::uint8_t> is_found(sleepers_.size(), 0);
     std::vector<std::uint64_t> found;  // in the order of their distance
@@ -164,27 +174,26 @@ std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t
     return found;
 }
 
-std::vector<std::uint64_t> SleepingPiles::not_held(const std::vector<std::uint64_t>& by_others) const {
-    std::vector<std::uint8_t> held(sleepers_.size(), 0);
+std::vector<std::uint64_t> SleepingPiles::not_joined_to(const std::vector<std::uint64_t>& held) const {
+    std::vector<std::uint8_t> is_joined(sleepers_.size(), 0);
     std::vector<std::uint64_t> open;
-    const auto hold = [&](std::uint64_t particle) {
+    const auto join_to = [&](std::uint64_t particle) {
         const Sleeper* const sleeper = find(particle);
-        if (sleeper == nullptr || held[slot_of(*sleeper)] != 0) return;
-        held[slot_of(*sleeper)] = 1;
+        if (sleeper == nullptr || is_joined[slot_of(*sleeper)] != 0) return;
+        is_joined[slot_of(*sleeper)] = 1;
         open.push_back(particle);
     };
-    for (const Weight& weight : weights_) hold(weight.particle);
-    for (const std::uint64_t particle : by_others) hold(particle);
+    for (const std::uint64_t particle : held) join_to(particle);
     while (!open.empty()) {
         const std::uint64_t particle = open.back();
         open.pop_back();
         for (const Neighbour& other : neighbours_of(*find(particle))) {
-            if (other.presses) hold(other.particle);
+            if (other.presses) join_to(other.particle);
         }
     }
     std::vector<std::uint64_t> others;
     for (const Sleeper& sleeper : sleepers_) {
-        if (held[slot_of(sleeper)] == 0) others.push_back(sleeper.particle);
+        if (is_joined[slot_of(sleeper)] == 0) others.push_back(sleeper.particle);
     }
     return others;
 }

@@ -56,11 +56,12 @@ public:
              const std::vector<Weight>& weights);
     /// Pairs of spheres that touch: their piles are one, where both sleep.
     void join(const std::vector<NetworkKey>& touching);
+    /// All of the piles that some sleepers are of: ascending.
+    [[nodiscard]] std::vector<std::uint64_t> piles_of(const std::vector<std::uint64_t>& sleepers) const;
     /// Sleepers among some particles, and those that so many contacts in a row at most join to one of them: ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Sleepers that contacts that press join neither to a surface nor to one of others that hold, nor to such
-    /// sleepers: ascending.
-    [[nodiscard]] std::vector<std::uint64_t> not_held(const std::vector<std::uint64_t>& by_others) const;
+    /// Sleepers that no row of contacts that press joins to one of those that are held, nor are so themselves: ascending.
+    [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
     /// Wakes some, ascending. Says what their contacts did when they fell asleep.
     [[nodiscard]] std::vector<NetworkMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
     /// Appends what a sleeper gives to surfaces in a time, s.

@@ -13,8 +13,10 @@ namespace {
 /// farther by then.
 constexpr std::uint32_t kStepsToSleep = 50;
 
-/// Parts of the radius that what lies still may move in a step.
+/// Parts of the radius that what lies still may move in a step; and where there are colliders that move, on which it
+/// may ride slowly.
 constexpr double kStillWay = 4e-5;
+constexpr double kStillWayAmongMovers = 1e-5;
 
 /// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
 /// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
@@ -45,9 +47,9 @@ constexpr double kMostContacts = 1e4;  // at once
 /// they move. Larger: as much overlap lasts.
 constexpr double kSunk = 0.002;
 
-/// Cosine of the angle between what a surface gives and the pull of forces beyond which it holds: a smooth wall beside a
-/// sphere does not, one that it rubs on does. Larger: what hangs on walls stays awake.
-constexpr double kHolding = 0.1;
+/// Cosine of the angle against the pull of forces beyond which what a smooth surface gives holds: a wall beside a
+/// sphere does not.
+constexpr double kHolding = 0.01;
 
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
@@ -57,9 +59,9 @@ double speed_of(const NetworkMember& member, const NetworkBody& planned) {
     return length(planned.velocity) + member.radius * length(planned.spin);
 }
 
-/// Whatever pulls it.
-bool is_slow(const NetworkMember& member, const NetworkBody& planned) {
-    return member.duration * speed_of(member, planned) < kStillWay * member.radius;
+/// Whatever pulls it. way: parts of its radius that it may move.
+bool is_slow(const NetworkMember& member, const NetworkBody& planned, double way) {
+    return member.duration * speed_of(member, planned) < way * member.radius;
 }
 
 /// What is slow. pull: m/s^2, of the forces on it.
@@ -72,11 +74,6 @@ std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
     const double time = pull > 0.0 ? kStillTime * std::sqrt(member.radius / pull) : 0.0;
     const double steps = std::min(std::ceil(time / member.duration), 1e9);
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
-}
-
-/// Whether a push holds against the pull of forces.
-bool holds(const Vec3& push, const Vec3& pull) {
-    return pull == Vec3{} || -dot(push, pull) > kHolding * length(push) * length(pull);
 }
 
 /// Leaves of those that would fall asleep those that are held, or rest on such: one that lies on others that
@@ -147,7 +144,7 @@ void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double t
         const std::optional<std::size_t> i = parts_.store.index_of(weight.particle);
         if (!i) continue;
         const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(*i, time));
-        if (holds(-weight.force, pull)) held.push_back(weight.particle);
+        if (holds(weight.surface, -weight.force, pull)) held.push_back(weight.particle);
     }
     wake_alone(piles_.not_joined_to(held), time);
 }
@@ -248,7 +245,7 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
         largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
     // A large one pushes as many small ones as it covers, at once: each time that more wake costs all again.
-    wake(hit, step.begin, static_cast<int>(std::min(std::ceil(largest), kMostContacts)));
+    wake(hit, step.begin, static_cast<int>(std::min(largest, kMostContacts)));
     return !hit.empty();
 }
 
@@ -281,7 +278,14 @@ bool LastingContacts::is_held_by_surfaces(const NetworkMember& member, const Net
     const std::vector<WallPush> pushes = network.pushes_of(index);
     const Vec3 pull = parts_.response.rules().forces.acceleration(member.moving->state);
     return std::any_of(pushes.begin(), pushes.end(),
-                       [&](const WallPush& push) { return holds(push.velocity_change, pull); });
+                       [&](const WallPush& push) { return holds(push.surface, push.velocity_change, pull); });
+}
+
+/// Whether a surface that pushes a sphere so holds it against the pull of forces: one that it rubs on can.
+bool LastingContacts::holds(SurfaceId surface, const Vec3& push, const Vec3& pull) const {
+    const ResponseRules& rules = parts_.response.rules();
+    const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
+    return rubs || pull == Vec3{} || -dot(push, pull) > kHolding * length(push) * length(pull);
 }
 
 /// It lives through the whole step, and nothing that moves is near.
@@ -297,11 +301,12 @@ bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step)
 void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                               DenseTrace& trace) const {
     if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
+    const double way = parts_.response.rules().bodies == nullptr ? kStillWay : kStillWayAmongMovers;
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!is_slow(members[i], network.planned(i)) || !may_lie(members[i], step)) continue;
+        if (!is_slow(members[i], network.planned(i), way) || !may_lie(members[i], step)) continue;
         const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
         if (!is_at_rest(members[i], network.planned(i), pull)) continue;
         const std::uint64_t id = members[i].moving->id;

@@ -89,6 +89,7 @@ private:
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
     [[nodiscard]] bool is_held_by_surfaces(const NetworkMember& member, const NetworkIsland& network,
                                            std::size_t index) const;
+    [[nodiscard]] bool holds(SurfaceId surface, const Vec3& push, const Vec3& pull) const;
     [[nodiscard]] bool is_carried_by_material(const NetworkIsland& network, std::size_t index) const;
     void put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step);
     void wake_those_left(const TimeSpan& step);

@@ -28,10 +28,6 @@ constexpr double kDirect = 0.25;
 /// so many times, each time: large networks that come to an answer begin a few dozen times.
 constexpr int kRestartsAPlainSweep = 64;
 
-/// Contacts of a network up to which what sweeps do not solve is solved directly, whatever its masses: spheres between
-/// others that sleep, to which sweeps come slowly where friction holds much. Few cost little.
-constexpr std::size_t kDirectContacts = 400;
-
 /// Ratio from which on more sweeps are not tried first.
 constexpr double kVeryUnlikeMasses = 1e4;
 
@@ -187,14 +183,12 @@ void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
-/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What they do
-/// not solve where masses differ much, or contacts are few, is solved directly, and a few sweeps more say whether it
-/// is.
+/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few
+/// sweeps do not solve where masses differ much is solved directly, and a few sweeps more say whether it is.
 void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& report) {
     const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
-    const bool may_be_direct = mass_ratio_ > kUnlikeMasses || rows_.size() <= kDirectContacts;
-    if (sweep_until(settings, first, report) || !may_be_direct) return;
+    if (sweep_until(settings, first, report) || !(mass_ratio_ > kUnlikeMasses)) return;
     const double residual = report.residual;
     const Impulses swept{rows_, rolling_, states_};
     const double tolerance = std::max(settings.tolerance, kDirect * settings.enough);

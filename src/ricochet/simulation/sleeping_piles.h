@@ -60,7 +60,8 @@ public:
     [[nodiscard]] std::vector<std::uint64_t> piles_of(const std::vector<std::uint64_t>& sleepers) const;
     /// Sleepers among some particles, and those that so many contacts in a row at most join to one of them: ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Sleepers that no row of contacts that press joins to one of those that are held, nor are so themselves: ascending.
+    /// Sleepers that no row of contacts that press joins to one of those that are held, nor are so themselves:
+    /// ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
     /// Wakes some, ascending. Says what their contacts did when they fell asleep.
     [[nodiscard]] std::vector<NetworkMemory::Entry> wake(const std::vector<std::uint64_t>& woken);

@@ -5,23 +5,10 @@
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/stillness.h"
 
 namespace ricochet {
 namespace {
-
-/// Steps that a sphere, and all that press on it, lie still before it sleeps: what begins to move on a slope has gone
-/// farther by then.
-constexpr std::uint32_t kStepsToSleep = 50;
-
-/// Parts of the radius that what lies still may move in a step; and where there are colliders that move, on which it
-/// may ride slowly.
-constexpr double kStillWay = 4e-5;
-constexpr double kStillWayAmongMovers = 1e-5;
-
-/// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
-/// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
-constexpr double kStillSpeed = 1e-3;
-constexpr double kStillTime = 0.1;
 
 /// What falls from so many parts of a radius, or is faster, wakes those that it hits.
 constexpr double kWakingFall = 0.01;
@@ -53,55 +40,6 @@ constexpr double kHolding = 0.01;
 
 /// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
 constexpr double kAlongPull = 0.5;
-
-/// m/s, of its surface where it is fastest.
-double speed_of(const NetworkMember& member, const NetworkBody& planned) {
-    return length(planned.velocity) + member.radius * length(planned.spin);
-}
-
-/// Whatever pulls it. way: parts of its radius that it may move.
-bool is_slow(const NetworkMember& member, const NetworkBody& planned, double way) {
-    return member.duration * speed_of(member, planned) < way * member.radius;
-}
-
-/// What is slow. pull: m/s^2, of the forces on it.
-bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double pull) {
-    return !(pull > 0.0) || speed_of(member, planned) <= kStillSpeed * std::sqrt(pull * member.radius);
-}
-
-/// Steps that it has to lie still.
-std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
-    const double time = pull > 0.0 ? kStillTime * std::sqrt(member.radius / pull) : 0.0;
-    const double steps = std::min(std::ceil(time / member.duration), 1e9);
-    return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
-}
-
-/// Leaves of those that would fall asleep those that are held, or rest on such: one that lies on others that
-/// stay awake would weigh on nobody. is_held: of each. pressing: members that press on each other, by their numbers.
-void keep_those_held(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,
-                     std::span<const NeighbourPair> pressing) {
-    std::vector<std::vector<std::size_t>> touching(falls.size());
-    for (const auto& [a, b] : pressing) {
-        if (falls[a] == 0 || falls[b] == 0) continue;
-        touching[a].push_back(b);
-        touching[b].push_back(a);
-    }
-    std::vector<std::uint8_t> held(falls.size(), 0);
-    std::vector<std::size_t> open;
-    const auto hold = [&](std::size_t i) {
-        if (held[i] == 0) open.push_back(i);
-        held[i] = 1;
-    };
-    for (std::size_t i = 0; i < falls.size(); ++i) {
-        if (falls[i] != 0 && is_held[i] != 0) hold(i);
-    }
-    while (!open.empty()) {
-        const std::size_t i = open.back();
-        open.pop_back();
-        for (const std::size_t next : touching[i]) hold(next);
-    }
-    falls = std::move(held);
-}
 
 }  // namespace
 
@@ -301,12 +239,12 @@ bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step)
 void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                               DenseTrace& trace) const {
     if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
-    const double way = parts_.response.rules().bodies == nullptr ? kStillWay : kStillWayAmongMovers;
+    const bool among_movers = parts_.response.rules().bodies != nullptr;
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!is_slow(members[i], network.planned(i), way) || !may_lie(members[i], step)) continue;
+        if (!is_slow(members[i], network.planned(i), among_movers) || !may_lie(members[i], step)) continue;
         const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
         if (!is_at_rest(members[i], network.planned(i), pull)) continue;
         const std::uint64_t id = members[i].moving->id;

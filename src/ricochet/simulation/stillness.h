@@ -1,0 +1,25 @@
+/// \file
+/// Private to the simulation: when spheres of dense islands lie still, and so long that they fall asleep.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ricochet/response/network/network_island.h"
+
+namespace ricochet {
+
+/// A member hardly moves in a step as it is planned, whatever pulls it. among_movers: there are colliders that move.
+[[nodiscard]] bool is_slow(const NetworkMember& member, const NetworkBody& planned, bool among_movers);
+/// One that is slow does so for what pulls it, too. pull: m/s^2, of the forces on it.
+[[nodiscard]] bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double pull);
+/// Steps that it has to lie still before it sleeps.
+[[nodiscard]] std::uint32_t steps_to_sleep(const NetworkMember& member, double pull);
+
+/// Leaves of those that would fall asleep those that are held, or rest on such: one that lies on others that
+/// stay awake would weigh on nobody. is_held: of each. pressing: members that press on each other, by their numbers.
+void keep_those_held(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,
+                     std::span<const NeighbourPair> pressing);
+
+}  // namespace ricochet

@@ -36,6 +36,7 @@ TEST(SleepingPiles, KnowWhoTouchesWhom) {
     EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12, 13}));
     EXPECT_EQ(piles.around({10, 14}, 1), (Ids{10, 11, 13, 14}));
     EXPECT_EQ(piles.around({10}, 2), (Ids{10, 11, 12}));
+    EXPECT_EQ(piles.around({12}, 1 << 30), (Ids{10, 11, 12, 13, 14}));  // at once
     EXPECT_EQ(piles.around({20}, 1), Ids{});
     EXPECT_EQ(piles.number_of(14), 10U);
 }

@@ -25,7 +25,7 @@ constexpr double kWeightsAside = 0.5;
 
 /// Times that a step wakes only what touches those that are hit or pushed; beyond them it wakes twice as far each time,
 /// as each time costs all that is awake again.
-constexpr int kWakingsAlone = 2;
+constexpr int kWakingsAlone = 3;
 constexpr int kFarthest = 16;          // 2^16 contacts: all of a pile
 constexpr double kMostContacts = 1e4;  // at once
 
@@ -71,7 +71,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
 /// What lies farther away is woken when it is pushed; what nothing holds any more, at once.
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
-    const int farther = std::max(0, wakings_++ - kWakingsAlone);
+    const int farther = std::max(0, ++wakings_ - kWakingsAlone);
     wake_alone(piles_.around(particles, contacts << std::min(farther, kFarthest)), time);
     std::vector<std::uint64_t> held;
     for (const NetworkMemory::Entry& entry : piles_.edges()) {

@@ -1,6 +1,7 @@
 #include "ricochet/simulation/sleeping_piles.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <unordered_set>
 #include <utility>
@@ -153,49 +154,44 @@ std::vector<std::uint64_t> SleepingPiles::piles_of(const std::vector<std::uint64
     return members;
 }
 
-std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles, int contacts) const {
-    std::vector<std::uint8_t> is_found(sleepers_.size(), 0);
-    std::vector<std::uint64_t> found;  // in the order of their distance
-    const auto add = [&](std::uint64_t particle) {
+/// Marks, by sleepers, those among some particles and those that contacts in a row join to them.
+std::vector<std::uint8_t> SleepingPiles::reached_from(const std::vector<std::uint64_t>& particles, int contacts,
+                                                      bool must_press) const {
+    std::vector<std::uint8_t> marks(sleepers_.size(), 0);
+    std::vector<const Sleeper*> reached;  // in the order of their distance
+    const auto reach = [&](std::uint64_t particle) {
         const Sleeper* const sleeper = find(particle);
-        if (sleeper == nullptr || is_found[slot_of(*sleeper)] != 0) return;
-        is_found[slot_of(*sleeper)] = 1;
-        found.push_back(particle);
+        if (sleeper == nullptr || marks[slot_of(*sleeper)] != 0) return;
+        marks[slot_of(*sleeper)] = 1;
+        reached.push_back(sleeper);
     };
-    for (const std::uint64_t particle : particles) add(particle);
+    for (const std::uint64_t particle : particles) reach(particle);
     std::size_t begin = 0;
-    for (int k = 0; k < contacts; ++k) {
-        const std::size_t end = found.size();
+    for (int k = 0; k < contacts && begin < reached.size(); ++k) {
+        const std::size_t end = reached.size();
         for (; begin < end; ++begin) {
-            for (const Neighbour& other : neighbours_of(*find(found[begin]))) add(other.particle);
+            for (const Neighbour& other : neighbours_of(*reached[begin])) {
+                if (other.presses || !must_press) reach(other.particle);
+            }
         }
     }
-    std::sort(found.begin(), found.end());
+    return marks;
+}
+
+std::vector<std::uint64_t> SleepingPiles::marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark) const {
+    std::vector<std::uint64_t> found;
+    for (const Sleeper& sleeper : sleepers_) {
+        if (marks[slot_of(sleeper)] == mark) found.push_back(sleeper.particle);
+    }
     return found;
 }
 
+std::vector<std::uint64_t> SleepingPiles::around(const std::vector<std::uint64_t>& particles, int contacts) const {
+    return marked(reached_from(particles, contacts, false), 1);
+}
+
 std::vector<std::uint64_t> SleepingPiles::not_joined_to(const std::vector<std::uint64_t>& held) const {
-    std::vector<std::uint8_t> is_joined(sleepers_.size(), 0);
-    std::vector<std::uint64_t> open;
-    const auto join_to = [&](std::uint64_t particle) {
-        const Sleeper* const sleeper = find(particle);
-        if (sleeper == nullptr || is_joined[slot_of(*sleeper)] != 0) return;
-        is_joined[slot_of(*sleeper)] = 1;
-        open.push_back(particle);
-    };
-    for (const std::uint64_t particle : held) join_to(particle);
-    while (!open.empty()) {
-        const std::uint64_t particle = open.back();
-        open.pop_back();
-        for (const Neighbour& other : neighbours_of(*find(particle))) {
-            if (other.presses) join_to(other.particle);
-        }
-    }
-    std::vector<std::uint64_t> others;
-    for (const Sleeper& sleeper : sleepers_) {
-        if (is_joined[slot_of(sleeper)] == 0) others.push_back(sleeper.particle);
-    }
-    return others;
+    return marked(reached_from(held, std::numeric_limits<int>::max(), true), 0);
 }
 
 std::vector<NetworkMemory::Entry> SleepingPiles::wake(const std::vector<std::uint64_t>& woken) {

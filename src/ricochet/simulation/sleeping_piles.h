@@ -108,6 +108,9 @@ private:
         const std::uint32_t slot = slot_of(sleeper);
         return std::span(neighbours_).subspan(first_[slot], first_[slot + 1] - first_[slot]);
     }
+    [[nodiscard]] std::vector<std::uint8_t> reached_from(const std::vector<std::uint64_t>& particles, int contacts,
+                                                         bool must_press) const;
+    [[nodiscard]] std::vector<std::uint64_t> marked(const std::vector<std::uint8_t>& marks, std::uint8_t mark) const;
     void find_slots();
     void look_at_contacts();
     void find_ends();

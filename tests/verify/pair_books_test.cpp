@@ -67,11 +67,13 @@ TEST(PairBooks, EnergyThatIsLostIsSeenWhereNothingTakesAny) {
     EXPECT_FALSE(is_wrong(meeting_of(0.9, 0.0), {.restitution = 0.9}));
 }
 
-TEST(PairBooks, SpheresInContactWithAWallMayBeApartByTheErrorOfTheirArcs) {
+TEST(PairBooks, SpheresMayBeApartByTheErrorOfTheArcsThatTheyHaveRolledOnWalls) {
     PairMeeting meeting = meeting_of(1.0, 0.0);
     meeting.spheres[1].before.position.x += 5e-9;
     EXPECT_TRUE(is_wrong(meeting, {}));
-    meeting.spheres[0].is_bound = true;
+    meeting.spheres[0].bound_way = 0.002;
+    EXPECT_TRUE(is_wrong(meeting, {}));
+    meeting.spheres[1].bound_way = 0.004;
     EXPECT_FALSE(is_wrong(meeting, {}));
     meeting.spheres[1].before.position.x += 1e-7;
     EXPECT_TRUE(is_wrong(meeting, {}));

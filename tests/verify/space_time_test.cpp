@@ -56,5 +56,29 @@ TEST(SpaceTime, TellsAPathFromATriangleThatNeverHasAnArea) {
     EXPECT_FALSE(are_apart({{1, -1, 0}, {1, 1, 0}}, {edge, edge}));
 }
 
+// As a particle that slides over a seam of a face that is scaled: at a height of 16 ulp, beside a triangle whose
+// corners stand on one line at all times, where its third corner is and where it is not.
+TEST(SpaceTime, TellsAPathFromAFlatTriangleThatItPassesCloselyOver) {
+    RandomSequence random(31, 0, 0);
+    const int count = test::scaled(200);
+    for (int k = 0; k < count; ++k) {
+        SCOPED_TRACE(k);
+        const Vec3 half = in_cube(random);
+        const Vec3 grown = 1.01 * half;
+        const double third = k % 2 == 0 ? 0.0 : random.uniform_around(0, 1);
+        const Corners before{-half, half, third * half};
+        const Corners after{-grown, grown, third * grown};
+        const Vec3 to_side = normalized(cross(half, in_cube(random)));
+        const Vec3 up = normalized(cross(half, to_side));
+        const Vec3 middle = random.uniform_around(0, 0.9) * half + 0x1p-48 * up;
+        const double speed = random.uniform_around(0, 1);
+        EXPECT_TRUE(are_apart({middle - speed * to_side, middle + speed * to_side}, {before, after}));
+    }
+    const Corners edge{{-1, 0, 0}, {1, 0, 0}, {0.5, 0, 0}};
+    EXPECT_TRUE(are_apart({{0, -1, 0x1p-50}, {0, 1, 0x1p-50}}, {edge, edge}));
+    EXPECT_FALSE(are_apart({{0, -1, 0}, {0, 1, 0}}, {edge, edge}));
+    EXPECT_FALSE(are_apart({{0, -1, 0x1p-50}, {0, 1, -0x1p-50}}, {edge, edge}));
+}
+
 }  // namespace
 }  // namespace ricochet::verify

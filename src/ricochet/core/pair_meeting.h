@@ -20,7 +20,7 @@ struct MetSphere {
     RecordedMotion before;
     RecordedMotion after;
     std::uint32_t material = 0;  ///< its number
-    bool is_bound = false;       ///< it has slid, rolled or rested on a wall in this step, in approximate arcs
+    double bound_way = 0.0;      ///< m, that it has slid or rolled on walls in this step, in approximate arcs
 };
 
 /// Two of the spheres touch.

@@ -197,7 +197,7 @@ void PairIsland::go_to(std::size_t m, double time) {
     Box3 box;
     for (const FlownPiece& piece : scratch_->flown) {
         box.include(box_of(piece.path, piece.duration));
-        member.is_bound = member.is_bound || !piece.is_free;
+        if (!piece.is_free) member.bound_way += length(piece.path.position(piece.duration) - piece.path.c[0]);
     }
     box.include(moving.state.position);
     member.swept.include(grown(box, member.radius()));
@@ -454,7 +454,7 @@ void PairIsland::record_meeting(std::span<const PairContact> contacts, const std
                                    {body.position, body.velocity, body.spin},
                                    {after[k].position, after[k].velocity, after[k].spin},
                                    body.material,
-                                   (*members_)[changed[k]].is_bound});
+                                   (*members_)[changed[k]].bound_way});
     }
     for (const PairContact& contact : contacts) {
         meeting.contacts.push_back({contact.first, contact.second, contact.impulse});

@@ -41,7 +41,7 @@ struct IslandMember {
     std::uint32_t impacts = 0;  ///< on other members
     Vec3 pair_push{};           ///< m/s, that others have given it by impacts and contact
     bool is_planned = false;    ///< by the problem of all contacts of its island
-    bool is_bound = false;      ///< some of its way was along walls, in arcs
+    double bound_way = 0.0;     ///< m, of its way that was along walls, in arcs
     bool is_cut_off = false;    ///< it has spent its budget
     Box3 swept{};               ///< of the whole sphere on all of its way
     /// All of its way, where it has met others, or others act on it from afar.

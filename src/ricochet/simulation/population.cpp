@@ -35,7 +35,7 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     store.set_next_id(limits.first_id + births.count());
     share.add_births(births.count());
     if (births.count() > 0 && coupled.is_active()) coupled.bind(particles());
-    if (check) check->watch_spawned(particles());
+    if (check) check->add_spawned(store.size());
 }
 
 /// Returns the children that live here; nothing where none is born, not on other ranks either.
@@ -65,7 +65,7 @@ std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& st
         statistics.births_refused_by_population += counts.refused_by_population;
     }
     if (counts.children > 0 && coupled.is_active()) coupled.bind(particles());
-    if (check) check->watch_spawned(particles());
+    if (check) check->add_spawned(store.size());
     return counts.children > 0 ? std::optional(ParticleRange{first, store.size()}) : std::nullopt;
 }
 
@@ -161,7 +161,7 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
         ids.push_back(impl().particles().id.back());
     }
     if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
-    if (impl().check) impl().check->watch_spawned(impl().particles());
+    if (impl().check) impl().check->add_spawned(impl().store.size());
     return ids;
 }
 

@@ -226,16 +226,7 @@ VerifiedMotion motion_of(const CollisionWorld& world, const MovingColliders* bod
 RunCheck::RunCheck(const CollisionWorld& world, const MovingColliders* bodies)
     : verifier_(surfaces_of(world, bodies), motion_of(world, bodies)) {}
 
-void RunCheck::watch_spawned(const Particles& particles) {
-    const std::size_t first = watched_.size();
-    watched_.resize(particles.size());
-    parallel_for_blocks(particles.size() - first, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = first + begin; i < first + end; ++i) {
-            const double time = std::max(0.0, particles.birth_time[i]);
-            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], time);
-        }
-    });
-}
+void RunCheck::add_spawned(std::size_t particles) { watched_.resize(particles); }
 
 void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                      std::span<const Segment> segments, std::vector<Violation>& violations,
@@ -243,7 +234,11 @@ void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput
     const VerifiedStep step{
         particles.id[i], particles.position[i], moved.position, particles.radius[i], times.end, segments,
         motion,          times.stored};
-    verifier_.check(step, watched_[i], violations);
+    std::optional<VerifiedParticle>& watched = watched_[i];
+    if (!watched) {
+        watched = verifier_.watch(particles.position[i], particles.radius[i], std::max(0.0, particles.birth_time[i]));
+    }
+    verifier_.check(step, *watched, violations);
 }
 
 std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,
@@ -274,7 +269,7 @@ std::vector<Violation> RunCheck::check_spheres(const Particles& particles, const
 
 void RunCheck::restart(const ParticleStore& store, double now) {
     const Particles& particles = store.particles();
-    watched_.assign(particles.size(), {});
+    watched_.assign(particles.size(), std::nullopt);
     parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));

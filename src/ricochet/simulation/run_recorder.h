@@ -212,8 +212,10 @@ public:
     /// bodies: null where no collider moves; they must outlive it.
     RunCheck(const CollisionWorld& world, const MovingColliders* bodies);
 
-    /// Begins to watch the particles that have been appended since the last call. Not while others check.
-    void watch_spawned(const Particles& particles);
+    /// Follows the number of particles, after some have been appended. Not while others check. A new particle is
+    /// watched from its first check on, because a driven body has its path at the birth only then: impacts earlier in
+    /// the same step change it.
+    void add_spawned(std::size_t particles);
     /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
     /// checked from several threads at once.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
@@ -235,8 +237,8 @@ public:
 private:
     Verifier verifier_;
     SphereOverlaps overlaps_;
-    bool has_looked_ = false;  // at overlaps
-    std::vector<VerifiedParticle> watched_;
+    bool has_looked_ = false;                               // at overlaps
+    std::vector<std::optional<VerifiedParticle>> watched_;  // nothing: not checked yet since its birth
 };
 
 }  // namespace ricochet

@@ -81,8 +81,7 @@ private:
         if (!books_.has_exact_paths) return false;
         constexpr double kUlps = 64.0;
         const double tick = kUlps * std::numeric_limits<double>::epsilon();
-        const double part = a.is_bound || b.is_bound ? kBoundGap : kMostMetOverlap;
-        const Long reach = part * std::min(a.radius, b.radius) +
+        const Long reach = kMostMetOverlap * std::min(a.radius, b.radius) + kBoundGap * (a.bound_way + b.bound_way) +
                            tick * std::max(max_abs(a.before.position), max_abs(b.before.position)) +
                            tick * std::fabs(meeting_.time) * speeds(contact);
         return !(distance - a.radius - b.radius <= reach);

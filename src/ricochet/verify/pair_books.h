@@ -17,11 +17,10 @@ namespace ricochet::verify {
 inline constexpr double kPairBooks = 1e-12;
 inline constexpr double kPairAngularBooks = 1e-10;
 
-/// Parts of the smaller radius that spheres may be apart when they meet where one is in contact with a wall. Reason:
-/// its path is made of arcs, planned anew up to the time of impact, some 1e-9 apart from those that have said when it
-/// is, and on what turns, whose way the longer arc follows less closely, up to 2.5e-7 (at 3 rad/s and half a metre from
-/// the axis, in steps of 2 ms). Smaller: their errors are reported. Larger: impacts of what does not touch are not
-/// seen.
+/// Parts of their ways along walls in the step that spheres may be apart when they meet. Reason: such a way is made of
+/// arcs, planned anew up to the time of impact. Arcs turn by kMaxArcAngle, so both plans differ by up to the fourth
+/// power of it over 120, 8e-7 of the way; 3e-7 has been seen. Smaller: the error of arcs is reported. Larger: impacts
+/// of spheres that do not touch are not seen.
 inline constexpr double kBoundGap = 1e-6;
 
 /// What spheres are said to do to each other.

@@ -158,19 +158,73 @@ Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end)
     return offset;
 }
 
-Vec3 at(const Way& way, double part) { return (1.0 - part) * way.from + part * way.to; }
+/// A vector of numbers with more digits than doubles have: beside an edge a direction across it counts by the square of
+/// the distance, which doubles lose where that is small.
+template <class Real>
+using Vector = std::array<Real, 3>;
 
-/// From the nearest point of the longest edge to p: what has hardly an area is seen as that edge.
-Vec3 away_from_longest_edge(const std::array<Vec3, 3>& corners, const Vec3& p) {
-    Vec3 begin = corners[2];
-    Vec3 edge = corners[0] - corners[2];
-    for (std::size_t k = 0; k < 2; ++k) {
-        const Vec3 other = corners[k + 1] - corners[k];
-        if (dot(other, other) > dot(edge, edge)) begin = corners[k], edge = other;
+template <class Real>
+Vector<Real> at(const Way& way, double part) {
+    const Real rest = 1 - Real(part);
+    Vector<Real> point;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const int axis = static_cast<int>(k);
+        point[k] = rest * Real(way.from[axis]) + Real(part) * Real(way.to[axis]);
     }
-    const double squared = dot(edge, edge);
-    if (!(squared > 0.0)) return p - begin;
-    return p - begin - std::clamp(dot(p - begin, edge) / squared, 0.0, 1.0) * edge;
+    return point;
+}
+
+template <class Real>
+Vector<Real> less(const Vector<Real>& a, const Vector<Real>& b) {
+    return {Real(a[0] - b[0]), Real(a[1] - b[1]), Real(a[2] - b[2])};
+}
+
+template <class Real>
+Vector<Real> times(const Real& factor, const Vector<Real>& a) {
+    return {Real(factor * a[0]), Real(factor * a[1]), Real(factor * a[2])};
+}
+
+template <class Real>
+Real product(const Vector<Real>& a, const Vector<Real>& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+template <class Real>
+Vector<Real> across(const Vector<Real>& a, const Vector<Real>& b) {
+    return {Real(a[1] * b[2] - a[2] * b[1]), Real(a[2] * b[0] - a[0] * b[2]), Real(a[0] * b[1] - a[1] * b[0])};
+}
+
+/// The direction, or the opposite one, that leads to the side on which an offset ends.
+template <class Real>
+Vector<Real> towards(const Vector<Real>& direction, const Vector<Real>& offset) {
+    return product(direction, offset) < 0 ? times(Real(-1), direction) : direction;
+}
+
+template <class Real>
+using Triple = std::array<Vector<Real>, 3>;
+
+/// The first corner of the longest edge; the edge ends at the next one.
+template <class Real>
+std::size_t longest_edge(const Triple<Real>& c) {
+    std::size_t longest = 0;
+    Real largest = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vector<Real> edge = less(c[(k + 1) % 3], c[k]);
+        const Real squared = product(edge, edge);
+        if (!(squared > largest)) continue;
+        largest = squared;
+        longest = k;
+    }
+    return longest;
+}
+
+/// Where the point of an edge nearest to an offset from its begin is: 0 at the begin, 1 at the end.
+template <class Real>
+Real part_of(const Vector<Real>& edge, const Vector<Real>& offset) {
+    const Real squared = product(edge, edge);
+    if (!(squared > 0)) return Real(0);
+    const Real part = product(offset, edge) / squared;
+    return part < 0 ? Real(0) : (part > 1 ? Real(1) : part);
 }
 
 class Pair {
@@ -217,21 +271,10 @@ private:
     template <class Real>
     [[nodiscard]] bool is_separated(const std::array<Offset<Real>, 3>& to_point, double begin, double end,
                                     bool& is_in_doubt) const {
-        const double middle = 0.5 * (begin + end);
-        const Vec3 p = at(point_, middle);
-        const std::array<Vec3, 3> c{at(corners_[0], middle), at(corners_[1], middle), at(corners_[2], middle)};
-        const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
-        const std::array<Vec3, 6> directions{p - (c[0] + c[1] + c[2]) / 3.0,
-                                             cross(c[1] - c[0], normal),
-                                             cross(c[2] - c[1], normal),
-                                             cross(c[0] - c[2], normal),
-                                             dot(normal, p - c[0]) < 0.0 ? -normal : normal,
-                                             away_from_longest_edge(c, p)};
-        return std::any_of(directions.begin(), directions.end(), [&](const Vec3& n) {
+        const std::array<Vector<Real>, 7> directions = directions_at<Real>(0.5 * (begin + end), begin, end);
+        return std::any_of(directions.begin(), directions.end(), [&](const Vector<Real>& n) {
             Offset<Real> direction;
-            for (int axis = 0; axis < 3; ++axis) {
-                direction[static_cast<std::size_t>(axis)].add(Real(n[axis]), Real(std::fabs(n[axis])));
-            }
+            for (std::size_t axis = 0; axis < 3; ++axis) direction[axis].add(n[axis], size_of(n[axis]));
             bool is_beyond = true;
             for (const Offset<Real>& offset : to_point) {
                 const Signs signs = dot_of(offset, direction).signs();
@@ -241,6 +284,40 @@ private:
             is_in_doubt = is_in_doubt || !is_beyond;
             return is_beyond;
         });
+    }
+
+    /// Directions along which the point may be beyond all of the triangle. A triangle that has hardly an area is seen
+    /// as its longest edge: across the edge, towards the point, and across the edge and the way of the point along it.
+    template <class Real>
+    [[nodiscard]] std::array<Vector<Real>, 7> directions_at(double middle, double begin, double end) const {
+        const Vector<Real> p = at<Real>(point_, middle);
+        const Triple<Real> c{at<Real>(corners_[0], middle), at<Real>(corners_[1], middle),
+                             at<Real>(corners_[2], middle)};
+        const Vector<Real> normal = across(less(c[1], c[0]), less(c[2], c[0]));
+        const Vector<Real> from_center = less(times(Real(3), p), sum_of(c));
+        const std::size_t k = longest_edge(c);
+        const Vector<Real> edge = less(c[(k + 1) % 3], c[k]);
+        const Real part = part_of(edge, less(p, c[k]));
+        const auto away_from_edge = [&](double time) {
+            const Vector<Real> first = at<Real>(corners_[k], time);
+            const Vector<Real> along = less(at<Real>(corners_[(k + 1) % 3], time), first);
+            return less(less(at<Real>(point_, time), first), times(part, along));
+        };
+        const Vector<Real> away = away_from_edge(middle);
+        const Vector<Real> way = less(away_from_edge(end), away_from_edge(begin));
+        return {from_center,
+                across(less(c[1], c[0]), normal),
+                across(less(c[2], c[1]), normal),
+                across(less(c[0], c[2]), normal),
+                towards(normal, less(p, c[0])),
+                away,
+                towards(across(edge, way), away)};
+    }
+
+    template <class Real>
+    [[nodiscard]] static Vector<Real> sum_of(const Triple<Real>& c) {
+        return {Real(c[0][0] + c[1][0] + c[2][0]), Real(c[0][1] + c[1][1] + c[2][1]),
+                Real(c[0][2] + c[1][2] + c[2][2])};
     }
 
     Way point_;

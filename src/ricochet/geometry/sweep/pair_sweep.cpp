@@ -14,10 +14,15 @@ std::array<Vec3, 4> shifted(const Path& path, double s) {
     return {path.position(s), path.velocity(s), path.c[2] + (3.0 * s) * path.c[3], path.c[3]};
 }
 
-/// |d|^2 - distance^2 in a hundred bits, rounded.
-double clearance(const Vec3& d, double distance) {
-    return static_cast<double>(dot_of<DoubleDouble>(d, d) - two_product(distance, distance));
+/// |d|^2 - distance^2 in a hundred bits.
+DoubleDouble clearance(const Vec3& d, double distance) {
+    return dot_of<DoubleDouble>(d, d) - two_product(distance, distance);
 }
+
+/// Part of the magnitudes that it is a difference of, below which the discriminant of a meeting is a graze's. Reason:
+/// doubles leave it an error of some 2^-48 of them. Smaller: rounding decides whether spheres that part meet again.
+/// Larger: more digits where doubles have enough.
+constexpr double kGraze = 0x1p-40;
 
 /// Two centres as they move relative to each other.
 struct Approach {
@@ -34,13 +39,21 @@ struct Approach {
 std::optional<double> meeting_on_line(const Vec3& d, const Vec3& u, const Approach& approach, double duration) {
     const double b = dot(d, u);
     if (!(b < 0.0)) return std::nullopt;
-    const double c = clearance(d, approach.distance);
+    const DoubleDouble clear = clearance(d, approach.distance);
+    const double c = clear.hi;
     if (c <= 0.0) return approach.is_at_once(d, u, c) ? std::optional(0.0) : std::nullopt;
     // b^2 - a c loses digits in a graze; |d x u|^2 does not: b^2 - a |d|^2 = -|d x u|^2.
-    const double root = length_squared(u) * approach.distance * approach.distance - length_squared(cross(d, u));
+    const double a = length_squared(u);
+    double root = a * approach.distance * approach.distance - length_squared(cross(d, u));
+    double speed = -b;
+    if (root < kGraze * a * approach.distance * (approach.distance + length(d))) {
+        const DoubleDouble exact_b = dot_of<DoubleDouble>(d, u);
+        root = (exact_b * exact_b - dot_of<DoubleDouble>(u, u) * clear).hi;
+        speed = -exact_b.hi;
+    }
     if (!(root >= 0.0)) return std::nullopt;
-    const double t = c / (-b + std::sqrt(root));
-    return t <= duration ? std::optional(t) : std::nullopt;
+    const double t = c / (speed + std::sqrt(root));
+    return t >= 0.0 && t <= duration ? std::optional(t) : std::nullopt;
 }
 
 std::optional<double> meeting_on_curve(const Path& relative, const Approach& approach) {

@@ -1,0 +1,55 @@
+#include "ricochet/geometry/sweep/pair_sweep.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ricochet/core/random.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace {
+
+Vec3 in_cube(RandomSequence& random) {
+    return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
+}
+
+// As after an impact without rebound: what is left of the approach is rounding, and so is the gap. A graze has a
+// discriminant of rounding, of which doubles do not know the sign.
+TEST(PairSweep, SpheresThatSlipPastEachOtherAfterAnImpactMeetOnlyWhereTheyTouch) {
+    RandomSequence random(43, 0, 0);
+    constexpr double kDistance = 0.06;
+    const int count = test::scaled(20000);
+    int meetings = 0;
+    for (int k = 0; k < count; ++k) {
+        SCOPED_TRACE(k);
+        const Vec3 place = in_cube(random);
+        const Vec3 normal = normalized(in_cube(random));
+        const Vec3 velocity = in_cube(random);
+        const Vec3 slip = in_cube(random);
+        const Vec3 apart = (kDistance * (1.0 + 0x1p-50 * random.uniform())) * normal;
+        const Path first = line_path(place, velocity, 1.0);
+        const Path second = line_path(place + apart, velocity + (slip - dot(slip, normal) * normal), 1.0);
+        const auto time = first_meeting(TimedPath{&first, 0.0, 1.0}, TimedPath{&second, 0.0, 1.0}, kDistance, 0x1p-47);
+        if (!time) continue;
+        ++meetings;
+        EXPECT_NEAR(length(second.position(*time) - first.position(*time)), kDistance, 1e-15);
+    }
+    EXPECT_LT(meetings, count);
+}
+
+// Closed form: two that pass each other at a distance of a part of their radii, by rounding less or more than both.
+TEST(PairSweep, AGrazeIsMetOnItsSideOfTheLastPlace) {
+    const Path first = line_path({0, 0, 0}, {0, 0, 0}, 4.0);
+    for (const double beside : {1.0 - 0x1p-53, 1.0, 1.0 + 0x1p-52}) {
+        const Path second = line_path({-1.0, beside, 0.0}, {1.0, 0.0, 0.0}, 4.0);
+        const auto time = first_meeting(TimedPath{&first, 0.0, 4.0}, TimedPath{&second, 0.0, 4.0}, 1.0, 0.0);
+        EXPECT_EQ(time.has_value(), beside <= 1.0) << beside;
+        if (time) {
+            EXPECT_NEAR(*time, 1.0 - std::sqrt((1.0 - beside) * (1.0 + beside)), 1e-15);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet

@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -21,6 +20,8 @@
 #include <vector>
 
 #include "golden/random_scene.h"
+#include "golden/shipped_scenes.h"
+#include "golden/state_bits.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/io/scene.h"
@@ -32,81 +33,6 @@ namespace {
 
 const std::filesystem::path kRoot = RICOCHET_SOURCE_DIR;
 
-/// A shipped scene and how much of it is run.
-struct ShippedScene {
-    const char* name;
-    const char* duration;  ///< s; empty: all of it
-};
-
-constexpr ShippedScene kShippedScenes[] = {
-    {"bouncing_ball", ""},
-    {"conveyor", "4"},
-    {"debris", "1.6"},
-    {"drops", "0.12"},
-    {"fireworks", "2.2"},
-    {"flow_past_body", "1.6"},
-    {"fountain", "1.2"},
-    {"funnel", "0.7"},
-    {"galaxy", "0.6"},
-    {"galton", "1.2"},
-    {"gear_hail", "0.9"},
-    {"marbles", "2.5"},
-    {"responses/energy", ""},
-    {"responses/gas", "0.25"},
-    {"responses/penetration", ""},
-    {"responses/slope", ""},
-    {"responses/tunnelling", "0.15"},
-    {"responses/wedge", ""},
-    {"robot_arm", "0.9"},
-    {"rope_and_cloth", "0.12"},
-    {"shattering", "1.4"},
-    {"sports_balls", ""},
-    {"staircase", "1.5"},
-    {"torus_knot_gas", "0.12"},
-    {"drum", "1.2"},
-    {"mixer", "1"},
-    {"shaker", "0.6"},
-    {"sweeper", "1.5"},
-    {"turbine", "1.2"},
-    {"piston", "0.4"},
-    {"bouncing_table", "1.2"},
-    {"fish", "2.4"},
-    {"tumbling_rocks", "1.1"},
-    {"billiard_break", "1"},
-    {"granular_gas", "0.3"},
-    {"grinder", "0.8"},
-    {"fire", "0.3"},
-    {"explosion", "0.3"},
-    {"newtons_cradle", "1.5"},
-    {"sandpile", "0.6"},
-    {"hopper", "0.7"},
-    {"avalanche", "1"},
-    {"swarms", "1.6"},
-    {"quarry", "1.2"},
-};
-
-/// FNV-1a over the bits of numbers.
-class Hash {
-public:
-    void add(std::uint64_t bits) {
-        for (int k = 0; k < 8; ++k, bits >>= 8) value_ = (value_ ^ (bits & 0xFFU)) * 0x100000001B3U;
-    }
-    void add(double number) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &number, sizeof bits);
-        add(bits);
-    }
-    void add(const Vec3& v) {
-        add(v.x);
-        add(v.y);
-        add(v.z);
-    }
-    [[nodiscard]] std::uint64_t value() const { return value_; }
-
-private:
-    std::uint64_t value_ = 0xCBF29CE484222325U;
-};
-
 /// What a run has left behind.
 struct Outcome {
     std::uint64_t state = 0;
@@ -117,17 +43,6 @@ struct Outcome {
 
 std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
     return out << std::hex << outcome.state << ',' << outcome.contacts << std::dec;
-}
-
-void add_records(const Simulation& simulation, Hash& hash) {
-    for (const ContactRecord& record : simulation.contact_records()) {
-        hash.add(record.time);
-        hash.add(record.particle);
-        hash.add(std::uint64_t{record.surface});
-        for (const Vec3& v : {record.position, record.normal, record.velocity_before, record.velocity_after}) {
-            hash.add(v);
-        }
-    }
 }
 
 Outcome run(SimulationSetup setup, int threads) {

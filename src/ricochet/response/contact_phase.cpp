@@ -282,7 +282,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     const Vec3 before = state_.velocity;
     const KeptContact kept = manifold_.kept();
     state_.velocity = Vec3{};
-    if (rules_.bodies == nullptr) {
+    if (!step_.is_near_bodies()) {
         manifold_.record_push(-before - duration * forces, duration, impact_);
         step_.log().note_impact();
         static_cast<void>(step_.wait(duration));
@@ -311,7 +311,7 @@ std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.start();
     const bool is_back = length(state_.position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
     // Landing again from one contact offset above, step after step, it would creep downhill.
-    if (state_.position != start && is_back && rules_.bodies == nullptr) step_.return_to_start();
+    if (state_.position != start && is_back && !step_.is_near_bodies()) step_.return_to_start();
     if (const auto contact = wait(step_.remaining(), forces)) return contact;
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
     const bool stays =

@@ -59,9 +59,10 @@ private:
     [[nodiscard]] bool has_room();
     bool goes_along(std::optional<Contact>& contact);
     [[nodiscard]] bool has_moving(const Contact& contact) const {
-        return std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-            return rules_.bodies->body_of(surface.surface) != kAtRest;
-        });
+        return rules_.bodies != nullptr &&
+               std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+                   return rules_.bodies->body_of(surface.surface) != kAtRest;
+               });
     }
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
@@ -86,8 +87,9 @@ private:
     ContactPhase contact_phase_;
     std::uint32_t bounces_at_look_ = 0;  // of has_room()
     double remaining_at_look_ = std::numeric_limits<double>::infinity();
-    int shared_count_ = 0;     // of contacts with several frames at once
-    bool flies_anew_ = false;  // the next flight does not go on from one before: it comes from a ride
+    int shared_count_ = 0;         // of contacts with several frames at once
+    bool has_met_moving_ = false;  // a surface that moves, in this step
+    bool flies_anew_ = false;      // the next flight does not go on from one before: it comes from a ride
     /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
     bool is_without_kick_ = false;
 };
@@ -115,7 +117,7 @@ MoveOutcome ParticleMover::run() {
     return outcome;
 }
 
-/// Among colliders that move: what a kick has done for the time that is left is taken back, and done by the forces.
+/// At a surface that moves: what a kick has done for the time that is left is taken back, and done by the forces.
 std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, const Contact& contact) {
     if (!flies_anew_) {
         particle_.state.velocity -= step_.remaining() * flight.acceleration;
@@ -127,7 +129,7 @@ std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, 
 
 /// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
 bool ParticleMover::has_room() {
-    if (rides_ == nullptr || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
+    if (!has_met_moving_ || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
     bounces_at_look_ = step_.outcome().bounces;
     const double before = std::exchange(remaining_at_look_, step_.remaining());
     return before - step_.remaining() > kLeastWayOut * step_.duration();
@@ -250,7 +252,7 @@ Contact ParticleMover::part_with(BodyId body, const Contact& contact) const {
 /// Contact with the surfaces of one frame, of those that take part: the first that can last.
 std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const Contact& contact,
                                                     const Motion& arriving) {
-    if (rides_ == nullptr) return contact_phase_.begin(flight, contact, arriving);
+    if (!has_moving(contact)) return contact_phase_.begin(flight, contact, arriving);
     std::array<BodyId, Contact::kMostSurfaces> bodies{};
     std::size_t count = 0;
     for (const ContactSurface& surface : contact.all()) bodies[count++] = rules_.bodies->body_of(surface.surface);
@@ -329,16 +331,17 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
 
 /// Answers an impact. Returns the next contact when the particle slides into one.
 std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact& contact) {
-    if (rides_ != nullptr && flight.kick_duration > 0.0) return answer_without_kick(flight, contact);
+    const bool moves = has_moving(contact);
+    if (moves && flight.kick_duration > 0.0) return answer_without_kick(flight, contact);
+    has_met_moving_ = has_met_moving_ || moves;
     ++step_.outcome().bounces;
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
-    if (rides_ != nullptr && has_moving(contact)) step_.impact().note_driven();
+    if (moves) step_.impact().note_driven();
     // A slow one cuts no step short: it begins contact.
-    const double slow =
-        rides_ == nullptr ? rules_.settings.resting_speed : slowest_rebound(rules_, *rides_, particle_, contact);
+    const double slow = moves ? slowest_rebound(rules_, *rides_, particle_, contact) : rules_.settings.resting_speed;
     step_.set_resting_speed(slow);
-    const bool is_fast = rides_ != nullptr && step_.impact().approach(contact.all()) > slow;
+    const bool is_fast = moves && step_.impact().approach(contact.all()) > slow;
     step_.impact().reflect(contact.all(), is_fast);
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
@@ -347,7 +350,7 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const double before = step_.remaining();
     auto next = begin_contact(flight, contact, arriving);
     const bool has_begun = next || particle_.contact.count > 0 || step_.remaining() < before;
-    if (rides_ == nullptr || has_begun) return next;
+    if (!moves || has_begun) return next;
     // It goes on into a body that leaves it, but is where its path has it until the move's end.
     if (step_.impact().approach_of_paths(contact.all()) > slow) return wait_for_body(contact);
     step_.impact().go_with_paths(contact.all());

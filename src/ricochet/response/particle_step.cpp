@@ -126,7 +126,8 @@ CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const Contac
 
 std::optional<Contact> ParticleStep::wait(double duration, std::span<const SurfaceId> held) {
     const Path here = line_path(state().position, Vec3{}, duration);
-    if (rules_->bodies == nullptr) {
+    if (!is_among_bodies(here)) {
+        stay_until(clock_of(here).end);
         pass(duration);
         record_flown(here, duration, Vec3{}, false);
         return std::nullopt;
@@ -137,6 +138,28 @@ std::optional<Contact> ParticleStep::wait(double duration, std::span<const Surfa
     return travelled.contact;
 }
 
+/// Nothing that moves comes near until then, s.
+void ParticleStep::stay_until(double until) {
+    if (rules_->bodies == nullptr) return;
+    if (scratch_.record_segments) {
+        scratch_.segments.push_back({stored_.position, stored_.position, stored_.time, stored_.time, until});
+    }
+    stored_.time = until;
+}
+
+void ParticleStep::go_clear(const Path& line) {
+    const double end = clock_of(line).end;
+    if (scratch_.record_segments) {
+        scratch_.segments.push_back({line.c[0], line.end, state().time, stored_.time, end});
+    }
+    if (scratch_.record_flown) {
+        scratch_.flown.push_back({line, state().time, line.duration, line.c[1], line.c[1], false});
+    }
+    stored_ = {line.end, end};
+    state().position = line.end;
+    pass(line.duration);
+}
+
 void ParticleStep::pass(double duration) {
     state().time += duration;
     remaining_ = std::max(0.0, remaining_ - duration);
@@ -144,16 +167,22 @@ void ParticleStep::pass(double duration) {
 
 void ParticleStep::stop() {
     outcome_.unsimulated_time = remaining_;
-    if (rules_->bodies != nullptr && !wait_out(particle_.step_end)) outcome_.squeezed = 1;
+    if (!is_near_bodies()) {
+        stay_until(particle_.step_end);
+    } else if (!wait_out(particle_.step_end)) {
+        outcome_.squeezed = 1;
+    }
     remaining_ = 0.0;
 }
 
 void ParticleStep::return_to_start() {
     state().position = start_;
+    stored_.position = start_;
     for (std::size_t k = scratch_.segments.size(); k-- > first_segment_;) {
         Segment back = scratch_.segments[k];
         std::swap(back.from, back.to);
         back.time = state().time;
+        back.begin = back.end = stored_.time;
         scratch_.segments.push_back(back);
     }
 }

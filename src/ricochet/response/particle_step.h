@@ -78,8 +78,14 @@ public:
     std::optional<Contact> wait(double duration, std::span<const SurfaceId> held = {});
     /// Gives up the time that is left.
     void stop();
-    /// Back along its own segments to where the step began.
+    /// Back along its own segments to where the step began, where nothing that moves is near.
     void return_to_start();
+    /// To the end of a line that certainly meets nothing.
+    void go_clear(const Path& line);
+    /// True if a collider that moves, or a frame that carries the particle, may come to its position in the time left.
+    [[nodiscard]] bool is_near_bodies() const {
+        return is_among_bodies(line_path(particle_.state.position, Vec3{}, remaining_));
+    }
 
     // Where colliders move.
 
@@ -172,6 +178,7 @@ private:
     void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);
+    void stay_until(double until);
     [[nodiscard]] bool step_off_in_frame(const NearSurfaces& near);
     void record_chain(const PathClock& clock);
     void pass(double duration);

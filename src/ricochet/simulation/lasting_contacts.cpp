@@ -50,7 +50,6 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     if (range.begin != 0 || piles_.empty()) return;
     std::vector<std::uint64_t> gone;
     std::vector<std::uint64_t> carried;
-    const MovingColliders* const bodies = parts_.response.rules().bodies;
     for (const std::uint64_t particle : piles_.particles()) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i || parts_.store.is_fixed(*i)) {
@@ -60,8 +59,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         traces_.is_asleep[*i] = 1;
         parts_.schedule.leave_alone(*i);
         const Particles& particles = parts_.store.particles();
-        const Box3 near = ball_box(particles.position[*i], (1.0 + kWakingFall) * particles.radius[*i]);
-        if (bodies != nullptr && !bodies->all_stay_out(near)) carried.push_back(particle);
+        if (is_beside_movers(particles.position[*i], particles.radius[*i])) carried.push_back(particle);
     }
     // What rests on a surface that moves goes with it, however slowly.
     wake_alone(piles_.piles_of(carried), step.begin);
@@ -231,20 +229,26 @@ bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step)
     const bool is_acted_on = member.moving->state.coupling != nullptr;  // from afar, by what may move
     const bool is_moved = !member.is_fixed && !member.is_squeezed && member.duration == step.end - step.begin;
     if (is_acted_on || !is_moved) return false;
+    return !is_beside_movers(member.moving->state.position, member.radius);
+}
+
+/// True if a collider that moves may touch a sphere there in the step.
+bool LastingContacts::is_beside_movers(const Vec3& center, double radius) const {
     const MovingColliders* const bodies = parts_.response.rules().bodies;
-    const Box3 near = ball_box(member.moving->state.position, (1.0 + kWakingFall) * member.radius);
-    return bodies == nullptr || bodies->all_stay_out(near);
+    return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
 }
 
 void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                               DenseTrace& trace) const {
     if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
-    const bool among_movers = parts_.response.rules().bodies != nullptr;
+    const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const NetworkMember& member) {
+        return is_beside_movers(member.moving->state.position, member.radius);
+    });
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!is_slow(members[i], network.planned(i), among_movers) || !may_lie(members[i], step)) continue;
+        if (!is_slow(members[i], network.planned(i), beside_movers) || !may_lie(members[i], step)) continue;
         const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
         if (!is_at_rest(members[i], network.planned(i), pull)) continue;
         const std::uint64_t id = members[i].moving->id;

@@ -87,6 +87,7 @@ private:
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
     [[nodiscard]] bool may_lie(const NetworkMember& member, const TimeSpan& step) const;
+    [[nodiscard]] bool is_beside_movers(const Vec3& center, double radius) const;
     [[nodiscard]] bool is_held_by_surfaces(const NetworkMember& member, const NetworkIsland& network,
                                            std::size_t index) const;
     [[nodiscard]] bool holds(SurfaceId surface, const Vec3& push, const Vec3& pull) const;

@@ -52,8 +52,8 @@ void PairIslands::find_islands(const ParticleRange& range) {
         involved.push_back(pair.second);
     }
     // Where a sphere may go farther than its box those that meet nobody are watched, too.
-    for (std::uint32_t k = 0; plans_.may_roam() && k < range.size(); ++k) {
-        if (plans_.is_bound(k)) involved.push_back(k);
+    for (std::uint32_t k = 0; k < range.size(); ++k) {
+        if (plans_.may_roam(k)) involved.push_back(k);
     }
     islands_ = islands_of(involved);
 }

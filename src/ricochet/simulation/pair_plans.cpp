@@ -35,7 +35,9 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     declare();
     // What may go anywhere without touching a wall has to say where.
     std::vector<std::uint32_t> asked;
-    for (std::uint32_t k = 0; !is_bounded_ && k < boxes_.size(); ++k) asked.push_back(k);
+    for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
+        if (is_unbounded(k)) asked.push_back(k);
+    }
     ask(std::move(asked));
     near_.find(boxes_);
     take_pairs();
@@ -162,12 +164,19 @@ bool PairPlans::moves(std::uint32_t k) const {
     return parts_.store.particles().pinned[i] == 0 && !is_asleep(k) && !lies(i);
 }
 
-/// Whether reach() is all that spheres may come.
+/// Whether reach() is all that spheres may come where nothing that moves pushes them.
 bool PairPlans::is_bounded() const {
     const ResponseRules& rules = parts_.response.rules();
     const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
-    return rules.forces.is_uniform() && rules.bodies == nullptr && !parts_.coupled.is_active() &&
+    return rules.forces.is_uniform() && !parts_.coupled.is_active() &&
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
+}
+
+/// True for a sphere that may go farther than its box.
+bool PairPlans::is_unbounded(std::uint32_t k) const {
+    if (!is_bounded_) return true;
+    const MovingColliders* const bodies = parts_.response.rules().bodies;
+    return bodies != nullptr && !boxes_[k].empty() && !bodies->all_stay_out(boxes_[k]);
 }
 
 /// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force

@@ -37,8 +37,8 @@ public:
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
     /// Whether the two of a pair may meet, by its number.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
-    /// Those that are bound may go farther than they declare.
-    [[nodiscard]] bool may_roam() const { return !is_bounded_; }
+    /// It is bound, and may go farther than it declares.
+    [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && is_unbounded(k); }
     /// It is there, something may move it, and it does not fly freely.
     [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && moves(k) && !is_free(k); }
 
@@ -63,6 +63,7 @@ private:
     [[nodiscard]] bool lies(std::size_t i) const;
     [[nodiscard]] bool moves(std::uint32_t k) const;
     [[nodiscard]] bool is_bounded() const;
+    [[nodiscard]] bool is_unbounded(std::uint32_t k) const;
     [[nodiscard]] double reach(std::size_t i, double duration) const;
     [[nodiscard]] Box3 reachable_box(std::uint32_t k) const;
     [[nodiscard]] Box3 box_of_free(std::uint32_t k) const;
@@ -81,7 +82,7 @@ private:
     PairParts parts_;
     std::size_t first_ = 0;  // of the range
     TimeSpan step_;
-    bool is_bounded_ = true;
+    bool is_bounded_ = true;  // but for what comes to colliders that move
     const PairTraces* traces_ = nullptr;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;

@@ -11,10 +11,10 @@ namespace {
 /// farther by then.
 constexpr std::uint32_t kStepsToSleep = 50;
 
-/// Parts of the radius that what lies still may move in a step; and where there are colliders that move, on which it
-/// may ride slowly.
+/// Parts of the radius that what lies still may move in a step; and in islands beside colliders that move, which may
+/// carry it slowly.
 constexpr double kStillWay = 4e-5;
-constexpr double kStillWayAmongMovers = 1e-5;
+constexpr double kStillWayBesideMovers = 1e-5;
 
 /// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
 /// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
@@ -28,8 +28,8 @@ double speed_of(const NetworkMember& member, const NetworkBody& planned) {
 
 }  // namespace
 
-bool is_slow(const NetworkMember& member, const NetworkBody& planned, bool among_movers) {
-    const double way = among_movers ? kStillWayAmongMovers : kStillWay;
+bool is_slow(const NetworkMember& member, const NetworkBody& planned, bool beside_movers) {
+    const double way = beside_movers ? kStillWayBesideMovers : kStillWay;
     return member.duration * speed_of(member, planned) < way * member.radius;
 }
 

@@ -10,8 +10,9 @@
 
 namespace ricochet {
 
-/// A member hardly moves in a step as it is planned, whatever pulls it. among_movers: there are colliders that move.
-[[nodiscard]] bool is_slow(const NetworkMember& member, const NetworkBody& planned, bool among_movers);
+/// A member hardly moves in a step as it is planned, whatever pulls it. beside_movers: colliders that move are near its
+/// island, which they may carry.
+[[nodiscard]] bool is_slow(const NetworkMember& member, const NetworkBody& planned, bool beside_movers);
 /// One that is slow does so for what pulls it, too. pull: m/s^2, of the forces on it.
 [[nodiscard]] bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double pull);
 /// Steps that it has to lie still before it sleeps.

@@ -176,13 +176,11 @@ void NetworkIsland::add_walls(std::span<const NetworkMember> members, MoveScratc
         const ForceInput& state = members[i].moving->state;
         walls_.clear();
         const double near = members[i].reach;
-        if (rules_.bodies == nullptr) {
-            const bool is_near = find_wall_contacts(geometry, state.position, state.radius, near, walls_);
-            if (!is_near) clear_.back() = kClear * near;
-        } else {
-            const TimeOfStep step{state.time, state.time + members[i].duration};
-            find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
-        }
+        const TimeOfStep step{state.time, state.time + members[i].duration};
+        const bool is_near = rules_.bodies == nullptr
+                                 ? find_wall_contacts(geometry, state.position, state.radius, near, walls_)
+                                 : find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
+        if (!is_near) clear_.back() = kClear * near;
         for (const WallContact& wall : walls_) add_wall(i, members[i], wall);
     }
     first_wall_.push_back(contacts_.size());

@@ -40,9 +40,8 @@ public:
 
 private:
     void take_pushes();
-    void follow_at_rest();
-    void fly(const Path& path);
-    void follow_among_bodies();
+    void follow();
+    [[nodiscard]] Path next_line() const;
     void divert(const Contact& contact);
     [[nodiscard]] bool touches(SurfaceId surface) const;
     [[nodiscard]] Vec3 along_those_met(const Vec3& velocity) const;
@@ -53,6 +52,7 @@ private:
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
         return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
     }
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const;
     [[nodiscard]] std::vector<SurfaceId> passed_by(const Path& line);
     void come_off(const Contact& contact);
@@ -74,31 +74,50 @@ MoveOutcome PlannedMove::run() {
     take_pushes();
     particle_.spin = plan_.spin;
     particle_.state.velocity = plan_.velocity;
-    if (rules_.bodies != nullptr) {
-        follow_among_bodies();
-    } else {
-        follow_at_rest();
-    }
+    if (rules_.bodies == nullptr || step_.catch_up()) follow();
+    if (rules_.bodies != nullptr) step_.store_position();
     scratch_.driven = true;
     step_.log().note_impact();
     scratch_.driven = false;
     return step_.outcome();
 }
 
-void PlannedMove::follow_at_rest() {
-    const Path whole = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
-    if (plan_.is_clear && can_be_followed(whole)) {
-        fly(whole);
+/// In straight lines, each to a place that surfaces which push leave free at the step's end.
+void PlannedMove::follow() {
+    if (plan_.is_clear && held_.empty() && can_be_followed(next_line())) {
+        step_.go_clear(next_line());
         return;
     }
     for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
-        const Path path = line_path(particle_.state.position, particle_.state.velocity, step_.remaining());
-        const std::optional<Contact> contact = step_.follow(path);
+        const Vec3 velocity = particle_.state.velocity;
+        const Path path = next_line();
+        const std::vector<SurfaceId> along = passed_by(path);
+        const std::optional<Contact> contact = step_.follow(path, along);
+        particle_.state.velocity = velocity;
         if (!contact) break;
         divert(*contact);
+        if (!along.empty()) come_off(*contact);
+        for (const ContactSurface& surface : contact->all()) hold(surface.surface);
     }
     if (step_.remaining() > 0.0) cut_across();
-    if (step_.remaining() > 0.0) static_cast<void>(step_.wait(step_.remaining()));
+    if (!(step_.remaining() > 0.0)) return;
+    if (step_.is_near_bodies()) {
+        step_.stop();
+    } else {
+        static_cast<void>(step_.wait(step_.remaining()));
+    }
+}
+
+/// With the velocity, or to a place off the surfaces that hold it.
+Path PlannedMove::next_line() const {
+    const ForceInput& state = particle_.state;
+    const double duration = step_.remaining();
+    Path line = line_path(state.position, state.velocity, duration);
+    if (held_.empty()) return line;
+    const Vec3 end = kept_off(state.position + duration * state.velocity, particle_.step_end, held_);
+    line = line_path(state.position, (end - state.position) / duration, duration);
+    line.end = end;
+    return line;
 }
 
 /// Where every line along a surface leads into it at once, as inside a sphere: along a chord, to a place that leaves
@@ -135,57 +154,30 @@ void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallCo
         const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
         static_cast<void>(find_wall_contacts(geometry, center, radius, reach, found));
     } else {
-        find_wall_contacts(*rules_.bodies, {time, time}, center, radius, reach, found);
+        static_cast<void>(find_wall_contacts(*rules_.bodies, {time, time}, center, radius, reach, found));
     }
-}
-
-/// Along a line without anything in its way.
-void PlannedMove::fly(const Path& path) {
-    ForceInput& state = particle_.state;
-    if (scratch_.record_segments) scratch_.segments.push_back({state.position, path.end, state.time});
-    if (scratch_.record_flown) {
-        scratch_.flown.push_back({path, state.time, path.duration, plan_.velocity, plan_.velocity, false});
-    }
-    state.position = path.end;
-    state.time += path.duration;
 }
 
 /// At the begin of the step, as the plan has it.
 void PlannedMove::take_pushes() {
     for (const WallPush& push : plan_.pushes) {
         step_.impact().push(push.surface, push.velocity_change, false, push.spin_change);
-        if (rules_.bodies != nullptr) hold(push.surface);
+        hold(push.surface);
     }
 }
 
 /// What is at rest needs no more than the line along it.
 void PlannedMove::hold(SurfaceId surface) {
-    if (rules_.bodies->body_of(surface) == kAtRest) return;
+    if (rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kAtRest) return;
     const auto at = std::lower_bound(held_.begin(), held_.end(), surface);
     if (at == held_.end() || *at != surface) held_.insert(at, surface);
 }
 
-/// In straight lines, each to a place that surfaces which push leave free at the step's end.
-void PlannedMove::follow_among_bodies() {
-    if (step_.catch_up()) {
-        for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
-            const Vec3 velocity = particle_.state.velocity;
-            const double duration = step_.remaining();
-            const Vec3 end = kept_off(particle_.state.position + duration * velocity, particle_.step_end, held_);
-            Path path = line_path(particle_.state.position, (end - particle_.state.position) / duration, duration);
-            path.end = end;
-            const std::vector<SurfaceId> along = passed_by(path);
-            const std::optional<Contact> contact = step_.follow(path, along);
-            particle_.state.velocity = velocity;
-            if (!contact) break;
-            divert(*contact);
-            if (!along.empty()) come_off(*contact);
-            for (const ContactSurface& surface : contact->all()) hold(surface.surface);
-        }
-        if (step_.remaining() > 0.0) cut_across();
-        if (step_.remaining() > 0.0) step_.stop();
-    }
-    step_.store_position();
+/// Of a surface as it stands at a time, s.
+CollisionWorld::Nearest PlannedMove::nearest(SurfaceId surface, const Vec3& p, double time) const {
+    const bool is_at_rest = rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kAtRest;
+    if (!is_at_rest) return nearest_at(*rules_.bodies, surface, p, time);
+    return SurfaceGeometry(rules_.world, scratch_.contacts.plane_cache).nearest(surface, p);
 }
 
 /// A position at a time put off the surfaces that it would be too near, and off those into which that has put it.
@@ -195,10 +187,10 @@ Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> sur
     for (int pass = 0; pass < kCorrectionsInWedge; ++pass) {
         bool is_off = true;
         for (const SurfaceId surface : surfaces) {
-            const CollisionWorld::Nearest nearest = nearest_at(*rules_.bodies, surface, end, time);
-            const double missing = radius + 2.0 * contact_offset(end) - nearest.distance;
+            const CollisionWorld::Nearest there = nearest(surface, end, time);
+            const double missing = radius + 2.0 * contact_offset(end) - there.distance;
             if (missing <= 0.0) continue;
-            end += missing * nearest.normal;
+            end += missing * there.normal;
             is_off = false;
         }
         was_put_off = was_put_off || !is_off;
@@ -213,7 +205,7 @@ std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     const double radius = particle_.state.radius;
     std::vector<SurfaceId> passed;
     for (const SurfaceId surface : held_) {
-        const double at_end = nearest_at(*rules_.bodies, surface, line.end, particle_.step_end).distance;
+        const double at_end = nearest(surface, line.end, particle_.step_end).distance;
         if (at_end >= radius) passed.push_back(surface);
     }
     std::vector<SurfaceId> met;
@@ -236,7 +228,7 @@ void PlannedMove::come_off(const Contact& contact) {
     for (const ContactSurface& surface : contact.all()) near.push_back(surface.surface);
     const double least = state.radius - 0.5 * sphere_tolerance(state.radius, max_abs(state.position));
     const bool is_off = std::all_of(near.begin(), near.end(), [&](SurfaceId surface) {
-        return nearest_at(*rules_.bodies, surface, state.position, state.time).distance >= least;
+        return nearest(surface, state.position, state.time).distance >= least;
     });
     if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
 }
@@ -253,10 +245,7 @@ void PlannedMove::divert(const Contact& contact) {
 
 bool PlannedMove::touches(SurfaceId surface) const {
     const ForceInput& state = particle_.state;
-    const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
-    const double distance = rules_.bodies == nullptr
-                                ? geometry.nearest(surface, state.position).distance
-                                : nearest_at(*rules_.bodies, surface, state.position, state.time).distance;
+    const double distance = nearest(surface, state.position, state.time).distance;
     return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
 }
 

@@ -79,8 +79,8 @@ void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& 
     }
 }
 
-/// Of meshes that deform: the point that is nearest goes with its triangle.
-void find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& step, const Vec3& center, double radius,
+/// Of meshes that deform: the point that is nearest goes with its triangle. Returns whether any may come near.
+bool find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& step, const Vec3& center, double radius,
                        double reach, std::vector<WallContact>& found) {
     const double within = radius + reach;
     const Vec3 by{within, within, within};
@@ -108,6 +108,7 @@ void find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& st
         const Vec3 way = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
         contact.carried = way / (step.end - step.begin);
     }
+    return !surfaces.empty();
 }
 
 }  // namespace
@@ -127,7 +128,7 @@ bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
     return !near.empty();
 }
 
-void find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
+bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
                         double reach, std::vector<WallContact>& found) {
     const double within = radius + reach;
     const Vec3 by{within, within, within};
@@ -137,8 +138,11 @@ void find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, c
         if (!bodies.is_deforming(body)) find_on_body(bodies, body, step, center, radius, reach, found);
     }
     TrianglePlaneCache planes;
-    static_cast<void>(find_wall_contacts(SurfaceGeometry(bodies.world(kAtRest), planes), center, radius, reach, found));
-    if (!bodies.deforming().empty()) find_on_deforming(bodies.deforming(), step, center, radius, reach, found);
+    bool is_near = find_wall_contacts(SurfaceGeometry(bodies.world(kAtRest), planes), center, radius, reach, found);
+    if (!bodies.deforming().empty()) {
+        is_near = find_on_deforming(bodies.deforming(), step, center, radius, reach, found) || is_near;
+    }
+    return is_near || !near.empty();
 }
 
 CollisionWorld::Nearest nearest_at(const MovingColliders& bodies, SurfaceId surface, const Vec3& p, double time) {

@@ -31,8 +31,8 @@ bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, dou
 
 /// The same among colliders that move, of those at rest and of all that come near in a step [begin, end], s, as they
 /// stand at its begin. Normals are those of the middle of the step: what is fixed to a surface that turns neither nears
-/// nor leaves it then.
-void find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
+/// nor leaves it then. Returns whether any surface may come so near in the step.
+bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
                         double reach, std::vector<WallContact>& found);
 
 /// m, from a surface at a time, s, to a position, with the unit normal towards it.

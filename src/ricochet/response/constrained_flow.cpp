@@ -198,6 +198,8 @@ Path ConstrainedFlow::free_path(double duration) {
     const FlowPath free =
         flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration, next_duration_);
     next_duration_ = free.next_duration;
+    ++substeps_;
+    is_coarse_ = is_coarse_ || free.is_coarse;
     return free.path;
 }
 

@@ -179,9 +179,17 @@ MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) con
     return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
 }
 
+/// s: the clock must move, and the particles with it.
+double CoupledMotion::shortest_part() const {
+    return std::max(kShortestSubstep * terms_.time_step, 2.0 * ulp(system_.time()));
+}
+
+/// What is left when all sub-steps of a step are spent is taken at once, and counted as unsolved.
 SystemStep CoupledMotion::stepped(double duration) {
     if (!solver_) {
-        SystemStep step = step_system(integrator_, system_, duration, first_try_ > 0.0 ? first_try_ : duration);
+        const bool is_spent = ++substeps_ > kMostSubsteps;
+        const double first_try = first_try_ > 0.0 && !is_spent ? first_try_ : duration;
+        SystemStep step = step_system(integrator_, system_, duration, first_try, is_spent ? duration : shortest_part());
         first_try_ = step.next_duration;
         return step;
     }
@@ -386,6 +394,7 @@ std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, d
 void CoupledMotion::settle(const Particles& particles) {
     unsolved_steps_ += is_unsolved_ ? 1 : 0;
     is_unsolved_ = false;
+    substeps_ = 0;
     if (!springs_.empty()) springs_.break_overstretched(particles.position);
 }
 

@@ -187,7 +187,9 @@ public:
 
     /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
     /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
-    /// follow them with this step; and what forces throw. Particles are inside the step then: calls throw RunError.
+    /// follow them with this step; RunError for a force, a flow that carries particles or a solver that gives numbers
+    /// that are not finite, with its name and the particle's id, the same for any thread count; and what forces throw.
+    /// Particles are inside the step then: calls throw RunError.
     void step();
     /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
     /// after each step, says no; faster, because free flights are integrated at once. While go_on is asked, places

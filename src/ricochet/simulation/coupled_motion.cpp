@@ -87,6 +87,19 @@ double misplaced_energy(const ParticleSystem& system, const SystemStep& step, st
     return sum;
 }
 
+/// What a solver of the user's own has made of a state that was sound.
+void require_solved(const ParticleSystem& system, const SystemStep& step) {
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        if (is_finite(step.positions[k]) && is_finite(step.velocities[k])) continue;
+        const Vec3& x = step.positions[k];
+        const Vec3& v = step.velocities[k];
+        throw RunError(
+            fmt::format("solver: found particle {} at [{}, {}, {}] m with [{}, {}, {}] m/s after the step at {:.6g} s, "
+                        "expected finite numbers",
+                        system.id(k), x.x, x.y, x.z, v.x, v.y, v.z, system.time()));
+    }
+}
+
 bool is_in_contact(const Particles& particles, std::size_t i) {
     return particles.support[i][0] != kNoSupport || particles.resting[i] != 0;
 }
@@ -203,6 +216,7 @@ SystemStep CoupledMotion::stepped(double duration) {
     solver_(advanced, duration);
     step.positions = advanced.positions();
     step.velocities = advanced.velocities();
+    require_solved(system_, step);
     step.mutual_end = system_.mutual_accelerations(system_.time() + duration, step.positions, step.velocities);
     return step;
 }

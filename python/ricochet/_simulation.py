@@ -98,8 +98,8 @@ class Simulation(_core.Simulation):
         self.advance(1)
 
     def advance(self, steps: int, progress: bool = False) -> None:
-        """Makes so many steps, or as many as are left. Other threads of Python run meanwhile, and Ctrl-C ends it after
-        a step. progress: show a bar, where tqdm is installed."""
+        """Makes so many steps, or as many as are left. Other threads of Python run meanwhile. Ctrl-C ends it
+        after the step that runs, or before it where that takes long. progress: show a bar, where tqdm is installed."""
         steps = _count(steps)
         if not progress:
             self._advance(steps, None)

@@ -213,6 +213,31 @@ class Simulation(unittest.TestCase):
         simulation.step()
         self.assertEqual(simulation.step_index, before + 1)
 
+    # A step of the many would take minutes.
+    def test_control_c_ends_a_step_that_takes_long(self):
+        for count in (1, 3000):
+            with self.subTest(count=count):
+                scene = {
+                    "ricochet": 1,
+                    "simulation": {"duration": 1e6, "time_step": 0.01, "integrator": "dormand_prince"},
+                    "forces": [{"type": "point_gravity", "attractors": [{"position": [0, 0, 0], "strength": 1e3}]}],
+                    "particles": [
+                        {"position": [1e-4 * (1 + 1e-3 * k), 0, 0], "velocity": [0, 3e3, 0]} for k in range(count)
+                    ],
+                }
+                with warnings.catch_warnings():
+                    warnings.simplefilter("ignore")
+                    simulation = ricochet.Simulation(scene)
+                timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+                timer.start()
+                with self.assertRaises(KeyboardInterrupt):
+                    while True:
+                        simulation.step()
+                timer.join()
+                self.assertEqual(len(simulation.particles.id), count)
+                self.assertEqual(simulation.statistics["steps"], simulation.step_index)
+                self.assertTrue(np.isfinite(simulation.particles.position).all())
+
     def test_progress_needs_no_tqdm(self):
         simulation = ricochet.Simulation(bouncing())
         simulation.run(until=0.1, progress=True)

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -92,63 +92,44 @@ struct RunPlan {
     [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
-// The state after the last step, where a step may take longer than a signal waits: of implicit_euler on springs, which
-// asks between its iterations. What a verified run has found is in no state: its steps are waited for.
-class LastState {
+// Lets a step that runs when a signal comes end by itself for a while; then the step is given up.
+class PatienceWithStep {
 public:
-    // make: the same simulation from its beginning.
-    LastState(const SceneDescription& scene, std::function<Simulation()> make)
-        : make_(std::move(make)),
-          is_kept_(!scene.setup.springs.empty() && !scene.setup.options.verify &&
-                   scene.setup.options.integrator.kind == IntegratorKind::implicit_euler) {}
-
-    void keep(const Simulation& simulation) {
-        if (!is_kept_) return;
-        bytes_.clear();
-        simulation.save(
-            [this](std::span<const std::byte> part) { bytes_.insert(bytes_.end(), part.begin(), part.end()); });
-    }
-    [[nodiscard]] bool has_any() const { return !bytes_.empty(); }
-
-    [[nodiscard]] Simulation restored() const {
-        Simulation simulation = make_();
-        std::size_t at = 0;
-        simulation.restore([&](std::span<std::byte> part) {
-            std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(at), part.size(), part.begin());
-            at += part.size();
-        });
-        return simulation;
+    // From any thread.
+    [[nodiscard]] bool goes_on() {
+        if (InterruptGuard::signal() == 0) return true;
+        const Clock::rep now = Clock::now().time_since_epoch().count();
+        Clock::rep first = 0;
+        if (first_asked_.compare_exchange_strong(first, now)) return true;
+        return Clock::duration(now - first) < kPatience;
     }
 
 private:
-    std::function<Simulation()> make_;
-    std::vector<std::byte> bytes_;
-    bool is_kept_;
+    static constexpr std::chrono::milliseconds kPatience{250};
+    std::atomic<Clock::rep> first_asked_ = 0;  // when the signal was seen
 };
 
-// Steps to the end, to the end of the step in which a signal came (to its begin where it can be stopped), or to the one
+// Steps to the end, to the end of the step in which a signal came (to its begin where it takes long), or to the one
 // that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
 // the guard lives from then on.
 std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput& output, const RunPlan& plan,
-                                          cli::RunProgress& progress, std::optional<InterruptGuard>& guard,
-                                          LastState& last) {
+                                          cli::RunProgress& progress, std::optional<InterruptGuard>& guard) {
     output.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
     const auto after_step = [&] {
         if (!guard) guard.emplace();
         output.add_step(simulation);
-        last.keep(simulation);
         const cli::RunCounts counts =
             plan.run->after_step({simulation.particles().size(), simulation.statistics().particle_steps});
         progress.show(simulation, counts, plan.share(output.seconds()));
         return plan.run->signal() == 0;
     };
+    PatienceWithStep patience;
     while (!simulation.finished() && plan.run->signal() == 0) {
         try {
             simulation.advance(plan.output.every - simulation.step_index() % plan.output.every, after_step,
-                               [&] { return InterruptGuard::signal() == 0 || !last.has_any(); });
+                               [&] { return patience.goes_on(); });
         } catch (const StoppedError&) {
-            simulation = last.restored();
             return std::nullopt;
         } catch (const DivergedError& error) {
             return error.what();
@@ -200,7 +181,6 @@ struct PreparedRun {
     Box3 region{};  // of the particles
     cli::Progress progress = cli::Progress::automatic;
     std::optional<ThreadLimit> limit{};
-    std::optional<LastState> last{};
     std::optional<Simulation> simulation{};
     std::optional<OutputDirectory> folder{};
     std::optional<RunWriter> writer{};
@@ -218,7 +198,6 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     prepared.region = particle_region(scene.setup);
     prepared.plan = RunPlan{.output = scene.output, .fingerprint = scene.fingerprint, .run = &run};
     const Vec3 fall = uniform_acceleration(scene.setup);
-    prepared.last.emplace(scene, [&arguments] { return Simulation(scene_of(arguments).setup); });
     scene.setup.ranks = run.ranks();
     run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
@@ -376,7 +355,7 @@ int cli::run_scene(const RunArguments& arguments) {
     std::optional<std::string> diverged;
     {
         RunProgress progress(arguments.quiet, run.talks() ? prepared.progress : Progress::never);
-        diverged = step_and_write(simulation, prepared.out, prepared.plan, progress, guard, *prepared.last);
+        diverged = step_and_write(simulation, prepared.out, prepared.plan, progress, guard);
     }
     if (!diverged) prepared.out.write_frame(simulation);
     prepared.out.complete_frame();

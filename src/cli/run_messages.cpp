@@ -26,8 +26,13 @@ void print_notes(const SimulationStatistics& statistics) {
     warn(statistics.springs_broken, "springs that broke (springs_broken)");
     warn(statistics.springs_lost, "springs that lost a particle at an end (springs_lost)");
     warn(statistics.unsolved_steps,
-         "steps of the implicit method, or of spheres in contact, not solved to the tolerance (unsolved_steps)");
-    warn(statistics.budget_exhausted, "times that a particle spent its bounces of a step (budget_exhausted)");
+         "steps of the implicit or the adaptive method, or of spheres in contact, not solved to the tolerance "
+         "(unsolved_steps)");
+    warn(statistics.coarse_steps,
+         "steps of a particle in which dormand_prince could not keep its tolerance, as near a force without bound "
+         "(coarse_steps)");
+    warn(statistics.budget_exhausted,
+         "times that a particle spent its bounces or its adaptive sub-steps of a step (budget_exhausted)");
     warn(statistics.squeezed,
          "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
     warn(statistics.started_inside - statistics.started_in_overlap,

@@ -230,6 +230,7 @@ py::dict statistics_of(const Handle& handle) {
     d["out_of_bounds"] = s.out_of_bounds, d["removed"] = s.removed, d["contacts"] = s.contacts;
     d["bounces_per_step_max"] = s.bounces_per_step_max, d["resting"] = s.resting, d["asleep"] = s.asleep;
     d["unsimulated_time"] = s.unsimulated_time, d["budget_exhausted"] = s.budget_exhausted;
+    d["coarse_steps"] = s.coarse_steps;
     d["started_inside"] = s.started_inside, d["started_in_overlap"] = s.started_in_overlap;
     d["stayed"] = s.stayed, d["squeezed"] = s.squeezed, d["frozen"] = s.frozen;
     d["body_parts"] = s.body_parts;

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <exception>
+#include <future>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include "python/gil.h"
@@ -21,6 +24,9 @@ namespace {
 
 /// How often a run looks for Ctrl-C and shows how far it is.
 constexpr std::chrono::milliseconds kLookAround{100};
+
+/// How long a step may go on after Ctrl-C before it is given up.
+constexpr std::chrono::milliseconds kPatience{250};
 
 constexpr const char* kBallisticWarning =
     "forces: with them the integrator ballistic moves all particles as velocity_verlet; say \"velocity_verlet\" or "
@@ -76,35 +82,74 @@ Saved saved_in(const std::string& bytes) {
     return saved;
 }
 
-/// What goes on between the steps of a run, with the GIL taken back for as long as it takes.
+/// Looks for Ctrl-C and shows progress while a run goes on, with the GIL taken back for as long as it takes. Only the
+/// thread that has made it looks.
 class Watch {
 public:
     explicit Watch(const py::object& progress) : progress_(progress) {}
 
-    /// False when the run is to end.
-    bool operator()() {
+    /// Between steps: false when the run is to end. From any thread.
+    [[nodiscard]] bool goes_on() {
         stay_if_ending();
-        const auto now = std::chrono::steady_clock::now();
-        if (now < next_) return true;
-        next_ = now + kLookAround;
-        const Locked locked;
-        try {
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            if (!progress_.is_none()) progress_();
-        } catch (...) {
-            error_ = std::current_exception();
-        }
-        return error_ == nullptr;
+        look();
+        return !has_error_;
+    }
+    /// Within a step: false when the step has not ended by itself for a while. From any thread.
+    [[nodiscard]] bool goes_on_within() {
+        look();
+        return !has_error_ || Clock::now() < latest_;
     }
     void rethrow() const {
         if (error_ != nullptr) std::rethrow_exception(error_);
     }
 
 private:
+    using Clock = std::chrono::steady_clock;
+
+    void look() {
+        if (has_error_ || std::this_thread::get_id() != thread_ || Clock::now() < next_) return;
+        next_ = Clock::now() + kLookAround;
+        const Locked locked;
+        try {
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            if (!progress_.is_none()) progress_();
+        } catch (...) {
+            error_ = std::current_exception();
+            latest_ = Clock::now() + kPatience;
+            has_error_ = true;
+        }
+    }
+
     const py::object& progress_;
-    std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + kLookAround;
+    std::thread::id thread_ = std::this_thread::get_id();
+    Clock::time_point next_ = Clock::now() + kLookAround;
+    Clock::time_point latest_;  // for the step to end; set before has_error_
     std::exception_ptr error_;
+    std::atomic<bool> has_error_ = false;
 };
+
+/// Runs `work` on a thread of its own while this one calls `look` again and again. Without the GIL.
+template <class Work, class Look>
+void run_beside(const Work& work, const Look& look) {
+    std::exception_ptr error;
+    std::promise<void> done;
+    std::future<void> end = done.get_future();
+    std::thread thread([&] {
+        try {
+            const detail::Beside beside;
+            work();
+        } catch (...) {
+            error = std::current_exception();
+        }
+        done.set_value();
+    });
+    while (end.wait_for(kLookAround) == std::future_status::timeout) look();
+    thread.join();
+    if (error != nullptr) std::rethrow_exception(error);
+}
+
+/// Particles up to which one thread moves all, and a single step needs no thread of its own that looks for Ctrl-C.
+constexpr std::size_t kFewParticles = 256;
 
 }  // namespace
 
@@ -152,7 +197,16 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
     {
         const Unlocked unlocked;
         keep_lent();
-        simulation_->advance(count, [&] { return watch(); });
+        const auto advance = [&] {
+            try {
+                simulation_->advance(
+                    count, [&] { return watch.goes_on(); }, [&] { return watch.goes_on_within(); });
+            } catch (const StoppedError&) {  // the watch knows why
+            }
+        };
+        // The loops of other threads, for which this one would wait, may be long.
+        const bool is_short = count == 1 && simulation_->particles().size() <= kFewParticles;
+        is_short ? advance() : run_beside(advance, [&] { (void)watch.goes_on(); });
     }
     watch.rethrow();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -51,8 +51,9 @@ public:
         keep_lent();
         return change(*simulation_);
     }
-    /// Steps without the GIL, at most `count` steps. Ctrl-C ends it after a step, with its exception; progress
-    /// (None or a callable without arguments) is called some ten times a second, and what it throws ends it too.
+    /// Steps without the GIL, at most `count` steps. Ctrl-C ends it with its exception: after the step that runs, or
+    /// before it where it takes long. progress (None or a callable without arguments) is called some ten times a
+    /// second, and what it throws ends it too.
     void advance(std::uint64_t count, const py::object& progress);
 
     [[nodiscard]] std::shared_ptr<LentParticles> lend() const;

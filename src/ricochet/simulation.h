@@ -86,9 +86,10 @@ struct SimulationStatistics {
     std::uint64_t pair_violations = 0;               ///< what options.verify found wrong between spheres
     std::uint64_t born_in_overlap = 0;               ///< spheres that stood in others at their birth
     std::uint32_t bounces_per_step_max = 0;
-    std::uint64_t resting = 0;             ///< particles at rest after the last step
-    double unsimulated_time = 0.0;         ///< s, summed over particles, cut off by the bounce budget
-    std::uint64_t budget_exhausted = 0;    ///< particle-steps that spent their budget
+    std::uint64_t resting = 0;      ///< particles at rest after the last step
+    double unsimulated_time = 0.0;  ///< s, summed over particles, cut off by a budget
+    /// Particle-steps that spent their budget, of bounces or of sub-steps of dormand_prince.
+    std::uint64_t budget_exhausted = 0;
     std::uint64_t asleep = 0;              ///< of the resting ones those that cost nothing
     std::uint64_t started_inside = 0;      ///< particles born on a surface or, as spheres, overlapping one
     std::uint64_t started_in_overlap = 0;  ///< of them the spheres
@@ -103,9 +104,12 @@ struct SimulationStatistics {
     double penetration_deepest = 0.0;     ///< m
     std::uint64_t springs_broken = 0;     ///< stretched beyond their limit
     std::uint64_t springs_lost = 0;       ///< removed because a particle at an end was gone
-    /// Steps whose implicit equations were not solved to the tolerance, or the contacts in which did not settle.
+    /// Steps whose implicit equations were not solved to the tolerance, or the contacts in which did not settle; and
+    /// those of coupled particles in which dormand_prince could not keep its tolerance.
     std::uint64_t unsolved_steps = 0;
-    std::uint64_t frozen = 0;      ///< particles stopped because their state was not finite or beyond 1e75
+    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond 1e75
+    /// Particle-steps in which dormand_prince could not keep its tolerance: its sub-steps could not be shorter.
+    std::uint64_t coarse_steps = 0;
     std::uint64_t body_parts = 0;  ///< parts of steps, of scenes with bodies that impulses move; at least one a step
 };
 
@@ -164,7 +168,7 @@ struct BirthRecord {
 /// Is given the contact records of a step.
 using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
-/// A step was stopped by who has asked for it, see Simulation::advance().
+/// A step was stopped by its caller, see Simulation::advance().
 class StoppedError : public RunError {
 public:
     using RunError::RunError;
@@ -183,15 +187,20 @@ public:
 
     /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
     /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
-    /// follow them with this step; and what forces throw. Particles are inside the step then: calls throw RunError.
+    /// follow them with this step; RunError for a force, a flow that carries particles or a solver that gives numbers
+    /// that are not finite, with its name and the particle's id, the same for any thread count; and what forces throw.
+    /// Particles are inside the step then: calls throw RunError.
     void step();
     /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
     /// after each step, says no; faster, because free flights are integrated at once. While go_on is asked, places
     /// and velocities of particles may still be those of an earlier step, and what is made of them (energies, hash,
     /// frames, save()); everything else is up to date. Throws like step() and what go_on throws.
-    /// goes_on_within: asked within steps too, between the iterations of implicit_euler on springs, which alone can
-    /// take long; where it says no, StoppedError is thrown, with the particles inside the step: a simulation made anew
-    /// can go on from what save() has left.
+    /// goes_on_within: asked within steps too, from any thread and by several at a time; where it says no, the step is
+    /// given up and StoppedError is thrown. The simulation is then as it was after the last whole step, to the bit, and
+    /// can go on; it has no contact_records(), pair_records() and birth_records() where that step was not made again
+    /// (states are kept now and then, and the steps since the last one are made again, for half a second at most).
+    /// Nothing is given up, and the step goes on to its end, where that would take longer, where the simulation has
+    /// been changed since a state was kept, where a state takes more than 2^28 bytes, and where ranks share the run.
     void advance(std::uint64_t count, const std::function<bool()>& go_on = {},
                  const std::function<bool()>& goes_on_within = {});
     [[nodiscard]] bool finished() const;

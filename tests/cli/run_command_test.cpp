@@ -110,7 +110,8 @@ TEST(RunCommand, SaysHowManyImplicitStepsWereNotSolved) {
     const auto unsolved = summary["unsolved_steps"].get<int>();
     EXPECT_GT(unsolved, 0);
     const std::string note =
-        "note: steps of the implicit method, or of spheres in contact, not solved to the tolerance (unsolved_steps): " +
+        "note: steps of the implicit or the adaptive method, or of spheres in contact, not solved to the tolerance "
+        "(unsolved_steps): " +
         std::to_string(unsolved);
     EXPECT_NE(result.output.find(note), std::string::npos) << result.output;
 }

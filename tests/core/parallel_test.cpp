@@ -37,6 +37,26 @@ TEST(Parallel, AnOrderedSumHasTheSameBitsForAnyThreadCount) {
     }
 }
 
+// Whatever the order in which threads come to them; the blocks before it run to their end.
+TEST(Parallel, TheExceptionOfTheFirstBlockThatThrowsComesOut) {
+    for (const int threads : {1, 2, 5}) {
+        const ThreadLimit limit(threads);
+        for (int round = 0; round < 50; ++round) {
+            std::vector<std::atomic<int>> done(200);
+            try {
+                parallel_for_blocks(done.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
+                    if (block % 60 == 37) throw std::runtime_error(std::to_string(block));
+                    done[block] = 1;
+                });
+                FAIL() << "no exception";
+            } catch (const std::runtime_error& error) {
+                EXPECT_STREQ(error.what(), "37");
+            }
+            for (std::size_t block = 0; block < 37; ++block) EXPECT_EQ(done[block], 1);
+        }
+    }
+}
+
 // Plain memory on purpose: the thread sanitizer has to see that the loop orders it.
 TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
     std::vector<int> values(5000, 0);

@@ -9,7 +9,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
+#include <exception>
+#include <limits>
+#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -23,6 +27,32 @@ void require_loop(std::size_t block_size, bool has_function) {
     if (block_size == 0) throw InputError("block size: found 0, expected at least 1");
     if (!has_function) throw InputError("parallel loop: found an empty function, expected one that can be called");
 }
+
+/// What the first of the blocks that throw has thrown: the same for any number of threads.
+class FirstError {
+public:
+    /// Blocks behind one that has thrown are left out; those before it are not, as they may throw, too.
+    template <class Run>
+    void watch(std::size_t block, const Run& run) {
+        if (block > first_.load(std::memory_order_relaxed)) return;
+        try {
+            run(block);
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            if (block > first_) return;
+            first_ = block;
+            error_ = std::current_exception();
+        }
+    }
+    void rethrow() const {
+        if (error_) std::rethrow_exception(error_);
+    }
+
+private:
+    std::mutex mutex_;
+    std::atomic<std::size_t> first_ = std::numeric_limits<std::size_t>::max();
+    std::exception_ptr error_;
+};
 
 int checked_threads(int threads) {
     if (threads < 0) throw InputError("threads: found a number below 0, expected 0 (all) or more");
@@ -50,6 +80,7 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
     if (count == 0) return;
     const std::size_t blocks = (count + block_size - 1) / block_size;
     LoopSync sync;
+    FirstError errors;
     const auto run_block = [&](std::size_t block) {
         const LoopSync::Iteration iteration(sync);
         // Bodies keep working memory per thread: a body that waits for tasks of its own must not meanwhile be given
@@ -61,7 +92,8 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
         run_block(0);
         return;
     }
-    tbb::parallel_for(std::size_t{0}, blocks, run_block);
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) { errors.watch(block, run_block); });
+    errors.rethrow();
 }
 
 double ordered_sum(std::size_t count, std::size_t block_size,

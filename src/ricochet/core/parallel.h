@@ -33,8 +33,9 @@ private:
 
 /// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread; serially when
 /// there is one block. A body that waits for tasks of its own is not interrupted by another body on the same thread, so
-/// bodies may use thread_local memory. One of the exceptions thrown by bodies, unspecified which, is rethrown. Throws
-/// InputError for a block_size of 0 and an empty function.
+/// bodies may use thread_local memory. Where bodies throw, the exception of the first of these blocks comes out,
+/// whatever the threads: the blocks before it have run to their end then, of those behind it some. Throws InputError
+/// for a block_size of 0 and an empty function.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 

@@ -368,6 +368,18 @@ inline constexpr double kImpulseUnit = 0x1p-100;
 /// 1e-15 m and less could not be followed closely.
 inline constexpr double kSmallestTolerance = 1e-30;
 
+/// Shortest sub-step of an adaptive method, as a part of the step that it cuts. One that is still wrong by more than
+/// the tolerance is taken as it is, and its particle-step is counted (coarse_steps). Reason: a particle passes a jump
+/// of a force with an error of 2^-48 of what the jump gives it in a step, and no sub-step near a point of infinite
+/// force is short enough. Smaller: the clock, which rounds to 2^-53 of the time, does not move. Larger: close passages
+/// of point masses lose their accuracy earlier.
+inline constexpr double kShortestSubstep = 0x1p-48;
+
+/// Most sub-steps of an adaptive method in one step of a particle. The rest of the step is not simulated, and counted
+/// (budget_exhausted). Reason: some tenths of a second of work. Smaller: particles bound close to a point mass, which
+/// need some 50 sub-steps an orbit, stand still for a part of each step. Larger: a step takes longer before it ends.
+inline constexpr std::uint32_t kMostSubsteps = 100000;
+
 /// Error of an adaptive sub-step, relative to the largest component of the state, that is as good as none: a quarter of
 /// its rounding. Smaller: sub-steps shorten without end where the tolerance asks for more than doubles hold. Larger:
 /// tolerances that could be kept are not.

@@ -15,9 +15,6 @@ namespace ricochet {
 
 inline constexpr std::size_t kDormandPrinceStages = 7;
 
-/// Halvings of an adaptive step; a state that is still wrong by more is taken as it is, and frozen if it is not finite.
-inline constexpr int kMostHalvings = 48;
-
 /// An error, relative to the tolerance, after which twice the step will do: the fifth order makes it 32 times as large,
 /// the path's fourth 16 times.
 inline constexpr double kErrorToDouble = 1.0 / 64.0;

@@ -2,6 +2,9 @@
 /// The path that each integrator says a particle takes inside a step.
 #pragma once
 
+#include <cstdint>
+
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
@@ -26,6 +29,12 @@ struct Flight {
     Vec3 end_velocity;   ///< velocity at the end of the path, m/s
     double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
     bool steps_again = false;    ///< velocities along the path are those of a shorter step, not the path's derivative
+    // Of adaptive methods:
+    double shortest = 0.0;       ///< s, the shortest sub-step of the step that the flight belongs to
+    std::uint32_t substeps = 0;  ///< of that step so far, with this one
+    bool is_coarse = false;      ///< the tolerance is not kept: the sub-step could not be shorter
+
+    [[nodiscard]] bool has_spent_substeps() const { return substeps >= kMostSubsteps; }
 };
 
 /// The flight that starts at the beginning of a step (or at birth), over `duration` seconds; an adaptive method may end
@@ -37,7 +46,7 @@ struct Flight {
 ///
 /// dormand_prince (J. R. Dormand, P. J. Prince, J. Comput. Appl. Math. 6, 1980) halves its step until the embedded
 /// error estimates of position and velocity and the estimated distance between trajectory and path, h^4 / 384 times the
-/// fourth derivative, are within the tolerance.
+/// fourth derivative, are within the tolerance, or the sub-step is as short as it may be (kShortestSubstep).
 ///
 /// symplectic_euler is a splitting: one kick with the whole step's force, then force-free drift; an impact turns the
 /// drift and the forces do not act again in that step. Kick and drift are each exact flows (with elastic walls the
@@ -113,6 +122,7 @@ private:
 struct FlowPath {
     Path path;
     double next_duration = 0.0;  ///< s that an adaptive method would try next; 0: no idea
+    bool is_coarse = false;      ///< the tolerance is not kept: the sub-step could not be shorter
 };
 
 /// True for the methods of first-order motion: forward_euler, midpoint, rk4 and dormand_prince. The others step
@@ -120,7 +130,8 @@ struct FlowPath {
 [[nodiscard]] bool carries_along_flows(IntegratorKind kind);
 
 /// The path from a position at a time over `duration` seconds (> 0); dormand_prince may end it earlier, at the end of
-/// its first sub-step, for which it tries `first` seconds. Throws InputError for a method that has no meaning here.
+/// its first sub-step, for which it tries `first` seconds, and that it makes no shorter than `shortest` seconds (0:
+/// kShortestSubstep of the duration). Throws InputError for a method that has no meaning here.
 ///
 /// forward_euler is a straight line with the flow's velocity at the start (first order). midpoint (second order) and
 /// rk4 (fourth) make their ordinary step; the path is the cubic Hermite polynomial through both ends with the flow's
@@ -130,6 +141,6 @@ struct FlowPath {
 /// in integrator.h; interpolant: L. F. Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46,
 /// 1986.
 [[nodiscard]] FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
-                                 double duration, double first);
+                                 double duration, double first, double shortest = 0.0);
 
 }  // namespace ricochet

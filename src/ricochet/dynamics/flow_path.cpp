@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/dormand_prince.h"
 
 namespace ricochet {
@@ -15,7 +16,7 @@ constexpr int kMostHalvings = 48;
 constexpr double kErrorToDouble = 1.0 / 64.0;
 
 FlowPath through(const FlowField& flow, const Vec3& x0, const Vec3& g0, const Vec3& x1, double time, double h) {
-    return {hermite_path(x0, g0, x1, flow.velocity(x1, time + h), h), 0.0};
+    return {hermite_path(x0, g0, x1, flow.velocity(x1, time + h), h)};
 }
 
 FlowPath midpoint_path(const FlowField& flow, const Vec3& x, double time, double h) {
@@ -35,19 +36,20 @@ FlowPath rk4_path(const FlowField& flow, const Vec3& x, double time, double h) {
 
 // Halving, not a formula of the error: its powers would differ between systems in their last bits.
 FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, double time, double duration,
-                       double first) {
+                       double first, double shortest) {
     tolerance = attainable({tolerance, 0.0}, x, Vec3{}).position;
     double h = std::min(first > 0.0 ? first : duration, duration);
-    double next = h;
+    if (shortest == 0.0) shortest = kShortestSubstep * duration;
+    double error = 0.0;
     EmbeddedFlowStep step;
-    for (int halvings = 0;; ++halvings, h *= 0.5) {
+    for (;; h *= 0.5) {
         step = dormand_prince_step(flow, x, time, h);
-        const double error = std::max(step.position_error, step.path_error) / tolerance;
-        next = error < kErrorToDouble ? 2.0 * h : h;
-        if (error <= 1.0 || halvings == kMostHalvings) break;
+        error = std::max(step.position_error, step.path_error) / tolerance;
+        if (error <= 1.0 || 0.5 * h < shortest) break;
     }
+    double next = error < kErrorToDouble ? 2.0 * h : h;
     if (h >= duration && first > h) next = first;  // the step ended here, not the method
-    return {hermite_path(x, step.start_velocity, step.end, step.end_velocity, h), next};
+    return {hermite_path(x, step.start_velocity, step.end, step.end_velocity, h), next, !(error <= 1.0)};
 }
 
 }  // namespace
@@ -58,16 +60,16 @@ bool carries_along_flows(IntegratorKind kind) {
 }
 
 FlowPath flow_path(const Integrator& integrator, const FlowField& flow, const Vec3& position, double time,
-                   double duration, double first) {
+                   double duration, double first, double shortest) {
     switch (integrator.kind) {
         case IntegratorKind::forward_euler:
-            return {line_path(position, flow.velocity(position, time), duration), 0.0};
+            return {line_path(position, flow.velocity(position, time), duration)};
         case IntegratorKind::midpoint:
             return midpoint_path(flow, position, time, duration);
         case IntegratorKind::rk4:
             return rk4_path(flow, position, time, duration);
         case IntegratorKind::dormand_prince:
-            return adaptive_path(integrator.tolerance.position, flow, position, time, duration, first);
+            return adaptive_path(integrator.tolerance.position, flow, position, time, duration, first, shortest);
         default:
             throw InputError(
                 fmt::format("integrator: found {}, which has no meaning where a flow carries particles; expected "

@@ -39,6 +39,10 @@ public:
     }
     [[nodiscard]] bool is_steady() const override { return true; }
     [[nodiscard]] bool is_conservative() const override { return true; }
+    [[nodiscard]] bool is_singular() const {
+        return std::any_of(attractors_.begin(), attractors_.end(),
+                           [](const Attractor& a) { return a.strength > 0.0 && a.softening == 0.0; });
+    }
 
 private:
     std::vector<Attractor> attractors_;
@@ -85,6 +89,9 @@ public:
     }
     [[nodiscard]] bool is_steady() const override { return true; }
     [[nodiscard]] bool is_conservative() const override { return true; }
+    [[nodiscard]] bool is_singular() const {
+        return settings_.strength > 0.0 && settings_.softening == 0.0 && settings_.exponent < 0.0;
+    }
 
 private:
     // Softened, in units of the reference.
@@ -361,6 +368,26 @@ std::unique_ptr<Force> drag_of(const Law& law, FlowPointer flow) {
 }  // namespace
 
 bool is_drag_law(const Force& force) { return dynamic_cast<const AnyDrag*>(&force) != nullptr; }
+
+std::optional<EnergyLaw> energy_law_of_law(const Force& force) {
+    EnergyLaw law;
+    if (dynamic_cast<const Buoyancy*>(&force) != nullptr) return law;
+    law.is_dissipative = is_drag_law(force);
+    if (law.is_dissipative) return law;
+    law.varies = true;
+    if (const auto* const gravity = dynamic_cast<const PointGravity*>(&force)) {
+        law.is_singular = gravity->is_singular();
+    } else if (const auto* const radial = dynamic_cast<const RadialForce*>(&force)) {
+        law.is_singular = radial->is_singular();
+    } else if (dynamic_cast<const Anchor*>(&force) != nullptr) {
+        law.is_dissipative = !force.is_conservative();
+    } else if (dynamic_cast<const LorentzForce*>(&force) != nullptr) {
+        law.is_magnetic = law.varies = !force.is_uniform();
+    } else {
+        return std::nullopt;
+    }
+    return law;
+}
 
 std::unique_ptr<Force> make_linear_drag(double coefficient, FlowPointer flow) {
     require_not_negative(coefficient, "drag: the coefficient", "kg/s");

@@ -5,6 +5,7 @@
 
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/stability.h"
 
@@ -88,6 +89,12 @@ bool is_drag(const Force& force) {
     return on_some ? is_drag(on_some->force()) : is_drag_law(force);
 }
 
+std::optional<EnergyLaw> energy_law_of(const Force& force) {
+    if (force.common_acceleration()) return EnergyLaw{};
+    const auto* const on_some = dynamic_cast<const ForceOnSome*>(&force);
+    return on_some ? energy_law_of(on_some->force()) : energy_law_of_law(force);
+}
+
 std::unique_ptr<Force> make_gravity(const Vec3& acceleration) {
     detail::require_finite(acceleration, "gravity: the acceleration", "m/s^2");
     return std::make_unique<Gravity>(acceleration);
@@ -110,6 +117,26 @@ ForceInput whole(ForceInput input) {
     return input;
 }
 
+/// A method may try states that are out of range; what comes of those is dealt with where the particle gets there.
+bool is_in_range(const ForceInput& input) {
+    return is_finite(input.position) && is_finite(input.velocity) && max_abs(input.position) <= kLargestJudged &&
+           max_abs(input.velocity) <= kLargestJudged;
+}
+
+void refuse_if_not_finite(const std::vector<std::unique_ptr<Force>>& forces, const ForceInput& input) {
+    for (std::size_t k = 0; k < forces.size() && is_in_range(input); ++k) {
+        const std::optional<EnergyLaw> law = energy_law_of(*forces[k]);
+        if (law && law->varies) continue;  // a sound one that has grown beyond all numbers, as next to its centre
+        const Vec3 a = forces[k]->acceleration(input);
+        if (is_finite(a)) continue;
+        const Vec3& x = input.position;
+        throw RunError(
+            fmt::format("forces[{}]: found the acceleration [{}, {}, {}] m/s^2 of particle {} at [{:.6g}, {:.6g}, "
+                        "{:.6g}] m and {:.6g} s, expected finite numbers",
+                        k, a.x, a.y, a.z, input.id, x.x, x.y, x.z, input.time));
+    }
+}
+
 std::vector<std::unique_ptr<Force>> without_null(std::vector<std::unique_ptr<Force>> forces) {
     for (std::size_t k = 0; k < forces.size(); ++k) {
         if (!forces[k]) throw InputError(fmt::format("force {}: found a null pointer, expected a force", k));
@@ -128,8 +155,14 @@ ForceField::ForceField(std::vector<std::unique_ptr<Force>> forces, bool adds_cou
           std::all_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->is_conservative(); })),
       needs_temperature_(
           std::any_of(forces_.begin(), forces_.end(), [](const auto& force) { return force->needs_temperature(); })) {
-    for (const auto& force : forces_) {
-        const std::optional<Vec3> acceleration = force->common_acceleration();
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+        const std::optional<Vec3> acceleration = forces_[k]->common_acceleration();
+        if (acceleration && !is_finite(*acceleration)) {
+            throw InputError(
+                fmt::format("forces[{}]: found the acceleration [{}, {}, {}] m/s^2 of all particles, expected "
+                            "finite numbers",
+                            k, acceleration->x, acceleration->y, acceleration->z));
+        }
         common_ = common_ && acceleration ? std::optional(*common_ + *acceleration) : std::nullopt;
     }
 }
@@ -139,6 +172,7 @@ Vec3 ForceField::acceleration(const ForceInput& input) const {
     Vec3 sum = input.coupling != nullptr && adds_coupling_ ? input.coupling->acceleration(input) : Vec3{};
     if (input.coupling != nullptr && adds_coupling_ && input.coupling->replaces_forces()) return sum;
     for (const auto& force : forces_) sum += force->acceleration(input);
+    if (!is_finite(sum)) refuse_if_not_finite(forces_, input);
     return sum;
 }
 

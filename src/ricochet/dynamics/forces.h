@@ -45,7 +45,8 @@ public:
     [[nodiscard]] virtual bool replaces_forces() const { return false; }
 };
 
-/// One force on particles. Implementations are pure: same input, same bits, from any thread.
+/// One force on particles. Implementations are pure: same input, same bits, from any thread. An acceleration that is
+/// not finite ends the step with a RunError that names the force and the particle.
 class Force {
 public:
     virtual ~Force() = default;

@@ -5,6 +5,7 @@
 #include <array>
 #include <utility>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/dormand_prince.h"
 #include "ricochet/dynamics/implicit_euler.h"
 
@@ -93,20 +94,33 @@ Flight verlet_flight(const ForceField& forces, const ForceInput& state, double h
 /// Tries `first` seconds, then half of it, until the errors are small enough. Halving, not a formula of the error: its
 /// powers would differ between systems in their last bits, and so would the result.
 Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state, double duration,
-                       double first) {
+                       const Flight& before) {
+    const double first = before.next_duration;
     double h = std::min(first, duration);
-    double next = h;
+    double error = 0.0;
     EmbeddedStep step;
-    for (int halvings = 0;; ++halvings, h *= 0.5) {
+    for (;; h *= 0.5) {
         step = dormand_prince_step(forces, state, h);
-        const double error =
-            relative_error(step.errors, attainable(integrator.tolerance, state.position, state.velocity));
-        next = error < kErrorToDouble ? 2.0 * h : h;
-        if (error <= 1.0 || halvings == kMostHalvings) break;
+        error = relative_error(step.errors, attainable(integrator.tolerance, state.position, state.velocity));
+        if (error <= 1.0 || 0.5 * h < before.shortest) break;
     }
+    double next = error < kErrorToDouble ? 2.0 * h : h;
     if (h >= duration) next = first;  // the step ended here, not the method
     const Path path = hermite_path(state.position, state.velocity, step.end.position, step.end.velocity, h);
-    return {path, step.acceleration, 0.0, state, step.end.velocity, next, path.degree >= 3};
+    Flight flight{path, step.acceleration, 0.0, state, step.end.velocity, next, path.degree >= 3};
+    flight.shortest = before.shortest;
+    flight.substeps = before.substeps + 1;
+    flight.is_coarse = !(error <= 1.0);
+    return flight;
+}
+
+/// The first of a step.
+Flight first_adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
+                             double duration) {
+    Flight before;
+    before.next_duration = duration;
+    before.shortest = kShortestSubstep * duration;
+    return adaptive_flight(integrator, forces, state, duration, before);
 }
 
 Flight kicked_flight(const ForceField& forces, const ForceInput& state, double h) {
@@ -159,7 +173,7 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
             if (!forces.is_uniform_for(state)) return one_step_flight(integrator.kind, forces, state, duration);
             break;  // the exact flow is a parabola, and all these methods reproduce it
         case IntegratorKind::dormand_prince:
-            if (!forces.is_uniform_for(state)) return adaptive_flight(integrator, forces, state, duration, duration);
+            if (!forces.is_uniform_for(state)) return first_adaptive_flight(integrator, forces, state, duration);
             break;
     }
     return parabolic_flight(forces, state, duration);
@@ -172,7 +186,7 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
                 state.velocity};
     }
     if (integrator.kind == IntegratorKind::dormand_prince && before.next_duration > 0.0) {
-        return adaptive_flight(integrator, forces, state, duration, before.next_duration);
+        return adaptive_flight(integrator, forces, state, duration, before);
     }
     return begin_flight(integrator, forces, state, duration);
 }

@@ -7,6 +7,8 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
 namespace {
@@ -29,6 +31,28 @@ std::vector<double> column_of(const Particles& particles, const std::string& nam
         for (int c = 0; c < components; ++c) values.push_back(value[c]);
     }
     return values;
+}
+
+bool is_in_range(const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestJudged; }
+
+/// A method may try states that are out of range; what comes of those is dealt with where particles get there.
+void refuse_if_not_finite(const ParticlesForce& force, std::size_t number, const ParticlesView& view,
+                          std::span<const Vec3> accelerations) {
+    const auto wrong =
+        std::find_if_not(accelerations.begin(), accelerations.end(), [](const Vec3& a) { return is_finite(a); });
+    if (wrong == accelerations.end()) return;
+    // Sound ones may grow beyond all numbers, as where two are at one place almost.
+    if (steepness_of(force) || lacks_softening(force)) return;
+    if (!std::all_of(view.positions.begin(), view.positions.end(), is_in_range)) return;
+    if (!std::all_of(view.velocities.begin(), view.velocities.end(), is_in_range)) return;
+    const auto k = static_cast<std::size_t>(wrong - accelerations.begin());
+    const std::string name = force.name();
+    const Vec3& x = view.positions[k];
+    throw RunError(
+        fmt::format("{}: found the acceleration [{}, {}, {}] m/s^2 of particle {} at [{:.6g}, {:.6g}, {:.6g}] m and "
+                    "{:.6g} s, expected finite numbers",
+                    name.empty() ? fmt::format("particle_forces[{}]", number) : name, wrong->x, wrong->y, wrong->z,
+                    view.ids[k], x.x, x.y, x.z, view.time));
 }
 
 std::vector<Vec3> gather(std::span<const Vec3> from, std::span<const std::uint32_t> slots) {
@@ -111,10 +135,12 @@ void MutualForces::accelerations(double time, std::span<const Vec3> positions, s
         const ParticlesView view = view_of(seen, time, positions, velocities, gathered);
         if (seen.is_all) {
             entries_[e].force->add_accelerations(view, result);
+            refuse_if_not_finite(*entries_[e].force, e, view, result);
             continue;
         }
         std::vector<Vec3> own(seen.slots.size());
         entries_[e].force->add_accelerations(view, own);
+        refuse_if_not_finite(*entries_[e].force, e, view, own);
         parallel_for_blocks(own.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) result[seen.slots[k]] += own[k];
         });

@@ -231,8 +231,12 @@ double damper_bound(std::span<const Spring> springs) {
 
 double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                            const std::vector<Particle>& particles) {
+    return longest_stable_step(kind, rates_of(springs, particles));
+}
+
+OscillationRates rates_of(std::span<const Spring> springs, const std::vector<Particle>& particles) {
     const Rates rates = largest_rates(springs, particles);
-    return longest_stable_step(kind, {2.0 * rates.stiffness, 2.0 * rates.damping, damper_bound(springs)});
+    return {2.0 * rates.stiffness, 2.0 * rates.damping, damper_bound(springs)};
 }
 
 }  // namespace ricochet

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 #include "ricochet/core/error.h"
@@ -19,6 +20,20 @@ constexpr double kReachOfRk4 = 2.6;
 /// the differences of linear and quadratic drags are exact.
 constexpr double kDifference = 1e-2;
 constexpr double kSlow = 1e-3;  ///< m/s
+
+/// E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2.
+std::complex<double> stability_polynomial(IntegratorKind kind, const std::complex<double>& z) {
+    switch (kind) {
+        case IntegratorKind::forward_euler:
+            return 1.0 + z;
+        case IntegratorKind::midpoint:
+            return 1.0 + z + z * z / 2.0;
+        case IntegratorKind::rk4:
+            return 1.0 + z + z * z / 2.0 + z * z * z / 6.0 + z * z * z * z / 24.0;
+        default:
+            return 1.0;
+    }
+}
 
 }  // namespace
 
@@ -41,6 +56,17 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
         default:
             return 4.0 / (gamma + root);
     }
+}
+
+double energy_factor(IntegratorKind kind, double omega_squared, double gamma, double h) {
+    // Of both eigenvalues the one that is amplified more; they are conjugate, or real and negative.
+    const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * gamma * gamma - omega_squared));
+    double most = 0.0;
+    for (const double sign : {1.0, -1.0}) {
+        const std::complex<double> z = h * (-0.5 * gamma + sign * root);
+        most = std::max(most, std::norm(stability_polynomial(kind, z)));
+    }
+    return most;
 }
 
 double damping_rate(const Force& drag, const ForceInput& input) {

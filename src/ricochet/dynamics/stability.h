@@ -4,10 +4,13 @@
 
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/particles_force.h"
+#include "ricochet/dynamics/springs.h"
 
 namespace ricochet {
 
@@ -24,6 +27,30 @@ struct OscillationRates {
 /// methods while h times the largest eigenvalue stays within their region of stability; forward_euler where every own
 /// damper takes out what its step puts in. Throws InputError for a kind that does not exist.
 [[nodiscard]] double longest_stable_step(IntegratorKind kind, const OscillationRates& rates);
+
+/// Rates of the springs by Gershgorin's bound, see longest_stable_step() in springs.h.
+[[nodiscard]] OscillationRates rates_of(std::span<const Spring> springs, const std::vector<Particle>& particles);
+
+/// Factor by which a step of h seconds multiplies the energy of an oscillation with these rates: the squared modulus of
+/// the method's stability polynomial at h times the eigenvalue. For the Runge-Kutta methods; 1 for the others, which
+/// neither gain nor lose energy where they are stable, or damp.
+[[nodiscard]] double energy_factor(IntegratorKind kind, double omega_squared, double gamma, double h);
+
+/// What a force of forces.h does to the energy of a particle.
+struct EnergyLaw {
+    bool is_dissipative = false;  ///< it takes energy away, or brings some from a flow
+    bool varies = false;          ///< it depends on position or velocity and has an energy to keep
+    bool is_magnetic = false;     ///< a part of it depends on the velocity and does no work
+    bool is_singular = false;     ///< it attracts without bound
+};
+/// Nothing for forces without a potential, and for those of the user's own.
+[[nodiscard]] std::optional<EnergyLaw> energy_law_of(const Force& force);
+/// The same of one that acts on all particles.
+[[nodiscard]] std::optional<EnergyLaw> energy_law_of_law(const Force& force);
+
+/// m, and m/s: positions and velocities up to which forces and flows are expected to give finite numbers. Farther out,
+/// where methods may try states, powers of them overflow in forces that are sound.
+inline constexpr double kLargestJudged = 1e25;
 
 /// How steep a force of two particles is along their line where it is steepest of what it holds together, and what it
 /// drags at most: of cohesion at contact, of lennard_jones at the distance of rest.

@@ -141,14 +141,15 @@ TriedStep dormand_prince_system(const ParticleSystem& system, double h, const Er
     return tried;
 }
 
-SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& system, double duration,
-                         double first_try) {
+SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& system, double duration, double first_try,
+                         double shortest) {
     double h = std::min(first_try, duration);
-    for (int halvings = 0;; ++halvings, h *= 0.5) {
+    for (;; h *= 0.5) {
         TriedStep tried = dormand_prince_system(system, h, integrator.tolerance);
-        if (tried.error > 1.0 && halvings < kMostHalvings) continue;
+        if (tried.error > 1.0 && 0.5 * h >= shortest) continue;
         const bool ended_here = h >= duration;  // the step ended, not the method
         tried.step.next_duration = ended_here ? first_try : (tried.error < kErrorToDouble ? 2.0 * h : h);
+        tried.step.solved = !(tried.error > 1.0);
         return std::move(tried.step);
     }
 }
@@ -177,7 +178,8 @@ Vec3 HeldMotion::mean_of(const Vec3& free) const {
     return along + velocity;
 }
 
-SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration, double first_try) {
+SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration, double first_try,
+                       double shortest) {
     switch (integrator.kind) {
         case IntegratorKind::forward_euler:
             return euler_step(system, duration, false);
@@ -190,7 +192,8 @@ SystemStep step_system(const Integrator& integrator, const ParticleSystem& syste
         case IntegratorKind::rk4:
             return rk4_step(system, duration);
         case IntegratorKind::dormand_prince:
-            return adaptive_step(integrator, system, duration, first_try);
+            return adaptive_step(integrator, system, duration, first_try,
+                                 shortest > 0.0 ? shortest : kShortestSubstep * duration);
         case IntegratorKind::velocity_verlet:
         case IntegratorKind::ballistic:
             break;

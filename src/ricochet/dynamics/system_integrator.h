@@ -54,7 +54,8 @@ struct SystemStep {
     std::vector<Vec3> start_accelerations;  ///< what all forces and springs do at the start, m/s^2
     double duration = 0.0;                  ///< s; adaptive and implicit methods may take less than asked for
     double next_duration = 0.0;             ///< s that an adaptive method would try next
-    bool solved = true;                     ///< false: the implicit method's iteration did not converge
+    bool solved = true;                     ///< false: the implicit method's iteration did not converge,
+                                            ///< or the adaptive one could not keep its tolerance
     /// Velocities that members would have at the end without what holds them, but with springs and forces as they are
     /// in that step, m/s; empty where nothing holds any.
     std::vector<Vec3> free_velocities = {};
@@ -70,7 +71,8 @@ struct SystemStep {
 };
 
 /// Steps a system from its state by `duration` seconds (> 0); dormand_prince tries `first_try` seconds, then halves
-/// them until no member's error is larger than the tolerance: error control is over the whole system. The system's own
+/// them until no member's error is larger than the tolerance, or half of them is less than `shortest` seconds (0:
+/// kShortestSubstep of the duration): error control is over the whole system. The system's own
 /// state is not changed. The methods are those of begin_flight(), with the same bits where members do not act on each
 /// other, but for ballistic: springs that are held over a step gain energy, so that it becomes velocity_verlet.
 ///
@@ -81,7 +83,7 @@ struct SystemStep {
 /// Sources: D. Baraff, A. Witkin, "Large Steps in Cloth Simulation", SIGGRAPH 1998; the energy: S. Martin, B.
 /// Thomaszewski, E. Grinspun, M. Gross, "Example-Based Elastic Materials", SIGGRAPH 2011.
 [[nodiscard]] SystemStep step_system(const Integrator& integrator, const ParticleSystem& system, double duration,
-                                     double first_try);
+                                     double first_try, double shortest = 0.0);
 
 /// The backward Euler step of a system some members of which surfaces hold, by entry; held: as long as the system, or
 /// empty. They are taken into the equations, so that springs feel where surfaces leave their ends: with x1 as the

@@ -250,6 +250,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["asleep"] = statistics.asleep;
     json["unsimulated_time"] = statistics.unsimulated_time;
     json["budget_exhausted"] = statistics.budget_exhausted;
+    json["coarse_steps"] = statistics.coarse_steps;
     json["started_inside"] = statistics.started_inside;
     json["started_in_overlap"] = statistics.started_in_overlap;
     json["stayed"] = statistics.stayed;

@@ -68,9 +68,10 @@ private:
 MoveOutcome Advector::run() {
     manifold_.touch_again(particle_.contact, touch_rule());
     particle_.contact = {};
-    const MoveOutcome& outcome = step_.outcome();
+    MoveOutcome& outcome = step_.outcome();
     while (step_.remaining() > 0.0 && !outcome.is_frozen()) {
-        if (outcome.bounces + surface_segments_ >= rules_.settings.bounce_budget) {
+        rules_.poll();
+        if (outcome.bounces + surface_segments_ >= rules_.settings.bounce_budget || flow_.has_spent_substeps()) {
             step_.stop();
             break;
         }
@@ -82,6 +83,7 @@ MoveOutcome Advector::run() {
             advance();
         }
     }
+    outcome.is_coarse = flow_.is_coarse();
     if (!outcome.is_frozen()) finish();
     return outcome;
 }

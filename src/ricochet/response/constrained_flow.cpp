@@ -1,10 +1,14 @@
 #include "ricochet/response/constrained_flow.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
+#include "ricochet/dynamics/stability.h"
 #include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/held_surfaces.h"
 #include "ricochet/response/impact_answer.h"
@@ -29,10 +33,13 @@ Vec3 round_normal(const SurfaceGeometry& geometry, const ContactSurface& surface
 /// A flow without its part along the normals of surfaces, as they are at each position: those of round ones turn.
 class FlowAlong final : public FlowField {
 public:
-    FlowAlong(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces)
-        : flow_(flow), geometry_(geometry), surfaces_(surfaces) {}
+    /// particle: its id, for messages.
+    FlowAlong(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces,
+              std::uint64_t particle)
+        : flow_(flow), geometry_(geometry), surfaces_(surfaces), particle_(particle) {}
     [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
         const Vec3 free = flow_.velocity(position, time);
+        if (!is_finite(free)) refuse_if_in_range(free, position, time);
         std::array<Vec3, kMostHolding> normals;
         return surfaces_.empty() ? free : along_all(free, normals_at(position, normals));
     }
@@ -55,6 +62,14 @@ public:
     }
 
 private:
+    /// A method may try positions that are out of range.
+    void refuse_if_in_range(const Vec3& g, const Vec3& x, double time) const {
+        if (!is_finite(x) || max_abs(x) > kLargestJudged) return;
+        throw RunError(
+            fmt::format("flow: found the velocity [{}, {}, {}] m/s of particle {} at [{:.6g}, {:.6g}, {:.6g}] m and "
+                        "{:.6g} s, expected finite numbers",
+                        g.x, g.y, g.z, particle_, x.x, x.y, x.z, time));
+    }
     std::span<const Vec3> normals_at(const Vec3& position, std::array<Vec3, kMostHolding>& normals) const {
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
             const ContactSurface& surface = surfaces_[i];
@@ -66,6 +81,7 @@ private:
     const FlowField& flow_;
     const SurfaceGeometry& geometry_;
     std::span<const ContactSurface> surfaces_;
+    std::uint64_t particle_;
 };
 
 /// The end of [0, duration] up to which something holds that holds at first: to the last bit.
@@ -194,10 +210,12 @@ Holders ConstrainedFlow::holders_now() const {
 
 Path ConstrainedFlow::free_path(double duration) {
     Surfaces surfaces;
-    const FlowAlong along(flow_, geometry_, holding(surfaces));
-    const FlowPath free =
-        flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration, next_duration_);
+    const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
+    const FlowPath free = flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration,
+                                    next_duration_, kShortestSubstep * step_);
     next_duration_ = free.next_duration;
+    ++substeps_;
+    is_coarse_ = is_coarse_ || free.is_coarse;
     return free.path;
 }
 
@@ -243,7 +261,7 @@ ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const
 /// The way of so many seconds along the holders, as the cubic through its ends.
 Path ConstrainedFlow::arc(double duration) const {
     Surfaces surfaces;
-    const FlowAlong along(flow_, geometry_, holding(surfaces));
+    const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
     const Vec3& from = state_.position;
     const FlowPath way = flow_path(rules_.settings.integrator, along, from, state_.time, duration, duration);
     const double passed = way.path.duration;
@@ -306,7 +324,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
         const double until = last_time(path.duration, holds);
         part.ended_by = weakest(flow_at(until));
         Surfaces surfaces;
-        const FlowAlong along(flow_, geometry_, holding(surfaces));
+        const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
         part.path = flow_path(rules_.settings.integrator, along, state_.position, state_.time, until, until).path;
     }
     Path& held = part.path;

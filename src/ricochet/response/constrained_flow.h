@@ -66,6 +66,10 @@ public:
     /// The next path, at most `duration` long, s, and at most `reach`, m, beyond the rim of a flat surface. Contact
     /// points that the particle is past are removed.
     [[nodiscard]] Path next_path(double duration, double reach);
+    /// True when an adaptive method has made all sub-steps that a step may have.
+    [[nodiscard]] bool has_spent_substeps() const { return substeps_ >= kMostSubsteps; }
+    /// True when it could not keep its tolerance.
+    [[nodiscard]] bool is_coarse() const { return is_coarse_; }
     /// True when the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
     /// The round shapes along which the last path bends: it does not hit those, see ContactQuery::held.
@@ -105,7 +109,9 @@ private:
     ContactManifold& manifold_;
     double step_;
     double next_duration_ = 0.0;  // s, of an adaptive method
-    Holders holders_;             // of the last path
+    std::uint32_t substeps_ = 0;  // paths that have been asked of the integrator
+    bool is_coarse_ = false;
+    Holders holders_;  // of the last path
     std::array<SurfaceId, kMostHolding> followed_{};
     std::size_t followed_count_ = 0;
     int chords_ = 0;  // round edges so far

@@ -100,6 +100,7 @@ MoveOutcome ParticleMover::run() {
     std::optional<Contact> contact = resume();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
+        rules_.poll();
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
         while (contact && !outcome.is_absorbed() && step_.has_budget() && has_room()) {
@@ -326,6 +327,8 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     const auto contact = step_.follow(flight, integrator, look_ahead ? &*look_ahead : nullptr,
                                       is_first ? particle_.candidates : ContactCandidates{});
     step_.log().note_flight();
+    step_.outcome().is_coarse |= flight.is_coarse;
+    if (flight.has_spent_substeps() && !contact) step_.stop();
     return contact;
 }
 

@@ -59,9 +59,14 @@ private:
             flight = first ? first_flight(rules_, particle_, left)
                            : resume_flight(rules_.settings.integrator, rules_.forces, next, flight, left);
             if (!can_be_followed(flight.path)) return false;
+            rules_.poll();
+            outcome_.is_coarse |= flight.is_coarse;
             next.position = flight.path.end;
             next.velocity = flight.end_velocity;
             next.time += flight.path.duration;
+            if (!flight.has_spent_substeps()) continue;
+            outcome_.unsimulated_time = std::max(0.0, left - flight.path.duration);
+            break;
         }
         state_ = next;
         state_.time = end;

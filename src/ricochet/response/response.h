@@ -13,6 +13,7 @@
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/motion_part.h"
 #include "ricochet/core/segment.h"
+#include "ricochet/core/stop_token.h"
 #include "ricochet/dynamics/coupled_member.h"
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/flows.h"
@@ -137,7 +138,8 @@ struct MoveOutcome {
 
     MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< impacts
-    double unsimulated_time = 0.0;  ///< s that the budget cut off
+    double unsimulated_time = 0.0;  ///< s that a budget cut off
+    bool is_coarse = false;         ///< an adaptive method could not keep its tolerance
     std::uint32_t stayed = 0;       ///< impacts after which no certified position nearer to the surface was found
     std::uint32_t squeezed = 0;     ///< 1: its clock stood still, between surfaces that close on it
     std::uint32_t trials = 0;       ///< states that were tested for collision or penetration
@@ -183,6 +185,12 @@ struct ResponseRules {
     const MovingColliders* bodies = nullptr;               ///< null where no collider moves
     /// Of the frame of one of them, in which `world` and `forces` are seen; null in the world.
     const FrameForces* frame = nullptr;
+    const StopToken* stop = nullptr;  ///< of steps that may be stopped
+
+    /// Throws when the step is to end: to be called between pieces of work.
+    void poll() const {
+        if (stop != nullptr) stop->poll();
+    }
 };
 
 /// The flight that a step of `duration` seconds begins with: the planned one while nothing has happened to the particle

@@ -70,11 +70,12 @@ void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
     while (remaining > 0.0) {
+        rules_.poll();
         if (!begin(remaining)) return;
         const CollisionBracket found = bracket();
         advance(found.free);
         remaining = std::max(0.0, remaining - found.free);
-        if (found.blocked && !has_budget()) {
+        if (found.blocked ? !has_budget() : flown_ && flown_->has_spent_substeps()) {
             outcome_.unsimulated_time = remaining;
             break;
         }
@@ -173,6 +174,7 @@ void RollbackMover::fly(double elapsed) {
     const bool own_step = trial_ == Trial::own_step;
     kick_velocity_ = (flight_.kick_duration > 0.0 && own_step ? elapsed : flight_.kick_duration) * flight_.acceleration;
     if (!own_step) flown_ = flight_;
+    outcome_.is_coarse |= flight_.is_coarse;
 }
 
 void RollbackMover::follow_interval(double elapsed) {

@@ -84,6 +84,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
                            const Lead* lead) {
     const TimeSpan life = life_in(i, step);
     if (life.end <= life.begin) return;
+    parts_.response.rules().poll();
     grow_core(i, life.begin);
     MovingParticle particle = load(i, life.begin);
     if (lead != nullptr) particle.planned = &lead->flight, particle.state.coupling = &lead->pull;
@@ -183,7 +184,7 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
     }
     // One that slept on walls alone has weighed on them until now.
     if (parts_.store.is_asleep(i)) record.lost_impulses += add_weight(i, life.begin, 1.0);
-    take_over(i, moving, member.outcome, life.end, record);
+    take_over(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_push}, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -215,7 +216,7 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
             std::vector<FlownPiece> flown;
             note_departure(i, moved.particle, moved.outcome, flown, moved.pushed);
         }
-        take_over(i, moved.particle, moved.outcome, moved.stop, record);
+        take_over(i, moved.particle, moved.outcome, moved.stop, {{}, moved.pushed, {}}, record);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }

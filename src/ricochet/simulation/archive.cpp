@@ -20,7 +20,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f5354000bULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f5354000cULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;
@@ -127,7 +127,8 @@ std::uint64_t Simulation::Impl::settings_hash() const {
 template <class Archive>
 void Simulation::Impl::archive(Archive& a) {
     expect(a, kStateFormat, "not a state that this version can read");
-    expect(a, collider_hash(), "the state belongs to other colliders");
+    if (!known_collider_hash) known_collider_hash = collider_hash();
+    expect(a, *known_collider_hash, "the state belongs to other colliders");
     expect(a, settings_hash(), "the state belongs to other options, materials, bodies or bounds");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
     expect(a, static_cast<std::uint64_t>(coupled.springs().springs().size()), "the state belongs to other springs");
@@ -206,12 +207,16 @@ void Simulation::save(const ByteSink& sink) const {
     if (!sink) throw InputError("save: found an empty function, expected one that takes the bytes");
     if (impl().inside_step)
         throw RunError("save: the last step or restore() of this simulation has ended with an error");
+    impl().save(sink);
+}
+
+void Simulation::Impl::save(const ByteSink& sink) {
     StateHash checksum;
     BinaryWriter writer([&](std::span<const std::byte> bytes) {
         checksum.add(bytes);
         sink(bytes);
     });
-    impl().archive(writer);
+    archive(writer);
     writer(checksum.value());
 }
 
@@ -244,6 +249,7 @@ void Simulation::restore(const ByteSource& source) {
                         "before its first step",
                         step_index()));
     }
+    impl().return_point.invalidate();
     impl().free_flights.drop_deferred();
     impl().inside_step = true;  // until all is there
     impl().read_state(source);
@@ -270,6 +276,7 @@ void Simulation::save_particles(const ByteSink& sink) const {
 
 void Simulation::restore_particles(const ByteSource& source) {
     if (!source) throw InputError("restore_particles: found an empty function, expected one that gives the bytes");
+    impl().return_point.invalidate();
     impl().inside_step = true;  // until all is there
     ParticleStore part = impl().store.empty_copy();
     BinaryReader reader(source);

@@ -87,6 +87,19 @@ double misplaced_energy(const ParticleSystem& system, const SystemStep& step, st
     return sum;
 }
 
+/// What a solver of the user's own has made of a state that was sound.
+void require_solved(const ParticleSystem& system, const SystemStep& step) {
+    for (std::size_t k = 0; k < system.size(); ++k) {
+        if (is_finite(step.positions[k]) && is_finite(step.velocities[k])) continue;
+        const Vec3& x = step.positions[k];
+        const Vec3& v = step.velocities[k];
+        throw RunError(
+            fmt::format("solver: found particle {} at [{}, {}, {}] m with [{}, {}, {}] m/s after the step at {:.6g} s, "
+                        "expected finite numbers",
+                        system.id(k), x.x, x.y, x.z, v.x, v.y, v.z, system.time()));
+    }
+}
+
 bool is_in_contact(const Particles& particles, std::size_t i) {
     return particles.support[i][0] != kNoSupport || particles.resting[i] != 0;
 }
@@ -179,9 +192,17 @@ MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) con
     return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
 }
 
+/// s: the clock must move, and the particles with it.
+double CoupledMotion::shortest_part() const {
+    return std::max(kShortestSubstep * terms_.time_step, 2.0 * ulp(system_.time()));
+}
+
+/// What is left when all sub-steps of a step are spent is taken at once, and counted as unsolved.
 SystemStep CoupledMotion::stepped(double duration) {
     if (!solver_) {
-        SystemStep step = step_system(integrator_, system_, duration, first_try_ > 0.0 ? first_try_ : duration);
+        const bool is_spent = ++substeps_ > kMostSubsteps;
+        const double first_try = first_try_ > 0.0 && !is_spent ? first_try_ : duration;
+        SystemStep step = step_system(integrator_, system_, duration, first_try, is_spent ? duration : shortest_part());
         first_try_ = step.next_duration;
         return step;
     }
@@ -195,6 +216,7 @@ SystemStep CoupledMotion::stepped(double duration) {
     solver_(advanced, duration);
     step.positions = advanced.positions();
     step.velocities = advanced.velocities();
+    require_solved(system_, step);
     step.mutual_end = system_.mutual_accelerations(system_.time() + duration, step.positions, step.velocities);
     return step;
 }
@@ -386,6 +408,7 @@ std::optional<double> CoupledMotion::mutual_energy(const Particles& particles, d
 void CoupledMotion::settle(const Particles& particles) {
     unsolved_steps_ += is_unsolved_ ? 1 : 0;
     is_unsolved_ = false;
+    substeps_ = 0;
     if (!springs_.empty()) springs_.break_overstretched(particles.position);
 }
 

@@ -108,7 +108,7 @@ public:
     /// Energy of the forces between particles, J; nothing where one of them has no potential.
     [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
     /// Steps whose implicit equations were not solved to the tolerance, or for which what surfaces hold in them did not
-    /// settle.
+    /// settle, or in which dormand_prince could not keep its tolerance.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
 
 private:
@@ -117,6 +117,7 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> members_of(const Particles& particles, double time) const;
     [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
+    [[nodiscard]] double shortest_part() const;
     [[nodiscard]] std::vector<Vec3> expected_pushes(const Particles& particles, const Hold& hold) const;
     /// What surfaces hold in a step, and its solution with that.
     struct Foreseen {
@@ -147,7 +148,8 @@ private:
     Departures departures_;               // of the members, from the flights
     double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
-    bool is_unsolved_ = false;  // a part of the present step
+    bool is_unsolved_ = false;    // a part of the present step
+    std::uint32_t substeps_ = 0;  // of an adaptive method in the present step
     bool stands_aside_ = false;
     std::function<void()> between_;
 

@@ -16,6 +16,7 @@
 #include "ricochet/collision/collision_world.h"
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/collision/overlap.h"
+#include "ricochet/core/stop_token.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/birth_room.h"
@@ -32,6 +33,7 @@
 #include "ricochet/simulation/rank_balance.h"
 #include "ricochet/simulation/rank_share.h"
 #include "ricochet/simulation/retirement.h"
+#include "ricochet/simulation/return_point.h"
 #include "ricochet/simulation/run_recorder.h"
 
 namespace ricochet {
@@ -58,6 +60,9 @@ struct Simulation::Impl {
 
     // The stages of a step, see step.cpp.
     void step();
+    void step_unless_stopped(const std::function<bool()>& goes_on);
+    void keep_return_point();
+    void go_back();
     [[nodiscard]] TimeSpan begin_step();
     /// Particles change ranks where one of those is behind.
     void balance_ranks();
@@ -151,9 +156,11 @@ struct Simulation::Impl {
 
     template <class Archive>
     void archive(Archive& a);
+    void save(const ByteSink& sink);
     void read_state(const ByteSource& source);
     void require_sound_state() const;
     [[nodiscard]] std::uint64_t collider_hash() const;
+    std::optional<std::uint64_t> known_collider_hash;  ///< once it has been asked for: it stays
     [[nodiscard]] std::uint64_t settings_hash() const;
     void replay_emitters();
     void forget_queries();
@@ -184,6 +191,7 @@ struct Simulation::Impl {
     std::vector<Emitter> emitters;
     std::unique_ptr<Offspring> offspring;  ///< null where no particles spawn others
     std::optional<Box3> bounds;
+    StopToken stop;  ///< of a step that may be stopped
     std::unique_ptr<Response> response;
     ParticleStore store;
     std::vector<SpringFace> spring_faces;
@@ -197,6 +205,7 @@ struct Simulation::Impl {
     std::unique_ptr<CloudMotion> clouds;  ///< null where no particles go with others
     std::unique_ptr<PairMotion> pairs;    ///< null where spheres do not meet each other
     Retirement retirement;
+    ReturnPoint return_point;         ///< for steps that are stopped
     ContactCallback callback;         ///< of on_contact(); may be empty
     bool inside_step = false;         ///< a step has begun and not ended, perhaps by an error
     bool is_stepping = false;         ///< it runs

@@ -88,7 +88,10 @@ void Simulation::Impl::reserve(std::size_t more) {
 BirthTests Simulation::Impl::birth_tests(std::optional<BirthRoom>& room, const TimeSpan& step) const {
     BirthTests tests;
     if (pairs || world.surface_count() > 0) {
-        tests.alone = [this](const Particle& particle) { return !overlap_of(particle); };
+        tests.alone = [this](const Particle& particle) {
+            stop.poll();
+            return !overlap_of(particle);
+        };
     }
     if (!pairs) return tests;
     tests.among = [this, &room, step](const Particle& particle) {
@@ -136,6 +139,7 @@ std::uint64_t Simulation::add_particle(Particle particle) { return add_particles
 
 std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> particles) {
     impl().require_between_steps();
+    impl().return_point.invalidate();
     impl().share.require_alone("add_particles");
     for (std::size_t k = 0; k < particles.size(); ++k) {
         const auto columns = impl().particles().attributes.columns();
@@ -175,6 +179,7 @@ bool Simulation::remove_particle(std::uint64_t id) { return remove_particles(std
 
 std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
     impl().require_between_steps();
+    impl().return_point.invalidate();
     impl().share.require_alone("remove_particles");
     std::vector<std::uint64_t> sorted(ids.begin(), ids.end());
     std::sort(sorted.begin(), sorted.end());
@@ -197,6 +202,7 @@ std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
 // What was known of free flights, and what has let particles sleep, was known for the forces until now.
 void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     impl().require_between_steps();
+    impl().return_point.invalidate();
     if (options().flow != nullptr && !forces.empty()) {
         throw InputError(
             fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));

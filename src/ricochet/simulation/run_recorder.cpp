@@ -76,6 +76,7 @@ void BlockRecord::add_to(SimulationStatistics& statistics) const {
     statistics.contacts += contacts;
     statistics.stayed += stayed;
     statistics.frozen += frozen;
+    statistics.coarse_steps += coarse;
     statistics.lost_impulses += lost_impulses;
     statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
     statistics.trials += trials;

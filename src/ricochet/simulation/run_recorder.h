@@ -92,6 +92,7 @@ struct BlockRecord {
     std::uint64_t contacts = 0;
     std::uint64_t stayed = 0;
     std::uint64_t frozen = 0;
+    std::uint64_t coarse = 0;
     std::uint64_t lost_impulses = 0;
     std::uint32_t bounces_max = 0;
     std::uint64_t squeezed = 0;
@@ -120,6 +121,7 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
     contacts += outcome.bounces;
     stayed += outcome.stayed;
     frozen += outcome.is_frozen() ? 1 : 0;
+    coarse += outcome.is_coarse ? 1 : 0;
     bounces_max = std::max(bounces_max, outcome.bounces);
     squeezed += outcome.squeezed;
     trials += outcome.trials;
@@ -151,6 +153,12 @@ public:
     void show_contacts(bool shows) { shows_contacts_ = shows; }
     [[nodiscard]] bool shows_contacts() const { return shows_contacts_; }
     void begin_step();
+    /// Nothing is known of the step that has begun, and of those before it these violations.
+    void forget_step(const std::vector<Violation>& violations) {
+        begin_step();
+        begin_batch();
+        violations_ = violations;
+    }
     /// The particles that are moved next.
     void begin_batch() { batch_contacts_.clear(); }
     /// Takes over what blocks have done in a part of the step.

@@ -262,7 +262,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
       offspring(make_offspring(emitters, options)),
       bounds(setup.bounds),
       response(make_response(options.response, {world, forces, materials, options, options.duration,
-                                                acceleration.look_ahead && !bodies, bodies.get()})),
+                                                acceleration.look_ahead && !bodies, bodies.get(), nullptr, &stop})),
       store(setup.attributes, keeps_origin(emitters, setup.particles_forces),
             acceleration.sleeping && forces.is_steady() && !(bodies && options.verify),
             response->keeps_sides() ? world.colliders().size() : 0, bodies != nullptr),
@@ -282,6 +282,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
           mover)),
       pairs(make_pairs(options, store, schedule, mover, *response, coupled)),
       retirement(store, schedule, bounds) {
+    coupled.call_between([this] { stop.poll(); });
     world.set_culling(acceleration.culling);
     if (bodies) {
         bodies->set_culling(acceleration.culling);

@@ -16,6 +16,7 @@
 #include "ricochet/dynamics/implicit_euler.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/dynamics/stability.h"
+#include "ricochet/simulation/energy_warnings.h"
 
 namespace ricochet {
 namespace {
@@ -99,9 +100,29 @@ std::string undamped(const SimulationSetup& setup, const std::string& forces, co
         name_of(setup.options.integrator.kind), forces, whose, others);
 }
 
+/// Growth of an energy in a run that is warned of.
+constexpr double kLargestGain = 0.01;
+
+/// Steps that are short enough for the fastest oscillation may feed it all the same: midpoint's do, unless dampers take
+/// more. Slower ones are fed less, by the fourth power of their rate, and damped by its square.
+std::optional<std::string> growth_warning(const SimulationSetup& setup, const OscillationRates& rates,
+                                          const std::string& forces) {
+    const double h = setup.options.time_step;
+    const double damping = std::isfinite(rates.least_damper) ? rates.least_damper * rates.omega_squared : 0.0;
+    const double factor = energy_factor(setup.options.integrator.kind, rates.omega_squared, damping, h);
+    const double gain = std::pow(factor, setup.options.duration / h) - 1.0;
+    if (!(gain > kLargestGain)) return std::nullopt;
+    return fmt::format(
+        "the integrator {} does not keep the energy of {}: the fastest oscillation may gain {:.2g} times its energy in "
+        "{:.4g} s; use the integrator velocity_verlet, a shorter time_step or more damping",
+        name_of(setup.options.integrator.kind), forces, gain, setup.options.duration);
+}
+
 std::optional<std::string> spring_warning(const SimulationSetup& setup) {
     const double bound = longest_stable_step(setup.options.integrator.kind, setup.springs, setup.particles);
-    if (setup.options.time_step <= bound) return std::nullopt;
+    if (setup.options.time_step <= bound) {
+        return growth_warning(setup, rates_of(setup.springs, setup.particles), "these springs");
+    }
     if (bound == 0.0) return undamped(setup, "these springs, some of which have no damping", "every spring");
     return too_long(setup, bound, "these springs",
                     may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
@@ -116,10 +137,10 @@ std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_
     OscillationRates rates{neighbours * steepness->stiffness, neighbours * steepness->damping};
     if (steepness->stiffness > 0.0) rates.least_damper = steepness->damping / steepness->stiffness;
     const double bound = longest_stable_step(setup.options.integrator.kind, rates);
-    if (setup.options.time_step <= bound) return std::nullopt;
     std::string what = fmt::format("particle_forces[{}] (stiffness {:.3g} N/m, ", number, steepness->stiffness);
     if (steepness->damping > 0.0) what += fmt::format("damping {:.3g} N s/m, ", steepness->damping);
     what += fmt::format("lightest particle {:.3g} kg)", lightest.masses[0]);
+    if (setup.options.time_step <= bound) return growth_warning(setup, rates, what);
     if (rates.least_damper == 0.0 && setup.options.integrator.kind == IntegratorKind::forward_euler) {
         return undamped(setup, what + ", which has no damping", "it");
     }
@@ -292,6 +313,7 @@ std::vector<std::string> stability_warnings(const SimulationSetup& setup) {
         if (auto warning = pair_warning(setup, k)) warnings.push_back(std::move(*warning));
     }
     for (std::string& warning : birth_warnings(setup)) warnings.push_back(std::move(warning));
+    for (std::string& warning : energy_warnings(setup)) warnings.push_back(std::move(warning));
     return warnings;
 }
 

@@ -55,33 +55,27 @@ private:
 }  // namespace
 
 void Simulation::step() {
+    impl().return_point.invalidate();
     if (!finished()) impl().step();
 }
 
 void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on,
                          const std::function<bool()>& goes_on_within) {
     if (count > 1 && impl().may_defer()) impl().free_flights.begin_deferring();
-    const auto ask = [&] {
-        if (!goes_on_within()) throw StoppedError("the step was stopped before its end");
-    };
     // Ranks that share a run stop together, between steps.
     const bool may_stop = goes_on_within && impl().share.is_alone();
-    impl().coupled.call_between(may_stop ? std::function<void()>(ask) : std::function<void()>());
-    const auto end = [&] {
-        impl().coupled.call_between({});
-        impl().free_flights.end_deferring();
-    };
+    if (!may_stop) impl().return_point.invalidate();
     try {
         bool goes_on = true;
         for (std::uint64_t k = 0; k < count && goes_on && !finished(); ++k) {
-            impl().step();
+            may_stop ? impl().step_unless_stopped(goes_on_within) : impl().step();
             goes_on = !go_on || go_on();
         }
     } catch (...) {
-        end();
+        impl().free_flights.end_deferring();
         throw;
     }
-    end();
+    impl().free_flights.end_deferring();
 }
 
 bool Simulation::Impl::may_defer() const {
@@ -93,6 +87,7 @@ bool Simulation::Impl::may_defer() const {
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
     const Raised stepping(is_stepping);
+    stop.poll();
     balance_ranks();
     emit_particles(step);
     std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
@@ -139,6 +134,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
     if (clouds) clouds->before_move(batch);
     std::vector<HeatGain> gains;
     for (double now = step.begin; now < step.end;) {
+        stop.poll();
         const TimeSpan part = plan_part(batch, {now, step.end});
         std::vector<BlockRecord> blocks;
         wake_sleepers(part);

@@ -44,6 +44,7 @@ constexpr std::array kCounted = {
     &SimulationStatistics::springs_broken,
     &SimulationStatistics::springs_lost,
     &SimulationStatistics::unsolved_steps,
+    &SimulationStatistics::coarse_steps,
     &SimulationStatistics::frozen,
 };
 /// Besides them there are: the steps, their parts, the most bounces with a gap, four numbers of what ranks refuse (of

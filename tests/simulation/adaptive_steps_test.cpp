@@ -1,0 +1,116 @@
+// Steps of dormand_prince end, also where no sub-step is short enough, and what is lost is counted.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/dynamics/forces.h"
+#include "ricochet/dynamics/particles_force.h"
+#include "ricochet/simulation.h"
+#include "support/simulations.h"
+
+namespace ricochet {
+namespace {
+
+using testing::particle_of;
+using testing::setup_of;
+
+/// A particle at rest that falls into the middle.
+SimulationSetup falling(std::unique_ptr<Force> force, ResponseKind response) {
+    SimulationSetup setup = setup_of(1.0 / 60.0, 1.0);
+    setup.options.integrator.kind = IntegratorKind::dormand_prince;
+    setup.options.response = response;
+    setup.forces.push_back(std::move(force));
+    setup.particles = {particle_of({0.03, -0.16, 0.26})};
+    return setup;
+}
+
+/// Steps to the end, or to where the particle is beyond the speed of light: then it returns false.
+bool run(Simulation& simulation) {
+    try {
+        while (!simulation.finished()) simulation.step();
+    } catch (const DivergedError&) {
+        return false;
+    }
+    return true;
+}
+
+TEST(AdaptiveSteps, EndWhereAParticleFallsIntoAPointMass) {
+    for (const ResponseKind response : {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project}) {
+        SCOPED_TRACE(name_of(response));
+        Simulation gravity(falling(make_point_gravity({{{0, 0, 0}, 8.85, 0.0}}), response));
+        (void)run(gravity);
+        EXPECT_GT(gravity.statistics().coarse_steps, 0U);
+        for (const double exponent : {-1.0, -2.0, -3.0}) {
+            SCOPED_TRACE(exponent);
+            Simulation radial(
+                falling(make_radial_force({.center = {}, .strength = 8.85, .exponent = exponent}), response));
+            const bool is_whole = run(radial);
+            EXPECT_TRUE(!is_whole || radial.statistics().coarse_steps + radial.statistics().budget_exhausted > 0U);
+        }
+    }
+}
+
+// With an orbit of 2e-6 s a step has 8000 of them, each of some 50 sub-steps.
+TEST(AdaptiveSteps, OfATightOrbitAreCutOffAndTheParticleStaysOnIt) {
+    const double strength = 10.0;
+    const double radius = 1e-4;
+    for (const ResponseKind response : {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project}) {
+        SCOPED_TRACE(name_of(response));
+        SimulationSetup setup = falling(make_point_gravity({{{0, 0, 0}, strength, 0.0}}), response);
+        setup.options.duration = setup.options.time_step;
+        setup.particles = {particle_of({radius, 0, 0}, {0, std::sqrt(strength / radius), 0})};
+        Simulation simulation(std::move(setup));
+        simulation.step();
+        EXPECT_EQ(simulation.statistics().budget_exhausted, 1U);
+        EXPECT_GT(simulation.statistics().unsimulated_time, 0.0);
+        EXPECT_LT(simulation.statistics().unsimulated_time, 1.0 / 60.0);
+        EXPECT_NEAR(length(simulation.particles().position[0]), radius, 0.2 * radius);
+    }
+}
+
+TEST(AdaptiveSteps, EndWhereTwoParticlesFallIntoEachOther) {
+    SimulationSetup setup = setup_of(1.0 / 60.0, 0.5);
+    setup.options.integrator.kind = IntegratorKind::dormand_prince;
+    setup.particles = {particle_of({}), particle_of({0.1, 0.2, -0.1})};
+    GravitySettings gravity;
+    gravity.constant = 1.0;
+    setup.particles_forces = {{make_mutual_gravity(gravity)}};
+    Simulation simulation(std::move(setup));
+    const bool is_whole = run(simulation);
+    EXPECT_TRUE(!is_whole || simulation.statistics().unsolved_steps > 0U);
+}
+
+TEST(AdaptiveSteps, LoseNothingOnAnOrdinaryOrbit) {
+    SimulationSetup setup = falling(make_point_gravity({{{0, 0, 0}, 1.0, 0.0}}), ResponseKind::exact);
+    setup.options.duration = 20.0;
+    setup.particles = {particle_of({1, 0, 0}, {0, 0.3, 0})};
+    Simulation simulation(std::move(setup));
+    const double before = simulation.kinetic_energy() + simulation.potential_energy().value();
+    ASSERT_TRUE(run(simulation));
+    EXPECT_EQ(simulation.statistics().coarse_steps, 0U);
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+    EXPECT_NEAR(simulation.kinetic_energy() + simulation.potential_energy().value(), before, 1e-3);
+}
+
+// A jump of a force is passed, and loses next to nothing.
+TEST(AdaptiveSteps, PassAJumpOfAForce) {
+    SimulationSetup setup = setup_of(0.1, 1.0);
+    setup.options.integrator = {IntegratorKind::dormand_prince, {1e-30, 1e-30}};
+    setup.forces.push_back(make_acceleration([](const ForceInput& input) {
+        return Vec3{input.position.x < 0.55 ? 0.0 : 2.0, 0, 0};
+    }));
+    setup.particles = {particle_of({}, {1, 0, 0})};
+    Simulation simulation(std::move(setup));
+    ASSERT_TRUE(run(simulation));
+    EXPECT_NEAR(simulation.particles().velocity[0].x, 1.9, 1e-9);
+    EXPECT_NEAR(simulation.particles().position[0].x, 1.0 + 0.45 * 0.45, 1e-9);
+    EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
+}
+
+}  // namespace
+}  // namespace ricochet

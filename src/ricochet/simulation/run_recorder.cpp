@@ -8,6 +8,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/particle_store.h"
+#include "ricochet/verify/rebound.h"
 
 namespace ricochet {
 
@@ -244,6 +245,14 @@ void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput
         particles.id[i], particles.position[i], moved.position, particles.radius[i], times.end, segments,
         motion,          times.stored};
     verifier_.check(step, watched_[i], violations);
+}
+
+void RunCheck::check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
+                              std::vector<Violation>& violations) {
+    for (const RecordedImpact& impact : impacts) {
+        if (!verify::has_wrong_rebound(impact)) continue;
+        violations.push_back({ViolationKind::energy, particle, impact.before.position, impact.time, {}, {}});
+    }
 }
 
 std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,

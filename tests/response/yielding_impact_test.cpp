@@ -72,5 +72,60 @@ TEST(AnImpactOnABodyThatYields, NeverPutsEnergyInAndTurnsTheApproachAround) {
     }
 }
 
+/// A box, 1 x 0.6 x 0.2 m, of 3 kg at the origin, that a sphere of 0.2 kg falls onto straight, off its centre.
+Motion dropped_on_box(const Vec3& slip, double friction, double restitution = 0.7) {
+    Mobility box;
+    box.of_mass = diagonal_matrix(1.0 / 3.0);
+    box.of_inertia = SymmetricMatrix{1.0 / 0.11, 1.0 / 0.29, 1.0 / 0.34, 0, 0, 0};
+    const ForceInput state{{0.35, 0.1, 0.15}, {}, 0.2, 0.05, 0.0};
+    const YieldingSurface surface{{0, 0, 1}, restitution, friction, {}, box};
+    return bounce({Vec3{0, 0, -3} + slip, {}}, state, surface);
+}
+
+TEST(AnImpactOnABodyThatYields, SticksWhereThereIsNoSlipBeforeIt) {
+    const Motion after = dropped_on_box({}, 0.3);
+    EXPECT_NEAR(after.velocity.x, 0.02954, 5e-6);
+    EXPECT_NEAR(after.velocity.y, 0.02186, 5e-6);
+    EXPECT_NEAR(after.velocity.z, 1.36242, 5e-6);
+    // Without losses the energy of sticking is as before, to rounding, which does not decide.
+    const Motion elastic = dropped_on_box({}, 0.3, 1.0);
+    EXPECT_GT(elastic.velocity.x, 0.02);
+}
+
+// The same answer for slips of no size, whatever their direction, also where friction is too weak to stop them.
+TEST(AnImpactOnABodyThatYields, IsContinuousWhereTheSlipBeforeItVanishes) {
+    for (const double restitution : {0.0, 0.7, 1.0}) {
+        for (const double friction : {0.002, 0.01, 0.02, 0.3}) {
+            const Motion without = dropped_on_box({}, friction, restitution);
+            EXPECT_GT(length(without.velocity - dropped_on_box({}, 0.0, restitution).velocity), 1e-4 * friction);
+            for (int k = 0; k < 16; ++k) {
+                const double angle = 0.4 * k;
+                for (const double speed : {1e-300, 1e-12, 1e-9}) {
+                    const Vec3 slip = speed * Vec3{std::cos(angle), std::sin(angle), 0};
+                    const Motion with = dropped_on_box(slip, friction, restitution);
+                    EXPECT_LT(length(with.velocity - without.velocity), 1e-12 + 10.0 * speed) << friction << ' ' << k;
+                    EXPECT_LT(length(with.spin - without.spin), 1e-10 + 500.0 * speed) << friction << ' ' << k;
+                }
+            }
+        }
+    }
+}
+
+// What slips on after the impact is held back against the slip that the impulse makes: a point on a hinge's arm.
+TEST(AnImpactOnABodyThatYields, SlipsAgainstTheSlipThatTheImpulseMakes) {
+    Mobility arm;
+    arm.of_mass = diagonal_matrix(0.0);
+    arm.of_inertia = SymmetricMatrix{0, 1.0 / 0.2, 0, 0, 0, 0};  // turns about y
+    const ForceInput state{{0.5, 0, 0.2}, {}, 0.3, 0.0, 0.0};
+    const YieldingSurface surface{{0, 0, 1}, 0.5, 0.05, {}, arm};
+    const Motion after = bounce({{0, 0, -2}, {}}, state, surface);
+    const Vec3 impulse = 0.3 * (after.velocity - Vec3{0, 0, -2});
+    EXPECT_NEAR(std::fabs(impulse.x), 0.05 * impulse.z, 1e-15);
+    EXPECT_EQ(impulse.y, 0.0);
+    const Vec3 of_arm = -arm.change_at(state.position, impulse);
+    EXPECT_NEAR(after.velocity.z - of_arm.z, 1.0, 1e-12);
+    EXPECT_LT(impulse.x * (after.velocity.x - of_arm.x), 0.0);
+}
+
 }  // namespace
 }  // namespace ricochet

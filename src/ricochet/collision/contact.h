@@ -18,6 +18,9 @@ struct ContactSurface {
     SurfaceId surface = 0;
     Vec3 normal;       ///< unit, facing the side that the path comes from; for spheres from the surface to the centre
     bool flat = true;  ///< a plane or the inside of a triangle; false: an edge, a vertex or a curved surface
+    /// The particle slides, rolls or rests on it when it comes to the impact. Its normal speed there is rounding, so
+    /// the impact never counts it as approached.
+    bool holds = false;
 };
 
 /// The first contact of a path: all surfaces that it reaches at the same time (kSimultaneousUlps), the smallest number

@@ -165,7 +165,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     manifold_.record_push(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, impact_);
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    step_.log().note_contact(pull.forces, way.path, pull.acts);
+    step_.log().note_contact(pull.forces, way.path, pull.acts, held_.all());
     held_.meet(stop.contact);
     return stop;
 }
@@ -239,7 +239,7 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
     manifold_.load(arc.plan());
     manifold_.record_push(state_.velocity - velocity_before - by_forces, elapsed, impact_);
-    step_.log().note_contact(pull.forces, way->path, pull.acts);
+    step_.log().note_contact(pull.forces, way->path, pull.acts, held_.all());
     held_.meet(contact);
     Stop stop{contact, way->leaves_surface, false};
     if (!stop.is_early()) held_.touch_again(way->turning_point);

@@ -94,8 +94,9 @@ std::optional<Contact> ContactPhase::stay(const Contact& contact) {
     gather();
     const KeptContact kept = manifold_.kept();
     lift();
-    auto met = step_.wait(step_.remaining(), std::span(kept.surfaces).first(kept.count));
-    step_.log().note_stay();
+    const std::span<const SurfaceId> held_by = std::span(kept.surfaces).first(kept.count);
+    auto met = step_.wait(step_.remaining(), held_by);
+    step_.log().note_stay(held_by);
     return met;
 }
 
@@ -281,18 +282,19 @@ bool ContactPhase::rests_on(double time) {
 std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     const Vec3 before = state_.velocity;
     const KeptContact kept = manifold_.kept();
+    const std::span<const SurfaceId> held_by = std::span(kept.surfaces).first(kept.count);
     state_.velocity = Vec3{};
     if (!step_.is_near_bodies()) {
         manifold_.record_push(-before - duration * forces, duration, impact_);
         step_.log().note_impact();
         static_cast<void>(step_.wait(duration));
-        step_.log().note_stay();  // what stays where it is gains nothing by forces
+        step_.log().note_stay(held_by);  // what stays where it is gains nothing by forces
         return std::nullopt;
     }
     step_.log().note_impact();
     const double left = step_.remaining();
     lift();
-    auto contact = step_.wait(duration, std::span(kept.surfaces).first(kept.count));
+    auto contact = step_.wait(duration, held_by);
     if (contact) follower_.take_part_in(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
@@ -302,7 +304,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         mean = rules_.forces.acceleration(middle);
     }
     manifold_.record_push(-before - elapsed * mean, elapsed, impact_);
-    step_.log().note_stay();
+    step_.log().note_stay(held_by);
     return contact;
 }
 

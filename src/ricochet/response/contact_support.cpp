@@ -29,7 +29,7 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
-        if (!(approach > 0.0)) return true;
+        if (surface.holds || !(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
         if (rebound >= step_.resting_speed()) return false;  // no slow rebound is as fast
         return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));

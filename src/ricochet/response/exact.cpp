@@ -130,8 +130,8 @@ std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, 
 
 /// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
 bool ParticleMover::has_room() {
-    if (!has_met_moving_ || step_.outcome().bounces < bounces_at_look_ + kBouncesToClose) return true;
-    bounces_at_look_ = step_.outcome().bounces;
+    if (!has_met_moving_ || step_.outcome().meetings() < bounces_at_look_ + kBouncesToClose) return true;
+    bounces_at_look_ = step_.outcome().meetings();
     const double before = std::exchange(remaining_at_look_, step_.remaining());
     return before - step_.remaining() > kLeastWayOut * step_.duration();
 }
@@ -337,7 +337,6 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const bool moves = has_moving(contact);
     if (moves && flight.kick_duration > 0.0) return answer_without_kick(flight, contact);
     has_met_moving_ = has_met_moving_ || moves;
-    ++step_.outcome().bounces;
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
     if (moves) step_.impact().note_driven();
@@ -345,7 +344,8 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const double slow = moves ? slowest_rebound(rules_, *rides_, particle_, contact) : rules_.settings.resting_speed;
     step_.set_resting_speed(slow);
     const bool is_fast = moves && step_.impact().approach(contact.all()) > slow;
-    step_.impact().reflect(contact.all(), is_fast);
+    const bool is_impact = step_.impact().reflect(contact.all(), is_fast);
+    ++(is_impact ? step_.outcome().bounces : step_.outcome().touches);
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
@@ -385,7 +385,7 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const ForceInput& state = particle_.state;
     const double remaining = step_.remaining();
     const double time_step = rules_.settings.time_step;
-    const bool is_known = rules_.look_ahead && step_.outcome().bounces < kBouncesInNarrowGap &&
+    const bool is_known = rules_.look_ahead && step_.outcome().meetings() < kBouncesInNarrowGap &&
                           rules_.forces.is_uniform() && particle_.planned == nullptr && particle_.beyond == 0.0 &&
                           state.coupling == nullptr && flight.path.duration == remaining &&
                           remaining <= kWholeStep * time_step;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
@@ -107,10 +108,15 @@ void HeldSurfaces::meet(std::optional<Contact>& contact) {
     if (contact) take_part_in(*contact);
 }
 
+/// True for a surface of the manifold, and for what continues one: the next triangle of a plane, a seam, or a plane
+/// that another collider has there too.
+bool HeldSurfaces::goes_on(const ContactSurface& surface) const {
+    return geometry_.world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
+}
+
 bool HeldSurfaces::goes_on_along(const Contact& contact) {
-    const bool all = std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        return geometry_.world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
-    });
+    const bool all = std::all_of(contact.all().begin(), contact.all().end(),
+                                 [&](const ContactSurface& surface) { return goes_on(surface); });
     if (!all || ++seams_ > kMostSeams) return false;
     for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
     crosses_seam_ = true;
@@ -118,6 +124,9 @@ bool HeldSurfaces::goes_on_along(const Contact& contact) {
 }
 
 void HeldSurfaces::take_part_in(Contact& contact) const {
+    for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
+        surface.holds = surface.holds || goes_on(surface);
+    }
     for (std::size_t k = 0; k < manifold_.size() && contact.count < Contact::kMostSurfaces; ++k) {
         const SurfaceId surface = manifold_[k].surface;
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
@@ -128,7 +137,8 @@ void HeldSurfaces::take_part_in(Contact& contact) const {
         // A point next to a rim: the direction from the rim is rounding.
         const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
         contact.surfaces[static_cast<std::size_t>(contact.count++)] =
-            is_beside_rim ? manifold_[k] : ContactSurface{surface, nearest.normal, nearest.flat};
+            is_beside_rim ? ContactSurface{surface, manifold_[k].normal, manifold_[k].flat, true}
+                          : ContactSurface{surface, nearest.normal, nearest.flat, true};
     }
 }
 

@@ -35,7 +35,8 @@ public:
     /// A contact at the end of the way. With what continues the surfaces, such as the next triangle of a plane, it is
     /// none, and that holds the particle too from now on; in an impact on something else they take part.
     void meet(std::optional<Contact>& contact);
-    /// Adds the surfaces of the manifold to an impact on something else, where they are touched.
+    /// Adds the surfaces of the manifold to an impact on something else, where they are touched. They and their
+    /// continuations are marked as holding the particle.
     void take_part_in(Contact& contact) const;
     /// The manifold as it is touched now, of what was touched before; and at a point on the way where another part
     /// began.
@@ -50,6 +51,7 @@ private:
 
     void find_beside();
     [[nodiscard]] bool is_beyond_rim(SurfaceId surface, const Vec3& position) const;
+    [[nodiscard]] bool goes_on(const ContactSurface& surface) const;
     [[nodiscard]] bool goes_on_along(const Contact& contact);
 
     ParticleStep& step_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
@@ -36,12 +37,16 @@ bool can_be_followed(const Path& path) {
     return reach <= kLargestCoordinate && max_abs(path.c[1]) <= kLargestCoordinate && is_finite(path.end);
 }
 
-void ImpactAnswer::reflect(std::span<const ContactSurface> surfaces, bool is_fast) {
+bool ImpactAnswer::reflect(std::span<const ContactSurface> surfaces, bool is_fast) {
+    const auto is_met = [&](const ContactSurface& surface) { return is_approached(surface); };
+    if (std::none_of(surfaces.begin(), surfaces.end(), is_met)) return false;
+    settle_on_holding(surfaces);
     const Vec3 before = particle_.state.velocity;
     if (scratch_.record_loads) book_.begin_impact(is_fast ? approach(surfaces) : 0.0);
     answer(surfaces, Rebound::by_material);
     book_.end_impact();
     shatter_by(particle_.state.velocity - before);
+    return true;
 }
 
 void ImpactAnswer::land(std::span<const ContactSurface> surfaces) {
@@ -125,20 +130,16 @@ void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_be
 
 /// What one bounce does not answer is answered by all surfaces together.
 void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebound) {
-    const auto is_approached = [&](const ContactSurface& surface) { return departure_from(surface) < 0.0; };
-    const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_approached);
-    if (first == surfaces.end()) {  // a touch without approach still is an impact
-        push(surfaces.front().surface, Vec3{}, true);
-        record(surfaces.front(), particle_.state.velocity);
-        return;
-    }
+    const auto is_met = [&](const ContactSurface& surface) { return is_approached(surface); };
+    const auto first = std::find_if(surfaces.begin(), surfaces.end(), is_met);
+    if (first == surfaces.end()) return;
     // What chance decides, and what yields, is answered one after the other.
     const bool takes_turns = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
         return material_of(surface.surface).is_random() || yields(surface.surface);
     });
     if (takes_turns) {
         answer_in_turn(surfaces, rebound);
-    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_approached) > 1 ||
+    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_met) > 1 ||
                !answer_alone(surfaces, *first, rebound)) {
         answer_together(surfaces, rebound);
     }
@@ -148,9 +149,12 @@ void ImpactAnswer::answer(std::span<const ContactSurface> surfaces, Rebound rebo
 bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
                                 Rebound rebound) {
     const Motion before{particle_.state.velocity, particle_.spin};
+    RecordedImpact impact = impact_before({&surface, 1});
     reflect_off(surface, material_of(surface.surface), rebound);
-    const bool goes_on = std::any_of(surfaces.begin(), surfaces.end(),
-                                     [&](const ContactSurface& other) { return departure_from(other) < 0.0; });
+    const double rounding = kProjectionRounding * length(before.velocity);
+    const bool goes_on = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& other) {
+        return departure_from(other) < (other.holds ? -rounding : 0.0);
+    });
     if (goes_on) {
         particle_.state.velocity = before.velocity;
         particle_.spin = before.spin;
@@ -158,6 +162,8 @@ bool ImpactAnswer::answer_alone(std::span<const ContactSurface> surfaces, const 
     }
     push(surface.surface, particle_.state.velocity - before.velocity, true);
     record(surface, before.velocity);
+    note_impact_after(std::move(impact), {&surface, 1}, rebound);
+    settle_on_holding(surfaces);
     return true;
 }
 
@@ -183,15 +189,14 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
     const double rounding = kProjectionRounding * length(particle_.state.velocity);
     const double scale = fastest(surfaces);
     std::array<ImpactSurface, ImpactResult::kMostSurfaces> all;
+    std::array<bool, ImpactResult::kMostSurfaces> is_met{};
     Foremost kept;
     for (int pass = 0; pass < kCornerPasses && approach(surfaces) > rounding; ++pass) {
         const std::span<const ContactSurface> met = foremost(surfaces, kept);
+        RecordedImpact impact = impact_before(met);
         for (std::size_t k = 0; k < met.size(); ++k) {
-            const Material& material = material_of(met[k].surface);
-            const double speed = std::max(0.0, -departure_from(met[k]));
-            const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
-            all[k] = {met[k].normal,       restitution, material.friction, 0.0, 0.0,
-                      velocity_of(met[k]), {},          advance_of(met[k])};
+            all[k] = in_problem(met[k], rebound);
+            is_met[k] = pass == 0 && is_approached(met[k]);
         }
         const ImpactResult result = solve_impact({particle_.state.velocity, particle_.spin}, particle_.state.radius,
                                                  std::span(all).first(met.size()));
@@ -201,16 +206,27 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
         }
         for (std::size_t k = 0; k < met.size(); ++k) {
             if (result.push[k] == Vec3{}) continue;
+            // Without an approach, pushes of the size of rounding are no hits.
+            const bool is_hit = is_met[k] || length(result.push[k]) > kCoulombResidual * scale;
             const Vec3 before = particle_.state.velocity;
             particle_.state.velocity += result.push[k];
-            push(met[k].surface, result.push[k], pass == 0,
+            push(met[k].surface, result.push[k], pass == 0 && is_hit,
                  spin_change_by(result.push[k], met[k].normal, particle_.state.radius));
-            record(met[k], before);
+            if (is_hit) record(met[k], before);
         }
         particle_.state.velocity = result.after.velocity;
         particle_.spin = result.after.spin;
+        note_impact_after(std::move(impact), met, rebound);
     }
     stop_approach(surfaces);
+}
+
+ImpactSurface ImpactAnswer::in_problem(const ContactSurface& surface, Rebound rebound) const {
+    const Material& material = material_of(surface.surface);
+    const double speed = std::max(0.0, -departure_from(surface));
+    const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(speed);
+    return {surface.normal,       restitution, material.friction,   0.0,          0.0,
+            velocity_of(surface), {},          advance_of(surface), surface.holds};
 }
 
 /// As many of the surfaces as one problem holds: those that are approached fastest, the first ones among equals.
@@ -241,23 +257,27 @@ void ImpactAnswer::stop_approach(std::span<const ContactSurface> surfaces) {
             if (speed > 0.0) particle_.state.velocity += speed * surface.normal;
         }
     }
-    if (approach(surfaces) > 0.0) push_out_of_corner(surfaces);
+    if (approach(surfaces) > kProjectionRounding * fastest(surfaces)) push_out_of_corner(surfaces);
 }
 
 /// Bounces off every surface of the contact that is approached, until none is: where chance decides what each does.
+/// Surfaces that hold the particle take what the others press onto them, without a rebound.
 void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound) {
+    const double rounding = kProjectionRounding * fastest(surfaces);
     for (int pass = 0; pass < kCornerPasses; ++pass) {
         bool approached = false;
         for (const ContactSurface& surface : surfaces) {
-            if (!(departure_from(surface) < 0.0)) continue;
+            if (!(departure_from(surface) < (surface.holds ? -rounding : 0.0))) continue;
             approached = true;
             const Vec3 before = particle_.state.velocity;
-            reflect_off(surface, material_of(surface.surface), rebound);
+            RecordedImpact impact = impact_before({&surface, 1});
+            reflect_off(surface, material_of(surface.surface), surface.holds ? Rebound::none : rebound);
             push(surface.surface, particle_.state.velocity - before, pass == 0);
             record(surface, before);
+            note_impact_after(std::move(impact), {&surface, 1}, rebound);
             if (outcome_.is_absorbed()) return;
         }
-        if (!approached) return;
+        if (!approached) return settle_on_holding(surfaces);
     }
     push_out_of_corner(surfaces);
 }

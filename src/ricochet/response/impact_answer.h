@@ -32,12 +32,12 @@ public:
           book_(rules, particle, scratch, home),
           moment_center_(particle.state.position) {}
 
-    /// Bounces off the surfaces that are touched, all of them together; a touch without approach still is an impact.
-    /// Bodies that yield move, for the particle, with what it has given to them in this move; where they are does not
-    /// change by that before the move's end.
-    void reflect(std::span<const ContactSurface> surfaces) { reflect(surfaces, true); }
+    /// Bounces off the surfaces that are touched, all of them together. Returns false, and does nothing, where none is
+    /// approached. Bodies that yield move, for the particle, with what it has given to them in this move; where they
+    /// are does not change by that before the move's end.
+    bool reflect(std::span<const ContactSurface> surfaces) { return reflect(surfaces, true); }
     /// The same; is_fast: ColliderLoad::approach tells how fast it is. A slow one begins contact, and cuts no step.
-    void reflect(std::span<const ContactSurface> surfaces, bool is_fast);
+    bool reflect(std::span<const ContactSurface> surfaces, bool is_fast);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
 
@@ -93,6 +93,12 @@ public:
         return dot(particle_.state.velocity, surface.normal) - advance_of(surface);
     }
 
+    /// True where the particle comes towards a surface that does not hold it yet. The contact state decides, because
+    /// the normal speed on a surface that holds the particle is rounding of either sign.
+    [[nodiscard]] bool is_approached(const ContactSurface& surface) const {
+        return !surface.holds && departure_from(surface) < 0.0;
+    }
+
     /// The surface as one on which the particle lands without a rebound.
     [[nodiscard]] ImpactSurface landing_on(const ContactSurface& surface) const;
 
@@ -128,6 +134,10 @@ private:
     [[nodiscard]] std::span<const ContactSurface> foremost(std::span<const ContactSurface> surfaces,
                                                            Foremost& kept) const;
     void answer_in_turn(std::span<const ContactSurface> surfaces, Rebound rebound);
+    [[nodiscard]] RecordedImpact impact_before(std::span<const ContactSurface> surfaces) const;
+    void note_impact_after(RecordedImpact impact, std::span<const ContactSurface> surfaces, Rebound rebound);
+    [[nodiscard]] ImpactSurface in_problem(const ContactSurface& surface, Rebound rebound) const;
+    void settle_on_holding(std::span<const ContactSurface> surfaces);
     void stop_approach(std::span<const ContactSurface> surfaces);
     void reflect_off(const ContactSurface& surface, const Material& material, Rebound rebound);
     void bounce_off_body(const ContactSurface& surface, const Material& material, double restitution);

@@ -29,17 +29,19 @@ public:
     }
 
 private:
-    /// Of surfaces with the same normal the first counts.
+    /// Of surfaces with the same normal the first counts, or one that is approached faster by more than rounding.
     void add(std::size_t surface) {
-        const Vec3& n = surfaces_[surface].normal;
+        const ImpactSurface& added = surfaces_[surface];
+        if (!added.holds && departure_from(added) < 0.0) restitution_ = std::min(restitution_, added.restitution);
+        is_driven_ = is_driven_ || added.velocity != Vec3{} || added.angular_velocity != Vec3{};
         for (std::size_t c = 0; c < count_; ++c) {
-            if (length(surfaces_[surface_of_[c]].normal - n) <= kSameDirection) return;
+            const ImpactSurface& known = surfaces_[surface_of_[c]];
+            if (length(known.normal - added.normal) > kSameDirection) continue;
+            const double rounding = kSameDirection * (length(before_.velocity) + length(added.velocity));
+            if (departure_from(added) < departure_from(known) - rounding) surface_of_[c] = surface;
+            return;
         }
         surface_of_[count_++] = surface;
-        is_driven_ =
-            is_driven_ || surfaces_[surface].velocity != Vec3{} || surfaces_[surface].angular_velocity != Vec3{};
-        if (departure_from(surfaces_[surface]) < 0.0)
-            restitution_ = std::min(restitution_, surfaces_[surface].restitution);
     }
 
     /// m/s, along the normal, before.
@@ -50,8 +52,9 @@ private:
     void set_up(double restitution) {
         problem_.clear();
         for (std::size_t c = 0; c < count_; ++c) {
-            const Vec3& n = surfaces_[surface_of_[c]].normal;
-            problem_.add({normal_direction(n), (1.0 + restitution) * departure_from(surfaces_[surface_of_[c]])});
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            const double rebound = surface.holds ? 0.0 : restitution;
+            problem_.add({normal_direction(surface.normal), (1.0 + rebound) * departure_from(surface)});
         }
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];

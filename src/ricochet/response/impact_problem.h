@@ -25,6 +25,9 @@ struct ImpactSurface {
     Vec3 angular_velocity{};
     /// m/s, with which the surface itself comes towards the particle; part of `velocity`.
     double advance = 0.0;
+    /// The particle is in lasting contact with it: what it may still approach it by is rounding, and no rebound of its
+    /// own follows.
+    bool holds = false;
 };
 
 /// What an impact does.
@@ -37,8 +40,9 @@ struct ImpactResult {
 };
 
 /// The motion after an impact of a point (radius 0) or solid sphere with surfaces that it touches, at most
-/// kMostSurfaces. One restitution, e, for all of them: the smallest of those that are approached. With the normal
-/// velocities u- before and u+ after, u+ + e u- >= 0 and the impulses are >= 0, one of the two zero (Moreau's law);
+/// kMostSurfaces. One restitution, e, for all of them: the smallest of those that are approached and do not hold
+/// the particle. With the normal velocities u- before and u+ after, u+ + e u- >= 0 and the impulses are >= 0, one of
+/// the two zero (Moreau's law); for a surface that holds the particle u+ >= 0 takes the place of the first condition;
 /// friction sticks where it can, and slips against the slip that is left otherwise. Surfaces of the same normal are
 /// one. Kinetic energy never grows: in wedges that friction can hold, where this law has no answer or one that lets
 /// energy in, the impulses are 1 + e times those of the impact without rebound (Poisson's law with one e for all

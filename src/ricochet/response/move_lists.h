@@ -14,6 +14,7 @@ struct MoveLists {
     std::vector<ContactRecord> records;
     std::vector<Segment> segments;
     std::vector<MotionPart> motions;
+    std::vector<RecordedImpact> impacts;
     std::vector<ColliderLoad> loads;
 
     void clear();

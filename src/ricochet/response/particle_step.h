@@ -130,7 +130,7 @@ public:
     /// into, or under forces beyond measure, would spend as many again after each of its impacts.
     [[nodiscard]] bool has_budget() const {
         const std::uint32_t intervals = std::max(intervals_, kFreeIntervals) - kFreeIntervals;
-        const std::uint32_t spent = particle_.bounces_before + outcome_.bounces + intervals / kIntervalsOfBounce;
+        const std::uint32_t spent = particle_.bounces_before + outcome_.meetings() + intervals / kIntervalsOfBounce;
         return spent < rules_->settings.bounce_budget;
     }
     /// True while contact may have another interval.

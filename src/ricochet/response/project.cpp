@@ -110,7 +110,11 @@ private:
         });
         if (!approaches) return;
         ++outcome_.bounces;
-        is_slow(duration) ? impact_.land(contacts_) : impact_.reflect(contacts_);
+        if (is_slow(duration)) {
+            impact_.land(contacts_);
+        } else {
+            impact_.reflect(contacts_);
+        }
         if (state_.velocity == Vec3{} && !outcome_.is_absorbed()) outcome_.end = MoveEnd::resting;
     }
 

@@ -12,6 +12,7 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/core/motion_part.h"
+#include "ricochet/core/recorded_impact.h"
 #include "ricochet/core/segment.h"
 #include "ricochet/core/stop_token.h"
 #include "ricochet/dynamics/coupled_member.h"
@@ -51,11 +52,13 @@ struct ColliderLoad {
 struct MoveScratch {
     ContactScratch contacts;
     std::vector<SurfaceHit> hits;
-    std::vector<ContactRecord> records;  ///< filled when record_contacts
-    std::vector<Segment> segments;       ///< filled when record_segments
-    std::vector<FlownPiece> flown;       ///< filled when record_flown, by the exact response
-    std::vector<MotionPart> motions;     ///< filled when record_motions, by the exact response
-    std::vector<ColliderLoad> loads;     ///< filled when record_loads
+    std::vector<ContactRecord> records;   ///< filled when record_contacts
+    std::vector<Segment> segments;        ///< filled when record_segments
+    std::vector<FlownPiece> flown;        ///< filled when record_flown, by the exact response
+    std::vector<MotionPart> motions;      ///< filled when record_motions, by the exact response
+    std::vector<ColliderLoad> loads;      ///< filled when record_loads
+    std::vector<RecordedImpact> impacts;  ///< impacts with a rebound; filled when record_motions, by the exact response
+    std::vector<SurfaceId> held_by;       ///< surfaces of the contact interval that has just ended, for `impacts`
     bool record_contacts = false;
     bool record_segments = false;
     bool record_flown = false;
@@ -135,9 +138,12 @@ struct MoveOutcome {
     [[nodiscard]] bool is_resting() const { return end == MoveEnd::resting || end == MoveEnd::held; }
     [[nodiscard]] bool is_frozen() const { return end == MoveEnd::frozen; }
     [[nodiscard]] bool is_absorbed() const { return end == MoveEnd::absorbed || end == MoveEnd::shattered; }
+    /// Contacts found so far, with an impact or without one.
+    [[nodiscard]] std::uint32_t meetings() const { return bounces + touches; }
 
     MoveEnd end = MoveEnd::moving;
     std::uint32_t bounces = 0;      ///< impacts
+    std::uint32_t touches = 0;      ///< contacts found without an approach; only the budget counts them
     double unsimulated_time = 0.0;  ///< s that a budget cut off
     bool is_coarse = false;         ///< an adaptive method could not keep its tolerance
     std::uint32_t stayed = 0;       ///< impacts after which no certified position nearer to the surface was found

@@ -101,7 +101,7 @@ public:
     void rest(double duration);
     /// Keeps the contact for the next step.
     void keep_contact() { particle_.contact = manifold_.kept(); }
-    [[nodiscard]] bool has_budget() const { return outcome_.bounces < rules_.settings.bounce_budget; }
+    [[nodiscard]] bool has_budget() const { return outcome_.meetings() < rules_.settings.bounce_budget; }
 
 private:
     [[nodiscard]] Flight flight_for(double duration) const;

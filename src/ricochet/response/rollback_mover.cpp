@@ -209,7 +209,7 @@ void RollbackMover::answer() {
         impact_.land(hit_);
         for (const ContactSurface& hit : hit_) manifold_.add(hit);
     } else {
-        impact_.reflect(hit_);
+        if (!impact_.reflect(hit_)) --outcome_.bounces, ++outcome_.touches;
     }
 }
 

@@ -24,7 +24,7 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact.material_of(surface.surface);
         const double approach = impact.advance_of(surface) - dot(arriving.velocity, surface.normal);
-        if (!(approach > 0.0)) return true;
+        if (surface.holds || !(approach > 0.0)) return true;
         return !material.is_random() && material.restitution_at(approach) * approach < step_.resting_speed();
     });
 }
@@ -237,7 +237,8 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
         followed.duration = time;
         return next;
     };
-    followed.contact = step_.follow(path, held(path), closer);
+    const std::vector<SurfaceId> held_by = held(path);
+    followed.contact = step_.follow(path, held_by, closer);
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
     // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
@@ -249,7 +250,7 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
     }
     particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
     step_.impact().note_driven();
-    step_.log().note_contact(forces, path, true);
+    step_.log().note_contact(forces, path, true, held_by);
     return followed;
 }
 

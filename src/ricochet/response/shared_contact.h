@@ -79,6 +79,7 @@ private:
     void lift_middle(Path& path) const;
     [[nodiscard]] std::vector<SurfaceId> held(const Path& path) const;
     [[nodiscard]] static Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position);
+    [[nodiscard]] bool goes_on(const ContactSurface& surface) const;
     void take_part_in(Contact& contact) const;
     [[nodiscard]] KeptContact kept() const;
     [[nodiscard]] bool rests() const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <span>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_arc.h"
@@ -203,14 +204,29 @@ std::vector<SurfaceId> SharedContact::held(const Path& path) const {
     return list;
 }
 
+/// True where a surface is one of those touched, or goes on where one of them ends: in its plane, and with its body.
+bool SharedContact::goes_on(const ContactSurface& surface) const {
+    return std::any_of(touched().begin(), touched().end(), [&](const Touched& one) {
+        if (one.surface.surface == surface.surface) return true;
+        if (std::find(one.all.begin(), one.all.end(), surface.surface) != one.all.end()) return true;
+        return step_.rules().bodies->body_of(surface.surface) == one.body &&
+               length(surface.normal - one.surface.normal) <= kSameDirection;
+    });
+}
+
 /// What holds it takes part in its impact on something else.
 void SharedContact::take_part_in(Contact& contact) const {
+    for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
+        surface.holds = surface.holds || goes_on(surface);
+    }
     for (const Touched& one : touched()) {
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
             return other.surface == one.surface.surface;
         });
         if (is_there || contact.count == Contact::kMostSurfaces) continue;
-        contact.surfaces[static_cast<std::size_t>(contact.count++)] = one.surface;
+        ContactSurface& added = contact.surfaces[static_cast<std::size_t>(contact.count++)];
+        added = one.surface;
+        added.holds = true;
     }
 }
 

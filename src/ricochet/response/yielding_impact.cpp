@@ -1,8 +1,7 @@
 #include "ricochet/response/yielding_impact.h"
 
-#include <cmath>
-
 #include "ricochet/core/symmetric_matrix.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
@@ -37,48 +36,88 @@ private:
     Vec3 where_;
 };
 
+/// One impact, seen from the body: the impulse on the particle.
+class Impact {
+public:
+    Impact(const Motion& before, const ForceInput& state, const YieldingSurface& surface)
+        : contact_(state, surface), normal_(surface.normal), friction_(surface.friction) {
+        const Vec3 relative = before.velocity - surface.velocity;
+        approach_ = -dot(relative, normal_);
+        wanted_ = (1.0 + surface.restitution) * approach_;
+        // Friction depends on the slip of the sphere's surface.
+        slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
+    }
+
+    [[nodiscard]] double approach() const { return approach_; }
+
+    /// Impulse on the particle, N s. Friction opposes the slip that the smooth impulse would leave: a body that turns
+    /// makes slip even if there is none before.
+    [[nodiscard]] Vec3 impulse() const {
+        const Vec3 smooth = impulse_with({});
+        if (friction_ == 0.0) return smooth;
+        const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
+        const double pressing = dot(stop, normal_);
+        const Vec3 holding = stop - pressing * normal_;
+        if (pressing > 0.0 && length(holding) <= friction_ * pressing) {
+            if (!gains(stop)) return stop;
+            // The nearer to that the smaller the slip is.
+            return most_of(holding / pressing, 1.0, [](const Vec3& /*impulse*/) { return true; });
+        }
+        const Vec3 left = slip_ + contact_.change(smooth);
+        const Vec3 along = left - dot(left, normal_) * normal_;
+        const double speed = length(along);
+        if (!(speed > 0.0)) return smooth;
+        const Vec3 against = (-1.0 / speed) * along;
+        return most_of(against, friction_, [&](const Vec3& impulse) {
+            return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not turn the slip around
+        });
+    }
+
+private:
+    /// The impulse that turns the approach around, with friction as a part of its normal component.
+    [[nodiscard]] Vec3 impulse_with(const Vec3& friction) const {
+        const Vec3 direction = normal_ + friction;
+        return (wanted_ / dot(normal_, contact_.change(direction))) * direction;
+    }
+
+    /// With as much friction along a vector as lets no energy in, up to a part of the normal impulse.
+    template <class Is>
+    [[nodiscard]] Vec3 most_of(const Vec3& along, double most, const Is& is_allowed) const {
+        const auto is_sound = [&](double friction) {
+            const Vec3 by = impulse_with(friction * along);
+            return dot(by, normal_) > 0.0 && !gains(by) && is_allowed(by);
+        };
+        double low = 0.0;
+        double high = most;
+        if (is_sound(high)) low = high;
+        for (int k = 0; k < kHalvings && low < high; ++k) {
+            const double middle = 0.5 * (low + high);
+            (is_sound(middle) ? low : high) = middle;
+        }
+        return impulse_with(low * along);
+    }
+
+    /// True if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.
+    [[nodiscard]] bool gains(const Vec3& by) const {
+        const double taken = 0.5 * dot(by, contact_.change(by));
+        return dot(by, slip_ - approach_ * normal_) + taken > kEnergyRounding * taken;
+    }
+
+    Contact contact_;
+    Vec3 normal_;
+    double friction_;
+    double approach_ = 0.0;  // m/s
+    double wanted_ = 0.0;    // m/s, the change along the normal
+    Vec3 slip_;              // m/s
+};
+
 }  // namespace
 
 Motion bounce(const Motion& before, const ForceInput& state, const YieldingSurface& surface) {
-    const Vec3& n = surface.normal;
-    const Contact contact(state, surface);
-    const Vec3 relative = before.velocity - surface.velocity;
-    const double approach = -dot(relative, n);
-    if (!(approach > 0.0)) return before;
-    const double wanted = (1.0 + surface.restitution) * approach;
-    // What friction sees: the slip of the surface of a sphere.
-    const Vec3 slip = slip_velocity({relative, before.spin}, state.radius, n);
-    const auto impulse_with = [&](const Vec3& friction) {
-        const Vec3 direction = n + friction;
-        return (wanted / dot(n, contact.change(direction))) * direction;
-    };
-    Vec3 impulse = impulse_with({});
-    if (surface.friction > 0.0 && slip != Vec3{}) {
-        const auto gain = [&](const Vec3& by) {
-            return dot(by, slip - approach * n) + 0.5 * dot(by, contact.change(by));
-        };
-        const Vec3 stop = contact.impulse_for(wanted * n - slip);
-        const double pressing = dot(stop, n);
-        if (pressing > 0.0 && length(stop - pressing * n) <= surface.friction * pressing && gain(stop) <= 0.0) {
-            impulse = stop;
-        } else {
-            const Vec3 against = (-1.0 / length(slip)) * slip;
-            const auto is_sound = [&](double friction) {
-                const Vec3 by = impulse_with(friction * against);
-                return dot(by, n) > 0.0 && gain(by) <= 0.0 && dot(slip + contact.change(by), against) <= 0.0;
-            };
-            double low = 0.0;
-            double high = surface.friction;
-            if (is_sound(high)) low = high;
-            for (int k = 0; k < kHalvings && low < high; ++k) {
-                const double middle = 0.5 * (low + high);
-                (is_sound(middle) ? low : high) = middle;
-            }
-            impulse = impulse_with(low * against);
-        }
-    }
-    const Vec3 change = impulse / state.mass;
-    return {before.velocity + change, before.spin + spin_change_by(change, n, state.radius)};
+    const Impact impact(before, state, surface);
+    if (!(impact.approach() > 0.0)) return before;
+    const Vec3 change = impact.impulse() / state.mass;
+    return {before.velocity + change, before.spin + spin_change_by(change, surface.normal, state.radius)};
 }
 
 }  // namespace ricochet

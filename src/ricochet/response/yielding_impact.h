@@ -20,11 +20,11 @@ struct YieldingSurface {
 
 /// The motion after an impact of a point or solid sphere (position, mass and radius of `state`) with a body that takes
 /// the opposite impulse: the normal velocity between them is turned and scaled by the restitution (Newton); friction
-/// stops the slip where at most its coefficient times the normal impulse is needed for that, and acts against the slip
-/// before otherwise, by no more than lets no energy in (with a body that yields more to one side than to another,
-/// Coulomb's and Newton's laws together can: T. R. Kane, D. A. Levinson, "Dynamics: Theory and Applications", 1985,
-/// 5.8). Kinetic energy of both together never grows. Source of the impulse: J. K. Hahn, "Realistic animation of rigid
-/// bodies", SIGGRAPH 1988.
+/// stops the slip where at most its coefficient times the normal impulse is needed for that. Otherwise it acts against
+/// the slip that the impulse would leave without friction, by no more than lets no energy in (with a body that yields
+/// more to one side than to another, Coulomb's and Newton's laws together can: T. R. Kane, D. A. Levinson, "Dynamics:
+/// Theory and Applications", 1985, 5.8). Kinetic energy of both together never grows. Source of the impulse: J. K.
+/// Hahn, "Realistic animation of rigid bodies", SIGGRAPH 1988.
 [[nodiscard]] Motion bounce(const Motion& before, const ForceInput& state, const YieldingSurface& surface);
 
 }  // namespace ricochet

@@ -99,6 +99,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     const double duration = as_planned ? plan->path.duration : life.end - life.begin;
     scratch.flown.clear();
     scratch.motions.clear();
+    scratch.impacts.clear();
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
     scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
@@ -111,11 +112,12 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
         const RecordedMotion after{particle.state.position, particle.state.velocity, particle.spin};
         parts_.check->check(i, parts_.store.particles(), particle.state, {life.end, particle.stored_time},
                             scratch.segments, record.violations, {before, after, scratch.motions});
+        RunCheck::check_rebounds(particle.id, scratch.impacts, record.violations);
     }
     for (std::size_t k = first_record; particle.state.whole_radius > 0.0 && k < scratch.records.size(); ++k) {
         scratch.records[k].radius = particle.state.whole_radius;
     }
-    if (i < bounces_.size()) bounces_[i] += outcome.bounces;
+    if (i < bounces_.size()) bounces_[i] += outcome.meetings();
     take_over(i, particle, outcome, life.end, record, lead != nullptr);
 }
 
@@ -171,13 +173,14 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
                             {{p.position[i], p.velocity[i], spin},
                              {moving.state.position, moving.state.velocity, moving.spin},
                              member.lists.motions});
+        RunCheck::check_rebounds(moving.id, member.lists.impacts, record.violations);
     }
     for (ContactRecord& contact : member.lists.records) {
         if (moving.state.whole_radius > 0.0) contact.radius = moving.state.whole_radius;
     }
     record_lists(member.lists.hits, member.lists.loads, member.lists.records, record);
     if (!member.is_fixed && life.begin == step.begin && life.end == step.end) note_departure(member);
-    if (i < bounces_.size()) bounces_[i] += member.outcome.bounces;
+    if (i < bounces_.size()) bounces_[i] += member.outcome.meetings();
     if (member.is_fixed) {
         parts_.schedule.leave_alone(i);
         return;

@@ -41,7 +41,7 @@ void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, con
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
     const Flight& plan = *parts_.coupled.flight_of(i);
     note_flown(plan, moved, flown);
-    if (moved.planned == nullptr || outcome.bounces > 0 || !is_as_planned(plan, moved, flown)) {
+    if (moved.planned == nullptr || outcome.meetings() > 0 || !is_as_planned(plan, moved, flown)) {
         parts_.coupled.record_departure(i, flown, pushed / moved.state.mass);
     }
 }

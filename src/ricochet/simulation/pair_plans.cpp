@@ -243,8 +243,9 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     scratch.hits.clear();
     scratch.loads.clear();
     scratch.motions.clear();
+    scratch.impacts.clear();
     const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
-    return goes_on && outcome.bounces == 0 && moving.state.position == way_of_free(k).path.end;
+    return goes_on && outcome.meetings() == 0 && moving.state.position == way_of_free(k).path.end;
 }
 
 /// False for two whose boxes overlap that do not meet, unless others are met.

@@ -8,6 +8,7 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/particle_store.h"
+#include "ricochet/verify/rebound.h"
 
 namespace ricochet {
 
@@ -240,6 +241,14 @@ void RunCheck::check(std::size_t i, const Particles& particles, const ForceInput
         watched = verifier_.watch(particles.position[i], particles.radius[i], std::max(0.0, particles.birth_time[i]));
     }
     verifier_.check(step, *watched, violations);
+}
+
+void RunCheck::check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
+                              std::vector<Violation>& violations) {
+    for (const RecordedImpact& impact : impacts) {
+        if (!verify::has_wrong_rebound(impact)) continue;
+        violations.push_back({ViolationKind::energy, particle, impact.before.position, impact.time, {}, {}});
+    }
 }
 
 std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,

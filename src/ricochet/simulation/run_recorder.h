@@ -228,6 +228,9 @@ public:
     /// checked from several threads at once.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
+    /// Appends impacts of a particle whose rebound is not that of the surfaces that were hit.
+    static void check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
+                               std::vector<Violation>& violations);
     /// Begins to watch all particles from where they are, at a time, s; where their clocks stand still, from theirs.
     void restart(const ParticleStore& store, double now);
     /// Keeps what Particles::compact() keeps.

@@ -1,0 +1,73 @@
+#include "ricochet/verify/rebound.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace ricochet::verify {
+namespace {
+
+/// Relative error of the normal velocities after an impact. Reason: the
+/// equations of an impact are solved to 1e-12, and contact leaves 1e-9 along its surfaces. Smaller: rounding is
+/// reported. Larger: wrong restitutions of slow impacts are not seen.
+constexpr double kReboundRounding = 1e-9;
+
+/// The same where friction of several surfaces decides: wedges are solved as nearly as there is an answer.
+constexpr double kReboundInWedge = 1e-3;
+
+/// Part of the speeds up to which a surface that holds the particle may seem to be approached.
+constexpr double kHeldApproach = 1e-6;
+
+double restitution_of(const RecordedImpact::Surface& surface, double approach) {
+    const double threshold = surface.restitution_threshold;
+    return approach < threshold ? surface.restitution * approach / threshold : surface.restitution;
+}
+
+/// m/s, along the normal, away from the surface.
+double before(const RecordedImpact& impact, const RecordedImpact::Surface& surface) {
+    return dot(impact.before.velocity - surface.velocity_before, surface.normal);
+}
+double after(const RecordedImpact& impact, const RecordedImpact::Surface& surface) {
+    return dot(impact.after.velocity - surface.velocity_after, surface.normal);
+}
+
+double scale_of(const RecordedImpact& impact) {
+    double scale = length(impact.before.velocity) + length(impact.after.velocity);
+    for (const auto& surface : impact.surfaces) {
+        scale = std::max({scale, length(surface.velocity_before), length(surface.velocity_after)});
+    }
+    return scale;
+}
+
+}  // namespace
+
+bool has_wrong_rebound(const RecordedImpact& impact) {
+    const double scale = scale_of(impact);
+    const auto holds = [&](const RecordedImpact::Surface& surface) {
+        return surface.holds ||
+               std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
+    };
+    const auto is_hit = [&](const RecordedImpact::Surface& surface) {
+        return !holds(surface) && before(impact, surface) < 0.0;
+    };
+    double restitution = 1.0;
+    std::size_t hit = 0;
+    for (const RecordedImpact::Surface& surface : impact.surfaces) {
+        if (holds(surface) && before(impact, surface) < -kHeldApproach * scale) return true;
+        if (!is_hit(surface)) continue;
+        ++hit;
+        restitution = std::min(restitution, restitution_of(surface, -before(impact, surface)));
+    }
+    const double rounding = scale * (impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding);
+    double least = std::numeric_limits<double>::infinity();
+    for (const RecordedImpact::Surface& surface : impact.surfaces) {
+        const double rebound = is_hit(surface) ? -restitution * before(impact, surface) : 0.0;
+        const double more = after(impact, surface) - rebound;
+        if (more < -rounding) return true;
+        if (is_hit(surface)) least = std::min(least, more);
+    }
+    // At least one surface pushes, and the particle leaves that one no faster.
+    return hit > 0 && least > rounding;
+}
+
+}  // namespace ricochet::verify

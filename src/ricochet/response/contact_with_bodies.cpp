@@ -8,26 +8,38 @@
 namespace ricochet {
 namespace {
 
-/// Of the first surface that it has kept contact with, which is one of the body's.
-Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, BodyId body) {
+/// Of a surface that it touches, which is one of the body's.
+Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, BodyId body, SurfaceId surface) {
     const MovingPose pose = rules.bodies->pose(body, particle.state.time);
     const Vec3 seen = pose.image(particle.state.position);
-    const Vec3 along = rules.bodies->world(body).nearest(particle.contact.surfaces[0], seen).normal;
+    const Vec3 along = rules.bodies->world(body).nearest(surface, seen).normal;
     return pose.world_from_frame.direction(along);
 }
+
+/// A particle as it is seen from a body's frame, and the forces on it there over its mass, m/s^2.
+struct SeenFromBody {
+    SeenFromBody(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body)
+        : frame(rules.bodies), state(particle.state) {
+        frame.set(body);
+        const RecordedMotion motion =
+            frame.in_frame({state.position, state.velocity, particle.spin}, particle.state.time);
+        state.position = motion.position;
+        state.velocity = motion.velocity;
+        pull = rides.rules_of(body).forces.acceleration(state);
+    }
+    [[nodiscard]] Vec3 direction(const Vec3& in_world) const { return frame.direction_in_frame(in_world, state.time); }
+
+    HomeFrame frame;
+    ForceInput state;
+    Vec3 pull;
+};
 
 double slowest_rebound_from(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body,
                             const Vec3& normal) {
     const double slow = rules.settings.resting_speed;
     if (!rules.bodies->yields(body)) return slow;
-    HomeFrame frame(rules.bodies);
-    frame.set(body);
-    ForceInput seen = particle.state;
-    const RecordedMotion motion = frame.in_frame({seen.position, seen.velocity, particle.spin}, seen.time);
-    seen.position = motion.position;
-    seen.velocity = motion.velocity;
-    const Vec3 pull = rides.rules_of(body).forces.acceleration(seen);
-    const double pressing = std::fabs(dot(pull, frame.direction_in_frame(normal, seen.time)));
+    const SeenFromBody seen(rules, rides, particle, body);
+    const double pressing = std::fabs(dot(seen.pull, seen.direction(normal)));
     return std::max(slow, 0.5 * kShortestPart * rules.settings.time_step * pressing);
 }
 
@@ -40,7 +52,7 @@ bool lets_go(const ResponseRules& rules, const Rides& rides, const MovingParticl
     const double jump = length(frame.in_frame(motion, particle.state.time).velocity);
     if (!rules.bodies->yields(body)) return jump > rules.settings.resting_speed;
     const Mobility mobility = rules.bodies->mobility(body, particle.state.time);
-    const Vec3 push = normal_in_world(rules, particle, body);
+    const Vec3 push = normal_in_world(rules, particle, body, particle.contact.surfaces[0]);
     const double weight = particle.state.mass * dot(mobility.change_at(particle.state.position, push), push);
     return jump * std::max(1.0, weight) > slowest_rebound_from(rules, rides, particle, body, push);
 }
@@ -53,6 +65,28 @@ double slowest_rebound(const ResponseRules& rules, const Rides& rides, const Mov
         slow = std::max(slow, slowest_rebound_from(rules, rides, particle, body, surface.normal));
     }
     return slow;
+}
+
+std::optional<double> speed_let_go(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle,
+                                   SurfaceId surface) {
+    const BodyId body = rules.bodies->body_of(surface);
+    if (!rules.bodies->yields(body)) return std::nullopt;
+    const SeenFromBody seen(rules, rides, particle, body);
+    const Vec3 normal = seen.direction(normal_in_world(rules, particle, body, surface));
+    const double speed = std::fabs(dot(seen.state.velocity, normal));
+    const double of_step =
+        rules.settings.time_step * (length(seen.pull) + length(rules.forces.acceleration(particle.state)));
+    if (speed > std::max(rules.settings.resting_speed, of_step)) return std::nullopt;
+    return speed;
+}
+
+Contact part_that_holds(const Contact& contact) {
+    Contact part = contact;
+    part.count = 0;
+    for (const ContactSurface& surface : contact.all()) {
+        if (surface.holds) part.surfaces[static_cast<std::size_t>(part.count++)] = surface;
+    }
+    return part;
 }
 
 }  // namespace ricochet

@@ -3,6 +3,8 @@
 /// velocity after each part of a step.
 #pragma once
 
+#include <optional>
+
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/response/riding.h"
 
@@ -16,5 +18,14 @@ namespace ricochet {
 /// that yields, that is over before a part of a step can end, cannot be told from contact.
 [[nodiscard]] double slowest_rebound(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle,
                                      const Contact& contact);
+
+/// Surfaces of an impact that hold the particle.
+[[nodiscard]] Contact part_that_holds(const Contact& contact);
+
+/// m/s, at which a particle leaves a surface of a body that yields, after a jump of the body's velocity has let it go.
+/// Nothing where the jump is larger than the forces of a time step make it: loads of contact act on a body at the end
+/// of a step, and their jump is the step's doing, while an impact has thrown off the particle otherwise.
+[[nodiscard]] std::optional<double> speed_let_go(const ResponseRules& rules, const Rides& rides,
+                                                 const MovingParticle& particle, SurfaceId surface);
 
 }  // namespace ricochet

@@ -73,6 +73,8 @@ private:
     [[nodiscard]] std::optional<Contact> begin_shared();
     [[nodiscard]] Contact part_with(BodyId body, const Contact& contact) const;
     [[nodiscard]] std::optional<Contact> wait_for_body(const Contact& contact);
+    [[nodiscard]] std::optional<Contact> go_on(const Flight& flight, const Contact& contact);
+    [[nodiscard]] bool lands_again(const Contact& contact, double slow);
     template <class Go>
     std::optional<Contact> ride(BodyId body, Contact* contact, const Go& go);
     template <class Go>
@@ -92,11 +94,14 @@ private:
     bool flies_anew_ = false;      // the next flight does not go on from one before: it comes from a ride
     /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
     bool is_without_kick_ = false;
+    /// In flight since a jump of a body's velocity has let it go: see KeptContact::let_go_speed().
+    std::optional<double> let_go_speed_;
 };
 
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
     // What is copied here is large: no contact is assigned without need.
+    let_go_speed_ = particle_.contact.let_go_speed();
     std::optional<Contact> contact = resume();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
@@ -111,6 +116,9 @@ MoveOutcome ParticleMover::run() {
             step_.stop();
             break;
         }
+    }
+    if (particle_.contact.count == 0) {
+        particle_.contact = let_go_speed_ ? KeptContact::let_go(*let_go_speed_) : KeptContact{};
     }
     if (rides_ != nullptr) step_.store_position();
     step_.impact().close_book();
@@ -180,6 +188,7 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
         const KeptContact& kept = particle_.contact;
         const BodyId body = rules_.bodies->body_of(kept.surfaces[0]);
         if (is_let_go_by_jump()) {
+            let_go_speed_ = speed_let_go(rules_, *rides_, particle_, kept.surfaces[0]);
             particle_.contact = {};
             particle_.ridden.reset();
             break;
@@ -225,6 +234,8 @@ std::optional<Contact> ParticleMover::ride_unsettled(BodyId body, Contact* conta
     ContactPhase phase(step_);
     std::optional<Contact> next = go(phase);
     const bool is_let_go = jump && step_.remaining() <= 0.0;
+    const SurfaceId held = particle_.contact.surfaces[0];
+    const bool was_held = particle_.contact.count > 0;
     if (is_let_go) {
         // The body goes on with another velocity, and the particle with its own.
         particle_.contact = {};
@@ -234,6 +245,7 @@ std::optional<Contact> ParticleMover::ride_unsettled(BodyId body, Contact* conta
     }
     step_.leave(rules_, next ? &*next : nullptr);
     step_.end_part();
+    if (is_let_go && was_held) let_go_speed_ = speed_let_go(rules_, *rides_, particle_, held);
     flies_anew_ = true;
     is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
     return next;
@@ -332,6 +344,33 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     return contact;
 }
 
+/// True if it comes back to a body whose jump has let it go, and hardly faster than it has left. The end of a step has
+/// only cut the contact in two.
+bool ParticleMover::lands_again(const Contact& contact, double slow) {
+    constexpr double kLandsAgain = 2.0;
+    if (!let_go_speed_ || step_.impact().approach(contact.all()) > kLandsAgain * std::max(*let_go_speed_, slow))
+        return false;
+    return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
+        return rules_.bodies->yields(rules_.bodies->body_of(surface.surface));
+    });
+}
+
+/// After an impact contact goes on with the surfaces that have held it, if it does not leave them: without a landing.
+/// At the end of a step they are kept for the next one. Returns the next contact.
+std::optional<Contact> ParticleMover::go_on(const Flight& flight, const Contact& contact) {
+    const Contact held = part_that_holds(contact);
+    if (held.count == 0) return std::nullopt;
+    if (step_.remaining() > 0.0) return begin_contact(flight, held, {particle_.state.velocity, particle_.spin});
+    KeptContact kept;
+    for (const ContactSurface& surface : held.all()) {
+        const bool is_left =
+            step_.impact().departure_from(surface) > kLeavingRounding * length(particle_.state.velocity);
+        if (!is_left && kept.count < kept.surfaces.size()) kept.surfaces[kept.count++] = surface.surface;
+    }
+    particle_.contact = kept;
+    return std::nullopt;
+}
+
 /// Answers an impact. Returns the next contact when the particle slides into one.
 std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact& contact) {
     const bool moves = has_moving(contact);
@@ -344,16 +383,23 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     const double slow = moves ? slowest_rebound(rules_, *rides_, particle_, contact) : rules_.settings.resting_speed;
     step_.set_resting_speed(slow);
     const bool is_fast = moves && step_.impact().approach(contact.all()) > slow;
+    const bool is_resumed = lands_again(contact, slow);
+    const std::optional<double> let_go_speed = is_resumed ? std::exchange(let_go_speed_, {}) : std::nullopt;
+    step_.impact().set_hits(!is_resumed);
     const bool is_impact = step_.impact().reflect(contact.all(), is_fast);
-    ++(is_impact ? step_.outcome().bounces : step_.outcome().touches);
+    step_.impact().set_hits(true);
+    ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
+    if (is_impact) let_go_speed_.reset();
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
     if (is_fast && step_.impact().waits_for(contact.all())) return wait_for_body(contact);
     const double before = step_.remaining();
     auto next = begin_contact(flight, contact, arriving);
-    const bool has_begun = next || particle_.contact.count > 0 || step_.remaining() < before;
-    if (!moves || has_begun) return next;
+    const auto has_begun = [&] { return next || particle_.contact.count > 0 || step_.remaining() < before; };
+    if (!has_begun() && flight.kick_duration == 0.0) next = go_on(flight, contact);
+    if (!has_begun() && !let_go_speed_) let_go_speed_ = let_go_speed;
+    if (!moves || has_begun()) return next;
     // It goes on into a body that leaves it, but is where its path has it until the move's end.
     if (step_.impact().approach_of_paths(contact.all()) > slow) return wait_for_body(contact);
     step_.impact().go_with_paths(contact.all());

@@ -64,12 +64,14 @@ void ImpactAnswer::push(SurfaceId surface, const Vec3& velocity_change, bool imp
                         const std::optional<Vec3>& spin_change) {
     const Vec3 change = home_.direction_in_world(velocity_change, particle_.state.time);
     pushed_ += change;
-    scratch_.hits.push_back({surface, -particle_.state.mass * change, impact});
+    scratch_.hits.push_back({surface, -particle_.state.mass * change, impact && are_hits_});
     scratch_.driven = scratch_.driven || material_of(surface).drives() || home_.is_moving() || is_carried(surface);
     if (!scratch_.record_loads) return;
     const Vec3 place = home_.in_world({particle_.state.position, {}, {}}, particle_.state.time).position;
     pushed_moment_ += cross(place - moment_center_, change);
-    book_.add(scratch_.hits.back(), spin_change);
+    const std::size_t loads = scratch_.loads.size();
+    book_.add({surface, -particle_.state.mass * change, impact}, spin_change);
+    for (ColliderLoad& load : std::span(scratch_.loads).subspan(loads)) load.is_hit = are_hits_;
 }
 
 /// Of the point of a body that is touched, and of its material there.
@@ -122,7 +124,7 @@ ImpactSurface ImpactAnswer::landing_on(const ContactSurface& surface) const {
 }
 
 void ImpactAnswer::record(const ContactSurface& surface, const Vec3& velocity_before) {
-    if (!scratch_.record_contacts) return;
+    if (!scratch_.record_contacts || !are_hits_) return;
     scratch_.records.push_back({particle_.state.time, particle_.id, surface.surface, particle_.state.position,
                                 surface.normal, velocity_before, particle_.state.velocity, particle_.state.mass,
                                 particle_.state.radius, velocity_of(surface)});

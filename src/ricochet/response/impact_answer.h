@@ -38,6 +38,9 @@ public:
     bool reflect(std::span<const ContactSurface> surfaces) { return reflect(surfaces, true); }
     /// The same; is_fast: ColliderLoad::approach tells how fast it is. A slow one begins contact, and cuts no step.
     bool reflect(std::span<const ContactSurface> surfaces, bool is_fast);
+    /// Whether the next impacts are hits: the contact log and the counts of hits leave out those that only resume a
+    /// contact. Their impulses count all the same.
+    void set_hits(bool are_hits) { are_hits_ = are_hits; }
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);
 
@@ -162,6 +165,7 @@ private:
         Wrench wrench;  // about the center of its mobility
     };
     std::vector<Given> given_;  // to bodies that yield, in this move
+    bool are_hits_ = true;
 };
 
 }  // namespace ricochet

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,7 @@ struct ColliderLoad {
     double lost_energy = 0.0;  ///< J, kinetic, that the particle has lost by the impact; with the impact's last load
     double approach = 0.0;     ///< m/s, of the impact; 0 where it is slow, and begins contact
     bool impact = true;        ///< false: of a contact that lasts
+    bool is_hit = true;        ///< false: ColliderTotals::hits leaves it out: contact that a body's jump has cut in two
 };
 
 /// Scratch memory of one thread. The lists are appended to in the order of events and cleared by the caller.
@@ -77,7 +79,17 @@ struct KeptContact {
     static constexpr double kPlaced = -1.0;
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
+    /// Of a particle in flight that a jump of a body's velocity has let go: m/s, at which it leaves the body.
+    [[nodiscard]] static KeptContact let_go(double speed) { return {{}, 0, kLetGo - speed}; }
+    [[nodiscard]] std::optional<double> let_go_speed() const {
+        if (count > 0 || !(cascade_left <= kLetGo)) return std::nullopt;
+        return kLetGo - cascade_left;
+    }
+
     friend bool operator==(const KeptContact&, const KeptContact&) = default;
+
+private:
+    static constexpr double kLetGo = -2.0;
 };
 
 /// What the responses that test only the end of a step remember of a particle and a collider.

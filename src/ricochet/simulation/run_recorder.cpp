@@ -112,7 +112,7 @@ void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
 
 void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders) {
     ColliderTotals& of_collider = totals[colliders.collider_of(load.surface)];
-    of_collider.hits += load.impact ? 1 : 0;
+    of_collider.hits += load.impact && load.is_hit ? 1 : 0;
     of_collider.impulse += load.impulse;
     of_collider.moment += load.moment;
     of_collider.work += load.work;

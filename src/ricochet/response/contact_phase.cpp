@@ -20,6 +20,13 @@ constexpr int kMostIntervals = 64;
 
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
+/// Returns the part of a velocity along a plane. Projects twice: once leaves the rounding of the part that was removed,
+/// which can be faster than the part that stays and would count as a departure from the plane.
+Vec3 along_plane(const Vec3& velocity, const Vec3& normal) {
+    const Vec3 once = velocity - dot(velocity, normal) * normal;
+    return once - dot(once, normal) * normal;
+}
+
 }  // namespace
 
 ContactPhase::ContactPhase(ParticleStep& step)
@@ -157,7 +164,8 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
         state_.velocity = project_off(landed->velocity, manifold_.normals());
         particle_.spin = landed->spin;
     } else {
-        state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
+        state_.velocity =
+            project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
     }
     impact_.push(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();

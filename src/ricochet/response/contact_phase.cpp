@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -20,6 +21,13 @@ constexpr int kMostIntervals = 64;
 
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
+/// Returns the part of a velocity along a plane. Projects twice: once leaves the rounding of the part that was removed,
+/// which can be faster than the part that stays and would count as a departure from the plane.
+Vec3 along_plane(const Vec3& velocity, const Vec3& normal) {
+    const Vec3 once = velocity - dot(velocity, normal) * normal;
+    return once - dot(once, normal) * normal;
+}
+
 }  // namespace
 
 ContactPhase::ContactPhase(ParticleStep& step)
@@ -35,11 +43,12 @@ ContactPhase::ContactPhase(ParticleStep& step)
       began_still_(state_.velocity == Vec3{}),
       began_spin_(particle_.spin) {}
 
-std::optional<Contact> ContactPhase::resume() {
+std::optional<Contact> ContactPhase::resume(double rounding) {
     if (particle_.contact.count == 0) return std::nullopt;
     const KeptContact before = std::exchange(particle_.contact, KeptContact{});
     manifold_.touch_again(before, TouchRule::at(step_.geometry(), state_.position));
     if (before.is_placed()) gather();
+    if (rounding > 0.0) drop_rounding(rounding);
     const Vec3 forces = rules_.forces.acceleration(state_);
     const auto support = support_.hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
@@ -158,7 +167,8 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
         state_.velocity = project_off(landed->velocity, manifold_.normals());
         particle_.spin = landed->spin;
     } else {
-        state_.velocity = project_off(before - rebound * support.normal, manifold_.normals());
+        state_.velocity =
+            project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
     }
     impact_.push(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();
@@ -211,6 +221,18 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     }
     if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.kept();
     return std::nullopt;
+}
+
+/// Removes what rounding has put into a motion that goes on in contact: speed along the normals, or all of it.
+void ContactPhase::drop_rounding(double rounding) {
+    const auto is_rounding = [&](const Vec3& normal) { return std::fabs(dot(state_.velocity, normal)) <= rounding; };
+    const std::span<const Vec3> normals = manifold_.normals();
+    if (std::all_of(normals.begin(), normals.end(), is_rounding)) {
+        state_.velocity = along_all(state_.velocity, normals);
+    }
+    if (length(state_.velocity) + state_.radius * length(particle_.spin) > rounding) return;
+    state_.velocity = {};
+    particle_.spin = {};
 }
 
 /// Adds to the manifold all that is touched.

@@ -25,7 +25,8 @@ public:
 
     /// Contact that lasted to the end of the last step goes on without a new landing. Returns the next contact when the
     /// particle slides into one; without time left it is done, else it flies on.
-    std::optional<Contact> resume();
+    /// rounding: m/s, of the velocity and of the surface of a sphere, by which they are rounded in a body's frame.
+    std::optional<Contact> resume(double rounding = 0.0);
     /// An impact, before and after it is answered: where all its rebounds are slow and something presses the particle
     /// on, contact begins. arriving: the motion before. Returns as resume().
     void remember(const Contact& contact) { manifold_.remember(contact.all()); }
@@ -46,6 +47,7 @@ private:
     [[nodiscard]] Stop spend_cascade(const ContactSurface& support, double left);
     std::optional<Contact> follow_surface(bool kicked);
     void gather();
+    void drop_rounding(double rounding);
     void find_next_surfaces();
     [[nodiscard]] bool lands() const;
     [[nodiscard]] std::optional<Contact> wait(double duration, const Vec3& forces);

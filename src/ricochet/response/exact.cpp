@@ -28,6 +28,10 @@ constexpr int kMostShared = 64;
 /// Parts of the run's time step that a step may last by the rounding of the clock.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
+/// Part of the world's speeds by which a velocity in a body's frame is rounded: the difference of two of them, turned.
+/// Smaller: a particle that is carried lands on its body again, or never rests there. Larger: slow creep stops.
+constexpr double kFrameRounding = 0x1p-47;
+
 /// Lets a flight end after a duration, s, on its own path.
 void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
     if (flight.path.duration <= duration) return;
@@ -67,6 +71,7 @@ private:
     [[nodiscard]] std::optional<Contact> resume();
     [[nodiscard]] std::optional<Contact> resume_among_bodies();
     [[nodiscard]] bool is_let_go_by_jump() const;
+    [[nodiscard]] double rounding_on(BodyId body) const;
     [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
                                                        const Motion& arriving);
     [[nodiscard]] std::optional<Contact> begin_ride(BodyId body, const Contact& contact, const Motion& arriving);
@@ -181,6 +186,15 @@ bool ParticleMover::is_let_go_by_jump() const {
     return lets_go(rules_, *rides_, particle_, rules_.bodies->body_of(held[0]));
 }
 
+/// Returns the speed, m/s, of the particle and of its surface that rounding alone may show in the frame of a body.
+double ParticleMover::rounding_on(BodyId body) const {
+    const ForceInput& state = particle_.state;
+    const MovingPose pose = rules_.bodies->pose(body, state.time);
+    const double carried = length(pose.velocity_of(pose.image(state.position)));
+    const double turning = length(particle_.spin) + length(pose.angular_velocity);
+    return kFrameRounding * (length(state.velocity) + carried + state.radius * turning);
+}
+
 std::optional<Contact> ParticleMover::resume_among_bodies() {
     constexpr int kMostTurns = 4;
     std::optional<Contact> next;
@@ -200,7 +214,8 @@ std::optional<Contact> ParticleMover::resume_among_bodies() {
         } else if (body == kAtRest) {
             next = contact_phase_.resume();
         } else {
-            next = ride(body, nullptr, [&](ContactPhase& phase) { return phase.resume(); });
+            const double rounding = rounding_on(body);
+            next = ride(body, nullptr, [&](ContactPhase& phase) { return phase.resume(rounding); });
         }
     }
     return next;

@@ -13,7 +13,7 @@ public:
     /// ask: called by poll() from any thread, by several at a time; throws when the step is to end. An empty function
     /// ends nothing. Not while a step runs.
     void set(std::function<void()> ask) { ask_ = std::move(ask); }
-    /// Throws what the function throws.
+    /// Calls the function, and lets its exceptions pass.
     void poll() const {
         if (ask_) ask_();
     }

@@ -118,7 +118,8 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
         scratch.records[k].radius = particle.state.whole_radius;
     }
     if (i < bounces_.size()) bounces_[i] += outcome.meetings();
-    take_over(i, particle, outcome, life.end, record, lead != nullptr);
+    const Pushes pushes{std::span(scratch.hits).subspan(first_hit), {}, {}};
+    take_over(i, particle, outcome, life.end, pushes, record, lead != nullptr);
 }
 
 void ActiveMover::kick(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
@@ -277,13 +278,13 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
 }
 
 void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                            BlockRecord& record, bool is_pulled) {
+                            const Pushes& pushes, BlockRecord& record, bool is_pulled) {
     Particles& particles = parts_.store.particles();
     const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
     const bool was_fast = is_fast();
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
     parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i) && !is_pulled);
-    if (!was_fast && is_fast()) record.note_runaway(i, outcome.bounces > 0);
+    if (!was_fast && is_fast()) record.note({i, length(particles.velocity[i]), runaway_cause(i, pushes)});
     if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
     if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
     schedule_query(i, moved, outcome, until, is_pulled);

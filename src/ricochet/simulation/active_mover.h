@@ -169,9 +169,16 @@ private:
                       std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
+    /// What surfaces and other spheres have given a particle in a move.
+    struct Pushes {
+        std::span<const SurfaceHit> hits{};
+        Vec3 by_surfaces{};  ///< N s, besides the hits
+        Vec3 by_spheres{};   ///< m/s
+    };
     /// is_pulled: others lead it, so that it neither sleeps nor flies by what is known of forces.
     void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                   BlockRecord& record, bool is_pulled = false);
+                   const Pushes& pushes, BlockRecord& record, bool is_pulled = false);
+    [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const Pushes& pushes) const;
     void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                         bool is_pulled);
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;

@@ -379,7 +379,7 @@ CoupledMotion::Correction CoupledMotion::correct_velocities(Particles& particles
         const std::uint32_t i = system_.members()[k];
         if (velocities[k] == particles.velocity[i]) continue;
         const bool is_runaway = length(velocities[k]) > kMaxSpeed && length(particles.velocity[i]) <= kMaxSpeed;
-        if (is_runaway && !correction.runaway) correction.runaway = i;
+        if (is_runaway && !correction.runaway) correction.runaway = i, correction.runaway_speed = length(velocities[k]);
         if (is_in_contact(particles, i)) {
             correction.owed.push_back({i, velocities[k] - particles.velocity[i]});
         } else {

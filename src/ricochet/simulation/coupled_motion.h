@@ -85,6 +85,7 @@ public:
     struct Correction {
         std::vector<Owed> owed;                ///< to those in contact
         std::optional<std::uint32_t> runaway;  ///< the first particle that it has brought beyond kMaxSpeed
+        double runaway_speed = 0.0;            ///< m/s
     };
     /// After the move of what was planned: gives members in flight what their springs and forces have given them
     /// beyond what they have seen of it.

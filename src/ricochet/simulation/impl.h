@@ -85,7 +85,7 @@ struct Simulation::Impl {
                                      const std::vector<BlockRecord>& blocks) const;
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
-    [[nodiscard]] std::string runaway_message(const std::vector<BlockRecord>& blocks, std::size_t i, double time) const;
+    [[nodiscard]] std::string runaway_message(const Runaway& runaway, double time) const;
     [[nodiscard]] std::optional<ParticleRange> spawn_children(const TimeSpan& step);
     void retire_particles(double time);
     void check_spheres(double begin, double end);

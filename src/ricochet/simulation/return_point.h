@@ -18,7 +18,7 @@ namespace ricochet {
 /// wall-clock time decides when a state is kept, and never what comes out.
 class ReturnPoint {
 public:
-    /// What a saved state does not hold.
+    /// Parts of the simulation outside a saved state.
     struct Beside {
         std::vector<Emitter> emitters;
         std::vector<Violation> violations;
@@ -26,7 +26,7 @@ public:
 
     /// True when keeping the state now costs a small part of the time since it was kept last.
     [[nodiscard]] bool is_due() const;
-    /// Keeps what `save` writes. A state of more than kMostBytes is not kept.
+    /// Keeps the bytes that `save` writes. A state of more than kMostBytes is not kept.
     void keep(const std::function<void(const ByteSink&)>& save, Beside beside);
     /// The state has changed by more than steps that add_step() counts.
     void invalidate() { is_valid_ = false; }

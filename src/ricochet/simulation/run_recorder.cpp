@@ -87,10 +87,10 @@ void BlockRecord::add_to(SimulationStatistics& statistics) const {
     statistics.penetration_deepest = std::max(statistics.penetration_deepest, penetration_deepest);
 }
 
-std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks) {
-    std::optional<std::size_t> first;
+std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks) {
+    std::optional<Runaway> first;
     for (const BlockRecord& block : blocks) {
-        if (block.runaway && (!first || *block.runaway < *first)) first = block.runaway;
+        if (block.runaway && (!first || block.runaway->particle < first->particle)) first = block.runaway;
     }
     return first;
 }

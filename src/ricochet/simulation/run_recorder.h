@@ -87,6 +87,21 @@ struct HeatGain {
     double energy = 0.0;  ///< J
 };
 
+/// What has brought a particle beyond kMaxSpeed.
+enum class RunawayCause : std::uint8_t {
+    forces,   ///< on it alone, or an integrator that cannot follow them
+    others,   ///< springs and forces between particles
+    spheres,  ///< impacts and contacts of spheres
+    surface,  ///< a collider that moves, or whose material drives or heats; or a spring of the penalty response
+};
+
+/// A particle that has come beyond kMaxSpeed.
+struct Runaway {
+    std::size_t particle = 0;
+    double speed = 0.0;  ///< m/s, then
+    RunawayCause cause = RunawayCause::forces;
+};
+
 /// What one block of particles has done: written by the thread that moves the block.
 struct BlockRecord {
     std::uint64_t contacts = 0;
@@ -105,14 +120,11 @@ struct BlockRecord {
     std::vector<ColliderLoad> loads;
     std::vector<HeatGain> heat;
     std::vector<Violation> violations;
-    std::optional<std::size_t> runaway;  ///< the first particle that has come beyond kMaxSpeed
-    bool runaway_is_thrown = false;      ///< by surfaces, not by forces
+    std::optional<Runaway> runaway;  ///< the first particle that has come beyond kMaxSpeed
 
     void add(const MoveOutcome& outcome);
-    void note_runaway(std::size_t i, bool is_thrown) {
-        if (runaway && *runaway <= i) return;
-        runaway = i;
-        runaway_is_thrown = is_thrown;
+    void note(const Runaway& found) {
+        if (!runaway || found.particle < runaway->particle) runaway = found;
     }
     void add_to(SimulationStatistics& statistics) const;
 };
@@ -134,7 +146,7 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
 void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders);
 
 /// The first particle of all blocks that has come beyond kMaxSpeed.
-[[nodiscard]] std::optional<std::size_t> first_runaway(const std::vector<BlockRecord>& blocks);
+[[nodiscard]] std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks);
 
 /// What a run leaves behind besides the particles. Blocks are added in their order, sums over particles in the order of
 /// particles, so that everything is the same for any number of threads.

@@ -142,7 +142,9 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         if (coupled.is_active() && batch.begin == 0) {
             const CoupledMotion::Correction correction = coupled.correct_velocities(store.particles());
             mover.take_up(correction.owed, part, blocks);
-            if (correction.runaway) blocks.emplace_back().note_runaway(*correction.runaway, false);
+            if (correction.runaway) {
+                blocks.emplace_back().note({*correction.runaway, correction.runaway_speed, RunawayCause::others});
+            }
         }
         stop_runaways(blocks, step.end);
         record_part(batch, blocks);
@@ -298,43 +300,6 @@ void Simulation::Impl::order_active_set(ActiveSet& active) const {
     if (acceleration.spatial_order && active.is_worth_sorting(store.size(), world.triangles().size())) {
         active.sort_by_position(particles().position, world.triangle_bounds());
     }
-}
-
-// Where ranks share the run, it ends on all of them in the same step, by the particle that would have ended it.
-void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {
-    const std::optional<std::size_t> i = first_runaway(blocks);
-    if (!i && share.is_alone()) return;
-    std::optional<std::string> message;
-    if (i) message = runaway_message(blocks, *i, time);
-    if (!share.is_alone()) message = share.first_message(message, i ? particles().id[*i] : 0);
-    if (message) throw DivergedError(*message);
-}
-
-std::string Simulation::Impl::runaway_message(const std::vector<BlockRecord>& blocks, std::size_t i,
-                                              double time) const {
-    // Surfaces at rest give no speed.
-    const bool is_thrown = recorder.collects_loads() && std::any_of(blocks.begin(), blocks.end(), [&](const auto& b) {
-                               return b.runaway == i && b.runaway_is_thrown;
-                           });
-    if (is_thrown) {
-        return fmt::format(
-            "by t = {:.6g} s a surface has thrown particle {} at {:.3g} m/s, beyond the speed of light: let "
-            "the colliders, or their materials, move more slowly",
-            time, particles().id[i], length(particles().velocity[i]));
-    }
-    if (faster_than_light) {
-        return fmt::format(
-            "by t = {:.6g} s particle {} has come to {:.3g} m/s, beyond the speed of light, and particle {} has set "
-            "out "
-            "at {:.3g} m/s: let no particle set out faster than light",
-            time, particles().id[i], length(particles().velocity[i]), faster_than_light->first,
-            faster_than_light->second);
-    }
-    return fmt::format(
-        "by t = {:.6g} s forces have brought particle {} to {:.3g} m/s, beyond the speed of light: the motion has "
-        "diverged; use a shorter time step, {}or weaker forces",
-        time, particles().id[i], length(particles().velocity[i]),
-        knows_implicit ? "the integrator implicit_euler, " : "");
 }
 
 void Simulation::Impl::retire_particles(double time) {

@@ -142,13 +142,15 @@ const char* text_of(ViolationKind kind) {
             return "stands in another sphere";
         case ViolationKind::pair_impact:
             return "its impact on another sphere does not add up";
+        case ViolationKind::rebound:
+            return "an impact has another rebound than the surfaces that it has hit";
     }
     return "";
 }
 
 const char* head_of(ViolationKind kind) {
     if (kind == ViolationKind::pair_overlap || kind == ViolationKind::pair_impact) return "spheres";
-    return kind == ViolationKind::energy ? "energy" : "leak";
+    return kind == ViolationKind::energy || kind == ViolationKind::rebound ? "energy" : "leak";
 }
 
 std::string line_of(const Violation& violation, const std::vector<ColliderDescription>& colliders) {

@@ -97,7 +97,7 @@ struct SimulationStatistics {
     std::uint64_t squeezed = 0;           ///< particle-steps that ended without room between surfaces that close
     std::uint64_t lost_impulses = 0;      ///< impulses too large for the per-triangle totals
     std::uint64_t violations = 0;         ///< what options.verify found wrong with positions and ways
-    std::uint64_t energy_violations = 0;  ///< and with energies
+    std::uint64_t energy_violations = 0;  ///< and with energies and rebounds
     std::uint64_t trials = 0;             ///< states that a response tested for collision or penetration; 0 for exact
     std::uint64_t penetrations = 0;       ///< particle-steps in which a particle was seen behind a surface
     double penetration_sum = 0.0;         ///< m, sum of their depths, before anything put them right

@@ -14,9 +14,10 @@ TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
                                                {ViolationKind::gap, 10, {0, 0, 0}, 1, {}, {}},
                                                {ViolationKind::energy, 11, {0, 0, 0}, 1, {}, {}},
                                                {ViolationKind::pair_overlap, 12, {0, 0, 0}, 1, {}, {}},
-                                               {ViolationKind::pair_impact, 13, {0, 0, 0}, 1, {}, {}}};
+                                               {ViolationKind::pair_impact, 13, {0, 0, 0}, 1, {}, {}},
+                                               {ViolationKind::rebound, 14, {0, 0, 0}, 1, {}, {}}};
     EXPECT_EQ(
-        violation_lines(violations, 7, kColliders),
+        violation_lines(violations, 8, kColliders),
         (std::vector<std::string>{
             "leak: particle 7 at (1, 0.10000000000000001, -2) m, time 0.25 s: a segment crosses collider \"tube\", "
             "triangle 99",
@@ -25,7 +26,9 @@ TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
             "leak: particle 10 at (0, 0, 0) m, time 1 s: its segments do not join",
             "energy: particle 11 at (0, 0, 0) m, time 1 s: has gained energy from surfaces",
             "spheres: particle 12 at (0, 0, 0) m, time 1 s: stands in another sphere",
-            "spheres: particle 13 at (0, 0, 0) m, time 1 s: its impact on another sphere does not add up"}));
+            "spheres: particle 13 at (0, 0, 0) m, time 1 s: its impact on another sphere does not add up",
+            "energy: particle 14 at (0, 0, 0) m, time 1 s: an impact has another rebound than the surfaces that it "
+            "has hit"}));
 }
 
 TEST(ViolationReport, ListsTwentyAndCountsTheRest) {

@@ -132,8 +132,9 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
 
 void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {
     const std::vector<Violation> found = in_order_of_particles(blocks, &BlockRecord::violations);
-    const auto of_energy = static_cast<std::uint64_t>(
-        std::count_if(found.begin(), found.end(), [](const Violation& v) { return v.kind == ViolationKind::energy; }));
+    const auto of_energy = static_cast<std::uint64_t>(std::count_if(found.begin(), found.end(), [](const Violation& v) {
+        return v.kind == ViolationKind::energy || v.kind == ViolationKind::rebound;
+    }));
     statistics_.energy_violations += of_energy;
     statistics_.violations += found.size() - of_energy;
     list(found);
@@ -247,7 +248,7 @@ void RunCheck::check_rebounds(std::uint64_t particle, std::span<const RecordedIm
                               std::vector<Violation>& violations) {
     for (const RecordedImpact& impact : impacts) {
         if (!verify::has_wrong_rebound(impact)) continue;
-        violations.push_back({ViolationKind::energy, particle, impact.before.position, impact.time, {}, {}});
+        violations.push_back({ViolationKind::rebound, particle, impact.before.position, impact.time, {}, {}});
     }
 }
 

@@ -39,6 +39,7 @@ enum class ViolationKind : std::uint8_t {
     energy,      ///< it has gained energy from surfaces, or the recorded parts of its motion do not join
     pair_overlap,  ///< a sphere stands in another, see verify/sphere_overlaps.h
     pair_impact,   ///< an impact of spheres on each other that does not add up, see verify/pair_books.h
+    rebound,       ///< an impact has not the rebound of the surfaces that it has hit, see verify/rebound.h
 };
 
 /// One violation. Each is reported once: what follows from it later is measured from the new state.
@@ -47,7 +48,7 @@ struct Violation {
     std::uint64_t particle = 0;  ///< id
     Vec3 position;               ///< m: of the crossing (rounded), else of the particle's centre
     double time = 0.0;  ///< s: a crossing's flight, or what gained energy, began then; for the others the step's end
-    std::optional<std::uint32_t> collider;  ///< index; nothing for a gap, energy and spheres
+    std::optional<std::uint32_t> collider;  ///< index; nothing for a gap, energy, a rebound and spheres
     std::optional<std::uint32_t> triangle;  ///< of the collider's mesh; nothing for planes, shapes and sides
 };
 

@@ -282,7 +282,7 @@ TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
 
 /// Degrees, by which the centre of the grains in a drum is turned from below its axis, on the mean over the last half:
 /// the slope of a flat surface.
-double flowing_angle(double radius, double length, double friction, double duration) {
+double flowing_angle(double radius, double length, double friction, double duration, std::uint64_t seed = 4) {
     constexpr double kRate = 30.0;  // degrees/s
     SimulationSetup setup = grain_setup(duration, friction, Spin{{0, 1, 0}, kRate});
     setup.materials.push_back({"glass", 0.3, 0.0});
@@ -296,7 +296,7 @@ double flowing_angle(double radius, double length, double friction, double durat
     const double filled = 0.35 * kPi * radius * radius * length;
     const auto grains = static_cast<std::size_t>(0.6 * filled / (kPi / 6.0 * kDiameter * kDiameter * kDiameter));
     constexpr double kPitch = (1.0 + kSpread) * 1.02 * kDiameter;
-    RandomSequence random(4, 0, 0);
+    RandomSequence random(seed, 0, 0);
     const auto across = static_cast<int>(length / kPitch);
     const auto most = static_cast<int>(radius / kPitch);
     for (int z = -most; z <= most; ++z) {
@@ -331,7 +331,12 @@ TEST(GranularLaws, ADrumFlowsAsSteeplyAsGlassBeadsDo) {
     const double radius = (is_long ? 15.0 : 6.0) * kDiameter;
     const double length = (is_long ? 7.0 : 3.0) * kDiameter;
     const double duration = is_long ? 5.0 : 2.4;
-    const double angle = flowing_angle(radius, length, 0.5, duration);
+    double angle = flowing_angle(radius, length, 0.5, duration);
+    // So few grains for so short a time slump by some degrees more or less: three drums agree to less than that.
+    if (!is_long) {
+        angle += flowing_angle(radius, length, 0.5, duration, 5) + flowing_angle(radius, length, 0.5, duration, 6);
+        angle /= 3.0;
+    }
     RecordProperty("angle", std::to_string(angle));
     EXPECT_GT(angle, 20.9);
     EXPECT_LT(angle, 32.8);

@@ -1,5 +1,6 @@
 #include "ricochet/response/along_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
@@ -40,11 +41,30 @@ public:
         }
     }
 
+    /// True if nothing is left of three components in a row of any motion, from `first` on.
+    [[nodiscard]] bool takes_all(std::size_t first) const {
+        if (std::any_of(left_.begin(), left_.begin() + count_, [](double left) { return left != 0.0; })) return false;
+        double trace = 0.0;  // of the projector on the directions, in these components: 3 where it takes all
+        for (std::size_t k = 0; k < count_; ++k) {
+            for (std::size_t c = first; c < first + 3; ++c) trace += basis_[k][c] * basis_[k][c];
+        }
+        if (!(trace > 2.9)) return false;
+        for (std::size_t c = first; c < first + 3; ++c) {
+            MotionVector unit{};
+            unit[c] = 1.0;
+            remove_from(unit);
+            if (!(std::sqrt(dot(unit, unit)) <= kDependentDirection)) return false;
+        }
+        return true;
+    }
+
 private:
     std::array<MotionVector, 6> basis_{};
     std::array<double, 6> left_{};
     std::size_t count_ = 0;
 };
+
+bool sticks(const Stuck& stuck) { return stuck.to_slip || stuck.to_turning || stuck.to_spinning; }
 
 /// That of the first moving surface on which the motion sticks; else zero.
 Vec3 carrying_velocity(std::span<const HoldingSurface> surfaces, const StuckSurfaces& stuck) {
@@ -98,8 +118,10 @@ Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) 
 }
 
 Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                      const StuckSurfaces& stuck) {
+                      const StuckSurfaces& stuck, double braked_from) {
     const bool is_sphere = radius > 0.0;
+    const bool is_free = std::none_of(stuck.begin(), stuck.begin() + surfaces.size(), sticks);
+    if (is_free && motion.velocity == Vec3{}) return motion;
     // As it is seen from a surface that carries it: what stands still there does so exactly.
     const Vec3 carried = carrying_velocity(surfaces, stuck);
     Remover remover;
@@ -116,11 +138,22 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Holdi
         if (stuck[k].to_spinning) remover.add(turning_direction(n), radius * dot(surfaces[k].angular_velocity, n));
     }
     MotionVector all = motion_vector(motion.velocity - carried, (radius / kTurning) * motion.spin);
-    const double before = std::sqrt(dot(all, all));
+    const double before = std::max(std::sqrt(dot(all, all)), braked_from);
     remover.remove_from(all);
     if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {carried, {}};
-    const Vec3 velocity = carried == Vec3{} ? velocity_of(all) : velocity_of(all) + carried;
-    return {velocity, is_sphere ? (kTurning / radius) * turning_of(all) : Vec3{}};
+    // Rounding of a spin is no speed of a place that has stood still, and none of it turns the sphere about a tangent.
+    const bool stood = motion.velocity == carried && length(velocity_of(all)) <= kStopRounding * before;
+    if (stood) {
+        for (const Vec3& axis : {Vec3{1.0, 0.0, 0.0}, Vec3{0.0, 1.0, 0.0}, Vec3{0.0, 0.0, 1.0}}) {
+            remover.add(motion_vector(axis, {}));
+        }
+        remover.remove_from(all);
+    }
+    const bool stands = stood || remover.takes_all(0);
+    const Vec3 left = stands ? Vec3{} : velocity_of(all);
+    const Vec3 velocity = carried == Vec3{} ? left : left + carried;
+    const bool turns = is_sphere && !remover.takes_all(3);
+    return {velocity, turns ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }
 
 double twice_kinetic(const Motion& motion, double radius) {

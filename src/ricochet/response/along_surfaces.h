@@ -61,8 +61,9 @@ using StuckSurfaces = std::array<Stuck, kMostHolding>;
 
 /// The motion nearest to the given one (in energy) that is along all surfaces, and slips and turns on none where
 /// `stuck` says so.
+/// braked_from: m/s, a speed that the motion had before, whose rounding is no motion.
 [[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
-                                    const StuckSurfaces& stuck);
+                                    const StuckSurfaces& stuck, double braked_from = 0.0);
 
 /// Twice the kinetic energy over the mass of a solid sphere, or a point (radius 0), m^2/s^2.
 [[nodiscard]] double twice_kinetic(const Motion& motion, double radius);

@@ -131,6 +131,8 @@ void ContactPhase::land(const Motion& arriving) {
         return length(motion.velocity) + state_.radius * length(motion.spin);
     };
     if (speed(after) <= kStopRounding * speed(arriving)) after = {};
+    // Rounding of a fast spin, too, is no speed.
+    if (length(after.velocity) <= kStopRounding * speed(arriving)) after.velocity = {};
     state_.velocity = project_off(after.velocity, manifold_.normals());
     particle_.spin = after.spin;
     manifold_.load(before - state_.velocity);
@@ -169,6 +171,12 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     } else {
         state_.velocity =
             project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
+    }
+    if (const auto still = rest_beside_rounding({state_.velocity, particle_.spin}, state_.radius, forces,
+                                                manifold_.holding(impact_).all(), manifold_.grip(1.0, step_.duration()),
+                                                step_.duration())) {
+        state_.velocity = still->velocity;
+        particle_.spin = still->spin;
     }
     impact_.push(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();

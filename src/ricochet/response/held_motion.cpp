@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/sphere_contact.h"
@@ -152,6 +153,7 @@ private:
         const MotionVector change = problem.change();
         acceleration_ = a_ + velocity_of(change);
         if (!problem.is_solved()) stay_on_surfaces();
+        if (motion_.velocity == Vec3{} && length(acceleration_) <= kHoldRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }
 
@@ -373,6 +375,20 @@ ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a
     }
 }
 
+std::optional<Motion> rest_beside_rounding(const Motion& motion, double radius, const Vec3& a,
+                                           std::span<const HoldingSurface> surfaces, const Grip& grip,
+                                           double duration) {
+    surfaces = surfaces.first(std::min(surfaces.size(), kMostHolding));
+    const double slow = kNegligibleSpeed * length(a) * duration;
+    if (motion.velocity == Vec3{} || length(motion.velocity) > slow || !are_at_rest(surfaces)) return std::nullopt;
+    StuckSurfaces stuck{};
+    for (std::size_t k = 0; k < surfaces.size(); ++k) stuck[k].to_slip = surfaces[k].friction > 0.0;
+    const Motion still = along_surfaces({{}, motion.spin}, radius, surfaces, stuck, slow / kStopRounding);
+    if (still.velocity != Vec3{} || radius * length(still.spin - motion.spin) > slow) return std::nullopt;
+    const bool rests = Plan(still, radius, a, surfaces, surfaces, grip, duration, {}).interval().at_rest;
+    return rests ? std::optional(still) : std::nullopt;
+}
+
 ContactInterval plan_interval_by_middle(const Motion& motion, double radius, const Vec3& a,
                                         std::span<const HoldingSurface> before, std::span<const HoldingSurface> middle,
                                         const Grip& grip, double duration) {
@@ -382,7 +398,8 @@ ContactInterval plan_interval_by_middle(const Motion& motion, double radius, con
 Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity, double radius,
                        std::span<const HoldingSurface> surfaces) {
     const Motion motion{velocity, interval.motion.spin + elapsed * interval.spin_acceleration};
-    return elapsed >= interval.duration ? along_surfaces(motion, radius, surfaces, interval.stuck) : motion;
+    if (elapsed < interval.duration) return motion;
+    return along_surfaces(motion, radius, surfaces, interval.stuck, std::sqrt(twice_kinetic(interval.motion, radius)));
 }
 
 }  // namespace ricochet

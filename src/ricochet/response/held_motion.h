@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include "ricochet/response/along_surfaces.h"
@@ -49,8 +50,16 @@ inline constexpr double kShortestIntervals = 32.0;
                                             std::span<const HoldingSurface> surfaces, const Grip& grip, double duration,
                                             const StuckSurfaces& stuck = {});
 
-/// The same where the surfaces turn: with their normals as they are in the middle of the interval, for a motion along
-/// `before`, the same surfaces as they are at its start. What slips and turns there is carried over to the middle.
+/// Returns the motion at rest from which a motion just after impacts differs by no more than these leave by rounding: a
+/// velocity that is nothing beside what the forces give in the duration, s, and the turning about tangents that goes
+/// with it. A spin about the normal stays. Nothing where surfaces move, or where that motion would not rest.
+[[nodiscard]] std::optional<Motion> rest_beside_rounding(const Motion& motion, double radius, const Vec3& a,
+                                                         std::span<const HoldingSurface> surfaces, const Grip& grip,
+                                                         double duration);
+
+/// As plan_interval() where the surfaces turn: with their normals as they are in the middle of the interval, for a
+/// motion along `before`, the same surfaces as they are at its start. What slips and turns there is carried over to the
+/// middle.
 [[nodiscard]] ContactInterval plan_interval_by_middle(const Motion& motion, double radius, const Vec3& a,
                                                       std::span<const HoldingSurface> before,
                                                       std::span<const HoldingSurface> middle, const Grip& grip,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/clearance.h"
 #include "ricochet/collision/foreign_surfaces.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
@@ -17,6 +18,10 @@ namespace {
 
 /// Halvings of the way with a body until each link is free in the frames of all others.
 constexpr int kCarryDepth = 16;
+
+/// Clearances from the surfaces of a frame that a particle is given before it is carried along, in roundings of its
+/// stored position there: each is tried after the one before.
+constexpr std::array<double, 4> kClearances{8.0, 64.0, 512.0, 4096.0};
 
 }  // namespace
 
@@ -233,11 +238,9 @@ bool ParticleStep::carry_on(BodyId frame, double until) {
     return carry(frame, image, until, kCarryDepth);
 }
 
-/// Stays until a time: where it is, or carried along by one of the bodies, by turns. False where none of that is free:
-/// its clock stands still then.
-bool ParticleStep::wait_out(double until) {
+/// Stays until a time: where it is, or carried along by one of the bodies, by turns, as far as that is free.
+void ParticleStep::wait_by_turns(double until) {
     constexpr int kMostTurns = 8;
-    scratch_.driven = true;
     for (int turn = 0; turn < kMostTurns; ++turn) {
         const double before = stored_.time;
         if (carry_on(home_.body(), until)) break;
@@ -248,9 +251,61 @@ bool ParticleStep::wait_out(double until) {
         if (stored_.time < until) static_cast<void>(carry_by_meshes(until));
         if (stored_.time >= until || stored_.time == before) break;
     }
+}
+
+/// Stays until a time, or carried along. False where none of that is free: its clock stands still then.
+bool ParticleStep::wait_out(double until) {
+    scratch_.driven = true;
+    wait_by_turns(until);
+    if (stored_.time < until) static_cast<void>(wait_with_clearance(until));
     state().position =
         home_.is_moving() ? rules_->bodies->pose(home_.body(), stored_.time).image(stored_.position) : stored_.position;
     return stored_.time >= until;
+}
+
+/// Bounds the rounding, m, of where stored positions are in a frame, from now until a time.
+double ParticleStep::rounding_in(BodyId frame, double until) const {
+    double rounding = ulp(max_abs(stored_.position));
+    if (frame == kAtRest) return rounding;
+    const Vec3 image = rules_->bodies->pose(frame, stored_.time).image(stored_.position);
+    rounding = std::max(rounding, ulp(max_abs(image)));
+    for (const double time : {stored_.time, until}) {
+        const MovingPose pose = rules_->bodies->pose(frame, time);
+        const Vec3 world = pose.point(image);
+        const double largest = std::max(max_abs(world), max_abs(pose.world_from_frame.translation));
+        rounding = std::max({rounding, ulp(largest), max_abs(pose.image(world) - image)});
+    }
+    return rounding;
+}
+
+/// Moves it in no time off the surfaces of a frame that are nearer than the clearance, m.
+bool ParticleStep::step_aside(BodyId frame, double clearance) {
+    const MovingPose pose = rules_->bodies->pose(frame, stored_.time);
+    const Vec3 image = frame == kAtRest ? stored_.position : pose.image(stored_.position);
+    const auto displacement =
+        displacement_to_clear(rules_->bodies->world(frame), image, particle_.state.radius, clearance);
+    if (!displacement) return false;
+    const Vec3 aside = image + *displacement;
+    if (!take_link({flush_tiny(frame == kAtRest ? aside : pose.point(aside)), stored_.time})) return false;
+    particle_.ridden.reset();  // where it rested it is no longer
+    return true;
+}
+
+/// In its frame a rigid collider leaves a particle room at all times, but stored positions are rounded in the world:
+/// between surfaces that are nearer to each other than that, carried positions may lie behind them. Moves the particle
+/// to where it has more room in the frame, and waits then.
+bool ParticleStep::wait_with_clearance(double until) {
+    for (const double roundings : kClearances) {
+        const auto waits_in = [&](BodyId frame) {
+            if (stored_.time < until && step_aside(frame, roundings * rounding_in(frame, until))) {
+                static_cast<void>(carry_on(frame, until));
+            }
+        };
+        waits_in(kAtRest);
+        for (BodyId body = 0; body < rules_->bodies->size(); ++body) waits_in(body);
+        if (stored_.time >= until) return true;
+    }
+    return false;
 }
 
 bool ParticleStep::catch_up() {

@@ -169,6 +169,10 @@ private:
         return is_link_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
     }
     [[nodiscard]] bool wait_out(double until);
+    void wait_by_turns(double until);
+    [[nodiscard]] bool wait_with_clearance(double until);
+    [[nodiscard]] bool step_aside(BodyId frame, double clearance);
+    [[nodiscard]] double rounding_in(BodyId frame, double until) const;
     void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);

@@ -144,6 +144,12 @@ void ParticleStep::turn_contact(Contact* contact, const HomeFrame& from, const H
 
 /// Exact, in the frames of all colliders.
 bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition& to) const {
+    return is_link_free_of_bodies(from, to) &&
+           rules_->bodies->deforming().is_link_free(from, to, particle_.state.radius);
+}
+
+/// The same in the frames of those that move rigidly, and of those at rest.
+bool ParticleStep::is_link_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const {
     const MovingColliders& bodies = *rules_->bodies;
     const double radius = particle_.state.radius;
     const auto is_free_in = [&](BodyId body) {
@@ -156,7 +162,7 @@ bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition
     for (BodyId body = 0; body < bodies.size(); ++body) {
         if (!is_free_in(body)) return false;
     }
-    return is_free_in(kAtRest) && bodies.deforming().is_link_free(from, to, radius);
+    return is_free_in(kAtRest);
 }
 
 /// What is next to a mesh that deforms goes with the point of it that is nearest, at the same distance; what overlaps
@@ -209,11 +215,15 @@ bool ParticleStep::carry_by_meshes(double until) {
 /// Moves it along a link, where that is free.
 bool ParticleStep::take_link(const StoredPosition& next) {
     if (!is_link_free(stored_, next)) return false;
+    go_along_link(next);
+    return true;
+}
+
+void ParticleStep::go_along_link(const StoredPosition& next) {
     if (scratch_.record_segments) {
         scratch_.segments.push_back({stored_.position, next.position, stored_.time, stored_.time, next.time});
     }
     stored_ = next;
-    return true;
 }
 
 void ParticleStep::shift_to(const Vec3& position) {
@@ -308,9 +318,42 @@ bool ParticleStep::wait_with_clearance(double until) {
     return false;
 }
 
+/// Moves it from where its clock has stood still to a position at the present time, where that is a free link.
+bool ParticleStep::take_late_link(const Vec3& position) {
+    const StoredPosition next{flush_tiny(position), particle_.state.time};
+    const bool is_free = is_link_free_of_bodies(stored_, next) &&
+                         rules_->bodies->deforming().is_late_link_free(stored_, next, particle_.state.radius);
+    if (!is_free) return false;
+    go_along_link(next);
+    particle_.ridden.reset();
+    return true;
+}
+
+/// At once, wherever meshes that deform have been meanwhile: where they have left it no room for a time, no chain of
+/// links leads through that. It goes where a frame has taken its place, or a triangle that was near.
+bool ParticleStep::catch_up_directly() {
+    constexpr std::size_t kMostTriangles = 8;
+    const MovingColliders& bodies = *rules_->bodies;
+    if (bodies.deforming().empty()) return false;
+    const double now = particle_.state.time;
+    if (take_late_link(stored_.position)) return true;
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        const Vec3 image = bodies.pose(body, stored_.time).image(stored_.position);
+        if (take_late_link(bodies.pose(body, now).point(image))) return true;
+    }
+    std::vector<SurfaceId> nearest;
+    bodies.deforming().nearest_to(stored_.position, stored_.time, kMostTriangles, nearest);
+    return std::any_of(nearest.begin(), nearest.end(),
+                       [&](SurfaceId surface) { return take_late_link(carried_by_mesh(surface, now)); });
+}
+
 bool ParticleStep::catch_up() {
     if (!(stored_.time < particle_.state.time)) return true;
     if (wait_out(particle_.state.time)) return true;
+    if (catch_up_directly()) {
+        state().position = stored_.position;
+        return true;
+    }
     outcome_.unsimulated_time = remaining_;
     outcome_.squeezed = 1;
     remaining_ = 0.0;

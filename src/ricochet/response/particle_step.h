@@ -160,6 +160,10 @@ private:
     [[nodiscard]] bool carry_on(BodyId frame, double until);
     [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
     [[nodiscard]] bool take_link(const StoredPosition& next);
+    void go_along_link(const StoredPosition& next);
+    [[nodiscard]] bool take_late_link(const Vec3& position);
+    [[nodiscard]] bool catch_up_directly();
+    [[nodiscard]] bool is_link_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const;
     [[nodiscard]] Vec3 carried_by_mesh(SurfaceId surface, double until) const;
     [[nodiscard]] bool carry_by_mesh(SurfaceId surface, double until, int depth);
     [[nodiscard]] bool carry_by_meshes(double until);

@@ -178,6 +178,7 @@ public:
     /// Of a part of the step.
     void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);
     void add_pair_violations(const std::vector<Violation>& found);
+    void add_violations(const std::vector<Violation>& found);
     [[nodiscard]] const std::vector<PairImpactRecord>& pair_records() const { return pair_records_; }
     void add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders);
 
@@ -218,6 +219,8 @@ public:
     /// checked from several threads at once.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
+    /// What is wrong with the particles whose clocks stand still where the run ends, at a time, s.
+    [[nodiscard]] std::vector<Violation> check_end(const Particles& particles, double time) const;
     /// Begins to watch all particles from where they are, at a time, s; where their clocks stand still, from theirs.
     void restart(const ParticleStore& store, double now);
     /// Keeps what Particles::compact() keeps.

@@ -68,6 +68,39 @@ TEST(ADeformingMesh, WantsLinksToEndAtItsKeysUnlessTheyAreFarAway) {
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 1.1}, 0.5}, {{0.2, 0.2, 1.1}, 1.5}}), ViolationKind::crossing), 0U);
 }
 
+/// One step in which the clock stands still until `now`, and one in which it goes on to a stop.
+std::vector<Violation> wait_and_go(const VerifiedDeformation& surface, const Stop& from, double now, const Stop& to) {
+    const Verifier verifier({surface});
+    VerifiedParticle particle = verifier.watch(from.place, 0.0, from.time);
+    std::vector<Violation> violations;
+    verifier.check({7, from.place, from.place, 0.0, now, {}, {}, from.time}, particle, violations);
+    const std::vector<Segment> segments{{from.place, to.place, from.time, from.time, to.time}};
+    verifier.check({7, from.place, to.place, 0.0, to.time, segments, {}, to.time}, particle, violations);
+    return violations;
+}
+
+// Its plate was above it meanwhile, or below.
+TEST(ADeformingMesh, LetsLinksOfAClockThatStoodStillLeadOverKeys) {
+    const Vec3 above{0.2, 0.2, 0.6};
+    EXPECT_TRUE(wait_and_go(plate(), {above, 0.5}, 1.4, {above, 1.5}).empty());
+    EXPECT_EQ(count(wait_and_go(plate(), {above, 0.5}, 1.2, {above, 1.3}), ViolationKind::crossing), 1U);
+    EXPECT_TRUE(wait_and_go(plate(), {above, 0.5}, 1.2, {{0.2, 0.2, 0.8}, 1.3}).empty());
+    // It stood still for no step.
+    EXPECT_EQ(count(wait_and_go(plate(), {above, 0.5}, 0.5, {above, 1.5}), ViolationKind::crossing), 1U);
+}
+
+TEST(ADeformingMesh, ThatHasPassedAClockWhichStandsStillIsReportedWhereTheRunEnds) {
+    const Verifier verifier({growing_box()});
+    const VerifiedParticle waiting = verifier.watch({1.5, 0, 0}, 0.0, 0.25);
+    std::vector<Violation> violations;
+    verifier.check_end(7, 0.45, waiting, violations);
+    EXPECT_TRUE(violations.empty());
+    verifier.check_end(7, 1.0, waiting, violations);
+    ASSERT_EQ(violations.size(), 1U);
+    EXPECT_EQ(violations[0].kind, ViolationKind::wrong_side);
+    EXPECT_EQ(violations[0].particle, 7U);
+}
+
 TEST(ADeformingMesh, KeepsTheSideOfWhatItEncloses) {
     EXPECT_TRUE(travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{1.9, 0.1, 0}, 1.0}}).empty());
     const auto left = travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{2.1, 0.1, 0}, 1.0}});

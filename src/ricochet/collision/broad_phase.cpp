@@ -22,7 +22,7 @@ bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margin
     const Vec3 by{margin, margin, margin};
     const Box3& triangles = world.triangle_bounds();
     const Vec3 gap = max(box.lower - by - triangles.upper, triangles.lower - (box.upper + by));
-    return std::max({gap.x, gap.y, gap.z}) <= 0.0;
+    return !(gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0);
 }
 
 /// One path against the hierarchy, piece by piece.

@@ -280,6 +280,48 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
     });
 }
 
+bool DeformingColliders::is_late_link_free(const Mesh& mesh, const StoredPosition& from, const StoredPosition& to,
+                                           double radius) const {
+    const MeshMoment first = moment_of(mesh, from.time);
+    const MeshMoment last = moment_of(mesh, to.time);
+    const Box3 way = box_of(from, to, radius);
+    const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
+    return std::all_of(mesh.solid.begin(), mesh.solid.end(), [&](std::uint32_t t) {
+        MovingTriangle triangle;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t vertex = mesh.triangles[t][k];
+            triangle.corners[k] = {first.position(vertex), last.position(vertex)};
+        }
+        if (!BoxTree::meet(box_of(triangle), way)) return true;
+        if (!stay_apart({from.position, to.position}, 0.0, triangle)) return false;
+        if (radius == 0.0) return true;
+        const SurfaceId surface = mesh.first_surface + t;
+        const double distance = nearest(surface, to.position, to.time).distance;
+        return distance >= radius - 0.5 * tolerance || distance >= nearest(surface, from.position, from.time).distance;
+    });
+}
+
+bool DeformingColliders::is_late_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
+    return std::all_of(meshes_.begin(), meshes_.end(),
+                       [&](const Mesh& mesh) { return is_late_link_free(mesh, from, to, radius); });
+}
+
+void DeformingColliders::nearest_to(const Vec3& p, double time, std::size_t most, std::vector<SurfaceId>& out) const {
+    std::vector<std::pair<double, SurfaceId>> all;
+    for (const Mesh& mesh : meshes_) {
+        const MeshMoment moment = moment_of(mesh, time);
+        for (const std::uint32_t t : mesh.solid) {
+            const auto [a, b, c] = mesh.triangles[t];
+            const ClosestPointOnTriangle closest =
+                closest_point_on_triangle(p, moment.position(a), moment.position(b), moment.position(c));
+            all.emplace_back(closest.distance_squared, mesh.first_surface + t);
+        }
+    }
+    const std::size_t count = std::min(most, all.size());
+    std::partial_sort(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count), all.end());
+    for (std::size_t k = 0; k < count; ++k) out.push_back(all[k].second);
+}
+
 std::size_t DeformingColliders::memory_bytes() const {
     std::size_t bytes = swept_.capacity() * sizeof(Box3);
     for (const Mesh& mesh : meshes_) {

@@ -27,6 +27,14 @@ Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     return piece;
 }
 
+/// The straight path between two positions.
+Path straight_path(const Vec3& from, const Vec3& to, double duration) {
+    const Vec3 velocity = (to - from) / duration;
+    Path path = line_path(from, is_finite(velocity) ? velocity : Vec3{}, duration);
+    path.end = to;
+    return path;
+}
+
 Box3 box_of(const Path& path) {
     Box3 box{min(path.c[0], path.end), max(path.c[0], path.end)};
     if (path.degree == 1) return box;
@@ -161,6 +169,9 @@ Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& s
     const Vec3 to = view.image(body, end.world, piece_.duration);
     const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
+    // In less time than the clock tells apart a body jumps from its place at one time to that at the next: a cubic that
+    // arrives there with the velocities at both ends would bend beyond all bounds.
+    if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
     const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration), MovingView::Limit::before);
     return hermite_path(from, leaving, to, arriving, piece_.duration);
 }

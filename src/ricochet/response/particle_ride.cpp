@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/collision/clearance.h"
 #include "ricochet/collision/foreign_surfaces.h"
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/core/tolerances.h"
@@ -17,6 +18,10 @@ namespace {
 
 /// Halvings of the way with a body until each link is free in the frames of all others.
 constexpr int kCarryDepth = 16;
+
+/// Clearances from the surfaces of a frame that a particle is given before it is carried along, in roundings of its
+/// stored position there: each is tried after the one before.
+constexpr std::array<double, 4> kClearances{8.0, 64.0, 512.0, 4096.0};
 
 }  // namespace
 
@@ -139,6 +144,12 @@ void ParticleStep::turn_contact(Contact* contact, const HomeFrame& from, const H
 
 /// Exact, in the frames of all colliders.
 bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition& to) const {
+    return is_link_free_of_bodies(from, to) &&
+           rules_->bodies->deforming().is_link_free(from, to, particle_.state.radius);
+}
+
+/// The same in the frames of those that move rigidly, and of those at rest.
+bool ParticleStep::is_link_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const {
     const MovingColliders& bodies = *rules_->bodies;
     const double radius = particle_.state.radius;
     const auto is_free_in = [&](BodyId body) {
@@ -151,7 +162,7 @@ bool ParticleStep::is_link_free(const StoredPosition& from, const StoredPosition
     for (BodyId body = 0; body < bodies.size(); ++body) {
         if (!is_free_in(body)) return false;
     }
-    return is_free_in(kAtRest) && bodies.deforming().is_link_free(from, to, radius);
+    return is_free_in(kAtRest);
 }
 
 /// What is next to a mesh that deforms goes with the point of it that is nearest, at the same distance; what overlaps
@@ -204,11 +215,15 @@ bool ParticleStep::carry_by_meshes(double until) {
 /// Moves it along a link, where that is free.
 bool ParticleStep::take_link(const StoredPosition& next) {
     if (!is_link_free(stored_, next)) return false;
+    go_along_link(next);
+    return true;
+}
+
+void ParticleStep::go_along_link(const StoredPosition& next) {
     if (scratch_.record_segments) {
         scratch_.segments.push_back({stored_.position, next.position, stored_.time, stored_.time, next.time});
     }
     stored_ = next;
-    return true;
 }
 
 void ParticleStep::shift_to(const Vec3& position) {
@@ -233,11 +248,9 @@ bool ParticleStep::carry_on(BodyId frame, double until) {
     return carry(frame, image, until, kCarryDepth);
 }
 
-/// Stays until a time: where it is, or carried along by one of the bodies, by turns. False where none of that is free:
-/// its clock stands still then.
-bool ParticleStep::wait_out(double until) {
+/// Stays until a time: where it is, or carried along by one of the bodies, by turns, as far as that is free.
+void ParticleStep::wait_by_turns(double until) {
     constexpr int kMostTurns = 8;
-    scratch_.driven = true;
     for (int turn = 0; turn < kMostTurns; ++turn) {
         const double before = stored_.time;
         if (carry_on(home_.body(), until)) break;
@@ -248,14 +261,99 @@ bool ParticleStep::wait_out(double until) {
         if (stored_.time < until) static_cast<void>(carry_by_meshes(until));
         if (stored_.time >= until || stored_.time == before) break;
     }
+}
+
+/// Stays until a time, or carried along. False where none of that is free: its clock stands still then.
+bool ParticleStep::wait_out(double until) {
+    scratch_.driven = true;
+    wait_by_turns(until);
+    if (stored_.time < until) static_cast<void>(wait_with_clearance(until));
     state().position =
         home_.is_moving() ? rules_->bodies->pose(home_.body(), stored_.time).image(stored_.position) : stored_.position;
     return stored_.time >= until;
 }
 
+/// Bounds the rounding, m, of where stored positions are in a frame, from now until a time.
+double ParticleStep::rounding_in(BodyId frame, double until) const {
+    double rounding = ulp(max_abs(stored_.position));
+    if (frame == kAtRest) return rounding;
+    const Vec3 image = rules_->bodies->pose(frame, stored_.time).image(stored_.position);
+    rounding = std::max(rounding, ulp(max_abs(image)));
+    for (const double time : {stored_.time, until}) {
+        const MovingPose pose = rules_->bodies->pose(frame, time);
+        const Vec3 world = pose.point(image);
+        const double largest = std::max(max_abs(world), max_abs(pose.world_from_frame.translation));
+        rounding = std::max({rounding, ulp(largest), max_abs(pose.image(world) - image)});
+    }
+    return rounding;
+}
+
+/// Moves it in no time off the surfaces of a frame that are nearer than the clearance, m.
+bool ParticleStep::step_aside(BodyId frame, double clearance) {
+    const MovingPose pose = rules_->bodies->pose(frame, stored_.time);
+    const Vec3 image = frame == kAtRest ? stored_.position : pose.image(stored_.position);
+    const auto displacement =
+        displacement_to_clear(rules_->bodies->world(frame), image, particle_.state.radius, clearance);
+    if (!displacement) return false;
+    const Vec3 aside = image + *displacement;
+    if (!take_link({flush_tiny(frame == kAtRest ? aside : pose.point(aside)), stored_.time})) return false;
+    particle_.ridden.reset();  // where it rested it is no longer
+    return true;
+}
+
+/// In its frame a rigid collider leaves a particle room at all times, but stored positions are rounded in the world:
+/// between surfaces that are nearer to each other than that, carried positions may lie behind them. Moves the particle
+/// to where it has more room in the frame, and waits then.
+bool ParticleStep::wait_with_clearance(double until) {
+    for (const double roundings : kClearances) {
+        const auto waits_in = [&](BodyId frame) {
+            if (stored_.time < until && step_aside(frame, roundings * rounding_in(frame, until))) {
+                static_cast<void>(carry_on(frame, until));
+            }
+        };
+        waits_in(kAtRest);
+        for (BodyId body = 0; body < rules_->bodies->size(); ++body) waits_in(body);
+        if (stored_.time >= until) return true;
+    }
+    return false;
+}
+
+/// Moves it from where its clock has stood still to a position at the present time, where that is a free link.
+bool ParticleStep::take_late_link(const Vec3& position) {
+    const StoredPosition next{flush_tiny(position), particle_.state.time};
+    const bool is_free = is_link_free_of_bodies(stored_, next) &&
+                         rules_->bodies->deforming().is_late_link_free(stored_, next, particle_.state.radius);
+    if (!is_free) return false;
+    go_along_link(next);
+    particle_.ridden.reset();
+    return true;
+}
+
+/// At once, wherever meshes that deform have been meanwhile: where they have left it no room for a time, no chain of
+/// links leads through that. It goes where a frame has taken its place, or a triangle that was near.
+bool ParticleStep::catch_up_directly() {
+    constexpr std::size_t kMostTriangles = 8;
+    const MovingColliders& bodies = *rules_->bodies;
+    if (bodies.deforming().empty()) return false;
+    const double now = particle_.state.time;
+    if (take_late_link(stored_.position)) return true;
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        const Vec3 image = bodies.pose(body, stored_.time).image(stored_.position);
+        if (take_late_link(bodies.pose(body, now).point(image))) return true;
+    }
+    std::vector<SurfaceId> nearest;
+    bodies.deforming().nearest_to(stored_.position, stored_.time, kMostTriangles, nearest);
+    return std::any_of(nearest.begin(), nearest.end(),
+                       [&](SurfaceId surface) { return take_late_link(carried_by_mesh(surface, now)); });
+}
+
 bool ParticleStep::catch_up() {
     if (!(stored_.time < particle_.state.time)) return true;
     if (wait_out(particle_.state.time)) return true;
+    if (catch_up_directly()) {
+        state().position = stored_.position;
+        return true;
+    }
     outcome_.unsimulated_time = remaining_;
     outcome_.squeezed = 1;
     remaining_ = 0.0;

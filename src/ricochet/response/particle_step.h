@@ -166,6 +166,10 @@ private:
     [[nodiscard]] bool carry_on(BodyId frame, double until);
     [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
     [[nodiscard]] bool take_link(const StoredPosition& next);
+    void go_along_link(const StoredPosition& next);
+    [[nodiscard]] bool take_late_link(const Vec3& position);
+    [[nodiscard]] bool catch_up_directly();
+    [[nodiscard]] bool is_link_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const;
     [[nodiscard]] Vec3 carried_by_mesh(SurfaceId surface, double until) const;
     [[nodiscard]] bool carry_by_mesh(SurfaceId surface, double until, int depth);
     [[nodiscard]] bool carry_by_meshes(double until);
@@ -175,6 +179,10 @@ private:
         return is_link_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
     }
     [[nodiscard]] bool wait_out(double until);
+    void wait_by_turns(double until);
+    [[nodiscard]] bool wait_with_clearance(double until);
+    [[nodiscard]] bool step_aside(BodyId frame, double clearance);
+    [[nodiscard]] double rounding_in(BodyId frame, double until) const;
     void stop_at_contact(const ContactQuery& query, ContactQueryResult& found);
     [[nodiscard]] CertifiedPath follow_freely(const NearSurfaces& near, const ContactQuery& query);
     void leave_surface(const NearSurfaces& near);

@@ -89,6 +89,7 @@ struct Simulation::Impl {
     [[nodiscard]] std::optional<ParticleRange> spawn_children(const TimeSpan& step);
     void retire_particles(double time);
     void check_spheres(double begin, double end);
+    void check_end(double time);
     void end_step();
 
     /// Between the steps of advance() nothing asks where a particle in free flight is. But bounds and checks do in

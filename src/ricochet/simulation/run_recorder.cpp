@@ -140,6 +140,11 @@ void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {
     list(found);
 }
 
+void RunRecorder::add_violations(const std::vector<Violation>& found) {
+    statistics_.violations += found.size();
+    list(found);
+}
+
 void RunRecorder::add_pair_violations(const std::vector<Violation>& found) {
     statistics_.pair_violations += found.size();
     list(found);
@@ -252,6 +257,14 @@ void RunCheck::check_rebounds(std::uint64_t particle, std::span<const RecordedIm
     }
 }
 
+std::vector<Violation> RunCheck::check_end(const Particles& particles, double time) const {
+    std::vector<Violation> found;
+    for (std::size_t i = 0; i < watched_.size(); ++i) {
+        verifier_.check_end(particles.id[i], time, watched_[i], found);
+    }
+    return found;
+}
+
 std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,
                                                 const verify::PairBooks& books) {
     std::vector<Violation> found;
@@ -284,6 +297,7 @@ void RunCheck::restart(const ParticleStore& store, double now) {
     parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
+            watched_[i].checked_until = now;
         }
     });
 }

@@ -198,6 +198,7 @@ public:
     /// Of a part of the step.
     void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);
     void add_pair_violations(const std::vector<Violation>& found);
+    void add_violations(const std::vector<Violation>& found);
     [[nodiscard]] const std::vector<PairImpactRecord>& pair_records() const { return pair_records_; }
     void add_loads(std::span<const ColliderLoad> loads, const ColliderList& colliders);
 
@@ -243,6 +244,8 @@ public:
     /// Appends impacts of a particle whose rebound is not that of the surfaces that were hit.
     static void check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
                                std::vector<Violation>& violations);
+    /// What is wrong with the particles whose clocks stand still where the run ends, at a time, s.
+    [[nodiscard]] std::vector<Violation> check_end(const Particles& particles, double time) const;
     /// Begins to watch all particles from where they are, at a time, s; where their clocks stand still, from theirs.
     void restart(const ParticleStore& store, double now);
     /// Keeps what Particles::compact() keeps.

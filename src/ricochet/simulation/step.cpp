@@ -99,6 +99,7 @@ void Simulation::Impl::step() {
     } while (batch);
     retire_particles(step.end);
     check_spheres(step.begin, step.end);
+    check_end(step.end);
     end_step();
     report_contacts();
 }
@@ -290,6 +291,12 @@ void Simulation::Impl::check_spheres(double begin, double end) {
         check->check_spheres(particles(), {begin, end}, may_be_planned ? kMostPlannedOverlap : kMostMetOverlap));
     SimulationStatistics& statistics = recorder.statistics();
     statistics.overlap_verified = std::max(statistics.overlap_verified, check->largest_overlap());
+}
+
+// In the last step of the run.
+void Simulation::Impl::check_end(double time) {
+    if (!check || recorder.statistics().steps + 1 < clock.steps()) return;
+    recorder.add_violations(check->check_end(particles(), time));
 }
 
 // Depths of penetration are added up by blocks of all particles, active or not; no other sum depends on how the active

@@ -183,13 +183,14 @@ bool CheckedDeformation::is_on_surface(const Vec3& p, double time) const {
     return is_on;
 }
 
-void CheckedDeformation::find_crossings(const Segment& segment, std::vector<CheckedFrame::Crossing>& crossings) const {
+void CheckedDeformation::find_crossings(const Segment& segment, bool is_late,
+                                        std::vector<CheckedFrame::Crossing>& crossings) const {
     Box3 box;
     box.include(segment.from);
     box.include(segment.to);
     const Span span{segment.begin, segment.end};
     const std::vector<Moment> moments = moments_of(span);
-    const bool leads_over_key = moments.size() > 2;
+    const bool leads_over_key = !is_late && moments.size() > 2;
     visit_near(box, span, [&](std::uint32_t triangle) {
         Box3 swept;
         for (const Moment& moment : moments) {

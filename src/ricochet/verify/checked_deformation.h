@@ -33,8 +33,9 @@ public:
     [[nodiscard]] Side side(const Vec3& p, double time) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
     /// Appends the crossings of a segment that was travelled. Each has to be free of all triangles in space and time,
-    /// and to end where the mesh has a key, unless it is far from it.
-    void find_crossings(const Segment& segment, std::vector<CheckedFrame::Crossing>& crossings) const;
+    /// and to end where the mesh has a key, unless it is far from it. One that is late, because the particle's clock
+    /// has stood still, may lead over keys: its corners go straight all the same.
+    void find_crossings(const Segment& segment, bool is_late, std::vector<CheckedFrame::Crossing>& crossings) const;
     /// Calls found(collider, triangle) for every triangle that a sphere about a point overlaps; see CheckedFrame.
     template <class Found>
     void visit_overlapped(const Vec3& p, double time, double radius, double largest, const Found& found) const {

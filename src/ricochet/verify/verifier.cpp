@@ -42,8 +42,10 @@ struct Verifier::Impl {
     Impl(const std::vector<VerifiedSurface>& surfaces, const VerifiedMotion& motion);
 
     void check_chain(const Judged& judged, const VerifiedParticle& particle) const;
-    void check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const;
+    void check_segment(const Judged& judged, const Segment& segment, const VerifiedParticle& particle,
+                       bool starts_on_surface) const;
     void check_sides(const Judged& judged, VerifiedParticle& particle) const;
+    void compare_sides(const Judged& judged, const std::vector<Side>& before, const std::vector<Side>& after) const;
     void check_distance(const Judged& judged, VerifiedParticle& particle) const;
     static void check_energy(const Judged& judged);
     [[nodiscard]] bool moves() const { return frames.size() > 1 || !deformations.empty(); }
@@ -113,7 +115,8 @@ void Verifier::Impl::check_chain(const Judged& judged, const VerifiedParticle& p
     expect(at, step.to, time, step.stored_time);
 }
 
-void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment, bool starts_on_surface) const {
+void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment, const VerifiedParticle& particle,
+                                   bool starts_on_surface) const {
     // A position belongs to the segment before; where something moves, staying there is a way.
     if (same_bits(segment.from, segment.to) && !moves()) return;
     if (!is_finite(segment.from) || !is_finite(segment.to)) {
@@ -127,7 +130,7 @@ void Verifier::Impl::check_segment(const Judged& judged, const Segment& segment,
     }
     const bool passes = !same_bits(segment.from, segment.to) || segment.begin != segment.end;
     for (const CheckedDeformation& deformation : deformations) {
-        if (passes) deformation.find_crossings(segment, crossings);
+        if (passes) deformation.find_crossings(segment, segment.begin < particle.checked_until, crossings);
     }
     std::sort(crossings.begin(), crossings.end(), [](const auto& a, const auto& b) {
         return a.collider != b.collider ? a.collider < b.collider : a.triangle < b.triangle;
@@ -143,11 +146,16 @@ void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particl
     if (!is_finite(step.to)) return;
     std::vector<Side> sides = sides_of(step.to, step.stored_time);
     if (particle.sides.empty()) particle.sides.assign(sides.size(), Side::on_surface);
+    compare_sides(judged, particle.sides, sides);
+    particle.sides = std::move(sides);
+}
+
+void Verifier::Impl::compare_sides(const Judged& judged, const std::vector<Side>& before,
+                                   const std::vector<Side>& after) const {
     std::size_t first = 0;
     const auto compare = [&](std::size_t k, std::uint32_t collider) {
-        const Side before = particle.sides[k];
-        if (before == sides[k] || before == Side::on_surface) return;
-        judged.report(ViolationKind::wrong_side, step.to, step.time, collider);
+        if (before[k] == after[k] || before[k] == Side::on_surface) return;
+        judged.report(ViolationKind::wrong_side, judged.step.to, judged.step.time, collider);
     };
     for (const CheckedFrame& frame : frames) {
         frame.visit_sides([&](std::size_t k, std::uint32_t collider) { compare(first + k, collider); });
@@ -156,7 +164,6 @@ void Verifier::Impl::check_sides(const Judged& judged, VerifiedParticle& particl
     for (const CheckedDeformation& deformation : deformations) {
         if (deformation.is_closed()) compare(first++, deformation.collider());
     }
-    particle.sides = std::move(sides);
 }
 
 void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& particle) const {
@@ -215,6 +222,7 @@ VerifiedParticle Verifier::watch(const Vec3& position, double radius, double tim
     VerifiedParticle particle;
     particle.position = position;
     particle.time = time;
+    particle.checked_until = time;
     if (!is_finite(position)) return particle;
     particle.sides = impl_->sides_of(position, time);
     particle.is_on_surface =
@@ -235,13 +243,14 @@ void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::
     const bool stays = step.segments.empty() && (!impl_->moves() || particle.time == step.stored_time);
     if (stays && same_bits(step.from, particle.position) && same_bits(step.to, particle.position)) {
         Impl::check_energy(judged);
+        particle.checked_until = step.time;
         return;
     }
     if (!particle.sides.empty()) require_same_length(particle.sides.size(), impl_->side_count(), "sides of a particle");
     impl_->check_chain(judged, particle);
     bool starts_on_surface = particle.is_on_surface;
     for (const Segment& segment : step.segments) {
-        impl_->check_segment(judged, segment, starts_on_surface);
+        impl_->check_segment(judged, segment, particle, starts_on_surface);
         starts_on_surface = starts_on_surface && same_bits(segment.from, segment.to);
     }
     impl_->check_sides(judged, particle);
@@ -249,7 +258,15 @@ void Verifier::check(const VerifiedStep& step, VerifiedParticle& particle, std::
     Impl::check_energy(judged);
     particle.position = step.to;
     particle.time = step.stored_time;
+    particle.checked_until = step.time;
     particle.is_on_surface = starts_on_surface;
+}
+
+void Verifier::check_end(std::uint64_t id, double time, const VerifiedParticle& particle,
+                         std::vector<Violation>& violations) const {
+    if (!(particle.time < time) || !impl_->moves() || particle.sides.empty()) return;
+    const VerifiedStep end{id, particle.position, particle.position, 0.0, time, {}, {}, particle.time};
+    impl_->compare_sides({end, violations}, particle.sides, impl_->sides_of(particle.position, time));
 }
 
 }  // namespace ricochet

@@ -90,7 +90,8 @@ struct VerifiedParticle {
     bool is_on_surface = false;  ///< of any surface, open ones included
     /// False while it overlaps something from its birth on: its distance is not judged until it has been free once.
     bool has_been_free = true;
-    double time = 0.0;  ///< s, at which it stood there
+    double time = 0.0;           ///< s, at which it stood there
+    double checked_until = 0.0;  ///< s, when the last step ended; after `time` where its clock has stood still
 };
 
 /// How a particle's motion changed in a step, where that is recorded.
@@ -131,6 +132,11 @@ public:
     /// Updates what is remembered. Throws InputError for a particle that another verifier has watched, with another
     /// number of sides.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
+
+    /// Appends the closed surfaces on whose other side a particle ends whose clock stands still: they have passed it
+    /// meanwhile. time: s, now.
+    void check_end(std::uint64_t id, double time, const VerifiedParticle& particle,
+                   std::vector<Violation>& violations) const;
 
 private:
     struct Impl;

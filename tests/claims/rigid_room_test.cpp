@@ -1,0 +1,139 @@
+// A closed collider that moves rigidly leaves the particles in it room at all times: none is left outside, and no clock
+// stands still, also between walls that are nearer to each other than the world's coordinates are rounded.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "claims/moving_scene.h"
+#include "claims/winding.h"
+#include "ricochet/core/random.h"
+#include "ricochet/simulation.h"
+#include "support/counts.h"
+#include "support/simple_meshes.h"
+
+namespace ricochet::testing {
+namespace {
+
+/// A tetrahedron with a tip far from its base.
+TriangleMesh needle(double height) {
+    return {{{-0.3, -0.2, -0.25}, {0.3, -0.2, -0.25}, {0, 0.35, -0.25}, {0.02 * height, 0.015 * height, height}},
+            {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+}
+
+MeshShape shape_of(const TriangleMesh& mesh) { return {std::make_shared<const TriangleMesh>(mesh), {}, "", {}}; }
+
+/// Runs to the end. All particles are inside the first collider, a mesh, after each step, and their clocks go on.
+void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
+    while (!simulation.finished()) {
+        simulation.step();
+        const MovingPose pose = simulation.collider_pose(0, simulation.time());
+        for (const Vec3& position : simulation.particles().position) {
+            EXPECT_EQ(winding_number(mesh, pose.image(position)), 1) << simulation.time();
+        }
+    }
+    EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().squeezed, 0U);
+    EXPECT_EQ(simulation.statistics().frozen, 0U);
+}
+
+/// Rests while particles run into its tip, and is then carried far away and turned.
+SimulationSetup flung_needle(const TriangleMesh& mesh, double far, double restitution, double time_step) {
+    auto setup = setup_of({frame_of("needle", motions_through({{0.0, {}, {0, 0, 1}, 0.0},
+                                                               {0.4, {}, {0, 0, 1}, 0.0},
+                                                               {1.2, {far, -far, 0.5 * far}, {1, 2, 0}, 150.0},
+                                                               {1.7, {far, 0, 0.5 * far}, {0, 0, 1}, 0.0}}))},
+                          {{"needle", shape_of(mesh), 0, "needle"}}, time_step, 2.0);
+    setup.materials = {{"", restitution, 0.0}};
+    return setup;
+}
+
+TEST(ParticlesInTheTipOfANeedle, StayInItWhereverItIsCarried) {
+    const TriangleMesh mesh = needle(20.0);
+    for (const double far : {10.0, 1e3, 1e5}) {
+        for (const double restitution : {0.0, 0.1, 0.2, 0.7, 1.0}) {
+            for (const double time_step : {1.0 / 30.0, 1.0 / 60.0}) {
+                SCOPED_TRACE(std::to_string(far) + " " + std::to_string(restitution) + " " + std::to_string(time_step));
+                auto setup = flung_needle(mesh, far, restitution, time_step);
+                for (const double speed : {5.0, 40.0}) {
+                    for (int k = 0; k < 3; ++k) {
+                        setup.particles.push_back(
+                            particle_of({0.01 * k, 0.02, 0}, {0.4 * speed, 0.3 * speed, 20.0 * speed}));
+                    }
+                    setup.particles.push_back(particle_of({0, 0, 0}, {0, 0, speed}, 0.01));
+                }
+                Simulation simulation(std::move(setup));
+                expect_all_inside(simulation, mesh);
+            }
+        }
+    }
+}
+
+// Needles of random shape, on random ways.
+TEST(ParticlesInANeedle, StayInItOnAnyWay) {
+    for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(40)); ++seed) {
+        SCOPED_TRACE(seed);
+        RandomSequence random(seed, 11, 0);
+        const double size = std::pow(10.0, 2.0 * random.uniform() - 1.0);
+        const double far = size * std::pow(10.0, 6.0 * random.uniform());
+        TriangleMesh mesh = needle(2.0 + 100.0 * random.uniform());
+        for (Vec3& vertex : mesh.vertices) vertex *= size;
+        std::vector<KeyPose> poses{{0.0, {}, {0, 0, 1}, 0.0}};
+        for (int k = 0; k < 4; ++k) {
+            const double time = poses.back().time + 0.02 + 0.5 * random.uniform();
+            poses.push_back(
+                {time, far * random.in_unit_ball(), random.unit_vector(), 340.0 * random.uniform() - 170.0});
+        }
+        auto setup = setup_of({frame_of("needle", motions_through(poses))}, {{"needle", shape_of(mesh), 0, "needle"}},
+                              random.uniform() < 0.5 ? 1.0 / 30.0 : 0.01, poses.back().time + 0.1);
+        setup.materials = {{"", random.uniform() < 0.5 ? 0.2 * random.uniform() : random.uniform(), 0.3}};
+        for (int k = 0; k < 4; ++k) {
+            setup.particles.push_back(particle_of(0.1 * size * random.in_unit_ball(),
+                                                  100.0 * size * random.uniform() * random.unit_vector(),
+                                                  k < 3 ? 0.0 : 0.01 * size));
+        }
+        Simulation simulation(std::move(setup));
+        expect_all_inside(simulation, mesh);
+    }
+}
+
+// Bodies that what is in them pushes.
+TEST(ParticlesInABody, StayInIt) {
+    const TriangleMesh mesh = needle(6.0);
+    for (const JointKind joint : {JointKind::free, JointKind::hinge}) {
+        for (const double restitution : {0.0, 0.2, 1.0}) {
+            SCOPED_TRACE(std::to_string(static_cast<int>(joint)) + " " + std::to_string(restitution));
+            FrameDescription frame = frame_of("body", {}, {1e3, -1e3, 500.0});
+            frame.is_driven = true;
+            auto setup = setup_of({frame}, {{"needle", shape_of(mesh), 0, "body"}}, 1.0 / 30.0, 0.5);
+            BodyDescription body;
+            body.frame = "body";
+            body.mass = 10.0;
+            body.inertia = {.xx = 5.0, .yy = 5.0, .zz = 2.0};
+            body.joint = joint;
+            body.axis = {1, 2, 0};
+            body.rate = 3.0;
+            if (joint == JointKind::free) {
+                body.velocity = {100.0, 0, 30.0};
+                body.angular_velocity = {5, -3, 2};
+            }
+            setup.bodies = {body};
+            setup.materials = {{"", restitution, 0.2}};
+            const Vec3 flight = joint == JointKind::free ? body.velocity : Vec3{};
+            for (int k = 0; k < 3; ++k) {
+                const Vec3 start = frame.translation + Vec3{0.02 * k, 0, 0.1};
+                setup.particles.push_back(particle_of(start, flight + Vec3{0.4, 0.3, 20.0}, k == 2 ? 0.02 : 0.0));
+                setup.particles.back().mass = 0.1;
+            }
+            Simulation simulation(std::move(setup));
+            expect_all_inside(simulation, mesh);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

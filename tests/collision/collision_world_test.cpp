@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <string>
 
 #include "collision/worlds.h"
 #include "ricochet/core/error.h"
@@ -164,6 +166,28 @@ TEST(CollisionWorld, LeavesDegenerateTrianglesOutOfCollisionsButKeepsTheirNumber
     EXPECT_FALSE(world.is_degenerate(2));
     EXPECT_TRUE(world.is_degenerate(3));
     EXPECT_EQ(world.mesh_of(0)->triangles.size(), 4U);
+}
+
+// From end to end, or along one axis; in no case in silence.
+TEST(CollisionWorld, RefusesSurfacesBelowTheSmallestSizeAndNamesTheCollider) {
+    const auto expect_refused = [](const ColliderShape& shape) {
+        const std::string message = refusal({"speck", shape, 0, ""});
+        EXPECT_NE(message.find("collider \"speck\": it measures"), std::string::npos) << message;
+        EXPECT_NE(message.find("at least 1e-60 m"), std::string::npos) << message;
+    };
+    Placement tiny;
+    tiny.scale = {1e-70, 1e-70, 1e-70};
+    Placement flattened;
+    flattened.scale = {1, 1, 1e-90};
+    expect_refused(BallShape{1e-70, {}});
+    expect_refused(BallShape{1.0, flattened});
+    expect_refused(CylinderShape{1.0, 1e-308, {}});
+    expect_refused(CylinderShape{1e-300, 1.0, {}});
+    expect_refused(CuboidShape{{1, 1, 1e-90}, {}});
+    expect_refused(CuboidShape{{1, 1, 1}, tiny});
+    expect_refused(MeshShape{std::make_shared<const TriangleMesh>(box_mesh({0, 0, 0}, {1, 1, 1})), tiny, "", {}});
+    EXPECT_EQ(refusal({"small", BallShape{1e-60, {}}, 0, ""}), "");
+    EXPECT_EQ(refusal({"small", CuboidShape{{1e-60, 1e-60, 1}, {}}, 0, ""}), "");
 }
 
 }  // namespace

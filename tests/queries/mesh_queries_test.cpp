@@ -158,5 +158,22 @@ TEST(MeshQueries, DirectionsOfAnyLengthAreTheSameRay) {
     EXPECT_EQ(unit_box().first_hits({origins, directions}).distance, std::vector<double>(4, 1.0));
 }
 
+TEST(MeshQueries, AnswerAtEverySizeOrRefuseItByName) {
+    for (const double size : {1e75, 1.0, 1e-40, 1e-59, 1e-61, 1e-90, 1e-200, 1e-300}) {
+        SCOPED_TRACE(size);
+        const TriangleMesh box = testing::box_mesh({}, Vec3{size, size, size});
+        if (size < 1e-60) {
+            EXPECT_THROW(MeshQueries{box}, InputError);
+            continue;
+        }
+        const MeshQueries queries(box);
+        const Points origins{Vec3{-0.5 * size, 0.25 * size, 0.5 * size}};
+        const Points directions{{1, 0, 0}};
+        EXPECT_EQ(queries.count_hits({origins, directions}), (std::vector<std::uint64_t>{2}));
+        const Points points{Vec3{0.5 * size, 0.25 * size, 0.5 * size}, origins[0]};
+        EXPECT_EQ(queries.inside(points), (std::vector<std::uint8_t>{1, 0}));
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -71,9 +71,11 @@ TEST(PairBooks, SpheresMayBeApartByTheErrorOfTheArcsThatTheyHaveRolledOnWalls) {
     PairMeeting meeting = meeting_of(1.0, 0.0);
     meeting.spheres[1].before.position.x += 5e-9;
     EXPECT_TRUE(is_wrong(meeting, {}));
-    meeting.spheres[0].bound_way = 0.002;
+    meeting.spheres[0].bound_way = 0.01;
+    EXPECT_FALSE(is_wrong(meeting, {}));
+    meeting.spheres[1].before.position.x += 1.5e-7;
     EXPECT_TRUE(is_wrong(meeting, {}));
-    meeting.spheres[1].bound_way = 0.004;
+    meeting.spheres[1].bound_way = 0.1;
     EXPECT_FALSE(is_wrong(meeting, {}));
     meeting.spheres[1].before.position.x += 1e-7;
     EXPECT_TRUE(is_wrong(meeting, {}));

@@ -1,5 +1,7 @@
 #include "ricochet/collision/collision_world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,6 +29,35 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
     }
     if (determinant == 0.0) refuse(collider, "its placement is singular, expected a scale without zeros");
     return map;
+}
+
+/// Refuses a surface whose extents, m, along its own axes are too small once it is placed. A scale of zero is left to
+/// checked_map().
+void require_size(const ColliderDescription& collider, const AffineMap& map, const Vec3& extents) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double scale = max_abs(Vec3{map.row_x[axis], map.row_y[axis], map.row_z[axis]});
+        const double size = extents[axis] * scale;
+        if (size >= kSmallestSize || extents[axis] == 0.0 || scale == 0.0) continue;
+        if (!std::isfinite(scale)) continue;
+        refuse(collider,
+               fmt::format("it measures {:g} m along its own {} axis, expected at least {:g} m: choose a larger "
+                           "size, scale or unit",
+                           size, "xyz"[axis], kSmallestSize));
+    }
+}
+
+/// The same for a mesh. One that is flat along an axis is as large there as it is elsewhere.
+void require_size(const ColliderDescription& collider, const AffineMap& map, const std::vector<Vec3>& vertices) {
+    Box3 box;
+    for (const Vec3& vertex : vertices) box.include(vertex);
+    const double largest = vertices.empty() ? 0.0 : max_abs(box.size());
+    require_size(collider, map, Vec3{largest, largest, largest});
+}
+
+/// That of a shape, once its size is known to be in the range.
+AffineMap checked_shape(const ColliderDescription& collider, const AffineMap& map) {
+    require_size(collider, map, Vec3{2, 2, 2});
+    return checked_map(collider, map);
 }
 
 void bake_vertices(const ColliderDescription& collider, const std::vector<Vec3>& local, const AffineMap& map,
@@ -94,10 +125,11 @@ void CollisionWorld::add(std::size_t number) {
     if (const auto* plane = std::get_if<PlaneShape>(&collider.shape)) {
         add_plane(number, *plane);
     } else if (const auto* ball = std::get_if<BallShape>(&collider.shape)) {
-        add_shape(number, AnalyticShape::ball(checked_map(collider, world_from_unit(*ball))));
+        add_shape(number, AnalyticShape::ball(checked_shape(collider, world_from_unit(*ball))));
     } else if (const auto* cylinder = std::get_if<CylinderShape>(&collider.shape)) {
-        add_shape(number, AnalyticShape::cylinder(checked_map(collider, world_from_unit(*cylinder))));
+        add_shape(number, AnalyticShape::cylinder(checked_shape(collider, world_from_unit(*cylinder))));
     } else if (const auto* cuboid = std::get_if<CuboidShape>(&collider.shape)) {
+        require_size(collider, world_from_local(cuboid->placement), cuboid->size);
         add_mesh(number, {std::make_shared<const TriangleMesh>(cuboid_mesh(cuboid->size)), cuboid->placement, {}, {}});
     } else {
         add_mesh(number, std::get<MeshShape>(collider.shape));
@@ -165,7 +197,9 @@ void CollisionWorld::add_mesh(std::size_t number, const MeshShape& shape) {
         std::numeric_limits<SurfaceId>::max() / 2) {
         refuse(collider, "the scene's meshes have more than 2^31 triangles or vertices together");
     }
-    const AffineMap map = checked_map(collider, world_from_local(shape.placement));
+    const AffineMap placed = world_from_local(shape.placement);
+    require_size(collider, placed, mesh.vertices);
+    const AffineMap map = checked_map(collider, placed);
     const auto base = static_cast<std::uint32_t>(vertices_.size());
     add_range(number, Kind::mesh);
     vertices_.resize(vertices_.size() + mesh.vertices.size());

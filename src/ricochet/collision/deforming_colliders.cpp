@@ -1,5 +1,7 @@
 #include "ricochet/collision/deforming_colliders.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -82,6 +84,15 @@ void DeformingColliders::add(std::size_t number) {
         mesh.motion = std::make_shared<const MeshMotion>(shape.motion->mapped(map));
     } catch (const InputError& problem) {
         refuse(problem.what());
+    }
+    for (std::size_t key = 0; key < mesh.motion->key_count(); ++key) {
+        Box3 box;
+        for (const Vec3& vertex : mesh.motion->positions(key)) box.include(vertex);
+        const double size = mesh.motion->vertex_count() > 0 ? max_abs(box.size()) : 0.0;
+        if (size > 0.0 && size < kSmallestSize) {
+            refuse(fmt::format("at its key {} it measures {:g} m from end to end, expected at least {:g} m", key, size,
+                               kSmallestSize));
+        }
     }
     colliders_->replace_motion(number, mesh.motion);
     mesh_of_[number] = static_cast<std::uint32_t>(meshes_.size());

@@ -288,6 +288,13 @@ inline constexpr double kMaxSpeed = 299792458.0;
 /// Reason: the predicates multiply three coordinates and must not overflow; far inside kLargestExactCoordinate.
 inline constexpr double kLargestCoordinate = 1e75;
 
+/// Smallest size of a surface, m: of a mesh from end to end, of a shape's diameter and height. Reason: coordinates
+/// below kSmallestExactCoordinate count as zero, which is far below the rounding of such a surface's own; products of
+/// four lengths, with their errors in double-double, stay normal numbers; and the smallest contact offset is less than
+/// 1e-12 of it. Smaller (from 1e-70 on): triangles lose their areas to underflow, and particles and rays miss them.
+/// Larger: nothing that is simulated.
+inline constexpr double kSmallestSize = 1e-60;
+
 /// Largest coefficient of a path, m/s^k, that is followed. Reason: a cubic between two places that are left in next to
 /// no time has ones of their distance over the cube of that; sums of their squares must not overflow in the narrow
 /// phase. Larger: a sphere's way has no roots among numbers that are none, and is left to the certificate alone.

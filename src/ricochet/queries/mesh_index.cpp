@@ -20,6 +20,13 @@ TriangleMesh checked(TriangleMesh mesh) {
     if (mesh.triangles.empty()) throw InputError("mesh: found no triangles, expected at least one");
     require_corners(mesh);
     require_positions(mesh.vertices, "vertices");
+    const double size = max_abs(bounds(mesh).size());
+    if (size > 0.0 && size < kSmallestSize) {
+        throw InputError(
+            fmt::format("mesh: it measures {:g} m from end to end, expected at least {:g} m: choose another "
+                        "unit",
+                        size, kSmallestSize));
+    }
     for (Vec3& vertex : mesh.vertices) vertex = flush_tiny(vertex);
     return mesh;
 }

@@ -81,7 +81,9 @@ private:
         if (!books_.has_exact_paths) return false;
         constexpr double kUlps = 64.0;
         const double tick = kUlps * std::numeric_limits<double>::epsilon();
-        const Long reach = kMostMetOverlap * std::min(a.radius, b.radius) + kBoundGap * (a.bound_way + b.bound_way) +
+        const double smaller = std::min(a.radius, b.radius);
+        const double way = a.bound_way + b.bound_way;
+        const Long reach = kMostMetOverlap * smaller + (way > 0.0 ? kBoundGap * (smaller + way) : 0.0) +
                            tick * std::max(max_abs(a.before.position), max_abs(b.before.position)) +
                            tick * std::fabs(meeting_.time) * speeds(contact);
         return !(distance - a.radius - b.radius <= reach);

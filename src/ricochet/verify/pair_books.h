@@ -17,10 +17,11 @@ namespace ricochet::verify {
 inline constexpr double kPairBooks = 1e-12;
 inline constexpr double kPairAngularBooks = 1e-10;
 
-/// Parts of their ways along walls in the step that spheres may be apart when they meet. Reason: such a way is made of
-/// arcs, planned anew up to the time of impact. Arcs turn by kMaxArcAngle, so both plans differ by up to the fourth
-/// power of it over 120, 8e-7 of the way; 3e-7 has been seen. Smaller: the error of arcs is reported. Larger: impacts
-/// of spheres that do not touch are not seen.
+/// Part of its way along walls in the step, and of the smaller radius, that a sphere may be off when it meets another.
+/// Reason: such a way is made of arcs, planned anew up to the time of impact. Arcs turn by kMaxArcAngle, so both plans
+/// differ by up to the fourth power of it over 120, 8e-7 of the way; 3e-7 has been seen. On surfaces that turn they
+/// differ by up to 2.5e-7 radii (at 3 rad/s and half a metre from the axis, in steps of 2 ms). Smaller: the error of
+/// arcs is reported. Larger: impacts of spheres that do not touch are not seen.
 inline constexpr double kBoundGap = 1e-6;
 
 /// What spheres are said to do to each other.

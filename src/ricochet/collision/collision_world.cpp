@@ -313,8 +313,13 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 }
 
 double CollisionWorld::size_of(SurfaceId surface) const {
+    // A ball's box is 3.5 of its radii long. A long cylinder bends as much as a short one.
+    constexpr double kMostRadii = 4.0;
     const Range& range = ranges_[collider_of(surface)];
-    return range.kind == Kind::shape ? shapes_[range.index].shape.bounds().diagonal() : bounds_.diagonal();
+    if (range.kind != Kind::shape) return bounds_.diagonal();
+    const AnalyticShape& shape = shapes_[range.index].shape;
+    const double radius = std::fabs(shape.closest_point_of(ShapePart::side, shape.bounds().center()).distance);
+    return std::min(shape.bounds().diagonal(), kMostRadii * radius);
 }
 
 int CollisionWorld::rim_of(SurfaceId surface, const Vec3& p) const {

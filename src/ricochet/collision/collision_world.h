@@ -124,8 +124,8 @@ public:
     /// Signed distance from a plane, a triangle's plane or a shape's part that goes on beyond its rim, m; accurate also
     /// next to it.
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const Vec3& p) const;
-    /// A length that tells how large a shape with a formula is: the diagonal of its box, m; that of all colliders' box
-    /// for planes and triangles.
+    /// A length that tells how large a shape with a formula is: the diagonal of its box, m, at most four of its
+    /// smallest radii; the diagonal of all colliders' box for planes and triangles.
     [[nodiscard]] double size_of(SurfaceId surface) const;
     /// True for planes, triangles and the caps of cylinders.
     [[nodiscard]] bool is_flat(SurfaceId surface) const {

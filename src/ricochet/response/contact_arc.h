@@ -89,6 +89,7 @@ private:
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] double error_of(double t) const;
     [[nodiscard]] double longest_within_tolerance(double duration) const;
+    [[nodiscard]] double longest_swing(double bend) const;
     [[nodiscard]] State by_midpoint_rule(double t) const;
     [[nodiscard]] bool may_jam() const;
     [[nodiscard]] bool ends_a_slip() const;

@@ -189,8 +189,10 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
 /// cuts off goes on in the next step.
 ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, double left) {
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
-    // What is shorter than the clock can tell never passes.
-    const auto passes = [&](double time) { return state_.time + time > state_.time; };
+    // What is shorter than the clock, or the rest of the step, can tell never passes.
+    const auto passes = [&](double time) {
+        return state_.time + time > state_.time && step_.remaining() - time < step_.remaining();
+    };
     for (int part = 0; part < kMostIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
         const Vec3 forces = rules_.forces.acceleration(state_);
         const double before = step_.remaining();

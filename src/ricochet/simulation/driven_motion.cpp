@@ -124,6 +124,7 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
 }
 
 void DrivenMotion::plan_paths(double begin, double end) {
+    planned_loads_ = loads_;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const BodyPath next = bodies_[k].plan(forces_, loads_[k], begin, end);
         if (is_planned_) {
@@ -152,7 +153,7 @@ void DrivenMotion::end_at(double time) {
         // What a spring does is known at the ends of a part.
         const JointSettings& joint = bodies_[k].description().settings;
         const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
-        if (is_cut && is_sprung) path = bodies_[k].plan(forces_, loads_[k], path.begin, time);
+        if (is_cut && is_sprung) path = bodies_[k].plan(forces_, planned_loads_[k], path.begin, time);
         frames_->replace_last_path(frame_of_[k], path);
     }
 }
@@ -343,12 +344,13 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
 /// True where a planned load, with what came back from it, would give a body more than particles lose to it.
 bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
     constexpr double kMuch = 0.1;
-    if (loads_[body].impulse == Vec3{} && loads_[body].moment == Vec3{}) return false;
+    const Wrench& planned_load = planned_loads_[body];
+    if (planned_load.impulse == Vec3{} && planned_load.moment == Vec3{}) return false;
     BodyPath path = planned(body);
     const bool is_whole = end >= path.end;
     path.end = end;
     const double duration = end - path.begin;
-    const Wrench load{duration * loads_[body].impulse, duration * loads_[body].moment};
+    const Wrench load{duration * planned_load.impulse, duration * planned_load.moment};
     Wrench taken;
     double given = 0.0;
     for (const ColliderLoad& part : preview) {
@@ -357,10 +359,10 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
         given += part.work + (part.impact ? yielded(part) : 0.0);
     }
     DrivenBody as_planned = bodies_[body];
-    as_planned.follow(path, loads_[body], load);
+    as_planned.follow(path, planned_load, load);
     const double by_load = 0.5 * (power_of(bodies_[body], load) + power_of(as_planned, load));
     DrivenBody comes = bodies_[body];
-    comes.follow(path, loads_[body], taken);
+    comes.follow(path, planned_load, taken);
     const double gained = comes.kinetic_energy() - as_planned.kinetic_energy() + by_load - given;
     return gained > kMuch * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
 }
@@ -411,8 +413,10 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
-        contacts_[k].taken += {-lain * loads_[k].impulse, -lain * loads_[k].moment};
-        bodies_[k].follow(path, loads_[k], wrenches[k]);
+        // A search for loads that has been given up leaves others behind than those of the path.
+        const Wrench& load = planned_loads_[k];
+        contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
+        bodies_[k].follow(path, load, wrenches[k]);
     }
     if (!bodies_.empty()) lying_for_ += planned(0).end - planned(0).begin;
     is_planned_ = false;

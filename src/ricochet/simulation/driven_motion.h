@@ -124,7 +124,8 @@ private:
     bool was_shortened_ = false;                                     // this part, by what lies on bodies
     bool was_cut_ = false;                // the last plan of this part, by an impact on what lies on bodies
     bool has_given_up_ = false;           // this part: no load fits
-    std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it
+    std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it, as it will be planned next
+    std::vector<Wrench> planned_loads_;   // with which the planned paths were planned
     std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
     double lying_for_ = 0.0;              // s, of this step so far
     std::vector<BodyContacts> contacts_;  // of each body

@@ -302,6 +302,9 @@ std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
     return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
 }
 
+// The height above an edge is computed as inward . d. Each component of d errs by u, of `inward` by some 4 u, and the
+// sum by 3 u more: 16 u of all |d| cover it. Next to the origin that is more than a slack in ulps of the coordinates,
+// and both triangles of a seam would have ended already.
 double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
                           double slack) {
     const std::array<Vec3, 3> corners{a, b, c};
@@ -310,7 +313,9 @@ double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const 
         const Vec3& from = corners[k];
         Vec3 inward = normalized(cross(normal, corners[(k + 1) % 3] - from));
         if (dot(inward, corners[(k + 2) % 3] - from) < 0.0) inward = -inward;
-        const Height g{dot(inward, path.c[0] - from) + slack, dot(inward, path.c[1]), dot(inward, path.c[2])};
+        const Vec3 d = path.c[0] - from;
+        const double rounding = 16.0 * kUnitRoundoff * (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z));
+        const Height g{dot(inward, d) + std::max(slack, rounding), dot(inward, path.c[1]), dot(inward, path.c[2])};
         if (g.g0 < 0.0) return 0.0;
         const bool ends_inside = g.g0 + path.duration * (g.g1 + path.duration * g.g2) >= 0.0;
         const Roots roots = crossings_of_parabola(g, ends_inside, path.duration);

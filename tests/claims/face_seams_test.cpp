@@ -1,0 +1,99 @@
+// The seam of two coplanar triangles is no edge: what lies on it, or slides over it, does so as on one plane, wherever
+// the face stands and however rounding turns its triangles.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "claims/contact_scene.h"
+#include "ricochet/core/random.h"
+#include "ricochet/core/transform.h"
+#include "support/counts.h"
+
+namespace ricochet::testing {
+namespace {
+
+/// A particle on a face of a turned box: the contact point lies on the seam of the face, at the world's origin.
+struct OnSeam {
+    ContactScene scene;
+    Vec3 heading;
+    std::string text;
+};
+
+/// The speed of the belt, or at the start, and gravity, for a box of size 1.
+constexpr double kSpeed = 0.2;
+constexpr double kPull = 10.0;
+
+Vec3 unit_along(std::size_t axis, double sign) {
+    return {axis == 0 ? sign : 0.0, axis == 1 ? sign : 0.0, axis == 2 ? sign : 0.0};
+}
+
+/// A box of random size, turn and face. heading: along an edge of the face, across it, or along its seam.
+OnSeam on_seam(std::uint64_t k, bool has_belt) {
+    RandomSequence random(91, 0, k);
+    const double scale = std::exp(4.0 * random.uniform() - 2.0);
+    Vec3 size{8.0 * scale, 8.0 * scale, scale};
+    if (random.uniform() < 0.5) {
+        size = scale * Vec3{3.0 + random.uniform(), 4.0 + random.uniform(), 5.0 + random.uniform()};
+    }
+    Placement placement;
+    placement.rotation_axis = random.unit_vector();
+    placement.rotation_degrees =
+        random.uniform() < 0.5 ? 10.0 * std::floor(18.0 * random.uniform()) : 180.0 * random.uniform();
+    const auto face = static_cast<std::size_t>(3.0 * random.uniform());
+    const Vec3 up = unit_along(face, random.uniform() < 0.5 ? -1.0 : 1.0);
+    const Vec3 first = unit_along((face + 1) % 3, 1.0);
+    const Vec3 second = unit_along((face + 2) % 3, 1.0);
+    const Vec3 half = 0.5 * Vec3{dot(abs(first), size), dot(abs(second), size), dot(abs(up), size)};
+    const double sign = random.uniform() < 0.5 ? -1.0 : 1.0;
+    const double part = random.uniform() < 0.5 ? 0.0 : random.uniform() - 0.5;
+    const Vec3 foot = half.z * up + part * (half.x * first + sign * half.y * second);
+    const double kind = random.uniform();
+    const Vec3 seam = normalized(half.x * first + sign * half.y * second);
+    const Vec3 along = kind < 0.4 ? seam : (kind < 0.7 ? first : normalized(first + 2.0 * second));
+
+    const AffineMap turn = world_from_local(placement);
+    const Vec3 normal = turn.direction(up);
+    placement.position = -turn.direction(foot);
+    OnSeam result;
+    result.heading = turn.direction(along);
+    Material material{"face", 0.0, has_belt ? 0.5 : 0.0};
+    if (has_belt) material.motion.velocity = kSpeed * scale * result.heading;
+    const double radius = random.uniform() < 0.6 ? 0.0 : (random.uniform() < 0.5 ? 0.1 : 0.001) * scale;
+    result.scene.materials = {material};
+    result.scene.colliders = {{"box", CuboidShape{size, placement}, 0}};
+    result.scene.gravity = -(kPull * scale) * normal;
+    result.scene.particle.radius = radius;
+    result.scene.particle.position = (radius + 1e-12 * scale) * normal;
+    if (!has_belt) result.scene.particle.velocity = kSpeed * scale * result.heading;
+    result.scene.time_step = 0.1;
+    result.text =
+        "case " + std::to_string(k) + ", scale " + std::to_string(scale) + ", radius " + std::to_string(radius);
+    return result;
+}
+
+TEST(SeamOfAFace, IsNotFeltByWhatSlidesWithoutFriction) {
+    for (int k = 0; k < test::scaled(200) * test::case_factor(20); ++k) {
+        const OnSeam on = on_seam(static_cast<std::uint64_t>(k), false);
+        const double speed = length(on.scene.particle.velocity);
+        const Particle end = end_of(on.scene);
+        ASSERT_NEAR(dot(end.velocity, on.heading), speed, 1e-9 * speed) << on.text;
+        ASSERT_NEAR(dot(end.position, on.heading), speed, 1e-9 * speed) << on.text;
+    }
+}
+
+TEST(SeamOfAFace, LetsABeltCarryWhatLiesOnIt) {
+    for (int k = 0; k < test::scaled(200) * test::case_factor(20); ++k) {
+        const OnSeam on = on_seam(static_cast<std::uint64_t>(k), true);
+        const double belt = length(on.scene.materials[0].motion.velocity);
+        const double carried = on.scene.particle.radius > 0.0 ? 2.0 / 7.0 * belt : belt;
+        const Particle end = end_of(on.scene);
+        // The belt grips with half of the weight until it has brought the particle to its speed.
+        const double gripping = carried / (0.5 * length(on.scene.gravity));
+        ASSERT_NEAR(dot(end.velocity, on.heading), carried, 1e-6 * belt) << on.text;
+        ASSERT_NEAR(dot(end.position, on.heading), carried * (1.0 - 0.5 * gripping), 1e-5 * belt) << on.text;
+    }
+}
+
+}  // namespace
+}  // namespace ricochet::testing

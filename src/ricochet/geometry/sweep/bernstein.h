@@ -18,7 +18,7 @@ template <>
 constexpr double kError<DoubleDouble> = 0x1p-92;
 
 /// Below this, products may have been rounded to zero, and nothing is certain.
-inline constexpr double kSmallestSize = 0x1p-900;
+inline constexpr double kSmallestCoefficient = 0x1p-900;
 
 inline double high(double x) { return x; }
 inline double high(const DoubleDouble& x) { return x.hi; }
@@ -34,7 +34,7 @@ struct Polynomial {
     [[nodiscard]] bool has_sign(int sign) const {
         for (std::size_t k = 0; k <= Degree; ++k) {
             const double value = static_cast<double>(sign) * high(c[k]);
-            if (!(size[k] > kSmallestSize) || !(value > kError<Real> * size[k]) || !std::isfinite(value)) return false;
+            if (!(size[k] > kSmallestCoefficient) || !(value > kError<Real> * size[k]) || !std::isfinite(value)) return false;
         }
         return true;
     }

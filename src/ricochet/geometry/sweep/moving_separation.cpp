@@ -149,7 +149,7 @@ bool are_beyond(const Points& control, double rounding, double radius, const Mov
             const Vec3 p = *(control.begin() + k);
             const Vec3 offset = p - corner.at(part);
             const double error = kError<double> * (dot(size, abs(offset)) + least) + rounding * dot(size, abs(p));
-            if (!(error > kError<double> * kSmallestSize && dot(n, offset) - least > error)) return false;
+            if (!(error > kError<double> * kSmallestCoefficient && dot(n, offset) - least > error)) return false;
         }
     }
     return true;

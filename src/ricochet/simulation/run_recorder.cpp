@@ -260,7 +260,7 @@ void RunCheck::check_rebounds(std::uint64_t particle, std::span<const RecordedIm
 std::vector<Violation> RunCheck::check_end(const Particles& particles, double time) const {
     std::vector<Violation> found;
     for (std::size_t i = 0; i < watched_.size(); ++i) {
-        verifier_.check_end(particles.id[i], time, watched_[i], found);
+        if (watched_[i]) verifier_.check_end(particles.id[i], time, *watched_[i], found);
     }
     return found;
 }
@@ -296,8 +296,10 @@ void RunCheck::restart(const ParticleStore& store, double now) {
     watched_.assign(particles.size(), std::nullopt);
     parallel_for_blocks(particles.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            watched_[i] = verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
-            watched_[i].checked_until = now;
+            VerifiedParticle watched =
+                verifier_.watch(particles.position[i], particles.radius[i], store.stored_time(i, now));
+            watched.checked_until = now;
+            watched_[i] = std::move(watched);
         }
     });
 }

@@ -95,5 +95,35 @@ TEST(SeamOfAFace, LetsABeltCarryWhatLiesOnIt) {
     }
 }
 
+// All triangles of a fan meet where the particle lies.
+TEST(HubOfAFlatFan, IsNotFeltByWhatABeltCarriesFromIt) {
+    for (int k = 0; k < test::scaled(100) * test::case_factor(20); ++k) {
+        RandomSequence random(95, 0, static_cast<std::uint64_t>(k));
+        const Vec3 normal = random.unit_vector();
+        const auto [first, second] = tangent_frame(normal);
+        const auto count = static_cast<std::uint32_t>(3.0 + 9.0 * random.uniform());
+        TriangleMesh fan;
+        fan.vertices.push_back({});
+        for (std::uint32_t j = 0; j < count; ++j) {
+            const double angle = 2.0 * kPiNumber * j / count;
+            fan.vertices.push_back(4.0 * (std::cos(angle) * first + std::sin(angle) * second));
+            fan.triangles.push_back({0, 1 + j, 1 + (j + 1) % count});
+        }
+        const Vec3 heading = random.uniform() < 0.5 ? first : normalized(first + (random.uniform() - 0.5) * second);
+        ContactScene scene;
+        scene.materials = {{"belt", 0.0, 0.5}};
+        scene.materials[0].motion.velocity = kSpeed * heading;
+        scene.colliders = {mesh_collider(fan)};
+        scene.gravity = -kPull * normal;
+        scene.particle.radius = random.uniform() < 0.5 ? 0.0 : 0.05;
+        scene.particle.position = (scene.particle.radius + 1e-12) * normal;
+        scene.time_step = 0.1;
+        const double carried = scene.particle.radius > 0.0 ? 2.0 / 7.0 * kSpeed : kSpeed;
+        const Particle end = end_of(scene);
+        ASSERT_NEAR(dot(end.velocity, heading), carried, 1e-6 * kSpeed) << "case " << k;
+        ASSERT_NEAR(dot(end.position, heading), carried * (1.0 - carried / kPull), 1e-5 * kSpeed) << "case " << k;
+    }
+}
+
 }  // namespace
 }  // namespace ricochet::testing

@@ -325,12 +325,27 @@ TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
 
 TEST(TriangleExitTime, IsWhereThePathLeavesTheTriangle) {
     const Vec3 up{0, 0, 1};
-    EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0);
+    EXPECT_NEAR(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0, 1e-13);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 0.25), kA, kB, kC, up, 0.0), 0.25);
     EXPECT_EQ(triangle_exit_time(line_path({-1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.5), 0.0);
     const Path braking = parabola_path({1, 1, 0}, {0, 2, 0}, {0, -2, 0}, 2.0);  // turns at y = 2, before the edge at 3
-    EXPECT_DOUBLE_EQ(triangle_exit_time(braking, kA, kB, kC, up, 0.0), 2.0);
+    EXPECT_NEAR(triangle_exit_time(braking, kA, kB, kC, up, 0.0), 2.0, 1e-13);
+}
+
+// Next to the origin a point has far smaller coordinates than the corners, by whose rounding it was beyond both edges.
+TEST(TriangleExitTime, HasNoPlaceBetweenTheTrianglesOfASeam) {
+    RandomSequence random(18, 0, 0);
+    for (int i = 0; i < test::scaled(2000); ++i) {
+        const Vec3 normal = random.unit_vector();
+        const auto [first, second] = tangent_frame(normal);
+        const Vec3 a = 4.0 * random.uniform() * first + random.uniform() * second;  // the seam, from a to -a
+        const Vec3 b = 3.0 * second - 2.0 * random.uniform() * first;
+        const Path path = line_path(1e-20 * random.uniform() * second, first, 1e-12);
+        const double on_one = triangle_exit_time(path, a, -a, b, normal, 1e-30);
+        const double on_other = triangle_exit_time(path, -a, a, -b, normal, 1e-30);
+        ASSERT_GT(std::max(on_one, on_other), 0.0) << i;
+    }
 }
 
 TEST(SignedDistance, HasTheRightSignAndSizeNextToThePlane) {

@@ -46,8 +46,9 @@ struct Crossing {
 /// First crossing of a plane.
 [[nodiscard]] std::optional<Crossing> first_crossing(const Path& path, const Plane& plane);
 
-/// Time at which a path that runs along the plane of (a, b, c) leaves the triangle by more than `slack` metres, in
-/// [0, duration]; 0 when it starts outside. `normal` is the triangle's unit normal, of either sign.
+/// Time at which a path that runs along the plane of (a, b, c) leaves the triangle by more than `slack` metres, and by
+/// more than the corners' rounding, in [0, duration]; 0 when it starts outside. `normal` is the triangle's unit normal,
+/// of either sign.
 [[nodiscard]] double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c,
                                         const Vec3& normal, double slack);
 

@@ -32,10 +32,10 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
 /// Loses what leads into the surfaces; false where they leave it no way out.
 bool SharedContact::land() {
     ImpactAnswer& impact = step_.impact();
-    const Vec3 before = state_.velocity;
+    const double before = fastest();
     // What goes on along all of them has landed already.
     const bool is_along = std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return departure_from(one) >= -kStopRounding * (length(before) + length(one.velocity));
+        return departure_from(one) >= -kStopRounding * before;
     });
     if (is_along) return true;
     std::array<ImpactSurface, kMostHolding> surfaces;
@@ -47,10 +47,18 @@ bool SharedContact::land() {
     for (std::size_t k = 0; k < count_; ++k) {
         if (result.push[k] != Vec3{}) impact.push(touched_[k].surface.surface, result.push[k], false);
     }
-    const double scale = length(before) + length(state_.velocity);
+    const double scale = before + length(state_.velocity);
     return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return impact.departure_from(one.surface) >= -kSlowSlip * (scale + length(one.velocity));
+        return impact.departure_from(one.surface) >= -kSlowSlip * scale;
     });
+}
+
+/// Returns the speed, m/s, that scales the rounding of departures: beside a surface at rest, the velocity of a particle
+/// that another one has stopped there is rounded by the speed of that one.
+double SharedContact::fastest() const {
+    double carried = 0.0;
+    for (const Touched& one : touched()) carried = std::max(carried, length(one.velocity));
+    return length(state_.velocity) + carried;
 }
 
 /// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What

@@ -50,6 +50,7 @@ private:
     }
     [[nodiscard]] bool is_on_deforming() const;
     [[nodiscard]] bool land();
+    [[nodiscard]] double fastest() const;
     [[nodiscard]] Hold settle(double duration);
     [[nodiscard]] double departure_from(const Touched& touched) const;
     [[nodiscard]] Hold plan(double duration);

@@ -72,6 +72,9 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     const bool is_slow = support && (is_stuck || length(arriving.velocity) < step_.resting_speed());
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (!support) return can_last ? drift(flight) : std::nullopt;
+    if (!is_kicked(flight)) {
+        if (auto beside = impact_beside()) return beside;
+    }
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
         particle_.spin = Vec3{};
@@ -119,6 +122,23 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
     if (support || !is_kicked(flight)) return support;
     // Its force has acted already: what pulls it off here does not, and a surface that bends towards its way holds.
     return support_.after_rebounds(Vec3{}, fastest);
+}
+
+/// Returns the impact on surfaces that are touched too, and that the particle moves into: the edge of two walls may be
+/// reached on one of them first. Those that begin to hold it take part.
+std::optional<Contact> ContactPhase::impact_beside() const {
+    const auto departure = [&](std::size_t k) { return dot(state_.velocity, manifold_[k].normal); };
+    const double slow = std::max(step_.resting_speed(), kSlowSlip * length(state_.velocity));
+    Contact contact;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (departure(k) > step_.resting_speed()) continue;
+        ContactSurface surface = manifold_[k];
+        surface.holds = !(departure(k) < -slow);
+        contact.surfaces[static_cast<std::size_t>(contact.count++)] = surface;
+    }
+    const bool is_impact = std::any_of(contact.all().begin(), contact.all().end(),
+                                       [](const ContactSurface& surface) { return !surface.holds; });
+    return is_impact ? std::optional(contact) : std::nullopt;
 }
 
 /// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.

@@ -50,41 +50,64 @@ public:
 
     [[nodiscard]] double approach() const { return approach_; }
 
-    /// Impulse on the particle, N s. Friction opposes the slip that the smooth impulse would leave: a body that turns
-    /// makes slip even if there is none before.
+    /// Impulse on the particle, N s. Friction opposes the slip before the impact for as long as there is any. It sticks
+    /// from then on, or opposes the slip that the rest of the impulse would leave without it. Source: E. J. Routh, "The
+    /// Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on impulses.
     [[nodiscard]] Vec3 impulse() const {
-        const Vec3 smooth = impulse_with({});
-        if (friction_ == 0.0) return smooth;
+        if (friction_ == 0.0) return impulse_with({}, {});
         const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
-        const double pressing = dot(stop, normal_);
-        const Vec3 holding = stop - pressing * normal_;
-        if (pressing > 0.0 && length(holding) <= friction_ * pressing) {
+        if (is_in_cone(stop) && !gains(stop)) return stop;
+        const double speed = length(slip_);
+        if (!(speed > 0.0)) return impulse_after({}, stop);
+        const Vec3 against = (-1.0 / speed) * slip_;
+        const Vec3 sliding = impulse_with({}, friction_ * against);
+        const bool turns_slip = dot(slip_ + contact_.change(sliding), against) > 0.0;
+        if (!turns_slip && dot(sliding, normal_) > 0.0 && !gains(sliding)) return sliding;
+        if (!turns_slip) return most_of({}, against, friction_, [](const Vec3& /*impulse*/) { return true; });
+        const Vec3 direction = normal_ + friction_ * against;
+        return impulse_after((speed / dot(against, contact_.change(direction))) * direction, stop);
+    }
+
+private:
+    /// The whole impulse, of which a part was given until the slip before the impact had stopped. stop: the one that
+    /// leaves no slip.
+    [[nodiscard]] Vec3 impulse_after(const Vec3& given, const Vec3& stop) const {
+        if (is_in_cone(stop - given)) {
             if (!gains(stop)) return stop;
             // The nearer to that the smaller the slip is.
-            return most_of(holding / pressing, 1.0, [](const Vec3& /*impulse*/) { return true; });
+            const double pressing = dot(stop - given, normal_);
+            const Vec3 holding = (stop - given) / pressing - normal_;
+            return most_of(given, holding, 1.0, [](const Vec3& /*impulse*/) { return true; });
         }
+        const Vec3 smooth = impulse_with(given, {});
         const Vec3 left = slip_ + contact_.change(smooth);
         const Vec3 along = left - dot(left, normal_) * normal_;
         const double speed = length(along);
         if (!(speed > 0.0)) return smooth;
         const Vec3 against = (-1.0 / speed) * along;
-        return most_of(against, friction_, [&](const Vec3& impulse) {
+        return most_of(given, against, friction_, [&](const Vec3& impulse) {
             return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not turn the slip around
         });
     }
 
-private:
-    /// The impulse that turns the approach around, with friction as a part of its normal component.
-    [[nodiscard]] Vec3 impulse_with(const Vec3& friction) const {
+    [[nodiscard]] bool is_in_cone(const Vec3& impulse) const {
+        const double pressing = dot(impulse, normal_);
+        return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
+    }
+
+    /// The impulse that turns the approach around: the part that is given, and a rest with friction as a part of its
+    /// normal component.
+    [[nodiscard]] Vec3 impulse_with(const Vec3& given, const Vec3& friction) const {
         const Vec3 direction = normal_ + friction;
-        return (wanted_ / dot(normal_, contact_.change(direction))) * direction;
+        const double left = wanted_ - dot(normal_, contact_.change(given));
+        return given + (left / dot(normal_, contact_.change(direction))) * direction;
     }
 
     /// With as much friction along a vector as lets no energy in, up to a part of the normal impulse.
     template <class Is>
-    [[nodiscard]] Vec3 most_of(const Vec3& along, double most, const Is& is_allowed) const {
+    [[nodiscard]] Vec3 most_of(const Vec3& given, const Vec3& along, double most, const Is& is_allowed) const {
         const auto is_sound = [&](double friction) {
-            const Vec3 by = impulse_with(friction * along);
+            const Vec3 by = impulse_with(given, friction * along);
             return dot(by, normal_) > 0.0 && !gains(by) && is_allowed(by);
         };
         double low = 0.0;
@@ -94,7 +117,7 @@ private:
             const double middle = 0.5 * (low + high);
             (is_sound(middle) ? low : high) = middle;
         }
-        return impulse_with(low * along);
+        return impulse_with(given, low * along);
     }
 
     /// True if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.

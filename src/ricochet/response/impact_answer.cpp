@@ -45,6 +45,7 @@ bool ImpactAnswer::reflect(std::span<const ContactSurface> surfaces, bool is_fas
     if (scratch_.record_loads) book_.begin_impact(is_fast ? approach(surfaces) : 0.0);
     answer(surfaces, Rebound::by_material);
     book_.end_impact();
+    scratch_.held_by.clear();  // the next impact ends no contact interval
     shatter_by(particle_.state.velocity - before);
     return true;
 }

@@ -137,7 +137,7 @@ TEST(CollisionWorld, AnswersAboutASurfaceAlikeForAPlaneAndATriangleInIt) {
     }
     const Path along = line_path(on, {1, 0, 0}, 10.0);
     EXPECT_EQ(world.time_over(0, along, 0.0), 10.0);
-    EXPECT_DOUBLE_EQ(world.time_over(1, along, 0.0), 1.5);
+    EXPECT_NEAR(world.time_over(1, along, 0.0), 1.5, 1e-13);  // the corners' own rounding is allowed for
 }
 
 TEST(CollisionWorld, RefusesPlacementsThatFlattenTheMeshAndNamesTheCollider) {

@@ -206,7 +206,7 @@ TEST(RunWriter, AFrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
     setup.forces.clear();
     setup.forces.push_back(make_force([](const ForceInput& input) {
         const bool broken = input.id == 1 || (input.id == 2 && input.time > 0.25);
-        return Vec3(0, input.id == 3 ? 1e300 : 0.0, broken ? std::numeric_limits<double>::quiet_NaN() : 0.0);
+        return Vec3(0, input.id == 3 ? 1e300 : 0.0, broken ? 1e300 : 0.0);
     }));
     Simulation simulation(std::move(setup));
     EXPECT_EQ(simulation.statistics().frozen, 0U);

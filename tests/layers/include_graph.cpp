@@ -45,8 +45,17 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
 /// of where its frames are.
 bool may_verify(const std::string& header) {
     static const std::set<std::string> plain = {
-        "core/box3.h",    "core/error.h", "core/frame_tree.h", "core/motion_part.h", "core/pair_meeting.h",
-        "core/segment.h", "core/vec3.h",  "core/tolerances.h", "core/transform.h",   "geometry/mesh/triangle_mesh.h",
+        "core/box3.h",
+        "core/error.h",
+        "core/frame_tree.h",
+        "core/motion_part.h",
+        "core/pair_meeting.h",
+        "core/segment.h",
+        "core/vec3.h",
+        "core/tolerances.h",
+        "core/transform.h",
+        "geometry/mesh/triangle_mesh.h",
+        "core/recorded_impact.h",
     };
     return plain.contains(header.substr(kLibrary.size()));
 }

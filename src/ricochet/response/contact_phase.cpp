@@ -72,7 +72,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     const bool is_slow = support && (is_stuck || length(arriving.velocity) < step_.resting_speed());
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (!support) return can_last ? drift(flight) : std::nullopt;
-    if (!is_kicked(flight)) {
+    if (!is_kicked(flight) && rules_.frame == nullptr) {
         if (auto beside = impact_beside()) return beside;
     }
     if (slow_contacts_ > kMaxSlowContacts) {

@@ -46,6 +46,8 @@ public:
         wanted_ = (1.0 + surface.restitution) * approach_;
         // Friction depends on the slip of the sphere's surface.
         slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
+        const double speeds = length(before.velocity) + length(surface.velocity) + state.radius * length(before.spin);
+        if (length(slip_) <= kStopRounding * speeds) slip_ = {};  // rounding has no direction
     }
 
     [[nodiscard]] double approach() const { return approach_; }

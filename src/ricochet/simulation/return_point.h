@@ -44,8 +44,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    /// Bytes of a state that is kept: some million particles.
-    static constexpr std::size_t kMostBytes = std::size_t{1} << 28U;
+    /// Bytes of a state that is kept: some hundred thousand particles. More would count in estimates of memory.
+    static constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
     static constexpr double kShortestInterval = 0.25;  // s between two states
     static constexpr double kCostInterval = 50.0;      // times that it takes to keep one
     static constexpr double kLongestReplay = 0.5;      // s

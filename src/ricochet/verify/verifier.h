@@ -39,7 +39,7 @@ enum class ViolationKind : std::uint8_t {
     energy,      ///< it has gained energy from surfaces, or the recorded parts of its motion do not join
     pair_overlap,  ///< a sphere stands in another, see verify/sphere_overlaps.h
     pair_impact,   ///< an impact of spheres on each other that does not add up, see verify/pair_books.h
-    rebound,       ///< an impact has not the rebound of the surfaces that it has hit, see verify/rebound.h
+    rebound,       ///< an impact whose rebound is not that of the surfaces that it has hit
 };
 
 /// One violation. Each is reported once: what follows from it later is measured from the new state.

@@ -352,7 +352,7 @@ SimulationSetup shaken_box(std::uint64_t seed, const Material& material) {
     return setup;
 }
 
-// What slides in a corner is held by faces that turn while the interval of contact lasts.
+// The faces that hold a particle in a corner turn while an interval of contact lasts.
 TEST(AMeshWhoseScaleChanges, LeavesWhatSlidesInItsCornersAllOfItsTime) {
     for (const Material& material : {Material{"", 0.0, 0.0}, Material{"", 0.0, 0.3}, Material{"", 0.3, 0.2}}) {
         for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(3)); ++seed) {

@@ -101,36 +101,45 @@ TEST(ParticlesInANeedle, StayInItOnAnyWay) {
     }
 }
 
-// Bodies that what is in them pushes.
+/// A needle of 10 kg, points and a sphere of 0.1 kg that fly into its tip with 20 m/s, and push it.
+SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double far, double restitution) {
+    FrameDescription frame = frame_of("body", {}, {far, -far, 0.5 * far});
+    frame.is_driven = true;
+    auto setup = setup_of({frame}, {{"needle", shape_of(mesh), 0, "body"}}, 1.0 / 30.0, 0.5);
+    BodyDescription body;
+    body.frame = "body";
+    body.mass = 10.0;
+    body.inertia = {.xx = 5.0, .yy = 5.0, .zz = 2.0};
+    body.joint = joint;
+    body.axis = {1, 2, 0};
+    body.rate = 3.0;
+    if (joint == JointKind::free) {
+        body.velocity = {100.0, 0, 30.0};
+        body.angular_velocity = {5, -3, 2};
+    }
+    setup.bodies = {body};
+    setup.materials = {{"", restitution, 0.2}};
+    const Vec3 flight = joint == JointKind::free ? body.velocity : Vec3{};
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 start = frame.translation + Vec3{0.02 * k, 0, 0.1};
+        setup.particles.push_back(particle_of(start, flight + Vec3{0.4, 0.3, 20.0}, k == 2 ? 0.02 : 0.0));
+        setup.particles.back().mass = 0.1;
+    }
+    return setup;
+}
+
+// A step with a body that yields is planned in parts. A particle goes along with the body until its part ends: beyond
+// that, the path of the body is not known yet.
 TEST(ParticlesInABody, StayInIt) {
     const TriangleMesh mesh = needle(6.0);
-    for (const JointKind joint : {JointKind::free, JointKind::hinge}) {
-        for (const double restitution : {0.0, 0.2, 1.0}) {
-            SCOPED_TRACE(std::to_string(static_cast<int>(joint)) + " " + std::to_string(restitution));
-            FrameDescription frame = frame_of("body", {}, {1e3, -1e3, 500.0});
-            frame.is_driven = true;
-            auto setup = setup_of({frame}, {{"needle", shape_of(mesh), 0, "body"}}, 1.0 / 30.0, 0.5);
-            BodyDescription body;
-            body.frame = "body";
-            body.mass = 10.0;
-            body.inertia = {.xx = 5.0, .yy = 5.0, .zz = 2.0};
-            body.joint = joint;
-            body.axis = {1, 2, 0};
-            body.rate = 3.0;
-            if (joint == JointKind::free) {
-                body.velocity = {100.0, 0, 30.0};
-                body.angular_velocity = {5, -3, 2};
+    for (const JointKind joint : {JointKind::free, JointKind::hinge, JointKind::slider}) {
+        for (const double far : {1e3, 1e5}) {
+            for (const double restitution : {0.0, 0.2, 0.5, 1.0}) {
+                SCOPED_TRACE(std::to_string(static_cast<int>(joint)) + " " + std::to_string(far) + " " +
+                             std::to_string(restitution));
+                Simulation simulation(pushed_needle(mesh, joint, far, restitution));
+                expect_all_inside(simulation, mesh);
             }
-            setup.bodies = {body};
-            setup.materials = {{"", restitution, 0.2}};
-            const Vec3 flight = joint == JointKind::free ? body.velocity : Vec3{};
-            for (int k = 0; k < 3; ++k) {
-                const Vec3 start = frame.translation + Vec3{0.02 * k, 0, 0.1};
-                setup.particles.push_back(particle_of(start, flight + Vec3{0.4, 0.3, 20.0}, k == 2 ? 0.02 : 0.0));
-                setup.particles.back().mass = 0.1;
-            }
-            Simulation simulation(std::move(setup));
-            expect_all_inside(simulation, mesh);
         }
     }
 }

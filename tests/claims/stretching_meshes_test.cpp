@@ -16,11 +16,13 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/frame_tree.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh/stretched_motion.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/parity.h"
 #include "support/simple_meshes.h"
+#include "support/simulations.h"
 
 namespace ricochet::testing {
 namespace {
@@ -329,6 +331,38 @@ TEST(AMeshWhoseScaleChanges, KeepsWhatIsInsideWhileItTumbles) {
         EXPECT_EQ(outside, 0) << radius;
         expect_sound(simulation);
         EXPECT_GT(simulation.statistics().contacts, simulation.statistics().emitted / 2);
+    }
+}
+
+/// Points and spheres in a box that is shaken, turns to and fro, and stretches.
+SimulationSetup shaken_box(std::uint64_t seed, const Material& material) {
+    RandomSequence random(seed, 5, 0);
+    SimulationSetup setup = setup_of(1.0 / 60.0, 0.7, material);
+    setup.options.record_contacts = false;
+    setup.forces.push_back(make_gravity({0, 0, -9.81}));
+    const KeyedScale stretch{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {0.7, {0.8, 1.2, 1.25}}})};
+    const Swing swing{random.unit_vector(), 20.0 + 60.0 * random.uniform(), 0.5 + random.uniform(), 30.0};
+    const std::vector<FrameMotion> motions{Oscillation{{-0.1, 0.4, 0.1}, 0.7, 30.0}, swing, stretch};
+    setup.colliders = {
+        {"box", stretching(box_mesh({-0.85, -0.65, -0.75}, {0.85, 0.65, 0.75}), {frame_with(motions)}, 0.71), 0}};
+    for (int k = 0; k < 16; ++k) {
+        const double radius = k % 2 == 0 ? 0.0 : 0.02 + 0.1 * random.uniform();
+        setup.particles.push_back(particle_of(0.4 * random.in_unit_ball(), 6.0 * random.in_unit_ball(), radius));
+    }
+    return setup;
+}
+
+// The faces that hold a particle in a corner turn while an interval of contact lasts.
+TEST(AMeshWhoseScaleChanges, LeavesWhatSlidesInItsCornersAllOfItsTime) {
+    for (const Material& material : {Material{"", 0.0, 0.0}, Material{"", 0.0, 0.3}, Material{"", 0.3, 0.2}}) {
+        for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(3)); ++seed) {
+            SCOPED_TRACE(std::to_string(material.restitution) + " " + std::to_string(material.friction) + " " +
+                         std::to_string(seed));
+            Simulation simulation(shaken_box(seed, material));
+            while (!simulation.finished()) simulation.step();
+            expect_sound(simulation);
+            EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
+        }
     }
 }
 

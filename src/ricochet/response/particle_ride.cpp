@@ -119,6 +119,8 @@ void ParticleStep::record_flown_in_world(const Path& path, double duration, cons
 }
 
 void ParticleStep::begin_part(double until) {
+    // Beyond the step's end bodies that are pushed may yet get other paths.
+    until = std::min(until, particle_.step_end);
     part_end_ = until;
     const double part = std::clamp(until - state().time, 0.0, remaining_);
     rest_after_part_ = remaining_ - part;

@@ -94,7 +94,8 @@ public:
     void enter(BodyId body, const ResponseRules& rules, Contact* contact);
     /// From now on it is that in the world again.
     void leave(const ResponseRules& rules, Contact* contact);
-    /// Until end_part(): the step ends at this time, s, after which the body's velocity may be another.
+    /// Until end_part(): the step ends at this time, s, or where it ends anyway. After that the body's velocity may be
+    /// another.
     void begin_part(double until);
     void end_part();
     /// The frame that the state is given in.

@@ -158,24 +158,28 @@ Vec3 SharedContact::kept_off(Vec3 end, double time) const {
 }
 
 /// Between its ends the path of a point can be behind surfaces that turn, by the cubic's error, where it would be
-/// stopped: lifts it, by 4 s (1 - s) of a height over its duration.
+/// stopped: lifts it, by 4 s (1 - s) of a height over its duration. The lift turns with the surface: along one normal
+/// it would lead into others that hold the particle as well.
 void SharedContact::lift_middle(Path& path) const {
+    const auto height_at = [&](std::size_t k, double time) {
+        return height_above(touched_[k], path.position(time), state_.time + time);
+    };
     for (std::size_t k = 0; k < count_; ++k) {
         if (interval_.push[k] == Vec3{}) continue;
         double behind = 0.0;
-        Vec3 normal;
         for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
-            const double time = part * path.duration;
-            const Height height = height_above(touched_[k], path.position(time), state_.time + time);
+            const Height height = height_at(k, part * path.duration);
             const double missing = state_.radius + height.offset - height.above;
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
-            normal = height.normal;
         }
         if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) continue;
-        const Vec3 lift = (4.0 * behind / path.duration) * normal;
-        path.c[1] += lift;
-        path.c[2] -= lift / path.duration;
-        path.degree = std::max(path.degree, 2);
+        const Vec3 normal = height_at(k, 0.0).normal;
+        const Vec3 turn = height_at(k, path.duration).normal - normal;
+        const double speed = 4.0 * behind / path.duration;
+        path.c[1] += speed * normal;
+        path.c[2] += (speed / path.duration) * (turn - normal);
+        path.c[3] -= (speed / path.duration / path.duration) * turn;
+        path.degree = std::max(path.degree, turn == Vec3{} ? 2 : 3);
     }
 }
 

@@ -56,7 +56,7 @@ void require_sound(const Simulation& simulation, bool is_uniform) {
         require(violation.kind != ViolationKind::crossing, "no segment crosses a surface");
         require(violation.kind != ViolationKind::gap, "segments join the positions");
         // Colliders pass a particle whose clock stands still to the end of the run. The verifier has to say so.
-        const bool may_wait = simulation.statistics().squeezed > 0 && violation.time >= simulation.time();
+        const bool may_wait = simulation.statistics().unsimulated_time > 0.0 && violation.time >= simulation.time();
         require(violation.kind != ViolationKind::wrong_side || may_wait, "every particle stays on its side");
         require(violation.kind != ViolationKind::overlap || may_jam, "no sphere overlaps a surface");
         require(violation.kind != ViolationKind::energy || !is_uniform, "no energy comes from surfaces");

@@ -72,7 +72,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     const bool is_slow = support && (is_stuck || length(arriving.velocity) < step_.resting_speed());
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (!support) return can_last ? drift(flight) : std::nullopt;
-    if (!is_kicked(flight) && rules_.frame == nullptr) {
+    if (!is_kicked(flight)) {
         if (auto beside = impact_beside()) return beside;
     }
     if (slow_contacts_ > kMaxSlowContacts) {
@@ -127,17 +127,21 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
 /// Returns the impact on surfaces that are touched too, and that the particle moves into: the edge of two walls may be
 /// reached on one of them first. Those that begin to hold it take part.
 std::optional<Contact> ContactPhase::impact_beside() const {
-    const auto departure = [&](std::size_t k) { return dot(state_.velocity, manifold_[k].normal); };
-    const double slow = std::max(step_.resting_speed(), kSlowSlip * length(state_.velocity));
+    // On a body that yields this would not keep the angular momentum of spheres: there, contact takes the approach.
+    const MovingColliders* const bodies = rules_.bodies;
+    if (bodies != nullptr && bodies->yields(bodies->body_of(manifold_[0].surface))) return std::nullopt;
+    const double rounding = kSlowSlip * length(state_.velocity);
+    const double slow = std::max(step_.resting_speed(), rounding);
     Contact contact;
+    bool is_impact = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (departure(k) > step_.resting_speed()) continue;
-        ContactSurface surface = manifold_[k];
-        surface.holds = !(departure(k) < -slow);
-        contact.surfaces[static_cast<std::size_t>(contact.count++)] = surface;
+        const double departure = dot(state_.velocity, manifold_[k].normal);
+        if (departure > step_.resting_speed()) continue;
+        is_impact = is_impact || departure < -slow;
+        ContactSurface& surface = contact.surfaces[static_cast<std::size_t>(contact.count++)];
+        surface = manifold_[k];
+        surface.holds = departure >= -rounding;
     }
-    const bool is_impact = std::any_of(contact.all().begin(), contact.all().end(),
-                                       [](const ContactSurface& surface) { return !surface.holds; });
     return is_impact ? std::optional(contact) : std::nullopt;
 }
 

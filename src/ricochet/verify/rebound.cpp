@@ -43,9 +43,11 @@ double scale_of(const RecordedImpact& impact) {
 
 bool has_wrong_rebound(const RecordedImpact& impact) {
     const double scale = scale_of(impact);
+    // The interval may have touched both sides of a thin body. One that is really approached has not held the particle.
     const auto holds = [&](const RecordedImpact::Surface& surface) {
-        return surface.holds ||
-               std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
+        const bool is_listed =
+            std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
+        return surface.holds || (is_listed && before(impact, surface) >= -kHeldApproach * scale);
     };
     const auto is_hit = [&](const RecordedImpact::Surface& surface) {
         return !holds(surface) && before(impact, surface) < 0.0;

@@ -36,6 +36,10 @@ private:
     Vec3 where_;
 };
 
+/// Part of the speeds by which a slip is rounded: a few units in the last place. Larger: light bodies between heavy
+/// particles never come to an end of their impacts.
+constexpr double kSlipRounding = 0x1p-50;
+
 /// One impact, seen from the body: the impulse on the particle.
 class Impact {
 public:
@@ -47,7 +51,7 @@ public:
         // Friction depends on the slip of the sphere's surface.
         slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
         const double speeds = length(before.velocity) + length(surface.velocity) + state.radius * length(before.spin);
-        if (length(slip_) <= kStopRounding * speeds) slip_ = {};  // rounding has no direction
+        if (length(slip_) <= kSlipRounding * speeds) slip_ = {};  // rounding has no direction
     }
 
     [[nodiscard]] double approach() const { return approach_; }

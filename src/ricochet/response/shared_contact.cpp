@@ -48,9 +48,8 @@ bool SharedContact::land() {
         if (result.push[k] != Vec3{}) impact.push(touched_[k].surface.surface, result.push[k], false);
     }
     const double scale = before + length(state_.velocity);
-    return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return impact.departure_from(one.surface) >= -kSlowSlip * scale;
-    });
+    return std::all_of(touched().begin(), touched().end(),
+                       [&](const Touched& one) { return impact.departure_from(one.surface) >= -kSlowSlip * scale; });
 }
 
 /// Returns the speed, m/s, that scales the rounding of departures: beside a surface at rest, the velocity of a particle

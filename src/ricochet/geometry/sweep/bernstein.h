@@ -34,7 +34,8 @@ struct Polynomial {
     [[nodiscard]] bool has_sign(int sign) const {
         for (std::size_t k = 0; k <= Degree; ++k) {
             const double value = static_cast<double>(sign) * high(c[k]);
-            if (!(size[k] > kSmallestCoefficient) || !(value > kError<Real> * size[k]) || !std::isfinite(value)) return false;
+            if (!(size[k] > kSmallestCoefficient) || !(value > kError<Real> * size[k]) || !std::isfinite(value))
+                return false;
         }
         return true;
     }

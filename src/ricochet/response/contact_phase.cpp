@@ -130,15 +130,13 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
 std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support) {
     const double rounding = kSlowSlip * length(state_.velocity);
     const double slow = std::max(step_.resting_speed(), rounding);
-    // On a body that yields this would not keep the angular momentum of spheres: there, contact takes the approach.
+    // A body that yields answers its surfaces one after the other, which does not end in a narrow wedge of them. There,
+    // contact takes the approach.
     const MovingColliders* const bodies = rules_.bodies;
     if (bodies != nullptr && bodies->yields(bodies->body_of(manifold_[0].surface))) return std::nullopt;
-    // A body that has been hit in this move goes on as the impulse says, though its path does not show that yet.
     std::array<double, kMostHolding> departures{};
     const auto is_hit_at = [&](const Vec3& velocity) {
-        for (std::size_t k = 0; k < manifold_.size(); ++k) {
-            departures[k] = dot(velocity, manifold_[k].normal) - impact_.advance_beside_path(manifold_[k]);
-        }
+        for (std::size_t k = 0; k < manifold_.size(); ++k) departures[k] = dot(velocity, manifold_.normals()[k]);
         return *std::min_element(departures.begin(), departures.begin() + manifold_.size()) < -slow;
     };
     if (!is_hit_at(state_.velocity)) return std::nullopt;

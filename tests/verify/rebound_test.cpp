@@ -37,6 +37,22 @@ TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsApproached) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
+TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsLeft) {
+    RecordedImpact impact = impact_on_wall(0.7, true);
+    impact.before.velocity.z = 0.01;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
+TEST(ReboundCheck, LetsASurfaceThatWasLeftBeApproachedByItsRestitutionAtMost) {
+    RecordedImpact impact = impact_on_wall(0.3, false);
+    impact.held_by = {3};
+    impact.before.velocity.z = 0.01;
+    impact.after.velocity = {-0.7 * 2, 0, -0.7 * 0.01};  // Moreau's law; the floor is hit next
+    EXPECT_FALSE(has_wrong_rebound(impact));
+    impact.after.velocity.z = -0.02;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
 TEST(ReboundCheck, CountsTheThresholdAndTheMotionOfSurfaces) {
     RecordedImpact impact;
     impact.before.velocity = {0, 0, -1};

@@ -34,7 +34,7 @@ const std::map<std::string, Range>& ranges() {
         {"frame_rate", {10, 100}},
         {"max_depth", {0, 3}},
         {"most_particles", {20, 120}},
-        {"bounce_budget", {1, 200}},
+        {"bounce_budget", {8, 200}},
         {"impact_budget", {1, 100}},
         {"seed", {0, 1000}},
         {"acceleration", {-10, 10}},
@@ -112,7 +112,6 @@ const std::map<std::string, Range>& ranges() {
         {"upper", {1.5, 3}},
         {"field_of_view", {20, 100}},
         {"image_height", {10, 1000}},
-        {"image.target", {-0.1, 0.1}},
     };
     return all;
 }

@@ -40,7 +40,7 @@ bool remove(Json& scene, const std::vector<std::string>& parts) {
         last = part;
     }
     if (parent == nullptr) return false;
-    // Of a list that is refused as a whole the last item, as often as that is so.
+    // A list that is refused as a whole loses its last item, round by round.
     if (at->is_array() && at->size() > 1 && (*at)[0].is_object()) {
         at->erase(at->size() - 1);
         return true;

@@ -18,7 +18,7 @@
 namespace ricochet::test {
 namespace {
 
-/// Counts of what the run itself reports: particles that have lost time, and contact that was not solved.
+/// Lost time and unsolved contact that the run itself has counted.
 std::uint64_t reported(const SimulationStatistics& statistics) {
     return statistics.budget_exhausted + statistics.squeezed + statistics.unsolved_steps;
 }

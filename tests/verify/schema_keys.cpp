@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "verify/schema_scene.h"
 
@@ -62,6 +63,17 @@ void add_all(const Json& rule, const std::string& owner, std::set<std::string>& 
 }
 
 }  // namespace
+
+std::vector<std::string> names_of(const std::string& owner, const std::string& key) {
+    if (key == "flows") return {"w0", "w1"};
+    if (key == "frames") return {"f0", "f1"};
+    if (key == "group_materials") return {"side"};
+    if (key == "vector_attributes") return {"tag"};
+    if (key == "attributes" && owner == "curves_over_life") return {"temperature"};
+    if (key == "attributes") return {"temperature", "charge", "tag"};
+    if (owner == "particle_contacts") return {"a", "b"};
+    return {"m0", "m1", "m2"};
+}
 
 void add_keys(const Json& schema, const Json& scene, std::set<std::string>& keys) {
     walk(schema, schema, "scene", scene, keys);

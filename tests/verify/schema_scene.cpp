@@ -184,18 +184,6 @@ std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
     return found == all.end() ? std::pair<std::uint64_t, std::uint64_t>{1, 2} : found->second;
 }
 
-/// Names of the values of objects with names of their own.
-std::vector<std::string> names_of(const std::string& owner, const std::string& key) {
-    if (key == "flows") return {"w0", "w1"};
-    if (key == "frames") return {"f0", "f1"};
-    if (key == "group_materials") return {"side"};
-    if (key == "vector_attributes") return {"tag"};
-    if (key == "attributes" && owner == "curves_over_life") return {"temperature"};
-    if (key == "attributes") return {"temperature", "charge", "tag"};
-    if (owner == "particle_contacts") return {"a", "b"};
-    return {"m0", "m1", "m2"};
-}
-
 /// Keys that later ones must follow in time.
 void sort_by_time(nlohmann::json& list) {
     if (list.empty() || !list[0].is_object() || !list[0].contains("time")) return;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,9 @@ private:
     double step_ = 0.0;      ///< s
     int depth_ = 0;          ///< of flows in flows
 };
+
+/// Returns the names that a scene gives to the values of an object such as `materials` or `frames`.
+[[nodiscard]] std::vector<std::string> names_of(const std::string& owner, const std::string& key);
 
 /// Appends the keys of a scene as OWNER.KEY, where the owner is a definition of the schema, with its type in brackets
 /// for a definition of several types: `emitter(box).size`.

@@ -53,6 +53,16 @@ TEST(ReboundCheck, LetsASurfaceThatWasLeftBeApproachedByItsRestitutionAtMost) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
+// The normal speed on a surface that holds counts as zero: a wall that is not at right angles to it may miss as much.
+TEST(ReboundCheck, AllowsForTheNormalSpeedOnWhatHolds) {
+    RecordedImpact impact = impact_on_wall(0.7, true);
+    impact.before.velocity.z = 1e-7;
+    impact.after.velocity = {-0.7 * 2 + 1e-7, 0, -1e-7};
+    EXPECT_FALSE(has_wrong_rebound(impact));
+    impact.after.velocity.x += 1e-6;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
 TEST(ReboundCheck, CountsTheThresholdAndTheMotionOfSurfaces) {
     RecordedImpact impact;
     impact.before.velocity = {0, 0, -1};

@@ -148,6 +148,10 @@ const std::map<std::string, double>& probabilities() {
                                                       {"absorption", 0.05},
                                                       {"diffuse", 0.1},
                                                       {"wall_temperature", 0.05},
+                                                      {"cloud(cone).parent_ends", 0.9},
+                                                      {"cloud(cone).turning", 0.9},
+                                                      {"convection.flow", 0.8},
+                                                      {"convection.prandtl", 0.8},
                                                       {"surface_motion", 0.12},
                                                       {"rate_per_area", 0.05},
                                                       {"parent", 0.4},
@@ -295,6 +299,7 @@ void SchemaScene::settle(const std::string& name, Json& made) {
         made["file"] = made.value("file", "ball.obj");
         keep_one(made, "file", "collider");
     }
+    if (name == "convection" && chance(0.7)) made.erase("coefficient");  // the others say how it is computed
     if (name == "force(quadratic_drag)") {
         made["coefficient"] = made.value("coefficient", 0.5);
         keep_one(made, "coefficient", "drag_coefficient");

@@ -57,14 +57,17 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
         return !holds(surface) && before(impact, surface) < 0.0;
     };
     double restitution = 1.0;
+    double held_speed = 0.0;  // m/s: counts as zero in the impact, and changes the rebound off others by as much
     std::size_t hit = 0;
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
         if (holds(surface) && !moves_along(surface)) return true;
+        if (holds(surface)) held_speed += std::fabs(before(impact, surface));
         if (!is_hit(surface)) continue;
         ++hit;
         restitution = std::min(restitution, restitution_of(surface, -before(impact, surface)));
     }
-    const double rounding = scale * (impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding);
+    const double part = impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding;
+    const double rounding = part * scale + 2.0 * held_speed;
     double least = std::numeric_limits<double>::infinity();
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
         // Moreau's law lets it come back to a surface that it left, at most e times as fast. That surface is hit next.

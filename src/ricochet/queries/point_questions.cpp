@@ -74,6 +74,12 @@ std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points) cons
     return answers;
 }
 
+std::vector<double> MeshQueries::winding_numbers(std::span<const Vec3> points) const {
+    std::vector<double> answers(points.size());
+    for_each_point(points, [&](std::size_t i) { answers[i] = winding_number(*index_, points[i]); });
+    return answers;
+}
+
 NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double within) const {
     if (!(within >= 0.0))
         throw InputError(fmt::format("within: found {}, expected a distance of at least 0 m", within));

@@ -114,6 +114,7 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
     std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
     all.hits = missed(all.first.back());
     all.crossing.assign(all.first.back(), 0);
+    all.in_plane.assign(all.first.back(), 0);
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
         std::size_t k = all.first[block * kQuestionBlock];
         for (const auto& [ray, place] : blocks[block]) {
@@ -121,7 +122,8 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
             all.hits.triangle[k] = place.triangle;
             all.hits.distance[k] = question.ray.distance(place.t);
             all.hits.point[k] = question.ray.at(place.t);
-            all.crossing[k++] = place.crossing;
+            all.crossing[k] = place.crossing;
+            all.in_plane[k++] = place.is_in_plane ? 1 : 0;
         }
         blocks[block] = {};
     });

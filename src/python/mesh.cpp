@@ -63,8 +63,9 @@ py::object first_hits(const MeshQueries& mesh, const py::object& origins, const 
     return hits_of(ask(mesh, [&](const MeshQueries& m) { return m.first_hits(batch); }));
 }
 
-py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                    const py::object& most) {
+/// Returns AllHits, and whether each ray runs in the planes of all triangles that it meets there.
+py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                              const py::object& most) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
     std::vector<std::int64_t> ray;
@@ -76,9 +77,15 @@ py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py
         }
         return found;
     });
-    return result("AllHits")(given(std::move(ray)), given(std::move(all.hits.triangle)),
-                             given(std::move(all.hits.distance)), given(std::move(all.hits.point)),
-                             given(std::move(all.crossing)), given(std::move(all.first)));
+    const py::object hits = result("AllHits")(given(std::move(ray)), given(std::move(all.hits.triangle)),
+                                              given(std::move(all.hits.distance)), given(std::move(all.hits.point)),
+                                              given(std::move(all.crossing)), given(std::move(all.first)));
+    return py::make_tuple(hits, given_flags(std::move(all.in_plane)));
+}
+
+py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                    const py::object& most) {
+    return all_hits_and_planes(mesh, origins, directions, most)[0];
 }
 
 py::array count_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
@@ -98,6 +105,11 @@ py::array occluded(const MeshQueries& mesh, const py::object& origins, const py:
 py::array inside(const MeshQueries& mesh, const py::object& where) {
     const Doubles places = numbers(where, "points", 3);
     return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.inside(points(places)); }));
+}
+
+py::array winding_numbers(const MeshQueries& mesh, const py::object& where) {
+    const Doubles places = numbers(where, "points", 3);
+    return given(ask(mesh, [&](const MeshQueries& m) { return m.winding_numbers(points(places)); }));
 }
 
 py::object closest_points(const MeshQueries& mesh, const py::object& where, double within) {
@@ -177,6 +189,7 @@ void bind_rays(py::class_<MeshQueries>& type) {
         .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
              "and a way along the surface is where it begins.")
+        .def("_all_hits_and_planes", &all_hits_and_planes, arg("origins"), arg("directions"), arg("most") = py::none())
         .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              "How many places all_hits() finds for each ray.")
         .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
@@ -187,6 +200,11 @@ void bind_points(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("inside", &inside, arg("points"),
              "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed.")
+        .def("winding_numbers", &winding_numbers, arg("points"),
+             "How often the mesh winds around each point: 1 inside a closed mesh wound outward, 0 outside, added up "
+             "where "
+             "shells overlap. In an open mesh between: above 1/2 where the surface surrounds more than half of the "
+             "point.")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
              "The point of the mesh nearest to each point, where one is within that distance.")
         .def("signed_distances", &signed_distances, arg("points"),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/ray_triangle.h"
@@ -22,6 +23,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Rays between two looks at a request to stop, which costs as much as a short ray.
+constexpr std::size_t kPollEvery = 16;
 
 void require_rays(const RayBatch& rays) {
     require_same_length(rays.directions.size(), rays.origins.size(), "directions");
@@ -51,6 +55,7 @@ void for_each_ray(const RayBatch& rays, const Answer& answer) {
     parallel_for_blocks(
         rays.origins.size(), kQuestionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
+                if (i % kPollEvery == 0) poll_loop_stop();
                 answer(block, i, RayQuestion{Ray(rays.origins[i], rays.directions[i]), most_of(rays, i)});
             }
         });

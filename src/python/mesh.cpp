@@ -263,6 +263,24 @@ void bind_points(py::class_<MeshQueries>& type) {
              "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
 }
 
+void bind_pickling(py::class_<MeshQueries>& type) {
+    // Without __reduce__ the old protocols of pickle look for a base class that could be copied.
+    type.def("__reduce__",
+             [](const py::object& mesh) {
+                 return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
+                                       py::make_tuple(py::type::of(mesh)), mesh.attr("__getstate__")());
+             })
+        .def(py::pickle(
+            [](const py::object& mesh) {
+                const auto& m = py::cast<const MeshQueries&>(mesh);
+                return py::make_tuple(vertices_of(m), faces_of(m), mesh.attr("__dict__"));
+            },
+            [](const py::tuple& state) {
+                if (state.size() != 3) throw InputError("Mesh: this is not what one is pickled as");
+                return std::pair(MeshQueries(mesh_of(state[0], state[1])), py::dict(state[2]));
+            }));
+}
+
 }  // namespace
 
 void bind_mesh(py::module_& module) {
@@ -288,26 +306,11 @@ void bind_mesh(py::module_& module) {
         .def("set_vertices", &set_vertices, arg("vertices"),
              "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
         .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })
-        .def("__repr__",
-             [](const MeshQueries& m) {
-                 return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
-                                    m.mesh().vertices.size());
-             })
-        // Without it the old protocols of pickle look for a base class that could be copied.
-        .def("__reduce__",
-             [](const py::object& mesh) {
-                 return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
-                                       py::make_tuple(py::type::of(mesh)), mesh.attr("__getstate__")());
-             })
-        .def(py::pickle(
-            [](const py::object& mesh) {
-                const auto& m = py::cast<const MeshQueries&>(mesh);
-                return py::make_tuple(vertices_of(m), faces_of(m), mesh.attr("__dict__"));
-            },
-            [](const py::tuple& state) {
-                if (state.size() != 3) throw InputError("Mesh: this is not what one is pickled as");
-                return std::pair(MeshQueries(mesh_of(state[0], state[1])), py::dict(state[2]));
-            }));
+        .def("__repr__", [](const MeshQueries& m) {
+            return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
+                               m.mesh().vertices.size());
+        });
+    bind_pickling(type);
     bind_names(type, "groups",
                "The group of each triangle, as an OBJ file's `g`, or None. Set it to names or numbers, one "
                "each: a collider's `group_materials` gives them materials.");

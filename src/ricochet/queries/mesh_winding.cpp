@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
-#include <tuple>
 
+#include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/vertex_welder.h"
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/ray_places.h"
 
@@ -29,39 +29,24 @@ constexpr double kDeterminantRounding = 0x1p-47;
 /// the angle: where the ray passes so near to a vertex of the boundary.
 constexpr double kSmallestSine = 0x1p-20;
 
-/// Returns for every vertex the first vertex at its position.
-std::vector<std::uint32_t> first_at_position(const std::vector<Vec3>& vertices) {
-    std::vector<std::uint32_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto key = [&](std::uint32_t v) { return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z); };
-    std::sort(order.begin(), order.end(),
-              [&](std::uint32_t v, std::uint32_t w) { return key(v) != key(w) ? key(v) < key(w) : v < w; });
-    std::vector<std::uint32_t> first(vertices.size());
-    for (std::size_t k = 0; k < order.size(); ++k) {
-        const bool is_same = k > 0 && key(order[k - 1]) == key(order[k]);
-        first[order[k]] = is_same ? first[order[k - 1]] : order[k];
-    }
-    return first;
-}
-
-/// A directed edge by its vertices, the smaller number first, and +1 if it goes from that one to the other.
-struct DirectedEdge {
-    std::array<std::uint32_t, 2> ends;
-    int sense;
-};
-
-std::vector<DirectedEdge> directed_edges(const TriangleMesh& mesh) {
-    const std::vector<std::uint32_t> first = first_at_position(mesh.vertices);
-    std::vector<DirectedEdge> edges;
+/// All directed edges, sorted by their ends: the smaller number in the upper half of the key. index: 1 if the edge goes
+/// from the smaller to the larger number. Edges between equal positions are left out.
+std::vector<KeyedIndex> directed_edges(const TriangleMesh& mesh, std::vector<Vec3>& positions) {
+    VertexWelder welder(positions);
+    welder.reserve(mesh.vertices.size());
+    std::vector<std::uint32_t> number(mesh.vertices.size());
+    for (std::size_t v = 0; v < number.size(); ++v) number[v] = welder.index_of(mesh.vertices[v]);
+    std::vector<KeyedIndex> edges;
     edges.reserve(3 * mesh.triangles.size());
     for (const Triangle& t : mesh.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = first[t[k]];
-            const std::uint32_t b = first[t[(k + 1) % 3]];
-            if (a != b) edges.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
+            const std::uint64_t a = number[t[k]];
+            const std::uint64_t b = number[t[(k + 1) % 3]];
+            if (a != b) edges.push_back({std::min(a, b) << 32U | std::max(a, b), a < b ? 1U : 0U});
         }
     }
-    std::sort(edges.begin(), edges.end(), [](const DirectedEdge& x, const DirectedEdge& y) { return x.ends < y.ends; });
+    std::vector<KeyedIndex> spare;
+    parallel_sort(edges, spare);
     return edges;
 }
 
@@ -103,17 +88,17 @@ std::optional<double> winding_number(const MeshIndex& mesh, const Ray& ray) {
 }  // namespace
 
 std::vector<BoundaryEdge> boundary_of(const TriangleMesh& mesh) {
-    const std::vector<DirectedEdge> edges = directed_edges(mesh);
+    std::vector<Vec3> positions;
+    const std::vector<KeyedIndex> edges = directed_edges(mesh, positions);
     std::vector<BoundaryEdge> boundary;
     for (std::size_t k = 0; k < edges.size();) {
-        const auto& [u, v] = edges[k].ends;
+        const std::uint64_t key = edges[k].key;
         int surplus = 0;
-        std::size_t end = k;
-        for (; end < edges.size() && edges[end].ends == edges[k].ends; ++end) surplus += edges[end].sense;
-        const std::uint32_t from = surplus > 0 ? u : v;
-        const std::uint32_t to = surplus > 0 ? v : u;
-        if (surplus != 0) boundary.push_back({mesh.vertices[from], mesh.vertices[to], std::fabs(surplus)});
-        k = end;
+        for (; k < edges.size() && edges[k].key == key; ++k) surplus += edges[k].index == 1 ? 1 : -1;
+        if (surplus == 0) continue;
+        const Vec3& smaller = positions[key >> 32U];
+        const Vec3& larger = positions[key & 0xFFFFFFFFU];
+        boundary.push_back({surplus > 0 ? smaller : larger, surplus > 0 ? larger : smaller, std::fabs(surplus)});
     }
     return boundary;
 }

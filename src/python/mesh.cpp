@@ -300,7 +300,7 @@ void bind_mesh(py::module_& module) {
             "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "m^2.")
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
-            "m^3, of a closed mesh; above 0 if it is wound outward.")
+            "Of a closed mesh; above 0 where it is wound outward.")
         .def_property_readonly("is_closed", &MeshQueries::is_closed,
                                "Whether every edge has an even number of triangles.")
         .def("set_vertices", &set_vertices, arg("vertices"),

@@ -97,4 +97,10 @@ const MeshInterior& MeshIndex::interior() const {
     return *interior_;
 }
 
+const std::vector<BoundaryEdge>& MeshIndex::boundary() const {
+    const std::lock_guard lock(making_);
+    if (!boundary_) boundary_ = boundary_of(*mesh_);
+    return *boundary_;
+}
+
 }  // namespace ricochet

@@ -14,6 +14,7 @@
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/queries/mesh_winding.h"
 
 namespace ricochet {
 
@@ -49,6 +50,7 @@ public:
     [[nodiscard]] bool is_closed() const;
     /// Throws InputError where the mesh is open.
     [[nodiscard]] const MeshInterior& interior() const;
+    [[nodiscard]] const std::vector<BoundaryEdge>& boundary() const;
 
 private:
     void finish();
@@ -62,6 +64,7 @@ private:
     mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
     mutable std::optional<bool> closed_;
     mutable std::unique_ptr<MeshInterior> interior_;
+    mutable std::optional<std::vector<BoundaryEdge>> boundary_;
 };
 
 /// Throws InputError "name[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.

@@ -1,6 +1,7 @@
 #include "ricochet/io/run_writer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <limits>
 #include <map>
@@ -334,6 +335,34 @@ TEST(RunWriter, ListsTheFilesThatAreKeptBeforeOthersAreRemoved) {
     list_kept_files(folder.path(""), checkpoint);
     EXPECT_EQ(folder.read(kParticleSeriesFile), pvd_text(checkpoint.frames));
     EXPECT_FALSE(std::filesystem::exists(folder.path(kContactSeriesFile)));
+}
+
+TEST(Checkpoint, DoesNotWaitForAPipeInPlaceOfAPart) {
+    const TemporaryFolder folder;
+    Simulation simulation(falling_particles());
+    Checkpoint checkpoint;
+    checkpoint.scene = 7;
+    checkpoint.parts = {{checkpoint_part_name(0, 0), 1}};
+    write_checkpoint(folder.path(kCheckpointFile), checkpoint, simulation);
+    ASSERT_EQ(::mkfifo(folder.path(checkpoint_part_name(0, 0)).c_str(), 0600), 0);
+    try {
+        (void)read_checkpoint(folder.path(kCheckpointFile), 7, simulation);
+        ADD_FAILURE() << "it was read";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("is not a regular file"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Checkpoint, ListsFilesOfARunOnly) {
+    const TemporaryFolder folder;
+    Simulation simulation(falling_particles());
+    for (const char* name : {"../particles_000001.vtp", "/etc/passwd", "contacts_000001.vtp"}) {
+        Checkpoint checkpoint;
+        checkpoint.scene = 7;
+        checkpoint.frames = {{0.0, 0, name}};
+        write_checkpoint(folder.path(kCheckpointFile), checkpoint, simulation);
+        EXPECT_THROW((void)read_checkpoint(folder.path(kCheckpointFile), 7, simulation), InputError) << name;
+    }
 }
 
 }  // namespace

@@ -159,6 +159,7 @@ void read_part(const std::filesystem::path& folder, const CheckpointPart& part, 
     // Its name comes from a file: nothing beside the checkpoint is opened.
     if (!set_of_checkpoint_part(part.file)) refuse_part("is no part of a checkpoint");
     const std::filesystem::path file = folder / part.file;
+    require_own_file(file);
     const OpenFile opened(std::fopen(file.c_str(), "rb"));
     if (!opened && errno != ENOENT) fail_to_read(file);
     if (!opened) refuse_part("is missing");

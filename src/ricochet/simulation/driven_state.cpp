@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/driven_motion.h"
 
 namespace ricochet {
@@ -35,10 +36,11 @@ bool is_path(const BodyPath& path) {
            is_rigid(path.at_begin);
 }
 
+/// A scene may begin with such speeds, and no faster.
 bool is_body(const DrivenBody& body) {
     return is_rigid(body.world_from_frame()) && ricochet::is_finite(body.center()) &&
-           ricochet::is_finite(body.momentum()) && ricochet::is_finite(body.angular_momentum()) &&
-           std::isfinite(body.coordinate()) && std::isfinite(body.rate());
+           length(body.velocity()) <= kMaxSpeed && length(body.angular_velocity()) <= kMaxSpeed &&
+           std::isfinite(body.coordinate()) && std::fabs(body.rate()) <= kMaxSpeed;
 }
 
 }  // namespace

@@ -93,8 +93,8 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points) const;
     /// Winding numbers of the mesh around points: 1 inside a closed mesh wound outward, -1 if it is wound inward, 0
     /// outside, and added up where shells overlap. Around points beside an open mesh the part of all directions in
-    /// which its back faces the point, less that in which its front does. The error is at most some 2^-32 for each boundary
-    /// edge, and 2^-50 as a rule.
+    /// which its back faces the point, less that in which its front does. The error is at most some 2^-32 for each
+    /// boundary edge, and 2^-50 as a rule.
     [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
     /// The nearest points of the mesh; triangle kNoHit where none is within `within` (m, >= 0).
     [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,

@@ -1,17 +1,21 @@
-// Runs every fuzz target over its seeds and over all inputs that it ever failed on.
+// Runs every fuzz target over its seeds, over all inputs that it ever failed on, and over random ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "fuzz/fuzz_targets.h"
+#include "ricochet/core/random.h"
 #include "support/allocation_guard.h"
+#include "support/counts.h"
 
 namespace ricochet::fuzz {
 
@@ -86,6 +90,28 @@ TEST_P(FuzzReplay, StandsUpToSeedsCutShortAndChanged) {
         }
     }
 }
+
+class FuzzRandom : public ::testing::TestWithParam<FuzzTarget> {};
+
+// Inputs whose every byte is a choice: of a target whose bytes are text all are refused. A finding is the seed's
+// number.
+TEST_P(FuzzRandom, FindsNothingWrongWithRandomChoices) {
+    constexpr std::size_t kLongest = 256;
+    const auto inputs = static_cast<std::uint64_t>(test::scaled(100) * test::case_factor(1000));
+    std::uint64_t accepted = 0;
+    for (std::uint64_t seed = 0; seed < inputs && !HasFailure(); ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        RandomSequence random(seed, 71, 0);
+        std::string bytes(kLongest, '\0');
+        for (char& byte : bytes) byte = static_cast<char>(static_cast<unsigned char>(256.0 * random.uniform()));
+        EXPECT_NO_THROW(accepted += GetParam().run(bytes) ? 1 : 0);
+    }
+    std::cout << GetParam().name << ": " << inputs << " inputs, " << accepted << " accepted\n";
+    if (std::string(GetParam().name) == "run") EXPECT_GT(2 * accepted, inputs);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FuzzRandom, ::testing::ValuesIn(kFuzzTargets),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 INSTANTIATE_TEST_SUITE_P(All, FuzzReplay, ::testing::ValuesIn(kFuzzTargets),
                          [](const auto& test) { return std::string(test.param.name); });

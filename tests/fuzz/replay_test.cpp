@@ -107,7 +107,9 @@ TEST_P(FuzzRandom, FindsNothingWrongWithRandomChoices) {
         EXPECT_NO_THROW(accepted += GetParam().run(bytes) ? 1 : 0);
     }
     std::cout << GetParam().name << ": " << inputs << " inputs, " << accepted << " accepted\n";
-    if (std::string(GetParam().name) == "run") EXPECT_GT(2 * accepted, inputs);
+    if (std::string(GetParam().name) == "run") {
+        EXPECT_GT(2 * accepted, inputs);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FuzzRandom, ::testing::ValuesIn(kFuzzTargets),

@@ -29,13 +29,14 @@ void ImpactAnswer::settle_on_holding(std::span<const ContactSurface> surfaces) {
     push(holder->surface, change, false, Vec3{});
 }
 
-/// The impact as it begins.
+/// The impact as it begins. What an earlier part of it has led away from a surface, that surface holds no more.
 RecordedImpact ImpactAnswer::impact_before(std::span<const ContactSurface> surfaces) const {
     RecordedImpact impact;
     if (!scratch_.record_motions) return impact;
     impact.time = particle_.state.time;
     impact.held_by = scratch_.held_by;
     impact.before = {particle_.state.position, particle_.state.velocity, particle_.spin};
+    const double rounding = kTurningAway * fastest(surfaces);
     for (const ContactSurface& surface : surfaces) {
         const Material& material = material_of(surface.surface);
         impact.surfaces.push_back({surface.surface,
@@ -44,7 +45,7 @@ RecordedImpact ImpactAnswer::impact_before(std::span<const ContactSurface> surfa
                                    {},
                                    material.restitution,
                                    material.restitution_threshold,
-                                   surface.holds});
+                                   surface.holds && departure_from(surface) <= rounding});
     }
     return impact;
 }

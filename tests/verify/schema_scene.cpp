@@ -208,7 +208,18 @@ nlohmann::json SchemaScene::draw() {
     scene["simulation"]["duration"] = duration_;
     if (!scene["simulation"].contains("most_particles")) scene["simulation"]["most_particles"] = 120;
     if (chance(0.06)) make_flow_scene(scene);
+    if (scene.contains("heat")) make_heatable(scene);
     return scene;
+}
+
+/// What has a temperature must be declared to have one, and heat goes by surfaces: there are no points.
+void SchemaScene::make_heatable(Json& scene) {
+    constexpr double kRadius = 0.1;
+    scene["attributes"]["temperature"] = {{"default", 300.0}};
+    for (const char* const key : {"emitters", "particles"}) {
+        if (!scene.contains(key)) continue;
+        for (Json& maker : scene[key]) maker[std::string(key) == "emitters" ? "particle_radius" : "radius"] = kRadius;
+    }
 }
 
 /// Particles that a flow carries have neither forces nor springs.

@@ -39,6 +39,7 @@ private:
     void settle(const std::string& name, Json& made);
     void keep_one(Json& made, const std::string& first, const std::string& second);
     void make_flow_scene(Json& scene);
+    void make_heatable(Json& scene);
     [[nodiscard]] bool chance(double p) { return random_.uniform() < p; }
     [[nodiscard]] double between(double low, double high) { return low + (high - low) * random_.uniform(); }
     [[nodiscard]] std::uint64_t below(std::uint64_t count);

@@ -218,6 +218,10 @@ void SchemaScene::make_heatable(Json& scene) {
     scene["attributes"]["temperature"] = {{"default", 300.0}};
     for (const char* const key : {"emitters", "particles"}) {
         if (!scene.contains(key)) continue;
+        if (!scene[key].is_array()) {  // a table, of points as well
+            scene.erase(key);
+            continue;
+        }
         for (Json& maker : scene[key]) maker[std::string(key) == "emitters" ? "particle_radius" : "radius"] = kRadius;
     }
 }

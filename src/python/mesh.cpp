@@ -216,8 +216,10 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
             "Of a closed mesh; above 0 where it is wound outward.")
-        .def_property_readonly("is_closed", &MeshQueries::is_closed,
-                               "Whether every edge has an even number of triangles.")
+        .def_property_readonly(
+            "is_closed", &MeshQueries::is_closed,
+            "Whether there is an inside: every edge has an even number of triangles. Vertices at equal "
+            "positions count as one, and repeated triangles once. The winding has no influence.")
         .def("set_vertices", &set_vertices, arg("vertices"),
              "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
         .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })

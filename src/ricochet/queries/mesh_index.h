@@ -12,6 +12,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
@@ -60,7 +61,7 @@ private:
     std::unique_ptr<TriangleBvh> for_points_;
     mutable std::mutex making_;
     mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
-    mutable std::optional<bool> closed_;
+    mutable std::optional<ClosedSurface> closed_;
     mutable std::unique_ptr<MeshInterior> interior_;
 };
 

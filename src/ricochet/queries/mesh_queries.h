@@ -75,7 +75,9 @@ public:
     /// than a new one. Answers are those of a new one. Copies of this object keep asking the old vertices. Throws as
     /// the constructor does, and for another number of vertices; then nothing has changed.
     void set_vertices(std::span<const Vec3> vertices);
-    /// Every edge has an even number of triangles: there is an inside.
+    /// Returns true if there is an inside: every edge belongs to an even number of triangles. Vertices at equal
+    /// positions are one vertex, and triangles that repeat an earlier one count once. The winding of the triangles has
+    /// no influence; where it changes, the signs of crossings and of the volume mean nothing.
     [[nodiscard]] bool is_closed() const;
 
     /// The first hit of every ray.

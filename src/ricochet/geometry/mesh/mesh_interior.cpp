@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -41,30 +42,16 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
 
 }  // namespace
 
-bool is_closed(const TriangleMesh& mesh) {
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = t[k];
-            const std::uint32_t b = t[(k + 1) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b)});
-        }
-    }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t k = 0; k < edges.size();) {
-        std::size_t end = k;
-        while (end < edges.size() && edges[end] == edges[k]) ++end;
-        if ((end - k) % 2 != 0) return false;
-        k = end;
-    }
-    return !edges.empty();
-}
+bool is_closed(const TriangleMesh& mesh) { return closed_surface(mesh).closed; }
 
-MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
+MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh)
+    : MeshInterior(mesh, closed_surface(*mesh).left_out) {}
+
+MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out)
+    : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
     cells_ =
         static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMaxCells));
-    fill_columns();
+    fill_columns(left_out);
 }
 
 // Monotone in the value, so that a point's column lies within those of every triangle above or below it.
@@ -75,23 +62,27 @@ std::size_t MeshInterior::cell_of(double value, int axis) const {
     return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(cells_ - 1)));
 }
 
-void MeshInterior::fill_columns() {
+void MeshInterior::fill_columns(const std::vector<std::uint32_t>& left_out) {
     column_begin_.assign(cells_ * cells_ + 1, 0);
-    const auto for_each_column = [&](const Triangle& t, auto&& use) {
-        Box3 box;
-        for (const std::uint32_t v : t) box.include(mesh_->vertices[v]);
-        for (std::size_t y = cell_of(box.lower.y, 1); y <= cell_of(box.upper.y, 1); ++y) {
-            for (std::size_t x = cell_of(box.lower.x, 0); x <= cell_of(box.upper.x, 0); ++x) use(y * cells_ + x);
+    const auto for_each_column = [&](auto&& use) {
+        auto skipped = left_out.begin();
+        for (std::uint32_t t = 0; t < mesh_->triangles.size(); ++t) {
+            if (skipped != left_out.end() && *skipped == t) {
+                ++skipped;
+                continue;
+            }
+            Box3 box;
+            for (const std::uint32_t v : mesh_->triangles[t]) box.include(mesh_->vertices[v]);
+            for (std::size_t y = cell_of(box.lower.y, 1); y <= cell_of(box.upper.y, 1); ++y) {
+                for (std::size_t x = cell_of(box.lower.x, 0); x <= cell_of(box.upper.x, 0); ++x) use(y * cells_ + x, t);
+            }
         }
     };
-    for (const Triangle& t : mesh_->triangles) for_each_column(t, [&](std::size_t k) { ++column_begin_[k + 1]; });
+    for_each_column([&](std::size_t k, std::uint32_t /*triangle*/) { ++column_begin_[k + 1]; });
     for (std::size_t k = 1; k < column_begin_.size(); ++k) column_begin_[k] += column_begin_[k - 1];
     column_triangles_.resize(column_begin_.back());
     std::vector<std::uint32_t> next(column_begin_.begin(), column_begin_.end() - 1);
-    for (std::size_t t = 0; t < mesh_->triangles.size(); ++t) {
-        for_each_column(mesh_->triangles[t],
-                        [&](std::size_t k) { column_triangles_[next[k]++] = static_cast<std::uint32_t>(t); });
-    }
+    for_each_column([&](std::size_t k, std::uint32_t t) { column_triangles_[next[k]++] = t; });
 }
 
 bool MeshInterior::contains(const Vec3& point) const {

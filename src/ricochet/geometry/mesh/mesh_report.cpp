@@ -13,6 +13,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -181,10 +182,17 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
 void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) {
     const TopologyReport& topology = report.topology;
     if (topology.closed) return;
+    if (topology.boundary_edges == 0) {
+        warnings.push_back(
+            "not closed, though without an opening: edges belong to three faces or another odd number of them, as "
+            "where walls part an inside, or polygons that are listed twice are cut along different diagonals, so "
+            "nothing leaks, but inside and outside cannot be told apart");
+        return;
+    }
     warnings.push_back(fmt::format("open surface, {} in {}: particles pass through the openings",
                                    counted(topology.boundary_edges, "boundary edge", "boundary edges"),
                                    counted(topology.boundary_loops, "loop", "loops")));
-    if (report.weld) {
+    if (report.weld || report.joined_vertices > 0) {
         warnings.push_back(
             "corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
             "wide as the difference, through which particles can pass");
@@ -237,7 +245,8 @@ void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warni
     }
     if (report.duplicate_faces > 0) {
         warnings.push_back(
-            fmt::format("{} an earlier face: nothing leaks, but inside and outside may not be told apart",
+            fmt::format("{} an earlier face: nothing leaks, and repeated faces count once where an inside is told from "
+                        "an outside",
                         counted(report.duplicate_faces, "face repeats", "faces repeat")));
     }
 }
@@ -263,6 +272,17 @@ std::vector<std::string> warnings_for(const MeshReport& report) {
                                        counted(report.topology.unused_vertices, "vertex belongs", "vertices belong")));
     }
     return warnings;
+}
+
+PolygonMesh joined_by_position(const ImportedMesh& imported, const TriangleMesh& joined) {
+    std::vector<std::uint32_t> renamed(imported.mesh.vertices.size());
+    std::iota(renamed.begin(), renamed.end(), 0U);
+    for (std::size_t t = 0; t < joined.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) renamed[imported.mesh.triangles[t][k]] = joined.triangles[t][k];
+    }
+    PolygonMesh polygons = imported.polygons;
+    for (std::uint32_t& corner : polygons.corners) corner = renamed[corner];
+    return polygons;
 }
 
 }  // namespace
@@ -301,15 +321,19 @@ MeshReport report_on(const ImportedMesh& imported) {
     report.triangles = imported.mesh.triangles.size();
     report.bounds = bounds(imported.mesh);
     report.area = surface_area(imported.mesh);
-    report.topology = MeshTopology(imported.mesh).report();
-    report.duplicate_faces = count_duplicate_faces(imported.polygons);
+    const TriangleMesh joined = joined_by_position(imported.mesh);
+    report.topology = MeshTopology(joined).report();
+    const std::size_t unused = count_unused_vertices(imported.mesh);
+    report.joined_vertices = report.topology.unused_vertices - unused;
+    report.topology.unused_vertices = unused;
+    report.duplicate_faces = count_duplicate_faces(joined_by_position(imported, joined));
     if (report.topology.closed) {
-        const double volume = signed_volume(imported.mesh);
+        const double volume = signed_volume(counted_surface(imported.mesh));
         report.volume = std::fabs(volume);
         report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
     }
     report.degenerate_triangles = count_degenerate(imported.mesh);
-    report.self_intersections = count_self_intersections(imported.mesh);
+    report.self_intersections = count_self_intersections(joined);
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;
     report.crossing_faces = imported.crossing_faces;
     report.weld = imported.weld;

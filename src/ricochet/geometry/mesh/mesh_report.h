@@ -25,12 +25,13 @@ struct MeshReport {
     double area = 0.0;                     ///< m^2
     std::optional<double> volume;          ///< enclosed volume, m^3, not negative; nothing when the surface is open
     bool wound_inward = false;             ///< closed, and the faces' normals point to the inside
-    TopologyReport topology;               ///< of the collision mesh
+    TopologyReport topology;               ///< of the collision mesh, equal positions joined
+    std::size_t joined_vertices = 0;       ///< used vertices at the position of an earlier one, joined for the topology
     std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
     std::size_t degenerate_triangles = 0;  ///< exactly without area
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
-    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, see self_intersection.h
+    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, equal positions joined
     std::optional<WeldReport> weld;      ///< STL and glTF only
     bool y_up = false;                   ///< the file has y up; the bounds have z up
     std::vector<NamedTriangles> names;   ///< by which faces can be meant

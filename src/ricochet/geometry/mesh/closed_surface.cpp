@@ -1,0 +1,112 @@
+#include "ricochet/geometry/mesh/closed_surface.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "ricochet/geometry/mesh/vertex_welder.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+
+std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
+    std::vector<std::uint32_t> face_of(faces.corners.size());
+    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
+        std::fill(face_of.begin() + faces.face_offsets[f], face_of.begin() + faces.face_offsets[f + 1], f);
+    }
+    return face_of;
+}
+
+/// How the edges of a shell are used.
+struct ShellParity {
+    bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated ones count once
+    bool is_odd = false;       ///< the same if all of them count
+};
+
+ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std::vector<std::uint32_t> repeated) {
+    const std::vector<std::uint32_t> face_of = faces_of_corners(faces);
+    std::vector<char> is_repeated(faces.face_count(), 0);
+    for (const std::uint32_t f : repeated) is_repeated[f] = 1;
+    DisjointSets shells(faces.face_count());
+    edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
+        for (const std::uint32_t use : uses.subspan(1)) shells.join(face_of[uses[0]], face_of[use]);
+    });
+    std::vector<ShellParity> parity(faces.face_count());
+    edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
+        const auto once =
+            std::count_if(uses.begin(), uses.end(), [&](std::uint32_t use) { return is_repeated[face_of[use]] == 0; });
+        ShellParity& shell = parity[shells.find(face_of[uses[0]])];
+        shell.is_odd_once = shell.is_odd_once || once % 2 != 0;
+        shell.is_odd = shell.is_odd || uses.size() % 2 != 0;
+    });
+    ClosedSurface result{true, std::move(repeated)};
+    for (const ShellParity& shell : parity) result.closed = result.closed && !(shell.is_odd_once && shell.is_odd);
+    const auto counts = [&](std::uint32_t f) {
+        const ShellParity& shell = parity[shells.find(f)];
+        return shell.is_odd_once && !shell.is_odd;
+    };
+    result.left_out.erase(std::remove_if(result.left_out.begin(), result.left_out.end(), counts),
+                          result.left_out.end());
+    return result;
+}
+
+}  // namespace
+
+ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges) {
+    std::vector<std::uint32_t> repeated = repeated_faces(faces);
+    if (!repeated.empty()) return choose_by_shell(faces, edges, std::move(repeated));
+    ClosedSurface result{faces.face_count() > 0, {}};
+    edges.for_each_edge(
+        [&](std::span<const std::uint32_t> uses) { result.closed = result.closed && uses.size() % 2 == 0; });
+    return result;
+}
+
+ClosedSurface closed_surface(const TriangleMesh& mesh) {
+    const TriangleMesh joined = joined_by_position(mesh);
+    std::vector<std::uint32_t> number;  // of the triangle that each face is
+    const FaceList faces = faces_of(joined, &number);
+    ClosedSurface result = closed_surface(faces, EdgeTable(faces, joined.vertices.size()));
+    for (std::uint32_t& face : result.left_out) face = number[face];
+    return result;
+}
+
+TriangleMesh joined_by_position(const TriangleMesh& mesh) {
+    TriangleMesh joined = mesh;
+    std::vector<Vec3> positions;
+    std::vector<std::uint32_t> first_at;  // vertex, per position
+    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnknown);
+    VertexWelder welder(positions);
+    for (Triangle& t : joined.triangles) {
+        for (std::uint32_t& v : t) {
+            if (renamed[v] == kUnknown) {
+                const std::uint32_t position = welder.index_of(mesh.vertices[v]);
+                if (position == first_at.size()) first_at.push_back(v);
+                renamed[v] = first_at[position];
+            }
+            v = renamed[v];
+        }
+    }
+    return joined;
+}
+
+TriangleMesh counted_surface(const TriangleMesh& mesh) {
+    const std::vector<std::uint32_t> left_out = closed_surface(mesh).left_out;
+    TriangleMesh counted = joined_by_position(mesh);
+    if (left_out.empty()) return counted;
+    auto next = left_out.begin();
+    std::size_t kept = 0;
+    for (std::uint32_t t = 0; t < counted.triangles.size(); ++t) {
+        if (next != left_out.end() && *next == t) {
+            ++next;
+        } else {
+            counted.triangles[kept++] = counted.triangles[t];
+        }
+    }
+    counted.triangles.resize(kept);
+    return counted;
+}
+
+}  // namespace ricochet

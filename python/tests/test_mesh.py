@@ -31,6 +31,25 @@ class Mesh(unittest.TestCase):
         directions = [[1, 0, 0], [1, 1, 1], [1, 0, 0]]
         np.testing.assert_array_equal(box().count_hits(origins, directions), [2, 2, 1])
 
+    def test_inside_goes_by_parity_or_by_winding_number(self):
+        cubes = ricochet.Mesh(
+            np.concatenate([BOX_VERTICES, np.array(BOX_VERTICES) + [0.5, 0.25, 0.125]]),
+            np.concatenate([BOX_FACES, np.array(BOX_FACES) + len(BOX_VERTICES)]),
+        )
+        points = np.array([[0.75, 0.6, 0.5], [0.25, 0.6, 0.5], [1.25, 0.6, 0.5], [3, 3, 3]])
+        np.testing.assert_array_equal(cubes.inside(points), [False, True, True, False])
+        np.testing.assert_array_equal(cubes.inside(points, rule="winding"), [True, True, True, False])
+        np.testing.assert_array_equal(cubes.signed_distances(points, "winding") < 0, [True, True, True, False])
+        with self.assertRaisesRegex(ricochet.InputError, 'rule: found "nearest", expected "parity" or "winding"'):
+            cubes.inside(points, rule="nearest")
+
+    def test_seams_leave_a_mesh_closed(self):
+        soup = np.array(BOX_VERTICES)[np.array(BOX_FACES)].reshape(-1, 3)
+        mesh = ricochet.Mesh(soup, np.arange(len(soup)).reshape(-1, 3))
+        self.assertTrue(mesh.is_closed)
+        self.assertEqual(len(mesh.vertices), len(soup))
+        np.testing.assert_array_equal(mesh.inside([[0.5, 0.25, 0.5], [2, 2, 2]]), [True, False])
+
     def test_a_miss_says_so(self):
         hits = box().first_hits([[5, 5, 5]], [[1, 0, 0]])
         self.assertEqual(hits.triangle[0], -1)

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "python/arrays.h"
@@ -95,9 +96,16 @@ py::array occluded(const MeshQueries& mesh, const py::object& origins, const py:
     return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.occluded(batch); }));
 }
 
-py::array inside(const MeshQueries& mesh, const py::object& where) {
+InsideRule rule_named(const std::string& name) {
+    if (name == "parity") return InsideRule::parity;
+    if (name == "winding") return InsideRule::winding;
+    throw InputError(fmt::format("rule: found \"{}\", expected \"parity\" or \"winding\"", name));
+}
+
+py::array inside(const MeshQueries& mesh, const py::object& where, const std::string& rule) {
     const Doubles places = numbers(where, "points", 3);
-    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.inside(points(places)); }));
+    const InsideRule chosen = rule_named(rule);
+    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.inside(points(places), chosen); }));
 }
 
 py::object closest_points(const MeshQueries& mesh, const py::object& where, double within) {
@@ -107,9 +115,10 @@ py::object closest_points(const MeshQueries& mesh, const py::object& where, doub
                           given(std::move(found.point)));
 }
 
-py::array signed_distances(const MeshQueries& mesh, const py::object& where) {
+py::array signed_distances(const MeshQueries& mesh, const py::object& where, const std::string& rule) {
     const Doubles places = numbers(where, "points", 3);
-    return given(ask(mesh, [&](const MeshQueries& m) { return m.signed_distances(points(places)); }));
+    const InsideRule chosen = rule_named(rule);
+    return given(ask(mesh, [&](const MeshQueries& m) { return m.signed_distances(points(places), chosen); }));
 }
 
 py::object sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
@@ -185,12 +194,15 @@ void bind_rays(py::class_<MeshQueries>& type) {
 
 void bind_points(py::class_<MeshQueries>& type) {
     using py::arg;
-    type.def("inside", &inside, arg("points"),
-             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed.")
+    type.def("inside", &inside, arg("points"), arg("rule") = "parity",
+             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed. rule: "
+             "\"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not 0: "
+             "overlapping shells are joined).")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
              "The point of the mesh nearest to each point, where one is within that distance.")
-        .def("signed_distances", &signed_distances, arg("points"),
-             "Distance of each point from the surface, negative inside. The mesh must be closed.")
+        .def("signed_distances", &signed_distances, arg("points"), arg("rule") = "parity",
+             "Distance of each point from the surface, negative inside by the rule of inside(). The mesh must be "
+             "closed.")
         .def("sweep", &sweep, arg("from_points"), arg("to_points"), arg("radius") = 0.0,
              arg("vertices_after") = py::none(),
              "What points, or spheres of a radius (one number or one each), meet first on straight ways. "

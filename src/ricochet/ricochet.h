@@ -33,6 +33,7 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/dynamics/particles_force.h"
 #include "ricochet/dynamics/springs.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
 #include "ricochet/geometry/mesh/mass_moments.h"
 #include "ricochet/geometry/mesh/mesh_motion.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"

@@ -83,7 +83,7 @@ bool MeshIndex::is_closed() const {
     return closed_->closed;
 }
 
-const MeshInterior& MeshIndex::interior() const {
+const MeshInterior& MeshIndex::interior(InsideRule rule) const {
     if (!is_closed()) {
         throw InputError(
             "mesh: found one that is open, expected a closed one: every edge with an even number of triangles, "
@@ -91,6 +91,11 @@ const MeshInterior& MeshIndex::interior() const {
             "at equal positions being one and repeated triangles counted once");
     }
     const std::lock_guard lock(making_);
+    if (rule == InsideRule::winding && !closed_->oriented) {
+        throw InputError(
+            "mesh: found triangles that are wound against their neighbours, expected a consistent winding for the rule "
+            "winding: repair the mesh, or choose the rule parity");
+    }
     if (!interior_) interior_ = std::make_unique<MeshInterior>(mesh_, closed_->left_out);
     return *interior_;
 }

@@ -48,8 +48,8 @@ public:
     /// For spheres up to that radius, m; there is one for each power of two.
     [[nodiscard]] const TriangleBvh& hierarchy(double radius = 0.0) const;
     [[nodiscard]] bool is_closed() const;
-    /// Throws InputError where the mesh is open.
-    [[nodiscard]] const MeshInterior& interior() const;
+    /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and there is none.
+    [[nodiscard]] const MeshInterior& interior(InsideRule rule) const;
 
 private:
     void finish();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -90,13 +91,16 @@ public:
     /// 1 for rays that hit anything; cheaper than first_hits().
     [[nodiscard]] std::vector<std::uint8_t> occluded(const RayBatch& rays) const;
 
-    /// 1 for points inside a closed mesh, exactly; 0 for points on its surface. InputError where the mesh is open.
-    [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points) const;
+    /// Returns 1 for points inside a closed mesh, exactly, and 0 for points on its surface. Throws InputError if the
+    /// mesh is open, or if the rule needs a consistent winding and there is none.
+    [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points,
+                                                   InsideRule rule = InsideRule::parity) const;
     /// The nearest points of the mesh; triangle kNoHit where none is within `within` (m, >= 0).
     [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,
                                                double within = std::numeric_limits<double>::infinity()) const;
-    /// Distance from the surface, m, negative inside; the sign is exact. InputError where the mesh is open.
-    [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points) const;
+    /// Returns distances from the surface, m, negative inside by the rule. The sign is exact. Throws as inside() does.
+    [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points,
+                                                       InsideRule rule = InsideRule::parity) const;
 
     /// What points (radius 0) or spheres on straight ways meet first. radii: m, one for all or one each. For points the
     /// closed segment between the two positions decides, exactly. `distance` is the fraction of the way, `point` the

@@ -3,9 +3,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <memory>
 #include <span>
+#include <utility>
 
+#include "ricochet/geometry/mesh/mesh_interior.h"
+#include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
+#include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
 namespace {
@@ -26,6 +32,22 @@ struct ShellParity {
     bool is_odd = false;       ///< the same if all of them count
 };
 
+/// Returns true if each edge has as many faces in either direction.
+bool is_oriented(const FaceList& faces, const EdgeTable& edges, const std::vector<std::uint32_t>& left_out) {
+    const std::vector<std::uint32_t> face_of =
+        left_out.empty() ? std::vector<std::uint32_t>{} : faces_of_corners(faces);
+    bool oriented = true;
+    edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
+        std::int64_t excess = 0;
+        for (const std::uint32_t use : uses) {
+            if (!left_out.empty() && std::binary_search(left_out.begin(), left_out.end(), face_of[use])) continue;
+            excess += faces.corners[use] < faces.corners[faces.next_corner[use]] ? 1 : -1;
+        }
+        oriented = oriented && excess == 0;
+    });
+    return oriented;
+}
+
 ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std::vector<std::uint32_t> repeated) {
     const std::vector<std::uint32_t> face_of = faces_of_corners(faces);
     std::vector<char> is_repeated(faces.face_count(), 0);
@@ -42,7 +64,7 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
         shell.is_odd_once = shell.is_odd_once || once % 2 != 0;
         shell.is_odd = shell.is_odd || uses.size() % 2 != 0;
     });
-    ClosedSurface result{true, std::move(repeated)};
+    ClosedSurface result{true, false, std::move(repeated)};
     for (const ShellParity& shell : parity) result.closed = result.closed && !(shell.is_odd_once && shell.is_odd);
     const auto counts = [&](std::uint32_t f) {
         const ShellParity& shell = parity[shells.find(f)];
@@ -50,7 +72,54 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     };
     result.left_out.erase(std::remove_if(result.left_out.begin(), result.left_out.end(), counts),
                           result.left_out.end());
+    result.oriented = result.closed && is_oriented(faces, edges, result.left_out);
     return result;
+}
+
+/// Returns the smallest triangle of its shell for each triangle.
+std::vector<std::uint32_t> shells_of(const TriangleMesh& joined) {
+    std::vector<std::uint32_t> number;
+    const FaceList faces = faces_of(joined, &number);
+    const std::vector<std::uint32_t> face_of = faces_of_corners(faces);
+    DisjointSets shells(joined.triangles.size());
+    EdgeTable(faces, joined.vertices.size()).for_each_edge([&](std::span<const std::uint32_t> uses) {
+        for (const std::uint32_t use : uses.subspan(1)) shells.join(number[face_of[uses[0]]], number[face_of[use]]);
+    });
+    std::vector<std::uint32_t> shell_of(joined.triangles.size());
+    for (std::uint32_t t = 0; t < shell_of.size(); ++t) shell_of[t] = shells.find(t);
+    return shell_of;
+}
+
+TriangleMesh shell_alone(const TriangleMesh& mesh, const std::vector<std::uint32_t>& shell_of, std::uint32_t shell) {
+    TriangleMesh alone{mesh.vertices, {}};
+    for (std::size_t t = 0; t < shell_of.size(); ++t) {
+        if (shell_of[t] == shell) alone.triangles.push_back(mesh.triangles[t]);
+    }
+    return alone;
+}
+
+Vec3 centroid(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+}
+
+/// Returns true if an edge of the first passes through the inside of the second.
+bool pierces(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
+    const auto at = [&](std::uint32_t v) -> const Vec3& { return mesh.vertices[v]; };
+    const auto& [a, b, c] = second;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = at(first[k]);
+        const Vec3& q = at(first[(k + 1) % 3]);
+        if (orient3d(at(a), at(b), at(c), p) * orient3d(at(a), at(b), at(c), q) >= 0) continue;
+        const int side = orient3d(p, q, at(a), at(b));
+        if (side != 0 && side == orient3d(p, q, at(b), at(c)) && side == orient3d(p, q, at(c), at(a))) return true;
+    }
+    return false;
+}
+
+bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
+    return pierces(mesh, mesh.triangles[first], mesh.triangles[second]) ||
+           pierces(mesh, mesh.triangles[second], mesh.triangles[first]);
 }
 
 }  // namespace
@@ -58,9 +127,10 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
 ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges) {
     std::vector<std::uint32_t> repeated = repeated_faces(faces);
     if (!repeated.empty()) return choose_by_shell(faces, edges, std::move(repeated));
-    ClosedSurface result{faces.face_count() > 0, {}};
+    ClosedSurface result{faces.face_count() > 0, false, {}};
     edges.for_each_edge(
         [&](std::span<const std::uint32_t> uses) { result.closed = result.closed && uses.size() % 2 == 0; });
+    result.oriented = result.closed && is_oriented(faces, edges, {});
     return result;
 }
 
@@ -90,6 +160,29 @@ TriangleMesh joined_by_position(const TriangleMesh& mesh) {
         }
     }
     return joined;
+}
+
+bool shells_overlap(const TriangleMesh& mesh) {
+    const TriangleMesh joined = counted_surface(mesh);
+    const std::vector<std::uint32_t> shell_of = shells_of(joined);
+    if (std::all_of(shell_of.begin(), shell_of.end(), [](std::uint32_t shell) { return shell == 0; })) return false;
+    constexpr std::size_t kMostPairs = 4096;
+    constexpr std::size_t kMostInteriors = 256;
+    const auto pairs = intersections_between(joined, shell_of, kMostPairs);
+    for (const auto& [first, second] : pairs) {
+        if (cross_properly(joined, first, second)) return true;
+    }
+    std::map<std::uint32_t, MeshInterior> interiors;
+    for (const auto& [first, second] : pairs) {
+        for (const auto& [triangle, other] : {std::pair(first, second), std::pair(second, first)}) {
+            const std::uint32_t shell = shell_of[other];
+            if (interiors.size() == kMostInteriors && interiors.count(shell) == 0) continue;
+            const auto found = interiors.try_emplace(
+                shell, std::make_shared<const TriangleMesh>(shell_alone(joined, shell_of, shell)));
+            if (found.first->second.contains(centroid(joined, triangle))) return true;
+        }
+    }
+    return false;
 }
 
 TriangleMesh counted_surface(const TriangleMesh& mesh) {

@@ -21,6 +21,7 @@ namespace ricochet {
 /// The faces that count where an inside is told from an outside.
 struct ClosedSurface {
     bool closed = false;
+    bool oriented = false;  ///< closed, and at each edge as many of the faces that count run along it as against it
     std::vector<std::uint32_t> left_out;  ///< repeated faces that do not count, in increasing order
 };
 
@@ -32,6 +33,11 @@ struct ClosedSurface {
 /// Returns the mesh with each corner renamed to the first vertex at its position. Vertices and triangles keep their
 /// numbers; the replaced vertices stay, unused.
 [[nodiscard]] TriangleMesh joined_by_position(const TriangleMesh& mesh);
+
+/// Returns true if two shells of a mesh overlap. Shells are sets of triangles joined by edges, at equal positions.
+/// Shells that only touch, or of which one lies within the other, do not overlap. Exact for shells that cross properly.
+/// Where their triangles only touch, or lie in one plane, the centroids of the first of these triangles decide.
+[[nodiscard]] bool shells_overlap(const TriangleMesh& mesh);
 
 /// Returns the joined mesh without the triangles that closed_surface() leaves out: the boundary of its volume.
 [[nodiscard]] TriangleMesh counted_surface(const TriangleMesh& mesh);

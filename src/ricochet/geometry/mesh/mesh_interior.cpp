@@ -26,12 +26,12 @@ bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
     return turn > 0;  // on a vertical edge the move to the right decides: p is not on the left
 }
 
-// True when the ray upwards from the moved point crosses the triangle.
-bool is_crossed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+// Returns +1 if the ray upwards from the moved point crosses the triangle along its normal, -1 against it, or 0.
+int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
-    if (!covers) return false;
+    if (!covers) return 0;
     const int turn = orient2d(flat(a), flat(b), flat(c));
-    return turn != 0 && orient3d(a, b, c, p) == -turn;  // the normal's z has the sign of the turn
+    return turn != 0 && orient3d(a, b, c, p) == -turn ? turn : 0;  // the normal's z has the sign of the turn
 }
 
 bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
@@ -85,19 +85,22 @@ void MeshInterior::fill_columns(const std::vector<std::uint32_t>& left_out) {
     for_each_column([&](std::size_t k, std::uint32_t t) { column_triangles_[next[k]++] = t; });
 }
 
-bool MeshInterior::contains(const Vec3& point) const {
+bool MeshInterior::contains(const Vec3& point, InsideRule rule) const {
     if (!is_finite(point) || !box_.contains(point)) return false;
     const std::size_t column = cell_of(point.y, 1) * cells_ + cell_of(point.x, 0);
-    bool inside = false;
+    std::int64_t crossings = 0;
+    std::int64_t winding = 0;
     for (std::uint32_t k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
         const Triangle& t = mesh_->triangles[column_triangles_[k]];
         const Vec3& a = mesh_->vertices[t[0]];
         const Vec3& b = mesh_->vertices[t[1]];
         const Vec3& c = mesh_->vertices[t[2]];
         if (is_on(a, b, c, point)) return false;
-        if (is_crossed(a, b, c, point)) inside = !inside;
+        const int sign = crossing(a, b, c, point);
+        crossings += sign != 0 ? 1 : 0;
+        winding += sign;
     }
-    return inside;
+    return rule == InsideRule::parity ? crossings % 2 != 0 : winding != 0;
 }
 
 }  // namespace ricochet

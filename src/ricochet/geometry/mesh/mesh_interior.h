@@ -14,6 +14,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -29,7 +30,7 @@ public:
     MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out);
 
     /// Exact; false for a point on the surface itself.
-    [[nodiscard]] bool contains(const Vec3& point) const;
+    [[nodiscard]] bool contains(const Vec3& point, InsideRule rule = InsideRule::parity) const;
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:

@@ -167,6 +167,23 @@ private:
     const TriangleMesh& mesh_;
 };
 
+/// The triangles that have an area, and their boxes.
+struct TriangleBoxes {
+    explicit TriangleBoxes(const TriangleMesh& mesh) {
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const Triangle& t = mesh.triangles[i];
+            if (are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
+            Box3 box;
+            for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
+            boxes.push_back(box);
+            numbers.push_back(i);
+        }
+    }
+
+    std::vector<std::uint32_t> numbers;
+    std::vector<Box3> boxes;
+};
+
 std::size_t count_degenerate(const TriangleMesh& mesh) {
     const auto without_area = [&mesh](const Triangle& t) {
         return are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
@@ -289,27 +306,37 @@ PolygonMesh joined_by_position(const ImportedMesh& imported, const TriangleMesh&
 
 std::size_t count_self_intersections(const TriangleMesh& mesh) {
     const PairTest intersect(mesh);
-    std::vector<std::uint32_t> numbers;
-    std::vector<Box3> boxes;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const Triangle& t = mesh.triangles[i];
-        if (are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
-        Box3 box;
-        for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
-        boxes.push_back(box);
-        numbers.push_back(i);
-    }
-    const BoxTree tree(boxes);
+    const TriangleBoxes triangles(mesh);
+    const std::vector<std::uint32_t>& numbers = triangles.numbers;
+    const BoxTree tree(triangles.boxes);
     std::atomic<std::size_t> pairs{0};
     constexpr std::size_t kBlock = 1024;
-    parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(numbers.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         std::size_t found = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            tree.for_each_overlap(
-                boxes[i], [&](std::uint32_t j) { found += j > i && intersect(numbers[i], numbers[j]) ? 1 : 0; });
+            tree.for_each_overlap(triangles.boxes[i], [&](std::uint32_t j) {
+                found += j > i && intersect(numbers[i], numbers[j]) ? 1 : 0;
+            });
         }
         pairs += found;
     });
+    return pairs;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(const TriangleMesh& mesh,
+                                                                           const std::vector<std::uint32_t>& part_of,
+                                                                           std::size_t most) {
+    const PairTest intersect(mesh);
+    const TriangleBoxes triangles(mesh);
+    const std::vector<std::uint32_t>& numbers = triangles.numbers;
+    const BoxTree tree(triangles.boxes);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::size_t i = 0; i < numbers.size() && pairs.size() < most; ++i) {
+        tree.for_each_overlap(triangles.boxes[i], [&](std::uint32_t j) {
+            if (j <= i || part_of[numbers[i]] == part_of[numbers[j]] || pairs.size() == most) return;
+            if (intersect(numbers[i], numbers[j])) pairs.emplace_back(numbers[i], numbers[j]);
+        });
+    }
     return pairs;
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -46,5 +48,9 @@ struct MeshReport {
 /// or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on the
 /// number of threads. Time is close to linear in the number of triangles and of pairs whose boxes overlap.
 [[nodiscard]] std::size_t count_self_intersections(const TriangleMesh& mesh);
+
+/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle.
+[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(
+    const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of, std::size_t most);
 
 }  // namespace ricochet

@@ -1,5 +1,7 @@
 import gc
+import os
 import pickle
+import tempfile
 import threading
 import unittest
 
@@ -49,6 +51,26 @@ class Mesh(unittest.TestCase):
         self.assertTrue(mesh.is_closed)
         self.assertEqual(len(mesh.vertices), len(soup))
         np.testing.assert_array_equal(mesh.inside([[0.5, 0.25, 0.5], [2, 2, 2]]), [True, False])
+
+    def test_reading_turns_scales_and_merges(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "t.obj")
+            with open(file, "w") as out:
+                out.write("v 0 0 0\nv 100 0 0\nv 0 200 0\nv 0 0 300\nv 0 0 0.001\n")
+                out.write("f 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n")
+            plain = ricochet.Mesh.read(file)
+            np.testing.assert_array_equal(plain.bounds[1], [100, 200, 300])
+            self.assertFalse(plain.is_closed)
+            turned = ricochet.Mesh.read(file, up="y", scale=0.5)
+            np.testing.assert_array_equal(turned.bounds, [[0, -150, 0], [50, 0, 100]])
+            np.testing.assert_array_equal(ricochet.Mesh.read(file, up="z").vertices, plain.vertices)
+            merged = ricochet.Mesh.read(file, scale=0.001, merge=1e-5)
+            self.assertTrue(merged.is_closed)
+            self.assertEqual(len(merged.vertices), 4)
+            self.assertAlmostEqual(merged.volume, 0.001, places=12)
+            for wrong in ({"up": "x"}, {"scale": 0}, {"scale": float("nan")}, {"merge": -1.0}, {"merge": 1e-20}):
+                with self.assertRaises(ricochet.InputError):
+                    ricochet.Mesh.read(file, **wrong)
 
     def test_a_miss_says_so(self):
         hits = box().first_hits([[5, 5, 5]], [[1, 0, 0]])

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "python/gil.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/queries/mesh_queries.h"
 
@@ -165,9 +168,26 @@ py::array bounds_of(const MeshQueries& mesh) {
     return given(std::vector<Vec3>{box.lower, box.upper});
 }
 
-MeshQueries read(const std::filesystem::path& file) {
+/// As a scene reads it: first the axis that points up, then the unit.
+MeshQueries read(const std::filesystem::path& file, const std::optional<std::string>& up, double scale,
+                 const std::optional<double>& merge) {
+    if (up && *up != "y" && *up != "z") {
+        throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
+    }
+    if (!(scale > 0.0) || !std::isfinite(scale)) {
+        throw InputError(fmt::format("scale: found {}, expected a finite number above 0, such as 0.001 for mm", scale));
+    }
     const Unlocked unlocked;
-    return MeshQueries(read_mesh(file.string()).mesh);
+    ImportedMesh imported = read_mesh(file.string());
+    const bool turns_up = up == "y" && !imported.y_up;
+    const bool turns_back = up == "z" && imported.y_up;
+    for (Vec3& vertex : imported.mesh.vertices) {
+        if (turns_up) vertex = y_up_as_z_up(vertex);
+        if (turns_back) vertex = z_up_as_y_up(vertex);
+        if (scale != 1.0) vertex = scale * vertex;
+    }
+    if (merge) return MeshQueries(merged_within(imported.mesh, *merge));
+    return MeshQueries(std::move(imported.mesh));
 }
 
 constexpr const char* kMeshText = R"(A mesh of triangles, and exact questions about it.
@@ -220,7 +240,11 @@ void bind_mesh(py::module_& module) {
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))
-        .def_static("read", &read, arg("file"), "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles.")
+        .def_static(
+            "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
+            "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
+            "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres. merge: joins "
+            "vertices within that distance, m (0: equal positions); no vertex moves farther.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")

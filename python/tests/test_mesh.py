@@ -72,6 +72,35 @@ class Mesh(unittest.TestCase):
                 with self.assertRaises(ricochet.InputError):
                     ricochet.Mesh.read(file, **wrong)
 
+    def test_a_transform_places_the_mesh_for_one_question(self):
+        transform = np.array([[0, -2, 0, 5], [2, 0, 0, -1], [0, 0, 2, 3], [0, 0, 0, 1]], dtype=float)
+        corners = np.array(BOX_VERTICES) @ transform[:3, :3].T + transform[:3, 3]
+        moved = ricochet.Mesh(corners, BOX_FACES)
+        origins, directions = rays(500)
+        origins += [4, 0, 4]
+        points = origins + 0.3 * directions
+        for ask in ("first_hits", "all_hits"):
+            found = getattr(box(), ask)(origins, directions, transform=transform)
+            known = getattr(moved, ask)(origins, directions)
+            np.testing.assert_array_equal(found.triangle, known.triangle)
+            np.testing.assert_allclose(found.distance, known.distance, rtol=1e-12)
+            np.testing.assert_allclose(found.point, known.point, rtol=1e-12)
+        for ask in ("count_hits", "occluded"):
+            found = getattr(box(), ask)(origins, directions, transform=transform)
+            np.testing.assert_array_equal(found, getattr(moved, ask)(origins, directions))
+        np.testing.assert_array_equal(box().inside(points, transform=transform), moved.inside(points))
+        distances = box().signed_distances(points, transform=transform)
+        np.testing.assert_allclose(distances, moved.signed_distances(points), rtol=1e-12)
+        near = box().closest_points(points, within=1.0, transform=transform)
+        np.testing.assert_array_equal(near.triangle, moved.closest_points(points, within=1.0).triangle)
+        met = box().sweep(origins, points, 0.125, transform=transform)
+        np.testing.assert_array_equal(met.triangle, moved.sweep(origins, points, 0.125).triangle)
+        met = box().sweep(origins, points, 0.125, vertices_after=corners + 0.5, transform=transform)
+        np.testing.assert_array_equal(met.triangle, moved.sweep(origins, points, 0.125, corners + 0.5).triangle)
+        for wrong in (np.eye(3), np.diag([1.0, 2, 1, 1]), np.zeros((4, 4)), np.full((4, 4), np.nan), "up"):
+            with self.assertRaises((ricochet.InputError, TypeError)):
+                box().inside(points, transform=wrong)
+
     def test_a_miss_says_so(self):
         hits = box().first_hits([[5, 5, 5]], [[1, 0, 0]])
         self.assertEqual(hits.triangle[0], -1)

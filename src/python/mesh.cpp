@@ -16,6 +16,7 @@
 #include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/placed_mesh.h"
 
 namespace ricochet::python {
 namespace {
@@ -32,12 +33,30 @@ TriangleMesh mesh_of(const py::handle& vertices, const py::handle& faces) {
     return mesh;
 }
 
+AffineMap map_of(const py::object& transform) {
+    const Doubles m = numbers(transform, "transform", 4);
+    const std::span<const double> rows = values(m);
+    if (rows.size() != 16 || rows[12] != 0.0 || rows[13] != 0.0 || rows[14] != 0.0 || rows[15] != 1.0) {
+        throw InputError("transform: expected a matrix of shape (4, 4) whose last row is 0, 0, 0, 1");
+    }
+    return {{rows[0], rows[1], rows[2]},
+            {rows[4], rows[5], rows[6]},
+            {rows[8], rows[9], rows[10]},
+            {rows[3], rows[7], rows[11]}};
+}
+
 /// The questions are put while other threads of Python run. A copy answers them, so that set_vertices() may run beside.
+/// transform: where the mesh stands; None: as its vertices say.
 template <class Ask>
-auto ask(const MeshQueries& mesh, const Ask& question) {
-    const MeshQueries asked = mesh;
+auto ask(const MeshQueries& mesh, const py::object& transform, const Ask& question) {
+    if (transform.is_none()) {
+        const MeshQueries asked = mesh;
+        const Unlocked unlocked;
+        return question(asked);
+    }
+    const PlacedMesh placed(mesh, map_of(transform));
     const Unlocked unlocked;
-    return question(asked);
+    return question(placed);
 }
 
 py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
@@ -61,18 +80,18 @@ struct Rays {
 };
 
 py::object first_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                      const py::object& most) {
+                      const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return hits_of(ask(mesh, [&](const MeshQueries& m) { return m.first_hits(batch); }));
+    return hits_of(ask(mesh, transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
 py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                    const py::object& most) {
+                    const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
     std::vector<std::int64_t> ray;
-    AllMeshHits all = ask(mesh, [&](const MeshQueries& m) {
+    AllMeshHits all = ask(mesh, transform, [&](const auto& m) {
         AllMeshHits found = m.all_hits(batch);
         ray.reserve(found.first.back());
         for (std::size_t i = 0; i + 1 < found.first.size(); ++i) {
@@ -86,17 +105,17 @@ py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py
 }
 
 py::array count_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                     const py::object& most) {
+                     const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given(ask(mesh, [&](const MeshQueries& m) { return m.count_hits(batch); }));
+    return given(ask(mesh, transform, [&](const auto& m) { return m.count_hits(batch); }));
 }
 
 py::array occluded(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                   const py::object& most) {
+                   const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.occluded(batch); }));
+    return given_flags(ask(mesh, transform, [&](const auto& m) { return m.occluded(batch); }));
 }
 
 InsideRule rule_named(const std::string& name) {
@@ -105,36 +124,39 @@ InsideRule rule_named(const std::string& name) {
     throw InputError(fmt::format("rule: found \"{}\", expected \"parity\" or \"winding\"", name));
 }
 
-py::array inside(const MeshQueries& mesh, const py::object& where, const std::string& rule) {
+py::array inside(const MeshQueries& mesh, const py::object& where, const std::string& rule,
+                 const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
-    return given_flags(ask(mesh, [&](const MeshQueries& m) { return m.inside(points(places), chosen); }));
+    return given_flags(ask(mesh, transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
 }
 
-py::object closest_points(const MeshQueries& mesh, const py::object& where, double within) {
+py::object closest_points(const MeshQueries& mesh, const py::object& where, double within,
+                          const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    NearestPoints found = ask(mesh, [&](const MeshQueries& m) { return m.closest_points(points(places), within); });
+    NearestPoints found = ask(mesh, transform, [&](const auto& m) { return m.closest_points(points(places), within); });
     return result("Hits")(given(std::move(found.triangle)), given(std::move(found.distance)),
                           given(std::move(found.point)));
 }
 
-py::array signed_distances(const MeshQueries& mesh, const py::object& where, const std::string& rule) {
+py::array signed_distances(const MeshQueries& mesh, const py::object& where, const std::string& rule,
+                           const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
-    return given(ask(mesh, [&](const MeshQueries& m) { return m.signed_distances(points(places), chosen); }));
+    return given(ask(mesh, transform, [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
 }
 
 py::object sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
-                 const py::object& vertices_after) {
+                 const py::object& vertices_after, const py::object& transform) {
     const Doubles starts = numbers(from, "from_points", 3);
     const Doubles ends = numbers(to, "to_points", 3);
     const Doubles radii = numbers_or_one(radius, "radius");
     if (vertices_after.is_none()) {
         return hits_of(
-            ask(mesh, [&](const MeshQueries& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
+            ask(mesh, transform, [&](const auto& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
     }
     const Doubles after = numbers(vertices_after, "vertices_after", 3);
-    return hits_of(ask(mesh, [&](const MeshQueries& m) {
+    return hits_of(ask(mesh, transform, [&](const auto& m) {
         return m.sweep_moving(points(starts), points(ends), values(radii), points(after));
     }));
 }
@@ -196,35 +218,40 @@ vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 
 
 Whether a ray hits, and what it hits first, is decided exactly for the doubles given: also at edges and vertices, also far
 from the origin. Answers are the same bits for any number of threads and any order. Questions run on all threads and let
-other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.)";
+other threads of Python run. transform: a matrix of shape (4, 4) that places the mesh for one question (a rotation or
+reflection times one scale, and a translation); the question is mapped and rounded, and nothing is copied. What is wrong with an argument is raised as ricochet.InputError, a ValueError.)";
 
 void bind_rays(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("first_hits", &first_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none(),
              "The first hit of each ray. Directions have any length above 0; most: how far rays reach, in metres, one "
              "number or one each.")
         .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none(),
              "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
              "and a way along the surface is where it begins.")
         .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
-             "How many places all_hits() finds for each ray.")
+             arg("transform") = py::none(), "How many places all_hits() finds for each ray.")
         .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
-             "Whether each ray hits anything; cheaper than first_hits().");
+             arg("transform") = py::none(), "Whether each ray hits anything; cheaper than first_hits().");
 }
 
 void bind_points(py::class_<MeshQueries>& type) {
     using py::arg;
-    type.def("inside", &inside, arg("points"), arg("rule") = "parity",
+    type.def("inside", &inside, arg("points"), arg("rule") = "parity", arg("transform") = py::none(),
              "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed. rule: "
              "\"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not 0: "
              "overlapping shells are joined).")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
+             arg("transform") = py::none(),
              "The point of the mesh nearest to each point, where one is within that distance.")
         .def("signed_distances", &signed_distances, arg("points"), arg("rule") = "parity",
+             arg("transform") = py::none(),
              "Distance of each point from the surface, negative inside by the rule of inside(). The mesh must be "
              "closed.")
         .def("sweep", &sweep, arg("from_points"), arg("to_points"), arg("radius") = 0.0,
-             arg("vertices_after") = py::none(),
+             arg("vertices_after") = py::none(), arg("transform") = py::none(),
              "What points, or spheres of a radius (one number or one each), meet first on straight ways. "
              "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
 }

@@ -44,6 +44,7 @@
 #include "ricochet/io/scene.h"
 #include "ricochet/io/vtk.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/placed_mesh.h"
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/pair_record.h"

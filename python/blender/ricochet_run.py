@@ -57,6 +57,15 @@ def _array(data, at, kind, components, path):
     return values.reshape(-1, components) if components > 1 else values
 
 
+def own_file(folder, name):
+    """A regular file of the folder. run.json may come from a stranger, and name files elsewhere, links and pipes."""
+    path = os.path.join(folder, name)
+    is_own = os.path.dirname(os.path.realpath(path)) == os.path.realpath(folder)
+    if name != os.path.basename(name) or not is_own or not os.path.isfile(path):
+        raise ValueError(f"{folder}: {name!r} is no file of the run")
+    return path
+
+
 def read_frame(path):
     """read_vtp() of a frame; of one in pieces (.pvtp) of all of them together, in the order of the ids."""
     if not path.endswith(".pvtp"):
@@ -65,7 +74,9 @@ def read_frame(path):
         names = re.findall(r'<Piece Source="([^"/]*)"/>', file.read())
     if not names:
         raise ValueError(f"{path}: lists no pieces")
-    pieces = [read_vtp(os.path.join(os.path.dirname(path), name)) for name in names]
+    if len(set(names)) < len(names):
+        raise ValueError(f"{path}: lists a piece twice")
+    pieces = [read_vtp(own_file(os.path.dirname(path), name)) for name in names]
     if len(pieces) == 1:
         return pieces[0]
     points = np.concatenate([piece["Points"]["Points"].reshape(-1, 3) for piece in pieces])
@@ -80,7 +91,7 @@ def numbered_files(folder, stem):
     """Files STEM_NNNNNN.vtp or .pvtp of the folder in the order of their steps."""
     pattern = re.compile(re.escape(stem) + r"_(\d+)\.p?vtp")
     found = [(int(match[1]), name) for name in os.listdir(folder) if (match := pattern.fullmatch(name))]
-    return [os.path.join(folder, name) for _, name in sorted(found)]
+    return [own_file(folder, name) for _, name in sorted(found)]
 
 
 def _set_attribute(mesh, name, values, domain):
@@ -227,7 +238,7 @@ def _add_colliders(context, folder, run):
         if moving and collider.get("moves"):
             continue
         item = _add_mesh(context, collider["name"], folder)
-        fill_surface(item.data, os.path.join(folder, collider["file"]))
+        fill_surface(item.data, own_file(folder, collider["file"]))
         number = collider.get("material", 0)
         if number not in materials:
             materials[number] = _material(f"Ricochet material {number}", (0.45, 0.42, 0.38))
@@ -240,7 +251,7 @@ def _add_colliders(context, folder, run):
 def import_run(context, path, point_radius=0.0):
     """Imports the run of a run.json or its folder. point_radius: of particles without a size, m; 0: one that can be seen."""
     folder = os.path.abspath(path if os.path.isdir(path) else os.path.dirname(path))
-    with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
+    with open(own_file(folder, "run.json"), encoding="utf-8") as file:
         run = json.load(file)
     frames = numbered_files(folder, "particles")
     if not frames:

@@ -6,15 +6,17 @@ objects of :mod:`ricochet.scene`. A drop-in for trimesh's ray interface: :mod:`r
 
 from __future__ import annotations
 
+from . import scene, trimesh
 from ._core import DivergedError, InputError, RunError, __version__, set_threads, thread_count
 from ._forces import CompiledForce, compiled_force
 from ._mesh import Mesh, as_mesh
-from ._results import AllHits, ForceInput, Hits, Particles, TriangleTotals
+from ._results import AllHits, Contacts, ForceInput, Hits, Particles, TriangleTotals
 from ._simulation import Simulation
 
 __all__ = [
     "AllHits",
     "CompiledForce",
+    "Contacts",
     "DivergedError",
     "ForceInput",
     "Hits",
@@ -27,6 +29,8 @@ __all__ = [
     "__version__",
     "as_mesh",
     "compiled_force",
+    "scene",
     "set_threads",
     "thread_count",
+    "trimesh",
 ]

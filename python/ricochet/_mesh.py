@@ -3,19 +3,31 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, List, Optional, Sequence, Tuple
 
 import numpy as np
+import numpy.typing as npt
 
-from ._core import InputError, Mesh
+from ._core import InputError, Mesh, _triangulate
 
 __all__ = ["Mesh", "as_mesh"]
 
+Integers = npt.NDArray[np.int64]
 
-def as_mesh(source: Any) -> Mesh:
-    """A :class:`Mesh` from a mesh, a file's name, or anything with `vertices` and `faces` (trimesh) or `points` and
-    `cells_dict` (meshio)."""
+# Names of meshio's surface cells, and how many corners they have: "polygon" any number, as does its older "polygon7".
+_SURFACE_CELLS = re.compile(r"(triangle|quad|polygon|VTK_LAGRANGE_TRIANGLE|VTK_LAGRANGE_QUADRILATERAL)\d*")
+
+
+def as_mesh(source: Any, ignore: Sequence[str] = ()) -> Mesh:
+    """Returns a :class:`Mesh` from a mesh, a file's name, or anything with `vertices` and `faces` (trimesh) or `points` and
+    `cells` (meshio).
+
+    All surface cells of meshio are taken. Polygons are cut into triangles inside their outline. Cells with nodes on their
+    edges are polygons through these nodes; a node in their middle is a corner of all their triangles. Other cells, such as
+    "line" and "tetra", are an :class:`InputError`, unless `ignore` names their types: then they are left out.
+    """
     if isinstance(source, Mesh):
         return source
     if isinstance(source, (str, os.PathLike)):
@@ -24,22 +36,118 @@ def as_mesh(source: Any) -> Mesh:
     faces = getattr(source, "faces", None)
     if vertices is not None and faces is not None:
         return Mesh(vertices, faces)
-    cells = getattr(source, "cells_dict", None)
-    if isinstance(cells, Mapping) and hasattr(source, "points"):
-        return _from_cells(source.points, cells)
+    blocks = _blocks(source)
+    if blocks is not None and hasattr(source, "points"):
+        return _from_cells(source.points, blocks, ignore)
     raise InputError(
         f"mesh: found {type(source).__name__}, expected a file's name, a ricochet.Mesh, or an object with "
-        "vertices and faces, or with points and cells_dict"
+        "vertices and faces, or with points and cells"
     )
 
 
-def _from_cells(points: Any, cells: Any) -> Mesh:
-    parts = []
-    if "triangle" in cells:
-        parts.append(np.asarray(cells["triangle"]))
-    if "quad" in cells:
-        quads = np.asarray(cells["quad"])
-        parts.append(np.stack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3))
-    if not parts:
-        raise InputError(f"mesh: found cells {sorted(cells)}, expected triangles or quads among them")
-    return Mesh(np.asarray(points)[:, :3], np.concatenate(parts))
+Blocks = List[Tuple[str, Any]]
+
+
+def _blocks(source: Any) -> Optional[Blocks]:
+    """Returns meshio's blocks of cells, in their order, or those of a dictionary by type; None for other objects."""
+    cells = getattr(source, "cells", None)
+    if isinstance(cells, (list, tuple)) and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
+        return [(str(block.type), block.data) for block in cells]
+    by_type = getattr(source, "cells_dict", None)
+    return [(str(kind), data) for kind, data in by_type.items()] if isinstance(by_type, Mapping) else None
+
+
+def _from_cells(points: Any, blocks: Blocks, ignore: Sequence[str]) -> Mesh:
+    ignored = {ignore} if isinstance(ignore, str) else set(ignore)
+    kept = [(kind, data) for kind, data in blocks if kind not in ignored]
+    others = sorted({kind for kind, _ in kept if not _SURFACE_CELLS.fullmatch(kind)})
+    if others:
+        raise InputError(
+            f"mesh: found cells {', '.join(others)}, expected cells of surfaces (triangle, quad, polygon and the like); "
+            f"as_mesh(mesh, ignore={others}) leaves them out"
+        )
+    if not kept:
+        found = ", ".join(sorted({kind for kind, _ in blocks})) or "none"
+        raise InputError(f"mesh: found cells {found}, expected triangles, quads or polygons among them")
+    corners = np.asarray(points)[:, :3]
+    return Mesh(corners, np.concatenate([_triangles(corners, kind, data) for kind, data in kept]))
+
+
+def _triangles(points: Any, kind: str, cells: Any) -> Any:
+    """Returns the triangles of one block of cells, in the order of the cells."""
+    if kind.startswith("polygon"):
+        rows = [np.asarray(cell) for cell in cells]
+        return _cut(points, np.cumsum([0] + [len(row) for row in rows]), np.concatenate(rows) if rows else [])
+    nodes = np.asarray(cells)
+    if nodes.ndim != 2 or nodes.dtype.kind not in "iu":
+        raise InputError(f"mesh: found cells {kind} of shape {nodes.shape}, expected whole numbers of shape (n, nodes)")
+    outline, middle = _outline(kind, nodes.shape[1])
+    if middle is not None:
+        ring = nodes[:, outline]
+        fan = np.stack([ring, np.roll(ring, -1, axis=1), np.broadcast_to(nodes[:, [middle]], ring.shape)], axis=2)
+        return fan.reshape(-1, 3)
+    if len(outline) == 3:
+        return nodes[:, outline]
+    return _cut(points, len(outline) * np.arange(len(nodes) + 1), nodes[:, outline].reshape(-1))
+
+
+def _cut(points: Any, offsets: Any, corners: Any) -> Any:
+    return _triangulate(points, np.asarray(offsets), np.asarray(corners))
+
+
+def _outline(kind: str, count: int) -> Tuple[List[int], Optional[int]]:
+    """Returns the nodes around a cell in order, and the one in its middle if it has just one: that of a cell of second
+    order, or of a triangle of third. Several inner nodes of higher orders are left out.
+
+    meshio lists corners first, then the nodes on each edge, then inner ones. VTK lists the nodes on a quad's third and
+    fourth edge the other way around.
+    """
+    sides = 3 if "triangle" in kind.lower() else 4
+    on_edge = _nodes_on_edge(sides, count)
+    if on_edge is None:
+        raise InputError(f"mesh: found cells {kind} with {count} nodes, expected a number of nodes that such cells have")
+    outline = []
+    for side in range(sides):
+        first = sides + side * on_edge
+        inner = list(range(first, first + on_edge))
+        is_reversed = kind.startswith("VTK_LAGRANGE_QUAD") and side >= 2
+        outline += [side] + (inner[::-1] if is_reversed else inner)
+    middle = sides * (1 + on_edge)
+    return outline, middle if count == middle + 1 else None
+
+
+def _nodes_on_edge(sides: int, count: int) -> Optional[int]:
+    """Returns how many nodes each edge has between its ends; None if no cell has `count` nodes."""
+    if sides == 3 and count == 7:  # with a node in the middle
+        return 1
+    if sides == 4 and count == 8:  # without one
+        return 1
+    for order in range(1, count):
+        if count == ((order + 1) * (order + 2) // 2 if sides == 3 else (order + 1) ** 2):
+            return order - 1
+    return None
+
+
+def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
+    """Returns names of triangles as a read-only array of texts. They must be such that a line of an OBJ file can hold
+    them."""
+    if names is None:
+        return None
+    array = np.asarray(names)
+    if array.shape != (count,):
+        raise InputError(f"{kind}: found shape {array.shape}, expected one name for each of {count} triangles")
+    if array.dtype.kind in "iu":
+        array = array.astype(str)
+    if array.dtype.kind == "O" and all(isinstance(name, str) for name in array):
+        array = array.astype(str)
+    if array.dtype.kind != "U":
+        raise InputError(f"{kind}: found {array.dtype}, expected texts or whole numbers")
+    for name in np.unique(array).tolist():
+        if name != " ".join(name.split()) or not name.isprintable() or "#" in name or name.endswith("\\"):
+            raise InputError(
+                f"{kind}: found {name[:80]!r}, expected printable text in one line, with single spaces inside it alone, and "
+                "without # and a \\ at its end"
+            )
+    array = array.copy()
+    array.flags.writeable = False
+    return array

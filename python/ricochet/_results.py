@@ -1,8 +1,9 @@
-"""What questions and simulations answer with: named tuples of NumPy arrays."""
+"""Results of questions and simulations: named tuples of NumPy arrays."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import re
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,32 +13,52 @@ Integers = npt.NDArray[np.int64]
 
 
 class Hits(NamedTuple):
-    """One entry a question; where nothing is hit: triangle -1, distance infinite, point NaN."""
+    """One entry for each question. Without a hit: triangle -1, distance infinite, point NaN.
+
+    triangle: Index of the triangle; the smallest of several at the same point. Shape (n,).
+    distance: Metres from a ray's origin or from a point; of a sweep the fraction of its path, from 0 to 1. Shape (n,).
+    point: Position on the triangle, in metres. Shape (n, 3).
+    """
 
     triangle: Integers
-    """Index of the triangle; of several at the same point the smallest."""
     distance: Floats
-    """Metres from a ray's origin or from a point; of a sweep the fraction of the way, from 0 to 1."""
     point: Floats
-    """Shape (n, 3), on the triangle."""
 
 
 class AllHits(NamedTuple):
-    """All hits of all rays, ray by ray, in the order along each."""
+    """All hits of all rays, ray by ray, in the order along each. m is their number.
+
+    ray: Index of the ray. Shape (m,).
+    triangle: Index of the triangle; the smallest of several at the same point. Shape (m,).
+    distance: Metres from the ray's origin. Shape (m,).
+    point: Position on the triangle, in metres. Shape (m, 3).
+    crossing: 1 if the ray leaves through the surface (along its normal), -1 if it enters, 0 if it only touches. Shape (m,).
+    first: Hits of ray i are first[i] to first[i + 1]. Shape (rays + 1,).
+    """
 
     ray: Integers
-    """Number of the ray."""
     triangle: Integers
     distance: Floats
     point: Floats
     crossing: npt.NDArray[np.int8]
-    """1 where the ray leaves through the surface (along its normal), -1 where it enters, 0 where it only touches."""
     first: npt.NDArray[np.uint64]
-    """Hits of ray i are first[i] to first[i + 1]."""
 
 
 class Particles(NamedTuple):
-    """The particles as they were when asked for. Arrays are read-only and keep their values when the simulation goes on."""
+    """The particles at the time of the question. Arrays are read-only and keep their values when the simulation goes on.
+
+    id: Number that a particle keeps. Shape (n,), as of all fields but vectors.
+    position: Metres. Shape (n, 3).
+    velocity: Metres per second. Shape (n, 3).
+    spin: Angular velocity, in radians per second. Shape (n, 3).
+    mass: Kilograms.
+    radius: Metres; 0 for points.
+    birth_time: Seconds.
+    lifetime: Seconds from birth to removal; infinite for particles that stay.
+    contacts: Number of impacts so far.
+    resting: Whether the particle rests on surfaces.
+    frozen: Whether the particle no longer moves, because its state left the range of the arithmetic.
+    """
 
     id: npt.NDArray[np.uint64]
     position: Floats
@@ -53,8 +74,16 @@ class Particles(NamedTuple):
 
 
 class ForceInput(NamedTuple):
-    """What a force of Python is given: the particles, in the order in which it is to return their forces. Arrays are
-    read-only copies, which may be kept."""
+    """Input of a force written in Python: the particles, in the order in which it returns their forces. Arrays are
+    read-only copies, which may be kept.
+
+    time: Seconds.
+    id: Number that a particle keeps. Shape (n,).
+    position: Metres. Shape (n, 3).
+    velocity: Metres per second. Shape (n, 3).
+    mass: Kilograms. Shape (n,).
+    radius: Metres. Shape (n,).
+    """
 
     time: float
     id: npt.NDArray[np.uint64]
@@ -65,8 +94,49 @@ class ForceInput(NamedTuple):
 
 
 class TriangleTotals(NamedTuple):
-    """What particles have done to each triangle of a collider since the start."""
+    """Totals for each triangle of a collider since the start.
+
+    hits: Number of impacts. Shape (n,).
+    impulse: Impulse that particles have given to the triangle, in newton seconds. Shape (n, 3).
+    """
 
     hits: npt.NDArray[np.uint64]
     impulse: Floats
-    """N s, shape (n, 3)."""
+
+
+def _explain_fields(kind: Any) -> None:
+    """Gives the fields of a named tuple the texts that its docstring has for them, for help()."""
+    for name, text in re.findall(r"^    (\w+): (.+)$", kind.__doc__, re.MULTILINE):
+        getattr(kind, name).__doc__ = text
+
+
+for _kind in (Hits, AllHits, Particles, ForceInput, TriangleTotals):
+    _explain_fields(_kind)
+
+
+class Contacts(npt.NDArray[Any]):
+    """Contacts as a structured array with the fields `time`, `particle`, `collider`, `triangle`, `position`, `normal`,
+    `velocity_before`, `velocity_after`, `mass` and `radius`. pandas takes it as it is: ``pandas.DataFrame(contacts)`` has a
+    column for each component of a vector, such as `position_x`."""
+
+    def __getitem__(self, key: Any) -> Any:
+        found = super().__getitem__(key)
+        # One field is an array like any other.
+        return found.view(np.ndarray) if isinstance(found, Contacts) and found.dtype.names is None else found
+
+    def table(self) -> npt.NDArray[np.void]:
+        """Returns the same memory as a structured array that has one number in each column."""
+        columns: Any = {"names": [], "formats": [], "offsets": [], "itemsize": self.dtype.itemsize}
+        fields: Any = self.dtype.fields
+        for name in self.dtype.names or ():
+            kind, offset = fields[name][:2]
+            parts = [f"{name}_{axis}" for axis in "xyz"] if kind.shape else [name]
+            columns["names"] += parts
+            columns["formats"] += [kind.base] * len(parts)
+            columns["offsets"] += [offset + k * kind.base.itemsize for k in range(len(parts))]
+        return self.view(np.ndarray).view(np.dtype(columns))
+
+    @property
+    def _data(self) -> npt.NDArray[np.void]:
+        # numpy.ma.getdata(), by which pandas reads structured arrays, looks for it; pandas takes no columns of vectors.
+        return self.table()

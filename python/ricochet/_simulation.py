@@ -89,7 +89,7 @@ class Simulation(_core.Simulation):
         else:
             with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
                 for number, mesh in enumerate(meshes):
-                    _write(mesh, Path(folder) / f"{number}.off")
+                    _write(mesh, Path(folder) / f"{number}{_ending(mesh)}")
                 super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify, forces)
         self._made_from = (text, file, meshes, changes, contacts, verify, forces)
 
@@ -229,25 +229,67 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
             "itself"
         )
     if isinstance(value, Mapping):
-        return {_key(key): _with_mesh_files(entry, meshes, depth + 1) for key, entry in value.items()}
+        plain = {_key(key): _with_mesh_files(entry, meshes, depth + 1) for key, entry in value.items()}
+        return _with_own_materials(plain, value)
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return [_with_mesh_files(entry, meshes, depth + 1) for entry in value]
     if isinstance(value, Mesh) or hasattr(value, "faces") or hasattr(value, "cells_dict"):
         # A mesh answers with the vertices that it has now.
         mesh = as_mesh(value)
-        meshes.append(Mesh(mesh.vertices, mesh.faces) if mesh is value else mesh)
-        return f"{_MESHES}/{len(meshes) - 1}.off"
+        meshes.append(_copy_of(mesh) if mesh is value else mesh)
+        return f"{_MESHES}/{len(meshes) - 1}{_ending(mesh)}"
     if isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"scene: found {value}, expected finite numbers")
     return value
 
 
+def _with_own_materials(plain: Any, collider: Any) -> Any:
+    """Adds the materials that a collider's mesh names to its `group_materials`, which may say otherwise."""
+    mesh = collider.get("file")
+    if not isinstance(mesh, Mesh) or mesh.materials is None:
+        return plain
+    own = {name: name for name in np.unique(mesh.materials).tolist() if name}
+    return {**plain, "group_materials": {**own, **plain.get("group_materials", {})}}
+
+
+def _copy_of(mesh: Mesh) -> Mesh:
+    copy = Mesh(mesh.vertices, mesh.faces)
+    copy.groups, copy.materials = mesh.groups, mesh.materials
+    return copy
+
+
+def _ending(mesh: Mesh) -> str:
+    """Returns the ending of the file that a mesh is written to: of OBJ for names of triangles."""
+    return ".off" if mesh.groups is None and mesh.materials is None else ".obj"
+
+
 def _write(mesh: Mesh, file: Path) -> None:
-    """With all digits of every double."""
+    """Writes a mesh with all digits of every double."""
+    if file.suffix == ".obj":
+        _write_obj(mesh, file)
+        return
     with open(file, "w", encoding="ascii") as stream:
         stream.write(f"OFF\n{len(mesh.vertices)} {len(mesh)} 0\n")
         stream.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
         stream.writelines(f"3 {a} {b} {c}\n" for a, b, c in mesh.faces.tolist())
+
+
+def _write_obj(mesh: Mesh, file: Path) -> None:
+    """Writes a mesh with the names of its triangles, in their order."""
+    nothing = np.zeros(len(mesh), dtype=str)
+    groups = (nothing if mesh.groups is None else mesh.groups).tolist()
+    materials = (nothing if mesh.materials is None else mesh.materials).tolist()
+    group = material = ""
+    with open(file, "w", encoding="utf-8") as stream:
+        stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
+        for number, (a, b, c) in enumerate(mesh.faces.tolist()):
+            if groups[number] != group:
+                group = groups[number]
+                stream.write(f"g {group}\n")
+            if materials[number] != material:
+                material = materials[number]
+                stream.write(f"usemtl {material}\n")
+            stream.write(f"f {a + 1} {b + 1} {c + 1}\n")
 
 
 def _key(key: Any) -> str:

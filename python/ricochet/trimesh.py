@@ -1,34 +1,46 @@
 """A drop-in for trimesh's ray interface, exact: ``mesh.ray = ricochet.trimesh.RayMeshIntersector(mesh)``.
 
-Every hit and every miss is certain, in double precision; what triangles share is hit once; and containment is decided by
-exact parity, not by a vote.
+Every hit and every miss is certain, in double precision. An edge or a vertex that triangles share is hit once. Containment
+is decided by exact parity in a closed mesh, and by winding number in an open one.
 """
 
 from __future__ import annotations
 
+import contextlib
 from typing import Any, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ._mesh import Mesh, as_mesh
+from ._results import AllHits, Hits
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
+# Product of a triangle's scaled normal and a direction up to which it may be 0: the rounding of the edges, of the cross
+# product and of the sum are some 2^-50 together.
+_PARALLEL = 2.0**-44
+
 
 class RayMeshIntersector:
-    """The methods of trimesh.ray.ray_triangle.RayMeshIntersector, for one mesh with vertices and faces."""
+    """The methods of trimesh.ray.ray_triangle.RayMeshIntersector, for one mesh with vertices and faces.
+
+    Every question is answered for the vertices and faces that the mesh has then.
+    """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
         """scale_to_box is taken for trimesh's sake; double precision does not need it."""
         self.mesh = geometry
-        self._queries: Mesh = as_mesh(geometry)
+        self._followed: Optional[_Followed] = None
+        # trimesh makes intersectors before its meshes have vertices: then the class alone can say what it is.
+        if not hasattr(type(geometry), "vertices") and not hasattr(geometry, "vertices"):
+            as_mesh(geometry)
 
     def intersects_location(
         self, ray_origins: Any, ray_directions: Any, multiple_hits: bool = True
     ) -> Tuple[Floats, Integers, Integers]:
-        """Points of all hits (or of the first of each ray), the ray of each and its triangle."""
+        """Returns the points of all hits (or of the first of each ray), the ray of each, and its triangle."""
         ray, triangle, point = self._hits(ray_origins, ray_directions, multiple_hits)
         return point, ray, triangle
 
@@ -39,26 +51,154 @@ class RayMeshIntersector:
         return_locations: bool = False,
         multiple_hits: bool = True,
     ) -> Any:
-        """Triangle and ray of all hits (or of the first of each ray), and the points where return_locations."""
+        """Returns triangle and ray of all hits (or of the first of each ray), and the points if return_locations."""
         ray, triangle, point = self._hits(ray_origins, ray_directions, multiple_hits)
         return (triangle, ray, point) if return_locations else (triangle, ray)
 
     def intersects_first(self, ray_origins: Any, ray_directions: Any) -> Integers:
-        """The first triangle that each ray hits, -1 for none."""
-        return self._queries.first_hits(ray_origins, ray_directions).triangle
+        """Returns the first triangle that each ray hits, -1 for none."""
+        return self._current().first_hits(ray_origins, ray_directions).triangle
 
     def intersects_any(self, ray_origins: Any, ray_directions: Any) -> npt.NDArray[np.bool_]:
-        """Whether each ray hits anything."""
-        return self._queries.occluded(ray_origins, ray_directions)
+        """Returns whether each ray hits anything."""
+        return self.intersects_first(ray_origins, ray_directions) >= 0
 
     def contains_points(self, points: Any) -> npt.NDArray[np.bool_]:
-        """Whether each point is inside the mesh, which must be closed. Points on the surface are not."""
-        return self._queries.inside(points)
+        """Returns whether each point is inside the mesh. Points on the surface of a closed mesh are not.
+
+        In an open mesh a point is inside if the surface surrounds more than half of it: if the magnitude of its winding
+        number is above 1/2.
+        """
+        mesh = self._current().queries
+        if mesh.is_closed:
+            return mesh.inside(points)
+        inside: npt.NDArray[np.bool_] = np.abs(mesh.winding_numbers(points)) > 0.5
+        return inside
+
+    def __copy__(self) -> "RayMeshIntersector":
+        return RayMeshIntersector(self.mesh)
+
+    def __deepcopy__(self, _: Any) -> "RayMeshIntersector":
+        # trimesh copies its meshes so: the copy of the intersector asks the same mesh.
+        return RayMeshIntersector(self.mesh)
+
+    def __getstate__(self) -> Any:
+        return {"mesh": self.mesh, "_followed": None}
+
+    def _current(self) -> "_Followed":
+        self._followed = _followed(self.mesh, self._followed)
+        return self._followed
 
     def _hits(self, origins: Any, directions: Any, multiple_hits: bool) -> Tuple[Integers, Integers, Floats]:
-        if multiple_hits:
-            every = self._queries.all_hits(origins, directions)
-            return every.ray, every.triangle, every.point
-        first = self._queries.first_hits(origins, directions)
-        ray = np.flatnonzero(first.triangle >= 0)
-        return ray, first.triangle[ray], first.point[ray]
+        if not multiple_hits:
+            first = self._current().first_hits(origins, directions)
+            ray = np.flatnonzero(first.triangle >= 0)
+            return ray, first.triangle[ray], first.point[ray]
+        every, counted = self._current().all_hits(origins, directions)
+        return every.ray[counted], every.triangle[counted], every.point[counted]
+
+
+class _Followed:
+    """A mesh as it was at one time, and the questions about it as trimesh understands them: a ray in the plane of a
+    triangle does not hit it."""
+
+    def __init__(self, queries: Mesh, state: Any = None, arrays: Any = None) -> None:
+        self.queries = queries
+        self.state = state
+        self.arrays = arrays
+        self._normals: Optional[Floats] = None
+
+    def is_of(self, vertices: Any, faces: Any, state: Any) -> bool:
+        if state is not None or self.arrays is None:
+            return bool(state == self.state)
+        return np.array_equal(self.arrays[0], vertices) and np.array_equal(self.arrays[1], faces)
+
+    def first_hits(self, origins: Any, directions: Any) -> Hits:
+        first = self.queries.first_hits(origins, directions)
+        hit = np.flatnonzero(first.triangle >= 0)
+        doubtful = hit[self._is_parallel(first.triangle[hit], _rows(directions, hit))]
+        if len(doubtful) == 0:
+            return first
+        every, counted = self.all_hits(_rows(origins, doubtful), _rows(directions, doubtful))
+        first.triangle[doubtful], first.distance[doubtful], first.point[doubtful] = -1, np.inf, np.nan
+        ray, place = np.unique(every.ray[counted], return_index=True)
+        first.triangle[doubtful[ray]] = every.triangle[counted][place]
+        first.distance[doubtful[ray]] = every.distance[counted][place]
+        first.point[doubtful[ray]] = every.point[counted][place]
+        return first
+
+    def all_hits(self, origins: Any, directions: Any) -> Tuple[AllHits, Integers]:
+        """Returns all hits, and which of them count."""
+        every, in_plane = self.queries._all_hits_and_planes(origins, directions)
+        return every, np.flatnonzero(~in_plane)
+
+    def _is_parallel(self, triangle: Integers, directions: Floats) -> npt.NDArray[np.bool_]:
+        """Returns whether each direction lies in the plane of its triangle, as far as rounding can tell."""
+        if self._normals is None:
+            self._normals = _normals(self.queries)
+        along = directions / np.abs(directions).max(axis=1, initial=0.0, keepdims=True)
+        parallel: npt.NDArray[np.bool_] = np.abs((self._normals[triangle] * along).sum(axis=1)) <= _PARALLEL
+        return parallel
+
+
+class _Empty(_Followed):
+    """A mesh without triangles: nothing is hit, nothing is inside."""
+
+    def __init__(self, state: Any, arrays: Any) -> None:
+        super().__init__(Mesh(np.zeros((3, 3)), [[0, 1, 2]]), state, arrays)
+
+    def first_hits(self, origins: Any, directions: Any) -> Hits:
+        count = len(self.queries.first_hits(origins, directions).triangle)
+        return Hits(np.full(count, -1), np.full(count, np.inf), np.full((count, 3), np.nan))
+
+    def all_hits(self, origins: Any, directions: Any) -> Tuple[AllHits, Integers]:
+        return self.queries.all_hits(origins, directions), np.empty(0, dtype=np.int64)
+
+
+def _followed(mesh: Any, before: Optional[_Followed]) -> _Followed:
+    """Returns what a mesh is now: `before`, if it has not changed since."""
+    vertices, faces = getattr(mesh, "vertices", None), getattr(mesh, "faces", None)
+    if vertices is None or faces is None:
+        return before or _Followed(as_mesh(mesh))
+    state = _state_of(vertices, faces)
+    if before is not None and before.is_of(vertices, faces, state):
+        return before
+    arrays = None if state is not None else (np.array(vertices), np.array(faces))
+    if len(faces) == 0:
+        return _Empty(state, arrays)
+    return _Followed(_moved(before, vertices, faces) or Mesh(vertices, faces), state, arrays)
+
+
+def _moved(before: Optional[_Followed], vertices: Any, faces: Any) -> Optional[Mesh]:
+    """Returns the same triangles with other vertices, which cost less than a new mesh; None if they are others."""
+    if before is None or isinstance(before, _Empty) or not np.array_equal(before.queries.faces, faces):
+        return None
+    if np.shape(vertices) != before.queries.vertices.shape:
+        return None
+    before.queries.set_vertices(vertices)
+    return before.queries
+
+
+def _state_of(vertices: Any, faces: Any) -> Any:
+    """Returns the hashes that trimesh's arrays have of their content; None for others, to be compared entry by entry."""
+    if isinstance(vertices, np.ndarray) and isinstance(faces, np.ndarray):
+        with contextlib.suppress(TypeError):  # NumPy's own arrays have none
+            return hash(vertices), hash(faces)
+    return None
+
+
+def _normals(mesh: Mesh) -> Floats:
+    """Returns the normals of triangles, of a length below 1. Each edge is scaled, so that no product overflows."""
+    corners = mesh.vertices[mesh.faces]
+    edges = corners[:, 1:] - corners[:, :1]
+    size = np.abs(edges).max(axis=2, keepdims=True)
+    edges = edges / np.where(size > 0.0, size, 1.0)
+    normals: Floats = np.cross(edges[:, 0], edges[:, 1]) / 3.0
+    return normals
+
+
+def _rows(array: Any, rows: Integers) -> Floats:
+    """Returns rows of an array, of which one may stand for all."""
+    whole = np.atleast_2d(np.asarray(array, dtype=float))
+    chosen: Floats = whole[rows] if len(whole) != 1 else np.broadcast_to(whole, (len(rows), 3))
+    return chosen

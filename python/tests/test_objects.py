@@ -22,7 +22,7 @@ made = kind.__new__(kind)
 points = [[0.5, 0.5, 0.5]]
 asked = 0
 for name in sorted(set(dir(ricochet._core.__dict__[sys.argv[1]])) - set(dir(object)) | {"__repr__", "__reduce__"}):
-    if name in ("__init__", "__new__", "__class__", "__setstate__", "__module__", "read"):
+    if name in ("__init__", "__new__", "__class__", "__setstate__", "__module__", "__dict__", "read"):
         continue
     for arguments in ((), (points,), (points, points), (b"",), (1,), (1, None)):
         try:

@@ -9,7 +9,9 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
+#include <fstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -31,6 +33,38 @@ std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& output, i
             // out: what every player understands
             "-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
             "-f", "mp4", "file:" + output.string()};
+}
+
+std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
+    std::uint64_t value = 0;
+    for (std::size_t k = 0; k < count; ++k) value = value << 8U | bytes[k];
+    return value;
+}
+
+/// Returns true when the boxes of an MP4 file fill it exactly and one of them is the index (`moov`): ISO/IEC 14496-12,
+/// section 4.2. Some releases of ffmpeg end with exit code 0 when the disk has not taken the film.
+bool is_whole_film(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::uint64_t size = std::filesystem::file_size(file, error);
+    std::ifstream in(file, std::ios::binary);
+    if (error || !in) return false;
+    bool has_index = false;
+    std::uint64_t at = 0;
+    while (at < size) {
+        std::array<unsigned char, 16> head{};
+        in.seekg(static_cast<std::streamoff>(at));
+        in.read(reinterpret_cast<char*>(head.data()), head.size());
+        const auto got = static_cast<std::size_t>(in.gcount());
+        in.clear();
+        if (got < 8) return false;
+        const std::uint64_t short_size = big_endian(head.data(), 4);
+        const bool is_long = short_size == 1;
+        const std::uint64_t box = is_long ? big_endian(head.data() + 8, 8) : short_size;
+        if (box < (is_long ? 16U : 8U) || box > size - at) return false;
+        has_index = has_index || std::memcmp(head.data() + 4, "moov", 4) == 0;
+        at += box;
+    }
+    return has_index;
 }
 
 std::filesystem::path temporary_name(std::filesystem::path target) {
@@ -120,7 +154,7 @@ void Film::add(const Image& image) {
 
 void Film::finish() {
     ::close(std::exchange(pipe_, -1));
-    if (wait() != 0) fail();
+    if (wait() != 0 || !is_whole_film(temporary_)) fail();
     std::error_code error;
     std::filesystem::rename(temporary_, target_, error);
     if (error) throw RunError(fmt::format("{}: cannot name the film ({})", target_.string(), error.message()));

@@ -58,6 +58,7 @@ Json json_of(const MeshReport& report, const std::string& file) {
     out["degenerate_triangles"] = report.degenerate_triangles;
     out["duplicate_faces"] = report.duplicate_faces;
     out["self_intersections"] = report.self_intersections;
+    out["self_intersections_are_all"] = report.self_intersections_are_all;
     out["unused_vertices"] = topology.unused_vertices;
     out["consistently_oriented"] = topology.consistently_oriented;
     out["inconsistent_edges"] = topology.inconsistent_edges;
@@ -116,7 +117,8 @@ void print_topology(const MeshReport& report) {
     print_line("non-manifold vertices", topology.nonmanifold_vertices);
     print_line("degenerate triangles", report.degenerate_triangles);
     print_line("duplicate faces", report.duplicate_faces);
-    print_line("self-intersections", report.self_intersections);
+    print_line("self-intersections",
+               fmt::format("{}{}", report.self_intersections_are_all ? "" : "at least ", report.self_intersections));
     print_line("consistently oriented", yes_or_no(topology.consistently_oriented));
 }
 

@@ -201,6 +201,8 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     scene.setup.ranks = run.ranks();
     run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
+    // Before a checkpoint is read: planes are drawn in the same size whether the run was interrupted or not.
+    if (arguments.resume) prepared.region.include(collider_region(*prepared.simulation));
     std::vector<std::string> warnings = prepared.simulation->warnings();
     std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));
     for (const std::string& warning : warnings) {
@@ -222,6 +224,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
     Checkpoint checkpoint = read_checkpoint(std::filesystem::path(arguments.output) / kCheckpointFile,
                                             prepared.plan.fingerprint, simulation);
     if (prepared.folder) {
+        list_kept_files(arguments.output, checkpoint);
         prepared.folder->remove_after(simulation.step_index());
         prepared.folder->remove_checkpoint_parts(names_of(checkpoint.parts));
     }

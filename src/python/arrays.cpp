@@ -33,19 +33,34 @@ std::string reason_of(const py::error_already_set& error) {
     return printable(text.substr(0, text.find('\n')), 160);
 }
 
-/// The first entry of an array of objects that is no number, or why it has no place in an array of numbers.
-std::string first_odd_entry(const py::array& array) {
+/// Returns whether a whole number of Python's fits into 64 bits.
+bool has_64_bits(PyObject* number) {
+    const bool fits =
+        PyLong_AsUnsignedLongLong(number) != static_cast<unsigned long long>(-1) || PyErr_Occurred() == nullptr;
+    PyErr_Clear();
+    const bool fits_signed = PyLong_AsLongLong(number) != -1 || PyErr_Occurred() == nullptr;
+    PyErr_Clear();
+    return fits || fits_signed;
+}
+
+/// The first entry of an array of objects that is no number, or why the array is none of numbers.
+std::string first_odd_entry(const py::array& array, const char* type) {
     const py::object flat = array.attr("ravel")();
+    const py::object number = py::module_::import("numpy").attr("number");
+    bool is_long = false;
     for (const py::handle& entry : flat) {
         const bool is_whole = PyLong_Check(entry.ptr()) != 0;
         if (is_whole && PyLong_AsDouble(entry.ptr()) == -1.0 && PyErr_Occurred() != nullptr) {
             PyErr_Clear();
             return "a whole number beyond the range of doubles";
         }
-        if (is_whole || PyFloat_Check(entry.ptr()) != 0) continue;
+        is_long = is_long || (is_whole && !has_64_bits(entry.ptr()));
+        if (is_whole || PyFloat_Check(entry.ptr()) != 0 || py::isinstance(entry, number)) continue;
         return kind_of(entry);
     }
-    return "whole numbers of more than 64 bits (as doubles: numpy.asarray(..., dtype=float))";
+    return fmt::format("{} (convert them: numpy.asarray(..., dtype={}))",
+                       is_long ? "whole numbers of more than 64 bits" : "numbers as Python objects, dtype=object",
+                       type);
 }
 
 /// What is masked would count as any other number.
@@ -55,8 +70,10 @@ void refuse_masked(const py::handle& object, const char* name, const std::string
     throw InputError(fmt::format("{}: found masked entries, expected {}; fill or remove them", name, expected));
 }
 
-/// As NumPy sees it; an object of Python's own kinds (None, a dictionary, ragged lists) is no array of numbers.
-py::array as_array(const py::handle& object, const char* name, const std::string& expected) {
+/// As NumPy sees it. type: of the numbers that are expected. An object of Python's own kinds (None, a dictionary,
+/// ragged lists) is no array of numbers.
+py::array as_array(const py::handle& object, const char* name, const std::string& expected,
+                   const char* type = "float") {
     const bool is_plain = Py_TYPE(object.ptr()) == py::detail::npy_api::get().PyArray_Type_;
     if (!is_plain && py::hasattr(object, "mask")) refuse_masked(object, name, expected);
     py::array array;
@@ -70,7 +87,7 @@ py::array as_array(const py::handle& object, const char* name, const std::string
     const char kind = array.dtype().kind();
     if (kind == 'f' || kind == 'i' || kind == 'u' || kind == 'b') return array;
     if (kind == 'O' && array.size() > 0) {
-        throw InputError(fmt::format("{}: found {}, expected {}", name, first_odd_entry(array), expected));
+        throw InputError(fmt::format("{}: found {}, expected {}", name, first_odd_entry(array, type), expected));
     }
     throw InputError(fmt::format("{}: found {}, expected {}", name, std::string(py::str(array.dtype())), expected));
 }
@@ -113,6 +130,23 @@ Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns)
     return as_doubles(array, name);
 }
 
+Doubles vectors(const py::handle& object, const char* name) {
+    constexpr const char* kExpected = "numbers of shape (n, 3) or (3,)";
+    const py::array array = as_array(object, name, kExpected);
+    const bool is_one = array.ndim() == 1 && array.shape(0) == 3;
+    if (!is_one && !has_shape(array, 3)) {
+        throw InputError(fmt::format("{}: found shape {}, expected {}", name, shape_of(array), kExpected));
+    }
+    Doubles doubles = as_doubles(array, name);
+    return array.ndim() == 1 ? Doubles(doubles.reshape({array.shape(0) / 3, py::ssize_t{3}})) : doubles;
+}
+
+void repeat_one(Doubles& array, const Doubles& other, const char* name) {
+    if (array.shape(0) != 1 || other.shape(0) == 1) return;
+    const py::module_ numpy = py::module_::import("numpy");
+    array = as_doubles(numpy.attr("broadcast_to")(array, py::make_tuple(other.shape(0), 3)), name);
+}
+
 Doubles numbers_or_one(const py::handle& object, const char* name) {
     if (object.is_none()) return Doubles(py::ssize_t{0});
     const py::array array = as_array(object, name, "a number or one row of numbers");
@@ -126,7 +160,7 @@ Doubles numbers_or_one(const py::handle& object, const char* name) {
 std::vector<std::uint64_t> whole_numbers(const py::handle& object, const char* name, py::ssize_t columns) {
     const std::string expected = columns == 0 ? "one row of whole numbers of at least 0"
                                               : fmt::format("whole numbers of shape (n, {})", columns);
-    const py::array array = as_array(object, name, expected);
+    const py::array array = as_array(object, name, expected, "int");
     const char kind = array.dtype().kind();
     const bool is_empty = array.size() == 0;
     if (!has_shape(array, columns) || (!is_empty && kind != 'i' && kind != 'u')) {

@@ -28,6 +28,10 @@ inline constexpr std::size_t kFewNumbers = std::size_t{1} << 20;
 /// Numbers of shape (count, columns) as doubles; columns 0: of shape (count). An array that is so already is not
 /// copied. Throws InputError "name: found ..., expected ..." for anything else, also for text and complex numbers.
 [[nodiscard]] Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns);
+/// Numbers of shape (n, 3), or (3,) for one row.
+[[nodiscard]] Doubles vectors(const py::handle& object, const char* name);
+/// Repeats the only row of an array as often as another array has rows; leaves arrays of more rows alone.
+void repeat_one(Doubles& array, const Doubles& other, const char* name);
 /// The same with one number for all, or none.
 [[nodiscard]] Doubles numbers_or_one(const py::handle& object, const char* name);
 /// Whole numbers of shape (count, columns), from 0 to below 2^32; columns 0: of shape (count), to below 2^64.

@@ -10,11 +10,14 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/ctrl_c.h"
 #include "python/gil.h"
+#include "python/help_texts.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/triangulation.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "ricochet/queries/placed_mesh.h"
 
@@ -45,23 +48,57 @@ AffineMap map_of(const py::object& transform) {
             {rows[3], rows[7], rows[11]}};
 }
 
-/// The questions are put while other threads of Python run. A copy answers them, so that set_vertices() may run beside.
-/// transform: where the mesh stands; None: as its vertices say.
+/// Keeps names of triangles, one each, or none, in the object's dictionary. Throws InputError for others.
+void set_names(const py::object& mesh, const char* kind, const py::object& names) {
+    const auto count = py::cast<const MeshQueries&>(mesh).mesh().triangles.size();
+    mesh.attr("__dict__")[kind] = py::module_::import("ricochet._mesh").attr("_names")(names, count, kind);
+}
+
+py::object names_of(const py::object& mesh, const char* kind) {
+    require_made(mesh);
+    return mesh.attr("__dict__").attr("get")(kind);
+}
+
+template <class Type>
+void bind_names(Type& type, const char* kind, const char* text) {
+    type.def_property(
+        kind, [kind](const py::object& mesh) { return names_of(mesh, kind); },
+        [kind](const py::object& mesh, const py::object& names) { set_names(mesh, kind, names); }, text);
+}
+
+/// The triangles of polygons: those of face i have the corners offsets[i] to offsets[i + 1].
+py::array triangulated(const py::object& vertices, const py::object& offsets, const py::object& corners) {
+    const Doubles positions = numbers(vertices, "points", 3);
+    const auto narrow = [](const std::vector<std::uint64_t>& list) {
+        return std::vector<std::uint32_t>(list.begin(), list.end());
+    };
+    PolygonMesh polygons;
+    polygons.vertices.assign(points(positions).begin(), points(positions).end());
+    polygons.face_offsets = narrow(whole_numbers(offsets, "offsets", 0));
+    polygons.corners = narrow(whole_numbers(corners, "corners", 0));
+    for (const std::uint32_t corner : polygons.corners) require_index(corner, polygons.vertices.size(), "cells");
+    const auto cut = std::make_shared<Triangulation>(CtrlC().run(false, [&] { return triangulate(polygons); }));
+    const auto& triangles = cut->triangles;
+    return array_over(reinterpret_cast<const std::uint32_t*>(triangles.data()), 3 * triangles.size(), cut)
+        .attr("reshape")(-1, 3);
+}
+
+/// Questions that are put in one block: so many.
+constexpr py::ssize_t kFewQuestions = 256;
+
+/// Puts `count` questions while other threads of Python run; Ctrl-C ends them. A copy answers them, so that
+/// set_vertices() may run beside. transform: where the mesh stands; None: as its vertices say.
 template <class Ask>
-auto ask(const MeshQueries& mesh, const py::object& transform, const Ask& question) {
-    if (transform.is_none()) {
-        const MeshQueries asked = mesh;
-        const Unlocked unlocked;
-        return question(asked);
-    }
-    const PlacedMesh placed(mesh, map_of(transform));
-    const Unlocked unlocked;
-    return question(placed);
+auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
+    const auto answer = [&](const auto& asked) {
+        return CtrlC().run(count <= kFewQuestions, [&] { return question(asked); });
+    };
+    return transform.is_none() ? answer(MeshQueries(mesh)) : answer(PlacedMesh(mesh, map_of(transform)));
 }
 
 py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
 
-py::object hits_of(MeshHits&& hits) {
+HitsObject hits_of(MeshHits&& hits) {
     return result("Hits")(given(std::move(hits.triangle)), given(std::move(hits.distance)),
                           given(std::move(hits.point)));
 }
@@ -73,25 +110,30 @@ struct Rays {
     Doubles most;
 
     Rays(const py::handle& from, const py::handle& along, const py::handle& reach)
-        : origins(numbers(from, "origins", 3)),
-          directions(numbers(along, "directions", 3)),
-          most(numbers_or_one(reach, "most")) {}
+        : origins(vectors(from, "origins")),
+          directions(vectors(along, "directions")),
+          most(numbers_or_one(reach, "most")) {
+        repeat_one(origins, directions, "origins");
+        repeat_one(directions, origins, "directions");
+    }
+    [[nodiscard]] py::ssize_t count() const { return origins.shape(0); }
     [[nodiscard]] RayBatch batch() const { return {points(origins), points(directions), values(most)}; }
 };
 
-py::object first_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+HitsObject first_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                       const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return hits_of(ask(mesh, transform, [&](const auto& m) { return m.first_hits(batch); }));
+    return hits_of(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
-py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                    const py::object& most, const py::object& transform) {
+/// Returns AllHits, and whether each ray runs in the planes of all triangles that it meets there.
+py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                              const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
     std::vector<std::int64_t> ray;
-    AllMeshHits all = ask(mesh, transform, [&](const auto& m) {
+    AllMeshHits all = ask(mesh, rays.count(), transform, [&](const auto& m) {
         AllMeshHits found = m.all_hits(batch);
         ray.reserve(found.first.back());
         for (std::size_t i = 0; i + 1 < found.first.size(); ++i) {
@@ -99,23 +141,29 @@ py::object all_hits(const MeshQueries& mesh, const py::object& origins, const py
         }
         return found;
     });
-    return result("AllHits")(given(std::move(ray)), given(std::move(all.hits.triangle)),
-                             given(std::move(all.hits.distance)), given(std::move(all.hits.point)),
-                             given(std::move(all.crossing)), given(std::move(all.first)));
+    const py::object hits = result("AllHits")(given(std::move(ray)), given(std::move(all.hits.triangle)),
+                                              given(std::move(all.hits.distance)), given(std::move(all.hits.point)),
+                                              given(std::move(all.crossing)), given(std::move(all.first)));
+    return py::make_tuple(hits, given_flags(std::move(all.in_plane)));
+}
+
+AllHitsObject all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
+                       const py::object& most, const py::object& transform) {
+    return py::object(all_hits_and_planes(mesh, origins, directions, most, transform)[0]);
 }
 
 py::array count_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                      const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given(ask(mesh, transform, [&](const auto& m) { return m.count_hits(batch); }));
+    return given(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.count_hits(batch); }));
 }
 
 py::array occluded(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                    const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given_flags(ask(mesh, transform, [&](const auto& m) { return m.occluded(batch); }));
+    return given_flags(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.occluded(batch); }));
 }
 
 InsideRule rule_named(const std::string& name) {
@@ -128,13 +176,21 @@ py::array inside(const MeshQueries& mesh, const py::object& where, const std::st
                  const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
-    return given_flags(ask(mesh, transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
+    return given_flags(
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
 }
 
-py::object closest_points(const MeshQueries& mesh, const py::object& where, double within,
+py::array winding_numbers(const MeshQueries& mesh, const py::object& where, const py::object& transform) {
+    const Doubles places = numbers(where, "points", 3);
+    return given(
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.winding_numbers(points(places)); }));
+}
+
+HitsObject closest_points(const MeshQueries& mesh, const py::object& where, double within,
                           const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    NearestPoints found = ask(mesh, transform, [&](const auto& m) { return m.closest_points(points(places), within); });
+    NearestPoints found =
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.closest_points(points(places), within); });
     return result("Hits")(given(std::move(found.triangle)), given(std::move(found.distance)),
                           given(std::move(found.point)));
 }
@@ -143,32 +199,35 @@ py::array signed_distances(const MeshQueries& mesh, const py::object& where, con
                            const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     const InsideRule chosen = rule_named(rule);
-    return given(ask(mesh, transform, [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
+    return given(ask(mesh, places.shape(0), transform,
+                     [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
 }
 
-py::object sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
+HitsObject sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
                  const py::object& vertices_after, const py::object& transform) {
-    const Doubles starts = numbers(from, "from_points", 3);
-    const Doubles ends = numbers(to, "to_points", 3);
+    Doubles starts = vectors(from, "from_points");
+    Doubles ends = vectors(to, "to_points");
+    repeat_one(starts, ends, "from_points");
+    repeat_one(ends, starts, "to_points");
     const Doubles radii = numbers_or_one(radius, "radius");
     if (vertices_after.is_none()) {
-        return hits_of(
-            ask(mesh, transform, [&](const auto& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
+        return hits_of(ask(mesh, starts.shape(0), transform,
+                           [&](const auto& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
     }
     const Doubles after = numbers(vertices_after, "vertices_after", 3);
-    return hits_of(ask(mesh, transform, [&](const auto& m) {
+    return hits_of(ask(mesh, starts.shape(0), transform, [&](const auto& m) {
         return m.sweep_moving(points(starts), points(ends), values(radii), points(after));
     }));
 }
 
 void set_vertices(MeshQueries& mesh, const py::object& vertices) {
     const Doubles positions = numbers(vertices, "vertices", 3);
-    MeshQueries moved = mesh;
-    {
-        const Unlocked unlocked;
+    const MeshQueries before = mesh;
+    mesh = CtrlC().run(false, [&] {
+        MeshQueries moved = before;
         moved.set_vertices(points(positions));
-    }
-    mesh = moved;
+        return moved;
+    });
 }
 
 py::array vertices_of(const MeshQueries& mesh) {
@@ -218,19 +277,23 @@ vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 
 
 Whether a ray hits, and what it hits first, is decided exactly for the doubles given: also at edges and vertices, also far
 from the origin. Answers are the same bits for any number of threads and any order. Questions run on all threads and let
-other threads of Python run. transform: a matrix of shape (4, 4) that places the mesh for one question (a rotation or
-reflection times one scale, and a translation); the question is mapped and rounded, and nothing is copied. What is wrong with an argument is raised as ricochet.InputError, a ValueError.)";
+other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.
+
+transform: a matrix of shape (4, 4) that places the mesh for one question: a rotation or reflection times one scale, and a
+translation. The question is mapped and rounded, and nothing is copied.)";
 
 void bind_rays(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("first_hits", &first_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none(),
-             "The first hit of each ray. Directions have any length above 0; most: how far rays reach, in metres, one "
-             "number or one each.")
+             "The first hit of each ray. Directions have any length above 0; one origin may stand for all rays, or one "
+             "direction. most: how far rays reach, in metres, one number or one each.")
         .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none(),
              "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
              "and a way along the surface is where it begins.")
+        .def("_all_hits_and_planes", &all_hits_and_planes, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none())
         .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none(), "How many places all_hits() finds for each ray.")
         .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
@@ -243,6 +306,10 @@ void bind_points(py::class_<MeshQueries>& type) {
              "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed. rule: "
              "\"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not 0: "
              "overlapping shells are joined).")
+        .def("winding_numbers", &winding_numbers, arg("points"), arg("transform") = py::none(),
+             "How often the mesh winds around each point: 1 inside a closed mesh wound outward, 0 outside, added up "
+             "where shells overlap and triangles repeat. In an open mesh between: above 1/2 where the surface "
+             "surrounds more than half of the point.")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
              arg("transform") = py::none(),
              "The point of the mesh nearest to each point, where one is within that distance.")
@@ -256,11 +323,29 @@ void bind_points(py::class_<MeshQueries>& type) {
              "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
 }
 
+void bind_pickling(py::class_<MeshQueries>& type) {
+    // Without __reduce__ the old protocols of pickle look for a base class that could be copied.
+    type.def("__reduce__",
+             [](const py::object& mesh) {
+                 return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
+                                       py::make_tuple(py::type::of(mesh)), mesh.attr("__getstate__")());
+             })
+        .def(py::pickle(
+            [](const py::object& mesh) {
+                const auto& m = py::cast<const MeshQueries&>(mesh);
+                return py::make_tuple(vertices_of(m), faces_of(m), mesh.attr("__dict__"));
+            },
+            [](const py::tuple& state) {
+                if (state.size() != 3) throw InputError("Mesh: this is not what one is pickled as");
+                return std::pair(MeshQueries(mesh_of(state[0], state[1])), py::dict(state[2]));
+            }));
+}
+
 }  // namespace
 
 void bind_mesh(py::module_& module) {
     using py::arg;
-    py::class_<MeshQueries> type(module, "Mesh", kMeshText);
+    py::class_<MeshQueries> type(module, "Mesh", kMeshText, py::dynamic_attr());
     type.def(py::init([](const py::object& vertices, const py::object& faces) {
                  TriangleMesh mesh = mesh_of(vertices, faces);
                  const Unlocked unlocked;
@@ -275,7 +360,8 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")
-        .def_property_readonly("area", [](const MeshQueries& m) { return surface_area(m.mesh()); })
+        .def_property_readonly(
+            "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "m^2.")
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
             "Of a closed mesh; above 0 where it is wound outward.")
@@ -286,22 +372,18 @@ void bind_mesh(py::module_& module) {
         .def("set_vertices", &set_vertices, arg("vertices"),
              "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
         .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })
-        .def("__repr__",
-             [](const MeshQueries& m) {
-                 return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
-                                    m.mesh().vertices.size());
-             })
-        // Without it the old protocols of pickle look for a base class that could be copied.
-        .def("__reduce__",
-             [](const py::object& mesh) {
-                 return py::make_tuple(py::module_::import("copyreg").attr("__newobj__"),
-                                       py::make_tuple(py::type::of(mesh)), mesh.attr("__getstate__")());
-             })
-        .def(py::pickle([](const MeshQueries& m) { return py::make_tuple(vertices_of(m), faces_of(m)); },
-                        [](const py::tuple& state) {
-                            if (state.size() != 2) throw InputError("Mesh: this is not what one is pickled as");
-                            return MeshQueries(mesh_of(state[0], state[1]));
-                        }));
+        .def("__repr__", [](const MeshQueries& m) {
+            return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
+                               m.mesh().vertices.size());
+        });
+    bind_pickling(type);
+    bind_names(type, "groups",
+               "The group of each triangle, as an OBJ file's `g`, or None. Set it to names or numbers, one "
+               "each: a collider's `group_materials` gives them materials.");
+    bind_names(type, "materials",
+               "The material of each triangle, or None. Set it to names or numbers, one each: in a scene "
+               "they are names of its `materials`, unless the collider's `group_materials` lists them.");
+    module.def("_triangulate", &triangulated, arg("points"), arg("offsets"), arg("corners"));
     bind_rays(type);
     bind_points(type);
 }

@@ -5,6 +5,7 @@
 
 #include "python/arrays.h"
 #include "python/gil.h"
+#include "python/help_texts.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
@@ -56,11 +57,16 @@ PYBIND11_MODULE(_core, module) {
     add_errors(module);
     module.attr("__version__") = RICOCHET_VERSION;
     module.def("set_threads", &python::set_threads, py::arg("threads"),
-               "Let questions and steps use so many threads; 0 is all that the machine has. No result depends on it.");
+               "Lets questions and steps use so many threads, at most 1024; 0 is all that the machine has. No result "
+               "depends on it.");
     module.def("thread_count", &thread_count, "How many threads questions and steps use now.");
     module.def("scene_schema", &scene_schema, "The JSON Schema of scenes, as text.");
     python::guard_root_class();
     python::wait_for_threads_at_exit();
     python::bind_mesh(module);
     python::bind_simulation(module);
+    for (const py::object& whole :
+         {py::object(module), py::object(module.attr("Mesh")), py::object(module.attr("Simulation"))}) {
+        python::write_signatures(whole);
+    }
 }

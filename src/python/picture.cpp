@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "python/arrays.h"
-#include "python/gil.h"
+#include "python/ctrl_c.h"
 #include "python/made_objects.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
@@ -113,10 +113,11 @@ py::array render(const SimulationHandle& handle, int width, int height, int samp
         add_particles(simulation, shown);
         const Camera camera =
             camera_of(handle, shown.subject, static_cast<double>(width) / height, position, target, field_of_view);
-        const Unlocked unlocked;
-        Preview preview(std::move(shown.meshes), std::move(shown.planes), camera.target);
-        preview.set_spheres(shown.spheres);
-        return render_picture(preview, camera, options);
+        return CtrlC().run(false, [&] {
+            Preview preview(std::move(shown.meshes), std::move(shown.planes), camera.target);
+            preview.set_spheres(shown.spheres);
+            return render_picture(preview, camera, options);
+        });
     });
     return given(std::move(image.rgb)).attr("reshape")(height, width, 3);
 }

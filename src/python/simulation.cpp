@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "python/arrays.h"
+#include "python/help_texts.h"
 #include "python/made_objects.h"
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
@@ -141,7 +142,7 @@ py::dtype contact_type() {
     return py::dtype::from_args(description);
 }
 
-py::array take_contacts(Handle& handle) {
+ContactsObject take_contacts(Handle& handle) {
     const std::vector<ContactRecord> records = handle.take_contacts();
     auto contacts = std::make_shared<std::vector<Contact>>();
     contacts->reserve(records.size());
@@ -154,7 +155,8 @@ py::array take_contacts(Handle& handle) {
     });
     const py::capsule owner(new std::shared_ptr<const void>(contacts),
                             [](void* p) { delete static_cast<std::shared_ptr<const void>*>(p); });
-    return py::array(contact_type(), {static_cast<py::ssize_t>(contacts->size())}, {}, contacts->data(), owner);
+    const py::array array(contact_type(), {static_cast<py::ssize_t>(contacts->size())}, {}, contacts->data(), owner);
+    return py::object(array.attr("view")(result("Contacts")));
 }
 
 /// The number of a collider that is named by its number or its name.
@@ -178,8 +180,8 @@ std::size_t collider_of(const Simulation& simulation, const py::handle& which) {
     return static_cast<std::size_t>(number);
 }
 
-py::object triangle_totals(const Handle& handle, const py::object& collider) {
-    return handle.read([&](const Simulation& simulation) {
+TriangleTotalsObject triangle_totals(const Handle& handle, const py::object& collider) {
+    return handle.read([&](const Simulation& simulation) -> TriangleTotalsObject {
         TriangleTotals totals = simulation.triangle_totals(collider_of(simulation, collider));
         return result("TriangleTotals")(given(std::move(totals.hits)), given(std::move(totals.impulse)));
     });
@@ -302,7 +304,7 @@ void bind_state(py::class_<Handle>& type) {
     type.def_property_readonly("time", reader(&Simulation::time), "Seconds.")
         .def_property_readonly("step_index", reader(&Simulation::step_index), "Steps done.")
         .def_property_readonly("step_count", reader(&Simulation::step_count), "Steps in all.")
-        .def_property_readonly("finished", reader(&Simulation::finished))
+        .def_property_readonly("finished", reader(&Simulation::finished), "Whether the last step is done.")
         .def_property_readonly("kinetic_energy", reader(&Simulation::kinetic_energy), "Joule.")
         .def_property_readonly("potential_energy", reader(&Simulation::potential_energy),
                                "Joule; None where a force has no potential.")
@@ -312,20 +314,24 @@ void bind_state(py::class_<Handle>& type) {
                 return fmt::format("{:016x}", handle.read([](const Simulation& s) { return s.state_hash(); }));
             },
             "Of id, position and velocity of all particles: the same for the same bits, as the tool prints it.")
-        .def_property_readonly("warnings",
-                               [](const Handle& handle) {
-                                   std::vector<std::string> all = handle.scene().warnings;
-                                   const auto own = handle.read([](const Simulation& s) { return s.warnings(); });
-                                   all.insert(all.end(), own.begin(), own.end());
-                                   return all;
-                               })
+        .def_property_readonly(
+            "warnings",
+            [](const Handle& handle) {
+                std::vector<std::string> all = handle.scene().warnings;
+                const auto own = handle.read([](const Simulation& s) { return s.warnings(); });
+                all.insert(all.end(), own.begin(), own.end());
+                return all;
+            },
+            "A list of what the tool would warn of.")
         .def_property_readonly("particles", &particles_of,
-                               "The particles as read-only arrays, without a copy; they keep their values when the "
-                               "simulation goes on.")
-        .def_property_readonly("attributes", &attributes_of, "The particles' attributes as they are shown, by name.")
-        .def_property_readonly("statistics", &statistics_of, "Counts over the run so far.")
-        .def_property_readonly("colliders", &colliders_of, "Their names.")
-        .def_property_readonly("bodies", &bodies_of, "How the bodies that particles push stand and move.")
+                               "ricochet.Particles: the particles as read-only arrays, without a copy. They keep their "
+                               "values when the simulation goes on.")
+        .def_property_readonly("attributes", &attributes_of,
+                               "A dictionary of arrays: the particles' attributes as they are shown, by name.")
+        .def_property_readonly("statistics", &statistics_of, "A dictionary of counts over the run so far.")
+        .def_property_readonly("colliders", &colliders_of, "A list of their names.")
+        .def_property_readonly("bodies", &bodies_of,
+                               "A list with a dictionary for each dynamic body: position and motion, in SI units.")
         .def("__len__",
              [](const Handle& handle) { return handle.read([](const Simulation& s) { return s.particles().size(); }); })
         .def("__repr__", [](const Handle& handle) {

@@ -7,11 +7,11 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
-#include <future>
 #include <span>
 #include <thread>
 #include <utility>
 
+#include "python/ctrl_c.h"
 #include "python/gil.h"
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
@@ -128,26 +128,6 @@ private:
     std::atomic<bool> has_error_ = false;
 };
 
-/// Runs `work` on a thread of its own while this one calls `look` again and again. Without the GIL.
-template <class Work, class Look>
-void run_beside(const Work& work, const Look& look) {
-    std::exception_ptr error;
-    std::promise<void> done;
-    std::future<void> end = done.get_future();
-    std::thread thread([&] {
-        try {
-            const detail::Beside beside;
-            work();
-        } catch (...) {
-            error = std::current_exception();
-        }
-        done.set_value();
-    });
-    while (end.wait_for(kLookAround) == std::future_status::timeout) look();
-    thread.join();
-    if (error != nullptr) std::rethrow_exception(error);
-}
-
 /// Particles up to which one thread moves all, and a single step needs no thread of its own that looks for Ctrl-C.
 constexpr std::size_t kFewParticles = 256;
 
@@ -206,7 +186,7 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
         };
         // The loops of other threads, for which this one would wait, may be long.
         const bool is_short = count == 1 && simulation_->particles().size() <= kFewParticles;
-        is_short ? advance() : run_beside(advance, [&] { (void)watch.goes_on(); });
+        is_short ? advance() : run_beside(advance, kLookAround, [&] { (void)watch.goes_on(); });
     }
     watch.rethrow();
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();

@@ -37,6 +37,7 @@ void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
         }
     }
     EXPECT_EQ(simulation.statistics().violations, 0U);
+    EXPECT_EQ(simulation.statistics().energy_violations, 0U);
     EXPECT_EQ(simulation.statistics().squeezed, 0U);
     EXPECT_EQ(simulation.statistics().frozen, 0U);
 }

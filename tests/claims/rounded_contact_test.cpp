@@ -1,11 +1,15 @@
 // Contact whose velocities are rounding beside others: on floors that move steadily, and at edges reached at once.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "claims/moving_scene.h"
+#include "ricochet/core/random.h"
+#include "support/counts.h"
 
 namespace ricochet::testing {
 namespace {
@@ -47,6 +51,60 @@ TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundThatSlidesIntoIt) {
         Simulation simulation(std::move(setup));
         static_cast<void>(all_contacts(simulation));
         EXPECT_LT(length(simulation.particles().velocity[0] + velocity), 1e-8);
+    }
+}
+
+// The same in a body that yields, but is so heavy that it stays where it is.
+TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundInABodyThatYields) {
+    const Vec3 velocity{1.412990398168904, 1.8622771070860458, 0.0};
+    for (int k = 0; k < 60; ++k) {
+        SCOPED_TRACE(k);
+        const Vec3 edge = (0.1 + 0.0137 * k) * velocity;
+        FrameDescription frame = frame_of("body", {});
+        frame.is_driven = true;
+        auto setup = setup_of({frame},
+                              {{"floor", CuboidShape{{20, 20, 1}, {{0, 0, -0.5}}}, 0, "body"},
+                               {"x", CuboidShape{{1, 20, 1}, {edge + Vec3{0.5, 0, 0.25}}}, 1, "body"},
+                               {"y", CuboidShape{{20, 1, 1}, {edge + Vec3{0, 0.5, 0.25}}}, 1, "body"}},
+                              0.0319751, 1.0);
+        setup.materials = {{"", 0.8, 0.0}, {"", 1.0, 0.0}};
+        setup.forces.push_back(make_gravity({0, 0, -kG}));
+        BodyDescription body;
+        body.frame = "body";
+        body.mass = 1e12;
+        body.inertia = {.xx = 1e12, .yy = 1e12, .zz = 1e12};
+        body.joint = JointKind::free;
+        body.feels_forces = false;
+        setup.bodies = {body};
+        setup.particles = {particle_of({0, 0, 1e-12}, velocity)};
+        Simulation simulation(std::move(setup));
+        static_cast<void>(all_contacts(simulation));
+        EXPECT_LT(length(simulation.particles().velocity[0] + velocity), 1e-8);
+    }
+}
+
+// Slow rebounds off one wall of a narrow wedge, beside impacts on the other: a wall that the particle leaves does not
+// hold it, and each wall gives the rebound of its material.
+TEST(ANarrowWedge, GivesEachImpactTheReboundOfItsMaterial) {
+    for (int seed = 0; seed < test::scaled(40); ++seed) {
+        SCOPED_TRACE(seed);
+        RandomSequence random(static_cast<std::uint64_t>(seed), 17, 0);
+        const double slope = 0.003 + 0.02 * random.uniform();  // of the upper wall
+        const Vec3 upper = normalized(Vec3{-slope, 0, -1});
+        auto setup = setup_of({}, {{"lower", PlaneShape{{}, {0, 0, 1}}}, {"upper", PlaneShape{{}, upper}}}, 0.02, 2.0);
+        setup.materials = {{"", 0.6 + 0.35 * random.uniform(), 0.4 * random.uniform()}};
+        setup.options.resting_speed = 0.05;
+        setup.forces.push_back(make_gravity(kG * random.unit_vector()));
+        for (int k = 0; k < 8; ++k) {
+            const double x = -0.5 - random.uniform();
+            const double radius = k % 2 == 0 ? 0.0 : 0.2 * slope * std::fabs(x);
+            const Vec3 velocity = 3.0 * random.uniform() * random.unit_vector();
+            setup.particles.push_back(particle_of({x, random.uniform(), 0.5 * slope * std::fabs(x)}, velocity, radius));
+        }
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        EXPECT_EQ(simulation.statistics().violations, 0U);
+        EXPECT_EQ(simulation.statistics().energy_violations, 0U);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -55,6 +56,19 @@ TEST(BenchPlots, OfEverySuiteAreDrawnWithoutAWordFromGnuplot) {
         EXPECT_EQ(failure, "") << suite;
         EXPECT_TRUE(std::filesystem::exists(folder.path(suite + ".png"))) << suite;
     }
+}
+
+// A gnuplot that breaks off and says that all is well.
+TEST(BenchPlots, ThatAreNotWholeGetNoName) {
+    const test::TemporaryFolder folder;
+    (void)folder.write("gnuplot", "#!/bin/sh\nending=${2#*\\'}\nprintf PNG > \"plot.png${ending%\\'}\"\n");
+    std::filesystem::permissions(folder.path("gnuplot"), std::filesystem::perms::owner_all);
+    const std::string path = std::getenv("PATH");
+    ASSERT_EQ(::setenv("PATH", (folder.path("").string() + ":" + path).c_str(), 1), 0);
+    const std::string failure = draw_with_gnuplot(folder.path(""), "plot.gp", {"plot.png"}, [] { return false; });
+    ASSERT_EQ(::setenv("PATH", path.c_str(), 1), 0);
+    EXPECT_EQ(failure, "gnuplot has not written all pictures");
+    EXPECT_FALSE(std::filesystem::exists(folder.path("plot.png")));
 }
 
 TEST(BenchPlots, TakeTheRowsWithTheMostThreads) {

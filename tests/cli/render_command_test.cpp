@@ -267,5 +267,52 @@ TEST(RenderCommand, MakesAFilmWithFfmpegAndNothingWithoutIt) {
     }
 }
 
+/// The name in front of the program, so that no file may grow beyond so many kibibytes: a full disk, as programs see
+/// it.
+test::ProgramStart with_room_for(int kibibytes) {
+    test::ProgramStart start;
+    start.prefix = {"bash", "-c", "ulimit -f " + std::to_string(kibibytes) + "; exec \"$@\"", "bash"};
+    return start;
+}
+
+TEST(RenderCommand, AFilmThatTheDiskDoesNotTakeEndsWithOneLineAndWithoutAFile) {
+    if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+    const RunFolderFiles files;
+    const std::vector<std::string> film{"render",  files.path(""), "--output",  files.path("film.mp4"),
+                                        "--size",  "320x240",      "--samples", "1",
+                                        "--quiet", "--threads",    "1"};
+    ASSERT_EQ(run_ricochet(film).exit_code, 0);
+    const int whole = static_cast<int>(files.folder.read("film.mp4").size() / 1024);
+    ASSERT_GT(whole, 2);
+    std::filesystem::remove(files.folder.path("film.mp4"));
+    for (const int room : {1, whole / 2, whole}) {
+        SCOPED_TRACE(room);
+        const ProgramResult full = run_ricochet(film, with_room_for(room));
+        EXPECT_EQ(full.exit_code, 1);
+        EXPECT_NE(full.errors.find("film.mp4: ffmpeg failed"), std::string::npos) << full.errors;
+        EXPECT_EQ(std::count(full.errors.begin(), full.errors.end(), '\n'), 1) << full.errors;
+        EXPECT_FALSE(files.exists("film.mp4"));
+    }
+}
+
+// An encoder that breaks off and says that all is well.
+TEST(RenderCommand, AFilmThatTheEncoderHasNotFinishedGetsNoName) {
+    const RunFolderFiles files;
+    const std::string bytes = std::string("\0\0\0\x18", 4) + "ftypisom" + std::string(12, '\0');
+    (void)files.folder.write("start", bytes + std::string("\0\0\1\0", 4) + "mdat");
+    std::filesystem::create_directory(files.folder.path("bin"));
+    (void)files.folder.write("bin/ffmpeg", "#!/bin/sh\ncat > /dev/null\nfor last; do :; done\ncat '" +
+                                               files.path("start") + "' > \"${last#file:}\"\n");
+    std::filesystem::permissions(files.folder.path("bin/ffmpeg"), std::filesystem::perms::owner_all);
+    test::ProgramStart start;
+    start.environment = {"PATH=" + files.path("bin") + ":" + std::getenv("PATH")};
+    const ProgramResult broken = run_ricochet(
+        {"render", files.path(""), "--output", files.path("film.mp4"), "--size", "48x32", "--samples", "1", "--quiet"},
+        start);
+    EXPECT_EQ(broken.exit_code, 1);
+    EXPECT_NE(broken.errors.find("film.mp4: ffmpeg failed"), std::string::npos) << broken.errors;
+    EXPECT_FALSE(files.exists("film.mp4"));
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -462,5 +462,40 @@ TEST(FrameEmitter, RefusesAFrameThatIsNotThere) {
     EXPECT_THROW(Emitter(description, 0, 0), InputError);
 }
 
+// Work that grew with the cube of the number of frames would not end here, and chains of their own would take 3 GB.
+TEST(FrameTree, OfManyFramesOnEachOtherIsMadeInProportionToThem) {
+    constexpr std::size_t kFrames = 30000;
+    std::vector<FrameDescription> frames;
+    for (std::size_t i = 0; i < kFrames; ++i) {
+        FrameDescription& frame = frames.emplace_back();
+        frame.name = "frame " + std::to_string(i);
+        if (i + 1 < kFrames) frame.parent = "frame " + std::to_string(i + 1);
+        frame.translation = {1, 0, 0};
+    }
+    const FrameTree tree(frames);
+    EXPECT_EQ(tree.at(0, 0.0).world_from_frame.translation, Vec3(kFrames, 0, 0));
+    EXPECT_EQ(tree.at(kFrames - 1, 0.0).world_from_frame.translation, Vec3(1, 0, 0));
+    EXPECT_EQ(tree.find("frame 7"), 7U);
+    frames.back().parent = "frame 20000";
+    EXPECT_EQ(frame_in_circle(frames), 20000U);
+}
+
+TEST(FrameTree, FindsTheFirstFrameOfACircleAndNoneBeforeIt) {
+    const auto circle_of = [](const std::vector<std::string>& parents) {
+        std::vector<FrameDescription> frames;
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            FrameDescription& frame = frames.emplace_back();
+            frame.name = std::string(1, static_cast<char>('a' + i));
+            frame.parent = parents[i];
+        }
+        return frame_in_circle(frames);
+    };
+    EXPECT_EQ(circle_of({"", "a", "b"}), std::nullopt);
+    EXPECT_EQ(circle_of({"b", "c", "d", "b"}), 1U);  // a stands on the circle
+    EXPECT_EQ(circle_of({"d", "a", "e", "", "f", "c"}), 2U);
+    EXPECT_EQ(circle_of({"unknown", "b"}), 1U);
+    EXPECT_EQ(circle_of({"f", "c", "b", "e", "d", ""}), 1U);  // of two circles
+}
+
 }  // namespace
 }  // namespace ricochet

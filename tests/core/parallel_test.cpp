@@ -8,7 +8,11 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 
 namespace ricochet {
 namespace {
@@ -102,6 +106,57 @@ TEST(Parallel, AnExceptionReachesTheCaller) {
 }
 
 // Keys that differ in few bits, in all, or in none, with many equal ones.
+TEST(Parallel, MoreThreadsThanAnyMachineHasAreRefused) {
+    EXPECT_THROW(const ThreadLimit limit(1025), InputError);
+    EXPECT_THROW(const ThreadLimit limit(1'000'000), InputError);
+    EXPECT_THROW(const ThreadLimit limit(-1), InputError);
+    const ThreadLimit most(1024);
+    EXPECT_GE(thread_count(), 1);
+}
+
+TEST(LoopStop, EndsLoopsAndThoseWithinTheirBlocks) {
+    struct Ended : std::exception {};
+    for (const int threads : {1, 4}) {
+        const ThreadLimit limit(threads);
+        std::atomic<int> asked = 0;
+        std::atomic<int> done = 0;
+        const LoopStop stop([&] {
+            if (++asked > 20) throw Ended();
+        });
+        const auto loops = [&] {
+            parallel_for_blocks(100, 1, [&](std::size_t, std::size_t, std::size_t) {
+                parallel_for_blocks(100, 1, [&](std::size_t, std::size_t, std::size_t) { ++done; });
+            });
+        };
+        EXPECT_THROW(loops(), Ended);
+        EXPECT_LE(done, 20);
+        EXPECT_GT(asked, 20);
+    }
+}
+
+TEST(LoopStop, IsAskedByItsOwnLoopsAloneAndOnlyWhileItLives) {
+    std::atomic<int> asked = 0;
+    const auto loop = [] { parallel_for_blocks(8, 1, [](std::size_t, std::size_t, std::size_t) {}); };
+    {
+        const LoopStop stop([&] { ++asked; });
+        std::thread(loop).join();
+        EXPECT_EQ(asked, 0);
+        {
+            const LoopStop none([] {});
+            loop();
+            poll_loop_stop();
+        }
+        EXPECT_EQ(asked, 0);
+        loop();
+        EXPECT_EQ(asked, 8);
+        poll_loop_stop();
+        EXPECT_EQ(asked, 9);
+    }
+    loop();
+    poll_loop_stop();
+    EXPECT_EQ(asked, 9);
+}
+
 TEST(Parallel, SortsByKeyAndKeepsTheOrderOfEqualKeys) {
     for (const std::size_t count : {0, 1, 1000, 1024, 100003}) {
         for (const std::uint64_t mask : {0ULL, 0x7ULL, 0xFF00FULL << 20U, 0x8000000000000001ULL, ~0ULL}) {

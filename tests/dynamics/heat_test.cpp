@@ -120,5 +120,13 @@ TEST(HeatTransfer, RatesAreSurfaceOverHeatCapacity) {
     EXPECT_NEAR(rates.radiation, 0.8 * kSigma * area / (0.002 * 500.0), 1e-22);
 }
 
+// Sums of such rates leave the range of doubles; the steps that were shortened for that never ended.
+TEST(Cooling, AtRatesNearTheEndOfDoublesLeavesTheAmbientTemperature) {
+    for (const double rate : {1e306, 4e307, 1.7e308}) {
+        EXPECT_EQ(cooled(1900.0, 293.0, {rate, 1e-13}, 0.02), 293.0);
+        EXPECT_EQ(cooled(100.0, 293.0, {rate, 1e-13}, 0.02), 293.0);
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

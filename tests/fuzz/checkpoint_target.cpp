@@ -1,10 +1,12 @@
 #include <array>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "fuzz/byte_choices.h"
+#include "fuzz/checkpoint_scenes.h"
 #include "fuzz/fuzz_targets.h"
 #include "fuzz/memory_file.h"
 #include "ricochet/core/error.h"
@@ -17,35 +19,6 @@
 namespace ricochet::fuzz {
 namespace {
 
-/// What differs among checkpoints: triangles with totals, emitters with children and attributes, springs, a response
-/// that penetrates. A few particles in each.
-constexpr std::array kScenes{
-    R"({"ricochet": 1, "simulation": {"time_step": 0.02, "duration": 0.2, "bounce_budget": 30},
-        "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
-        "colliders": [{"type": "box", "size": [2, 2, 2]}, {"type": "sphere", "radius": 0.3}],
-        "particles": [{"position": [0.5, 0.5, -0.9], "radius": 0.1},
-                      {"position": [-0.5, 0, 0.9], "velocity": [9, 1, 2]},
-                      {"position": [0.7, 0.7, 0.7], "velocity": [0, 0, 1], "radius": 0.2, "spin": [0, 9, 0]}]})",
-    R"({"ricochet": 1, "simulation": {"time_step": 0.02, "duration": 0.2, "bounce_budget": 30,
-                                      "most_particles": 30},
-        "attributes": {"heat": {"components": 1, "default": 20}},
-        "materials": {"felt": {"restitution": 0.5, "friction": 0.4, "absorption": 0.1}},
-        "colliders": [{"type": "plane", "point": [0, 0, -0.2], "normal": [0, 0, 1], "material": "felt"}],
-        "emitters": [{"name": "source", "type": "disk", "center": [0, 0, 0], "normal": [0, 0, -1], "radius": 0.2,
-                      "burst": 3, "rate": 40, "speed": 5, "lifetime": [0.1, 0.05]},
-                     {"name": "child", "type": "child", "parent": "source", "on": "impact", "count": 2, "speed": 1}]})",
-    R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 0.1, "bounce_budget": 30,
-                                      "integrator": "implicit_euler"},
-        "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
-        "colliders": [{"type": "cylinder", "radius": 0.4, "height": 0.5}],
-        "springs": [{"type": "rope", "from": [-0.3, 0, 0.4], "to": [0.3, 0, 0.4], "nodes": 4, "mass": 0.1,
-                     "axial_stiffness": 80, "pinned": "from"}]})",
-    R"({"ricochet": 1, "simulation": {"time_step": 0.02, "duration": 0.2, "bounce_budget": 30, "response": "penalty"},
-        "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
-        "colliders": [{"type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1]}],
-        "particles": [{"position": [0, 0, 0.05], "velocity": [1, 0, -4]}, {"position": [1, 0, 0.2], "radius": 0.1}]})",
-};
-constexpr std::size_t kStepsBefore = 3;
 constexpr std::size_t kStepsAfter = 1;
 constexpr std::size_t kChecksums = 2 * sizeof(std::uint64_t);
 
@@ -55,12 +28,12 @@ struct Base {
     std::size_t state_begin = 0;  ///< of the simulation's state, which has a checksum of its own
 };
 
-Base make_base(const char* text) {
-    SceneDescription scene = parse_scene(text, "base.json");
+Base make_base(const CheckpointScene& base_scene) {
+    SceneDescription scene = parse_scene(base_scene.text, "base.json");
     Base base;
     base.fingerprint = scene.fingerprint;
     Simulation simulation(std::move(scene.setup));
-    simulation.advance(kStepsBefore);
+    simulation.advance(base_scene.steps);
     Checkpoint checkpoint;
     checkpoint.scene = scene.fingerprint;
     checkpoint.frames = {{0.0, 0, "particles_000000.vtp"}, {0.02, 0, "particles_000001.vtp"}};
@@ -75,12 +48,9 @@ Base make_base(const char* text) {
 }
 
 const Base& base_of(std::size_t scene) {
-    static const std::array<Base, kScenes.size()> bases = [] {
-        std::array<Base, kScenes.size()> all;
-        for (std::size_t k = 0; k < kScenes.size(); ++k) all[k] = make_base(kScenes[k]);
-        return all;
-    }();
-    return bases[scene];
+    static std::array<std::optional<Base>, kCheckpointScenes.size()> bases;
+    if (!bases[scene]) bases[scene] = make_base(kCheckpointScenes[scene]);
+    return *bases[scene];
 }
 
 std::string bytes_of(std::uint64_t value) {
@@ -97,18 +67,23 @@ std::string striking_value(ByteChoices& choices) {
                                        0x0000000000000001, 0x8000000000000000, 0x4F80000000000000}));
 }
 
-/// Overwrites, removes or inserts some bytes of a body that has some.
+/// Overwrites, removes or inserts some bytes of a body that has some, or copies a word of it to another place.
 void edit(ByteChoices& choices, std::string& body, std::size_t& state_begin) {
-    const std::size_t kind = choices.index(5);
+    const std::uint8_t choice = choices.byte();
+    const std::size_t kind = choice % 5;
     const std::size_t at = choices.two_bytes() % body.size();
     std::string piece;
-    if (kind == 0) {
+    if (choice == kCopyEdit) {
+        piece = body.substr(choices.two_bytes() % body.size() / sizeof(std::uint64_t) * sizeof(std::uint64_t),
+                            sizeof(std::uint64_t));
+    } else if (kind == 0) {
         piece = striking_value(choices);
     } else if (kind < 4) {
         const std::size_t length = 1 + choices.index(16);
         for (std::size_t k = 0; k < length; ++k) piece += static_cast<char>(choices.byte());
     }
-    const std::size_t removed = kind == 3 ? 0 : kind == 4 ? 1 + choices.index(64) : piece.size();
+    const bool keeps_length = kind < 3 || choice == kCopyEdit;
+    const std::size_t removed = keeps_length ? piece.size() : kind == 3 ? 0 : 1 + choices.index(64);
     body.replace(at, std::min(removed, body.size() - at), piece);
     if (at < state_begin) state_begin += piece.size() - removed;
 }
@@ -142,12 +117,12 @@ void require_some_steps(Simulation& simulation) {
 bool fuzz_checkpoint(std::string_view bytes) {
     static const ThreadLimit one_thread(1);
     ByteChoices choices(bytes);
-    const std::size_t scene = choices.index(kScenes.size());
+    const std::size_t scene = choices.index(kCheckpointScenes.size());
     std::string body = base_of(scene).body;
     std::size_t state_begin = base_of(scene).state_begin;
     while (!choices.at_end() && !body.empty()) edit(choices, body, state_begin);
     const MemoryFile file(with_checksums(std::move(body), state_begin));
-    Simulation simulation(parse_scene(kScenes[scene], "base.json").setup);
+    Simulation simulation(parse_scene(kCheckpointScenes[scene].text, "base.json").setup);
     try {
         static_cast<void>(read_checkpoint(file.path(), base_of(scene).fingerprint, simulation));
     } catch (const InputError&) {

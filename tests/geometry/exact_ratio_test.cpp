@@ -27,5 +27,17 @@ TEST(ExactRatio, OfZeroIsZeroOverAnything) {
     EXPECT_EQ(compare(zero, ratio({-1e-300, 0.0}, {1e300, 0.0})), 1);
 }
 
+// They come from states that somebody has made up; components beyond the room would overwrite other memory.
+TEST(Expansion, OfNumbersThatAreNotFiniteKeepsToItsRoom) {
+    for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        const Expansion<2> two(DoubleDouble{value, value});
+        ASSERT_EQ(two.size, 2);
+        const Expansion<4> sum = two + two;
+        EXPECT_LE(sum.size, 4);
+        EXPECT_LE((two * value).size, 4);
+        EXPECT_LE((sum * value + two * 2.0).size, 12);
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

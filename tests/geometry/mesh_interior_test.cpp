@@ -7,6 +7,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/verify/parity.h"
+#include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 
@@ -70,6 +71,23 @@ TEST(MeshInterior, RaysThroughVerticesAndAlongEdgesAreCountedRight) {
             }
         }
     }
+}
+
+// Each of large triangles one upon the other lies in every column. Both sides of a sheet count.
+TEST(MeshInterior, TakesMemoryInProportionToTheTriangles) {
+    TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    for (std::uint32_t k = 0; k < 10000; ++k) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        const double z = 0.25 + 1e-5 * k;
+        mesh.vertices.insert(mesh.vertices.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+        mesh.triangles.insert(mesh.triangles.end(), 2, {first, first + 1, first + 2});
+    }
+    const auto many = shared(std::move(mesh));
+    const test::AllocationGuard guard;
+    const MeshInterior interior(many);
+    EXPECT_LT(guard.peak_bytes(), 32'000'000U);
+    EXPECT_TRUE(interior.contains({0.4, 0.5, 0.6}));
+    EXPECT_FALSE(interior.contains({0.4, 0.5, 1.6}));
 }
 
 }  // namespace

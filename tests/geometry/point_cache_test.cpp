@@ -69,11 +69,22 @@ TEST(PointCache, SaysWhatIsWrong) {
     const std::int32_t most = std::numeric_limits<std::int32_t>::max();
     std::memcpy(huge.data() + 16, &most, 4);
     std::memcpy(huge.data() + 28, &most, 4);
-    EXPECT_EQ(refusal(huge), "a.pc2: 2147483647 samples of 2147483647 points are 18446744022169944108 bytes, found 56");
+    EXPECT_EQ(refusal(huge), "a.pc2: 2147483647 samples of 2147483647 points are more than 2^61 bytes, found 56");
     std::string not_finite = cache_of(1, 0, 1, 2);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(not_finite.data() + 44, &nan, 4);
     EXPECT_EQ(refusal(not_finite), "a.pc2: byte 44: found a coordinate that is not finite");
+}
+
+// Their number of bytes modulo 2^64 is that of the file: whoever believes it reads beyond its end.
+TEST(PointCache, IsRefusedWhereItsSizeIsRightOnlyUpToAMultipleOf2To64) {
+    std::string bytes = cache_of(0, 0, 1, 0) + std::string(32, '\0');
+    const std::int32_t points = 842443544;
+    const std::int32_t samples = 1824726041;
+    std::memcpy(bytes.data() + 16, &points, 4);
+    std::memcpy(bytes.data() + 28, &samples, 4);
+    EXPECT_EQ(12 * static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples), 32U);
+    EXPECT_NE(refusal(bytes).find("are more than 2^61 bytes, found 64"), std::string::npos) << refusal(bytes);
 }
 
 TEST(PointCache, IsReadBackAsItWasWritten) {

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "ricochet/core/parallel.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "support/counts.h"
 #include "support/exact_oracle.h"
@@ -134,6 +135,21 @@ TEST(SelfIntersection, IsFoundAcrossManyTriangles) {
     }();
     EXPECT_GT(pairs, 0U);
     EXPECT_EQ(count_self_intersections(both), pairs);
+}
+
+// Triangles that all lie on each other: pairs grow with the square of their number, the search does not.
+TEST(SelfIntersection, EndsEarlyWhereNearlyAllPairsCross) {
+    TriangleMesh mesh{{kA, kB, kC}, {}};
+    mesh.triangles.assign(20000, {0, 1, 2});
+    const SelfIntersections found = find_self_intersections(mesh);
+    EXPECT_FALSE(found.are_all);
+    EXPECT_GT(found.pairs, 256U * 20000U);
+    EXPECT_LT(found.pairs, 10'000'000U);
+    const ThreadLimit one(1);
+    EXPECT_EQ(find_self_intersections(mesh).pairs, found.pairs);
+    mesh.triangles.resize(1000);
+    EXPECT_TRUE(find_self_intersections(mesh).are_all);
+    EXPECT_EQ(count_self_intersections(mesh), 1000U * 999U / 2U);
 }
 
 }  // namespace

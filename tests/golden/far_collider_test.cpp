@@ -50,7 +50,7 @@ std::ostream& operator<<(std::ostream& out, const Bits& bits) {
 }
 
 std::uint64_t hash_of(const Particles& particles) {
-    Hash hash;
+    StateHash hash;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         hash.add(particles.id[i]);
         for (const Vec3& v : {particles.position[i], particles.velocity[i], particles.spin[i]}) hash.add(v);
@@ -66,7 +66,7 @@ Bits bits_of(SimulationSetup setup) {
     const ThreadLimit limit(1);
     setup.options.record_contacts = true;
     Simulation simulation(std::move(setup));
-    Hash contacts;
+    StateHash contacts;
     while (!simulation.finished()) {
         simulation.step();
         add_records(simulation, contacts);

@@ -49,7 +49,7 @@ Outcome run(SimulationSetup setup, int threads) {
     const ThreadLimit limit(threads);
     setup.options.record_contacts = true;
     Simulation simulation(std::move(setup));
-    Hash contacts;
+    StateHash contacts;
     while (!simulation.finished()) {
         simulation.step();
         add_records(simulation, contacts);

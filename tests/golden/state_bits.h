@@ -1,39 +1,17 @@
 /// \file
-/// Hashes of all bits that a run leaves behind.
+/// Adds the contact records of a run to a hash of its bits.
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
+#include "ricochet/core/hash.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet::golden {
 
-/// FNV-1a over the bits of numbers.
-class Hash {
-public:
-    void add(std::uint64_t bits) {
-        for (int k = 0; k < 8; ++k, bits >>= 8) value_ = (value_ ^ (bits & 0xFFU)) * 0x100000001B3U;
-    }
-    void add(double number) {
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &number, sizeof bits);
-        add(bits);
-    }
-    void add(const Vec3& v) {
-        add(v.x);
-        add(v.y);
-        add(v.z);
-    }
-    [[nodiscard]] std::uint64_t value() const { return value_; }
-
-private:
-    std::uint64_t value_ = 0xCBF29CE484222325U;
-};
-
 /// Adds the contact records of the last step.
-inline void add_records(const Simulation& simulation, Hash& hash) {
+inline void add_records(const Simulation& simulation, StateHash& hash) {
     for (const ContactRecord& record : simulation.contact_records()) {
         hash.add(record.time);
         hash.add(record.particle);

@@ -106,13 +106,15 @@ TEST(FrameReader, RefusesAnIndexThatIsNone) {
     (void)write_pieces(folder, 3);
     const VtkPolyData none = particle_frame(Particles{}, 0.0);
     const std::string good = pvtp_text(none, {piece_file_name(7, 0)});
-    const std::vector<std::string> bad = {"",
-                                          "<VTKFile",
-                                          good.substr(0, good.size() - 12),
-                                          pvtp_text(none, {}),
-                                          pvtp_text(none, {"../particles_000007_p0.vtp"}),
-                                          pvtp_text(none, {"/etc/passwd"}),
-                                          pvtp_text(none, {"particles_000007.pvtp"})};
+    const std::vector<std::string> bad = {
+        "",
+        "<VTKFile",
+        good.substr(0, good.size() - 12),
+        pvtp_text(none, {}),
+        pvtp_text(none, {"../particles_000007_p0.vtp"}),
+        pvtp_text(none, {"/etc/passwd"}),
+        pvtp_text(none, {"particles_000007.pvtp"}),
+        pvtp_text(none, {piece_file_name(7, 0), piece_file_name(7, 1), piece_file_name(7, 0)})};
     for (const std::string& text : bad) {
         const std::string message = refusal(folder.write("bad.pvtp", text));
         EXPECT_NE(message.find("bad.pvtp: "), std::string::npos) << text << ": " << message;
@@ -120,6 +122,25 @@ TEST(FrameReader, RefusesAnIndexThatIsNone) {
     }
     EXPECT_NE(refusal(folder.path("missing.pvtp")), "it was read");
     EXPECT_NE(refusal(folder.path("")), "it was read");
+}
+
+// The same empty piece may be read as often as it is named, and the reader would take memory for each.
+TEST(FrameReader, RefusesAPieceThatIsNamedOften) {
+    const TemporaryFolder folder;
+    (void)write_pieces(folder, 0);
+    const std::vector<std::string> names(2000, piece_file_name(7, 2));
+    const std::string message =
+        refusal(folder.write("often.pvtp", pvtp_text(particle_frame(Particles{}, 1.0 / 3.0), names)));
+    EXPECT_NE(message.find("particles_000007_p2.vtp is named twice"), std::string::npos) << message;
+}
+
+TEST(FrameReader, RefusesAPieceThatIsALinkOutOfTheFolder) {
+    const TemporaryFolder folder;
+    const TemporaryFolder elsewhere;
+    const std::filesystem::path index = write_pieces(folder, 3);
+    std::filesystem::rename(folder.path(piece_file_name(7, 1)), elsewhere.path("piece.vtp"));
+    std::filesystem::create_symlink(elsewhere.path("piece.vtp"), folder.path(piece_file_name(7, 1)));
+    EXPECT_NE(refusal(index).find("outside of the run's folder"), std::string::npos);
 }
 
 TEST(FrameReader, NeverCrashesOnAnyCutOrChangedByteOfAnIndex) {

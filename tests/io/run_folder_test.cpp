@@ -1,6 +1,7 @@
 #include "ricochet/io/run_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <memory>
@@ -272,6 +273,70 @@ TEST(RunFolder, ListsFramesByStepAndCollidersByIndex) {
     ASSERT_EQ(run.colliders.size(), 2U);
     EXPECT_EQ(run.colliders[0].filename(), "collider_02_a.vtp");
     EXPECT_FALSE(run.info.camera);
+}
+
+std::string refusal_of(const std::filesystem::path& folder) {
+    try {
+        (void)open_run_folder(folder);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "it was opened";
+}
+
+/// A run.json with a picture whose key names a file.
+std::string with_picture(const std::string& key, const std::string& file) {
+    RunInfo info;
+    info.picture.emplace();
+    (key == "sprite" ? info.picture->sprite : info.picture->mesh) = file;
+    return run_info_text(info);
+}
+
+// A stranger's folder opens nothing outside of itself.
+TEST(RunFolder, RefusesPicturesFilesWithOtherNamesThanItsOwn) {
+    const test::TemporaryFolder folder;
+    (void)folder.write(frame_file_name(1), "");
+    for (const char* key : {"sprite", "mesh"}) {
+        for (const char* name : {"/etc/passwd", "../particle_sprite.png", "particle_sprite.png/../x", "run.json",
+                                 "sub/particle_mesh.obj", "particle_mesh_x.obj", "particle_sprite_.png", ".."}) {
+            (void)folder.write(kRunInfoFile, with_picture(key, name));
+            const std::string message = refusal_of(folder.path(""));
+            EXPECT_NE(message.find(std::string("picture.") + key), std::string::npos) << name << ": " << message;
+            EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+        }
+    }
+    for (const char* name : {"particle_sprite.png", "particle_sprite_12.png"}) {
+        (void)folder.write(kRunInfoFile, with_picture("sprite", name));
+        EXPECT_EQ(refusal_of(folder.path("")), "it was opened");
+        EXPECT_TRUE(is_run_file(name));
+    }
+}
+
+TEST(RunFolder, RefusesLinksOutOfItAndPipesInPlaceOfItsFiles) {
+    const test::TemporaryFolder elsewhere;
+    (void)elsewhere.write("file", "");
+    const std::string with_sprite = with_picture("sprite", "particle_sprite.png");
+    for (const std::string& name :
+         {std::string("run.json"), std::string("particle_sprite.png"), frame_file_name(2), frame_index_name(2),
+          contact_file_name(1), moving_file_name(1), collider_file_name(0, "wall")}) {
+        SCOPED_TRACE(name);
+        const test::TemporaryFolder folder;
+        (void)folder.write(kRunInfoFile, with_sprite);
+        (void)folder.write(frame_file_name(1), "");
+        std::filesystem::remove(folder.path(name));
+        std::filesystem::create_symlink(elsewhere.path("file"), folder.path(name));
+        EXPECT_NE(refusal_of(folder.path("")).find("outside of the run's folder"), std::string::npos);
+        std::filesystem::remove(folder.path(name));
+        ASSERT_EQ(::mkfifo(folder.path(name).c_str(), 0600), 0);
+        EXPECT_NE(refusal_of(folder.path("")).find("is not a regular file"), std::string::npos);
+    }
+}
+
+TEST(RunFolder, FollowsLinksWithinIt) {
+    const test::TemporaryFolder folder;
+    (void)folder.write(frame_file_name(1), "");
+    std::filesystem::create_symlink(frame_file_name(1), folder.path(frame_file_name(2)));
+    EXPECT_EQ(open_run_folder(folder.path("")).frames.size(), 2U);
 }
 
 TEST(RunFolder, RefusesAFolderWithoutFramesAndNoFolder) {

@@ -1,6 +1,7 @@
 #include "ricochet/io/run_writer.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <limits>
 #include <map>
@@ -282,6 +283,86 @@ TEST(RunInfo, UpIsAgainstGravityAlongTheNearestAxis) {
     scene.camera->field_of_view_degrees = 40.0;
     EXPECT_EQ(run_info_of(scene).up, Vec3(0, 0, 1));
     EXPECT_EQ(run_info_of(scene).camera->field_of_view_degrees, 40.0);
+}
+
+// A plate that falls, and an infinite floor, which is drawn as large as the scene is at its begin.
+SimulationSetup falling_plate() {
+    SimulationSetup setup = falling_particles();
+    FrameDescription frame;
+    frame.name = "plate";
+    frame.translation = {20, 0, 40};
+    frame.is_driven = true;
+    setup.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{frame});
+    BodyDescription body;
+    body.frame = "plate";
+    body.inertia = {1, 1, 1, 0, 0, 0};
+    setup.bodies.push_back(body);
+    setup.colliders.push_back({"plate", CuboidShape{{1, 1, 0.1}, {}}, 0, "plate"});
+    return setup;
+}
+
+TEST(RunWriter, AResumedRunDrawsPlanesAsLargeAsOneThatWasNeverInterrupted) {
+    const TemporaryFolder whole;
+    const TemporaryFolder resumed;
+    SimulationSetup setup = falling_plate();
+    Box3 region = particle_region(setup);
+    Simulation simulation(std::move(setup));
+    {
+        RunWriter writer(whole.path(""), {}, simulation, region);
+        writer.write_frame(simulation);
+        simulation.advance(8);
+        writer.write_checkpoint(simulation, 7, 0.0);
+        std::filesystem::copy_file(whole.path(kCheckpointFile), resumed.path(kCheckpointFile));
+        while (!simulation.finished()) simulation.step();
+        (void)writer.finish(simulation);
+    }
+    Simulation again(falling_plate());
+    region.include(collider_region(again));
+    const std::optional<Checkpoint> checkpoint = read_checkpoint(resumed.path(kCheckpointFile), 7, again);
+    RunWriter writer(resumed.path(""), {}, again, region, checkpoint);
+    while (!again.finished()) again.step();
+    (void)writer.finish(again);
+    const std::string floor = collider_file_name(0, "floor");
+    EXPECT_EQ(read_vtp(resumed.path(floor)).points, read_vtp(whole.path(floor)).points);
+}
+
+// Whoever is killed right after the files behind a checkpoint were removed leaves lists without them.
+TEST(RunWriter, ListsTheFilesThatAreKeptBeforeOthersAreRemoved) {
+    const TemporaryFolder folder;
+    (void)folder.write(kParticleSeriesFile, pvd_text({{0.0, 0, frame_file_name(0)}, {1.0, 0, frame_file_name(10)}}));
+    Checkpoint checkpoint;
+    checkpoint.frames = {{0.0, 0, frame_file_name(0)}};
+    list_kept_files(folder.path(""), checkpoint);
+    EXPECT_EQ(folder.read(kParticleSeriesFile), pvd_text(checkpoint.frames));
+    EXPECT_FALSE(std::filesystem::exists(folder.path(kContactSeriesFile)));
+}
+
+TEST(Checkpoint, DoesNotWaitForAPipeInPlaceOfAPart) {
+    const TemporaryFolder folder;
+    Simulation simulation(falling_particles());
+    Checkpoint checkpoint;
+    checkpoint.scene = 7;
+    checkpoint.parts = {{checkpoint_part_name(0, 0), 1}};
+    write_checkpoint(folder.path(kCheckpointFile), checkpoint, simulation);
+    ASSERT_EQ(::mkfifo(folder.path(checkpoint_part_name(0, 0)).c_str(), 0600), 0);
+    try {
+        (void)read_checkpoint(folder.path(kCheckpointFile), 7, simulation);
+        ADD_FAILURE() << "it was read";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("is not a regular file"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Checkpoint, ListsFilesOfARunOnly) {
+    const TemporaryFolder folder;
+    Simulation simulation(falling_particles());
+    for (const char* name : {"../particles_000001.vtp", "/etc/passwd", "contacts_000001.vtp"}) {
+        Checkpoint checkpoint;
+        checkpoint.scene = 7;
+        checkpoint.frames = {{0.0, 0, name}};
+        write_checkpoint(folder.path(kCheckpointFile), checkpoint, simulation);
+        EXPECT_THROW((void)read_checkpoint(folder.path(kCheckpointFile), 7, simulation), InputError) << name;
+    }
 }
 
 }  // namespace

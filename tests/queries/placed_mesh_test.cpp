@@ -87,6 +87,22 @@ TEST(PlacedMesh, AnswersAsACopyOfTheMeshThere) {
     }
 }
 
+TEST(PlacedMesh, HasTheWindingNumbersOfACopyThere) {
+    RandomSequence random(42, 0, 0);
+    TriangleMesh sphere = testing::sphere_mesh({0, 0, 0}, 1.0, 2);
+    for (const bool is_open : {false, true}) {
+        if (is_open) sphere.triangles.resize(sphere.triangles.size() / 2);
+        const MeshQueries mesh(sphere);
+        for (int variant = 0; variant < 12; ++variant) {
+            SCOPED_TRACE(variant);
+            const AffineMap map = drawn_similarity(random);
+            const Questions q = drawn_questions(map, random);
+            const std::vector<double> found = PlacedMesh(mesh, map).winding_numbers(q.from);
+            expect_near(found, MeshQueries(mapped(sphere, map)).winding_numbers(q.from), 1e-6);
+        }
+    }
+}
+
 TEST(PlacedMesh, RefusesMapsThatAreNoSimilarity) {
     const MeshQueries mesh(testing::box_mesh({0, 0, 0}, {1, 1, 1}));
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,7 @@
 #include "ricochet/render/image.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -73,6 +74,28 @@ TEST(Png, RefusesOtherFilesAndDamagedOnes) {
     std::string huge = whole;
     huge[16] = '\x7f';  // of its width
     EXPECT_THROW((void)read_png(folder.write("huge.png", huge)), InputError);
+}
+
+TEST(Png, RefusesChunksLongerThanTheFile) {
+    const test::TemporaryFolder folder;
+    const std::string whole = png_bytes(gradient(40, 40));
+    const std::size_t data = whole.find("IDAT");
+    ASSERT_NE(data, std::string::npos);
+    for (const char* length : {"\xff\xff\xff\xff", "\x7f\xff\xff\xff", "\x40\x01\x01\x01", "\x80\x01\x01\x01"}) {
+        std::string damaged = whole;
+        damaged.replace(data - 4, 4, length, 4);
+        EXPECT_THROW((void)read_png(folder.write("chunk.png", damaged)), InputError);
+    }
+}
+
+// A pipe would be waited for, and a device may never end.
+TEST(Png, RefusesWhatIsNoRegularFile) {
+    const test::TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo(folder.path("pipe.png").c_str(), 0600), 0);
+    for (const std::filesystem::path& file :
+         {folder.path("pipe.png"), folder.path(""), std::filesystem::path("/dev/zero")}) {
+        EXPECT_THROW((void)read_png(file), InputError) << file;
+    }
 }
 
 }  // namespace

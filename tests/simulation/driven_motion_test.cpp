@@ -9,7 +9,9 @@
 
 #include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation.h"
 
 namespace ricochet {
 namespace {
@@ -105,6 +107,34 @@ TEST(DrivenMotion, IsNotCutByWhatComesBackToABodyThatHasJumpedAwayFromIt) {
         // As slow as that, but faster than the plate can have jumped: it is what it is.
         const double other = plate.motion->cut_by({hit(1, 0.002, 2.0, 0.3), hit(7, 0.004, 0.02, 0.3)});
         EXPECT_NEAR(other, 0.002 + 1e-3 * 0.002, 1e-15);
+    }
+}
+
+// About its centre, which does not move: a particle beside it would be swept past its turns for ever.
+TEST(DrivenMotion, HasDivergedWhereABodyTurnsFasterThanThereAreTurns) {
+    for (const double drive : {1.0, 1e30}) {
+        SimulationSetup setup;
+        setup.options.time_step = 0.01;
+        setup.options.duration = 1.0;
+        FrameDescription frame;
+        frame.name = "wheel";
+        frame.is_driven = true;
+        setup.frames = std::make_shared<const FrameTree>(std::vector{frame});
+        setup.materials.emplace_back();
+        setup.colliders.push_back({"wheel", BallShape{1.0, {}}, 0, "wheel"});
+        BodyDescription body;
+        body.frame = "wheel";
+        body.inertia = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
+        body.joint = JointKind::hinge;
+        body.settings.drive = drive;
+        setup.bodies.push_back(body);
+        setup.particles.emplace_back().position = {0, 0, 1.1};
+        const auto run = [&] { Simulation(std::move(setup)).advance(3); };
+        if (drive == 1.0) {
+            EXPECT_NO_THROW(run());
+        } else {
+            EXPECT_THROW(run(), DivergedError);
+        }
     }
 }
 

@@ -102,6 +102,35 @@ TEST(ADeformingMesh, ThatHasPassedAClockWhichStandsStillIsReportedWhereTheRunEnd
     EXPECT_EQ(violations[0].particle, 7U);
 }
 
+// Its place is known in closed form: a plate at the height t^2 at 4097 keys, uneven in time, and on straight lines
+// between.
+TEST(ADeformingMesh, FindsItsPlaceAmongThousandsOfKeys) {
+    constexpr int kKeys = 4096;
+    for (const bool repeats : {false, true}) {
+        VerifiedDeformation surface{{{0, 1, 2}}, {}, {}, repeats};
+        for (int k = 0; k <= kKeys; ++k) {
+            const double time = static_cast<double>(k) * k / (1.0 * kKeys * kKeys);
+            const double z = time * time;
+            surface.times.push_back(time);
+            surface.vertices.push_back({{0, 0, z}, {1, 0, z}, {0, 1, z}});
+        }
+        for (const int k : {0, 1, 2, 1000, 2047, 2048, 3333, kKeys - 2, kKeys - 1}) {
+            SCOPED_TRACE(k);
+            const auto at = static_cast<std::size_t>(k);
+            const double end = surface.times[at + 1];
+            const double time = 0.5 * (surface.times[at] + end);
+            const double height = 0.5 * (surface.times[at] * surface.times[at] + end * end);
+            const double off = 1e-12;
+            const auto met_by = [&](double z) {
+                return count(travel(surface, {{{0.2, 0.2, z}, time}, {{0.2, 0.2, height + 2 * off}, time}}),
+                             ViolationKind::crossing);
+            };
+            EXPECT_EQ(met_by(height + off), 0U);
+            EXPECT_EQ(met_by(height - off), 1U);
+        }
+    }
+}
+
 TEST(ADeformingMesh, KeepsTheSideOfWhatItEncloses) {
     EXPECT_TRUE(travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{1.9, 0.1, 0}, 1.0}}).empty());
     const auto left = travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{2.1, 0.1, 0}, 1.0}});

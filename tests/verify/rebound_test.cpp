@@ -37,6 +37,32 @@ TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsApproached) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
+TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsLeft) {
+    RecordedImpact impact = impact_on_wall(0.7, true);
+    impact.before.velocity.z = 0.01;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
+TEST(ReboundCheck, LetsASurfaceThatWasLeftBeApproachedByItsRestitutionAtMost) {
+    RecordedImpact impact = impact_on_wall(0.3, false);
+    impact.held_by = {3};
+    impact.before.velocity.z = 0.01;
+    impact.after.velocity = {-0.7 * 2, 0, -0.7 * 0.01};  // Moreau's law; the floor is hit next
+    EXPECT_FALSE(has_wrong_rebound(impact));
+    impact.after.velocity.z = -0.02;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
+// The normal speed on a surface that holds counts as zero: a wall that is not at right angles to it may miss as much.
+TEST(ReboundCheck, AllowsForTheNormalSpeedOnWhatHolds) {
+    RecordedImpact impact = impact_on_wall(0.7, true);
+    impact.before.velocity.z = 1e-7;
+    impact.after.velocity = {-0.7 * 2 + 1e-7, 0, -1e-7};
+    EXPECT_FALSE(has_wrong_rebound(impact));
+    impact.after.velocity.x += 1e-6;
+    EXPECT_TRUE(has_wrong_rebound(impact));
+}
+
 TEST(ReboundCheck, CountsTheThresholdAndTheMotionOfSurfaces) {
     RecordedImpact impact;
     impact.before.velocity = {0, 0, -1};

@@ -12,6 +12,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fstream>
 #include <list>
 #include <system_error>
 #include <thread>
@@ -62,6 +63,18 @@ namespace {
 
 constexpr auto kPause = std::chrono::milliseconds(20);  // between two checks whether gnuplot has ended
 
+// True for a file that ends with the last chunk of a PNG picture. On a full disk gnuplot may leave a part of one and
+// end with exit code 0.
+bool is_whole_png(const std::filesystem::path& file) {
+    constexpr std::string_view kEnd("\0\0\0\0IEND\xAE\x42\x60\x82", 12);
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    if (!in || in.tellg() < static_cast<std::streamoff>(kEnd.size())) return false;
+    std::string end(kEnd.size(), '\0');
+    in.seekg(-static_cast<std::streamoff>(kEnd.size()), std::ios::end);
+    in.read(end.data(), static_cast<std::streamsize>(end.size()));
+    return in && end == kEnd;
+}
+
 // Removes the unfinished pictures that are left when it goes.
 class UnfinishedPictures {
 public:
@@ -83,11 +96,10 @@ public:
         for (UnfinishedFile& file : noted_) file.set_writer(process);
     }
 
-    // Gives them their names; false when one is missing or empty.
+    // Gives them their names; false when one is missing or not whole.
     [[nodiscard]] bool finish() const {
         for (const std::string& name : names_) {
-            std::error_code error;
-            if (std::filesystem::file_size(folder_ / (name + ending_), error) == 0 || error) return false;
+            if (!is_whole_png(folder_ / (name + ending_))) return false;
         }
         for (const std::string& name : names_) {
             std::error_code error;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
 #include <utility>
 
 #include "ricochet/core/checks.h"
@@ -16,11 +17,53 @@
 namespace ricochet {
 namespace {
 
-std::optional<std::size_t> place_of(std::span<const FrameDescription> frames, std::string_view name) {
-    const auto found =
-        std::find_if(frames.begin(), frames.end(), [&](const auto& frame) { return frame.name == name; });
-    if (name.empty() || found == frames.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - frames.begin());
+/// Most entries of a chain. Frames that stand on more go on from the chain of another one, so that deep trees take
+/// memory in proportion to their frames.
+constexpr std::size_t kLongestChain = 16;
+
+/// Instead of a parent's number: the world.
+constexpr std::size_t kWorld = std::numeric_limits<std::size_t>::max();
+
+using Chains = std::vector<std::vector<std::size_t>>;
+
+/// Calls visit(k) for a frame and all that it stands on, from the one in the world on.
+template <class Visit>
+void for_each_in_chain(const std::vector<FrameDescription>& frames, const Chains& chains, std::size_t frame,
+                       const Visit& visit) {
+    const std::vector<std::size_t>& chain = chains[frame];
+    const bool goes_on = !frames[chain.front()].parent.empty();
+    if (goes_on) for_each_in_chain(frames, chains, chain.front(), visit);
+    for (std::size_t n = goes_on ? 1 : 0; n < chain.size(); ++n) visit(chain[n]);
+}
+
+std::unordered_map<std::string_view, std::size_t> numbers_of(std::span<const FrameDescription> frames) {
+    std::unordered_map<std::string_view, std::size_t> numbers;
+    for (std::size_t i = 0; i < frames.size(); ++i) numbers.emplace(frames[i].name, i);
+    return numbers;
+}
+
+/// The number of each frame's parent, or kWorld; unknown parents count as the world.
+std::vector<std::size_t> parents_of(std::span<const FrameDescription> frames) {
+    const std::unordered_map<std::string_view, std::size_t> numbers = numbers_of(frames);
+    std::vector<std::size_t> parents;
+    for (const FrameDescription& frame : frames) {
+        const auto found = frame.parent.empty() ? numbers.end() : numbers.find(frame.parent);
+        parents.push_back(found == numbers.end() ? kWorld : found->second);
+    }
+    return parents;
+}
+
+/// The numbers of frames without a circle, each behind that of its parent.
+std::vector<std::size_t> parents_first(const std::vector<std::size_t>& parents) {
+    std::vector<std::size_t> order;
+    std::vector<std::uint8_t> is_known(parents.size(), 0);
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        for (std::size_t k = i; k != kWorld && is_known[k] == 0; k = parents[k]) open.push_back(k), is_known[k] = 1;
+        order.insert(order.end(), open.rbegin(), open.rend());
+        open.clear();
+    }
+    return order;
 }
 
 /// A sine of amplitude 1, and its derivatives, 1/s and 1/s^2.
@@ -203,24 +246,28 @@ MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double t
 
 }  // namespace
 
+// Every frame is gone through once: a walk up ends where an earlier one has been, or where it has been itself.
 std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames) {
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        auto above = place_of(frames, frames[i].parent);
-        for (std::size_t steps = 0; above && steps < frames.size(); ++steps) {
-            if (*above == i) return i;
-            above = place_of(frames, frames[*above].parent);
-        }
+    const std::vector<std::size_t> parents = parents_of(frames);
+    std::vector<std::size_t> walk_of(frames.size(), kWorld);  // that has come to it first
+    std::size_t first = kWorld;
+    for (std::size_t walk = 0; walk < frames.size(); ++walk) {
+        std::size_t i = walk;
+        for (; i != kWorld && walk_of[i] == kWorld; i = parents[i]) walk_of[i] = walk;
+        if (i == kWorld || walk_of[i] != walk) continue;
+        first = std::min(first, i);
+        for (std::size_t k = parents[i]; k != i; k = parents[k]) first = std::min(first, k);
     }
-    return std::nullopt;
+    return first == kWorld ? std::nullopt : std::optional(first);
 }
 
 FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(frames)) {
+    const std::unordered_map<std::string_view, std::size_t> numbers = numbers_of(frames_);
     for (std::size_t i = 0; i < frames_.size(); ++i) {
         FrameDescription& frame = frames_[i];
         if (frame.name.empty()) throw InputError(fmt::format("frame {} has no name", i));
-        if (place_of(frames_, frame.name) != i)
-            throw InputError(fmt::format("frame '{}': the name is taken", frame.name));
-        if (!frame.parent.empty() && !place_of(frames_, frame.parent)) {
+        if (numbers.at(frame.name) != i) throw InputError(fmt::format("frame '{}': the name is taken", frame.name));
+        if (!frame.parent.empty() && !numbers.contains(frame.parent)) {
             throw InputError(fmt::format("frame '{}': there is no parent '{}'", frame.name, frame.parent));
         }
         if (frame.is_driven && (!frame.parent.empty() || !frame.motions.empty())) {
@@ -232,14 +279,19 @@ FrameTree::FrameTree(std::vector<FrameDescription> frames) : frames_(std::move(f
     if (const auto circle = frame_in_circle(frames_)) {
         throw InputError(fmt::format("frame '{}': its parents lead back to it", frames_[*circle].name));
     }
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
-        std::vector<std::size_t> chain;
-        for (std::optional<std::size_t> k = i; k; k = place_of(frames_, frames_[*k].parent)) chain.push_back(*k);
-        std::reverse(chain.begin(), chain.end());
-        is_scaled_.push_back(std::any_of(chain.begin(), chain.end(), [&](std::size_t k) {
-            return std::any_of(frames_[k].motions.begin(), frames_[k].motions.end(), is_scale);
-        }));
-        chains_.push_back(std::move(chain));
+    const std::vector<std::size_t> parents = parents_of(frames_);
+    chains_.resize(frames_.size());
+    is_scaled_.resize(frames_.size());
+    for (const std::size_t i : parents_first(parents)) {
+        const std::vector<FrameMotion>& motions = frames_[i].motions;
+        const std::size_t parent = parents[i];
+        is_scaled_[i] =
+            (parent != kWorld && is_scaled_[parent]) || std::any_of(motions.begin(), motions.end(), is_scale);
+        if (parent != kWorld) {
+            const std::vector<std::size_t>& before = chains_[parent];
+            chains_[i] = before.size() < kLongestChain ? before : std::vector{parent};
+        }
+        chains_[i].push_back(i);
     }
 }
 
@@ -284,7 +336,12 @@ void FrameTree::step_into(MovingPose& pose, std::size_t frame, double time) cons
     }
 }
 
-std::optional<std::size_t> FrameTree::find(std::string_view name) const { return place_of(frames_, name); }
+std::optional<std::size_t> FrameTree::find(std::string_view name) const {
+    const auto found =
+        std::find_if(frames_.begin(), frames_.end(), [&](const auto& frame) { return frame.name == name; });
+    if (name.empty() || found == frames_.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - frames_.begin());
+}
 
 const FrameDescription& FrameTree::description(std::size_t frame) const {
     require_index(frame, size(), "frame");
@@ -303,14 +360,14 @@ MovingPose FrameTree::at(std::size_t frame, double time) const {
             fmt::format("frame '{}': it is scaled, expected one that keeps its size", frames_[frame].name));
     }
     MovingPose pose;
-    for (const std::size_t k : chains_[frame]) step_into(pose, k, time);
+    for_each_in_chain(frames_, chains_, frame, [&](std::size_t k) { step_into(pose, k, time); });
     return pose;
 }
 
 AffineMap FrameTree::map(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
     MovingPose pose;
-    for (const std::size_t k : chains_[frame]) step_into(pose, k, time);
+    for_each_in_chain(frames_, chains_, frame, [&](std::size_t k) { step_into(pose, k, time); });
     return pose.world_from_frame;
 }
 
@@ -318,34 +375,34 @@ MotionBounds FrameTree::bounds(std::size_t frame, double from, double to) const 
     require_index(frame, size(), "frame");
     MotionBounds bounds;
     const BoundsOf add{bounds, from, to};
-    for (const std::size_t k : chains_[frame]) {
+    for_each_in_chain(frames_, chains_, frame, [&](std::size_t k) {
         if (!paths_[k].empty()) {
             bounds = bounds_of(paths_[k], from, to);
-            continue;
+            return;
         }
         add.shift({length(frames_[k].translation), 0.0, 0.0, 0.0, 0.0});
         for (const FrameMotion& motion : frames_[k].motions) std::visit(add, motion);
-    }
+    });
     return bounds;
 }
 
 double FrameTree::next_key(std::size_t frame, double time) const {
     require_index(frame, size(), "frame");
     double next = std::numeric_limits<double>::infinity();
-    for (const std::size_t k : chains_[frame]) {
+    for_each_in_chain(frames_, chains_, frame, [&](std::size_t k) {
         const std::vector<BodyPath>& paths = paths_[k];
         const auto later =
             std::partition_point(paths.begin(), paths.end(), [time](const BodyPath& path) { return path.end <= time; });
         if (later != paths.end()) next = std::min(next, later->end);
         for (const FrameMotion& motion : frames_[k].motions) next = std::min(next, next_key_of(motion, time));
-    }
+    });
     return next;
 }
 
 std::uint64_t FrameTree::hash(std::size_t frame) const {
     require_index(frame, size(), "frame");
     StateHash hash;
-    for (const std::size_t k : chains_[frame]) {
+    for_each_in_chain(frames_, chains_, frame, [&](std::size_t k) {
         const FrameDescription& link = frames_[k];
         hash.add(link.translation);
         hash.add(link.rotation_axis);
@@ -355,7 +412,7 @@ std::uint64_t FrameTree::hash(std::size_t frame) const {
             hash.add(static_cast<std::uint64_t>(motion.index()));
             std::visit(HashOf{hash}, motion);
         }
-    }
+    });
     return hash.value();
 }
 

@@ -129,7 +129,7 @@ private:
 
     std::vector<FrameDescription> frames_;
     std::vector<std::vector<BodyPath>> paths_;      // one list a frame; empty but for driven ones that have been set
-    std::vector<std::vector<std::size_t>> chains_;  // of each frame: from the one that stands in the world to itself
+    std::vector<std::vector<std::size_t>> chains_;  // of each frame: from the world, or another frame, to itself
     std::vector<bool> is_scaled_;                   // one a frame
 };
 

@@ -15,9 +15,11 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/thread_sanitizer.h"
 
 namespace ricochet {
@@ -54,12 +56,40 @@ private:
     std::exception_ptr error_;
 };
 
+/// Far more than any machine's processors: more would only take memory, for stacks that nobody uses.
+constexpr int kMostThreads = 1024;
+
 int checked_threads(int threads) {
     if (threads < 0) throw InputError("threads: found a number below 0, expected 0 (all) or more");
+    if (threads > kMostThreads) {
+        throw InputError("threads: found " + std::to_string(threads) + ", expected 0 (all) to " +
+                         std::to_string(kMostThreads));
+    }
     return threads;
 }
 
+thread_local const std::function<void()>* loop_stop = nullptr;
+
+/// Lets a block's thread have the request to stop of the thread that began the loop.
+class HandedOn {
+public:
+    explicit HandedOn(const std::function<void()>* stop) : own_(std::exchange(loop_stop, stop)) {}
+    ~HandedOn() { loop_stop = own_; }
+    HandedOn(const HandedOn&) = delete;
+    HandedOn& operator=(const HandedOn&) = delete;
+
+private:
+    const std::function<void()>* own_;
+};
+
 }  // namespace
+
+LoopStop::LoopStop(std::function<void()> ask) : ask_(std::move(ask)), outer_(std::exchange(loop_stop, &ask_)) {}
+LoopStop::~LoopStop() { loop_stop = outer_; }
+
+void poll_loop_stop() {
+    if (loop_stop != nullptr) (*loop_stop)();
+}
 
 struct ThreadLimit::Impl {
     explicit Impl(std::size_t threads) : control(tbb::global_control::max_allowed_parallelism, threads) {}
@@ -81,8 +111,11 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
     const std::size_t blocks = (count + block_size - 1) / block_size;
     LoopSync sync;
     FirstError errors;
+    const std::function<void()>* const stop = loop_stop;
     const auto run_block = [&](std::size_t block) {
         const LoopSync::Iteration iteration(sync);
+        const HandedOn handed_on(stop);
+        poll_loop_stop();
         // Bodies keep working memory per thread: a body that waits for tasks of its own must not meanwhile be given
         // another body of this loop or of one around it.
         tbb::this_task_arena::isolate(

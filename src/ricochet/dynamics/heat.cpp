@@ -105,7 +105,9 @@ double cooled(double temperature, double ambient, const CoolingRates& rates, dou
         return difference * portable_pow(1.0 + ratio * ratio * ratio, -1.0 / 3.0);
     }
     const Decay decay(difference, ambient, rates);
-    if (!std::isfinite(decay.rate(0.0))) return ambient;
+    const double slowest = std::min(decay.rate(0.0), decay.rate(kGone));
+    // Nothing would be left, and sums of rates of very light bodies could leave the range of doubles.
+    if (!std::isfinite(decay.rate(0.0)) || slowest * duration >= kGone) return ambient;
     return between(temperature, ambient, difference * portable_exp(-decay.after(duration)));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <functional>
@@ -43,6 +44,21 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     a(loads.colliders), a(loads.bodies), a(loads.since);
     archive_entries(a, checkpoint.parts, [&](CheckpointPart& part) { a(part.file), a(part.checksum); });
     archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
+}
+
+/// Series name files of the run and nothing else: they are listed again.
+void require_sound_series(const Checkpoint& checkpoint) {
+    const auto require = [](const std::vector<PvdEntry>& series, const auto& is_file) {
+        const auto is_sound = [&](const PvdEntry& entry) { return std::isfinite(entry.time) && is_file(entry.file); };
+        if (!std::all_of(series.begin(), series.end(), is_sound)) {
+            throw InputError("the file is damaged: it lists files that are none of a run");
+        }
+    };
+    require(checkpoint.frames, [](const std::string& name) {
+        return step_of_frame_file(name).has_value() || step_of_frame_index(name).has_value();
+    });
+    require(checkpoint.contacts, [](const std::string& name) { return step_of_contact_file(name).has_value(); });
+    require(checkpoint.moving, [](const std::string& name) { return step_of_moving_file(name).has_value(); });
 }
 
 struct Close {
@@ -143,6 +159,7 @@ void read_part(const std::filesystem::path& folder, const CheckpointPart& part, 
     // Its name comes from a file: nothing beside the checkpoint is opened.
     if (!set_of_checkpoint_part(part.file)) refuse_part("is no part of a checkpoint");
     const std::filesystem::path file = folder / part.file;
+    require_own_file(file);
     const OpenFile opened(std::fopen(file.c_str(), "rb"));
     if (!opened && errno != ENOENT) fail_to_read(file);
     if (!opened) refuse_part("is missing");
@@ -201,6 +218,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
             throw InputError("the scene, or a file that it reads, is not the one that was interrupted");
         }
         archive_checkpoint(reader, checkpoint);
+        require_sound_series(checkpoint);
         simulation.restore(source);
         for (const CheckpointPart& part : checkpoint.parts) read_part(file.parent_path(), part, simulation);
     } catch (const InputError& error) {

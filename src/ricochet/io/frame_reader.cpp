@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 #include <string>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/regular_file.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
 #include "ricochet/io/vtk_xml.h"
@@ -24,24 +24,12 @@ detail::VtkSource source_of(const std::filesystem::path& path) {
     return {path, "expected a .pvtp file as ricochet writes it"};
 }
 
-std::string text_of(const std::filesystem::path& path) {
-    std::error_code error;
-    const bool is_file = std::filesystem::is_regular_file(path, error);
-    const std::uintmax_t size = is_file ? std::filesystem::file_size(path, error) : 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!is_file || error || !file) source_of(path).refuse("cannot be read");
-    if (size > kLargestIndex) source_of(path).refuse("more than 16 MB");
-    std::string text(static_cast<std::size_t>(size), '\0');
-    file.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(file.gcount()));
-    return text;
-}
-
 std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) {
-    const std::string text = text_of(path);
+    const std::string text = read_regular_file(path, kLargestIndex, "a .pvtp file as ricochet writes it");
     const detail::VtkSource source = source_of(path);
     detail::XmlTags tags(source, text);
     std::vector<std::filesystem::path> pieces;
+    std::unordered_set<std::string> names;
     bool is_index = false;
     bool is_closed = false;
     while (const std::optional<detail::XmlTag> tag = tags.next()) {
@@ -51,7 +39,9 @@ std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) 
         const std::string& name = detail::attribute_of(source, *tag, "Source");
         // Nothing beside the run's own files is opened.
         if (!step_of_piece_file(name)) source.refuse(fmt::format("the piece {} is none of a frame", name));
+        if (!names.insert(name).second) source.refuse(fmt::format("the piece {} is named twice", name));
         pieces.push_back(path.parent_path() / name);
+        require_own_file(pieces.back());
     }
     if (!is_index || !is_closed || pieces.empty()) source.refuse("no whole index over pieces");
     return pieces;

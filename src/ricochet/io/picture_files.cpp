@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
@@ -38,6 +39,16 @@ std::optional<std::string> png_problem(const std::filesystem::path& path) {
         return std::nullopt;
     }
     return fmt::format("{} is not a PNG file, expected one", path.string());
+}
+
+bool is_picture_file(std::string_view name, const std::filesystem::path& file) {
+    const std::string start = file.stem().string();
+    const std::string end = file.extension().string();
+    if (!name.starts_with(start) || !name.ends_with(end) || name.size() < start.size() + end.size()) return false;
+    const std::string_view middle = name.substr(start.size(), name.size() - start.size() - end.size());
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    return middle.empty() ||
+           (middle.size() > 1 && middle[0] == '_' && std::all_of(middle.begin() + 1, middle.end(), is_digit));
 }
 
 void keep_picture_files(const std::filesystem::path& folder, ParticleDrawingDescription& drawing, std::size_t number) {

@@ -27,6 +27,10 @@ inline constexpr std::uint64_t kLargestSpriteFile = std::uint64_t{64} << 20;
 /// Source: W3C, "Portable Network Graphics (PNG) Specification", 5.2 and 11.2.2.
 [[nodiscard]] std::optional<std::string> png_problem(const std::filesystem::path& path);
 
+/// Returns true for the names that keep_picture_files() gives the copies of one kind. file: kParticleSpriteFile or
+/// kParticleMeshFile.
+[[nodiscard]] bool is_picture_file(std::string_view name, const std::filesystem::path& file);
+
 /// Copies the files that the picture names into a run's folder, and names the copies instead. Meshes become OBJ files.
 /// Throws InputError where one cannot be read, RunError where the disk does not take it.
 /// number: of one of the scene's drawings, from 1 on, which is put into the names; 0: of the picture itself.

@@ -160,9 +160,10 @@ bool is_run_file(std::string_view name) {
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
            finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
            finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile ||
-           finished == kParticleSpriteFile || finished == kParticleMeshFile || step_of_frame_file(finished) ||
-           step_of_frame_index(finished) || step_of_piece_file(finished) || set_of_checkpoint_part(finished) ||
-           step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
+           is_picture_file(finished, kParticleSpriteFile) || is_picture_file(finished, kParticleMeshFile) ||
+           step_of_frame_file(finished) || step_of_frame_index(finished) || step_of_piece_file(finished) ||
+           set_of_checkpoint_part(finished) || step_of_contact_file(finished) || step_of_moving_file(finished) ||
+           index_of_collider_file(finished);
 }
 
 // The folder while a run writes.
@@ -301,6 +302,40 @@ void OutputDirectory::remove_after(std::uint64_t step) const {
 
 OutputDirectory::~OutputDirectory() { ::close(marker_); }
 
+void require_own_file(const std::filesystem::path& file) {
+    std::error_code error;
+    const std::filesystem::path real = std::filesystem::canonical(file, error);
+    if (error) return;  // whoever opens it says why it cannot
+    if (!std::filesystem::is_regular_file(real, error)) {
+        throw InputError(fmt::format("{}: is not a regular file, expected a file of a run", file.string()));
+    }
+    const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
+    if (real.parent_path() == std::filesystem::canonical(folder, error)) return;
+    throw InputError(fmt::format("{}: leads to {} outside of the run's folder, expected a file in it", file.string(),
+                                 real.string()));
+}
+
+namespace {
+
+/// The files that run.json names for pictures, and those with the names of frames and the like.
+void require_own_files(const std::filesystem::path& path, const RunFolder& folder) {
+    std::vector<ParticleDrawingDescription> drawings = folder.info.drawings;
+    if (folder.info.picture) drawings.push_back(*folder.info.picture);
+    for (const ParticleDrawingDescription& drawing : drawings) {
+        if (!drawing.sprite.empty()) require_own_file(path / drawing.sprite);
+        if (!drawing.mesh.empty()) require_own_file(path / drawing.mesh);
+    }
+    for (const std::vector<FrameFile>* files : {&folder.frames, &folder.contacts}) {
+        for (const FrameFile& file : *files) {
+            require_own_file(file.path);
+            if (!file.moving.empty()) require_own_file(file.moving);
+        }
+    }
+    for (const std::filesystem::path& file : folder.colliders) require_own_file(file);
+}
+
+}  // namespace
+
 RunFolder open_run_folder(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_directory(path, error)) {
@@ -318,7 +353,10 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
         if (const auto step = step_of_contact_file(name)) folder.contacts.push_back({*step, entry->path()});
         if (const auto step = step_of_moving_file(name)) moving.emplace(*step, entry->path());
         if (const auto index = index_of_collider_file(name)) colliders.emplace(*index, entry->path());
-        if (name == kRunInfoFile) folder.info = read_run_info(entry->path());
+        if (name == kRunInfoFile) {
+            require_own_file(entry->path());
+            folder.info = read_run_info(entry->path());
+        }
     }
     if (error) throw InputError(fmt::format("{}: cannot be read ({})", path.string(), error.message()));
     if (folder.frames.empty()) {
@@ -332,6 +370,7 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
         if (const auto found = moving.find(frame.step); found != moving.end()) frame.moving = found->second;
     }
     for (const auto& [index, file] : colliders) folder.colliders.push_back(file);
+    require_own_files(path, folder);
     return folder;
 }
 

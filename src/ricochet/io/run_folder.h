@@ -134,8 +134,13 @@ struct RunFolder {
     std::vector<FrameFile> contacts{};             ///< of the contact log, by step
 };
 
+/// Throws InputError unless a file that a run's folder names, or lists, is a regular file in that folder. A folder may
+/// come from a stranger, with links that lead elsewhere and pipes that are waited for. Passes where there is no such
+/// file.
+void require_own_file(const std::filesystem::path& file);
+
 /// Lists a run's folder; the run may still be writing, or have been interrupted. Throws InputError when there is no
-/// such folder or it holds no frame.
+/// such folder, when it holds no frame, and when one of its files leads out of it (require_own_file()).
 [[nodiscard]] RunFolder open_run_folder(const std::filesystem::path& path);
 
 }  // namespace ricochet

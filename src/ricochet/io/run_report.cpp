@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -14,7 +12,9 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
+#include "ricochet/core/regular_file.h"
 #include "ricochet/io/load_tables.h"
+#include "ricochet/io/picture_files.h"
 
 namespace ricochet {
 
@@ -38,11 +38,20 @@ StretchDescription stretch_of(const Json& json) {
             json.at("most").get<double>()};
 }
 
+/// A file of a run is one of those that ricochet puts into its folder: run.json may be a stranger's.
+std::string picture_file_of(const Json& json, const char* key, const char* file) {
+    const std::string name = json.value(key, "");
+    if (!name.empty() && !is_picture_file(name, file)) {
+        throw InputError(fmt::format("picture.{}: found \"{}\", expected {} beside it", key, name, file));
+    }
+    return name;
+}
+
 ParticleDrawingDescription drawing_of(const Json& json) {
     ParticleDrawingDescription drawing;
     drawing.particles = json.value("particles", "");
-    drawing.sprite = json.value("sprite", "");
-    drawing.mesh = json.value("mesh", "");
+    drawing.sprite = picture_file_of(json, "sprite", kParticleSpriteFile);
+    drawing.mesh = picture_file_of(json, "mesh", kParticleMeshFile);
     drawing.turn = json.value("turn", "");
     if (json.contains("turning")) {
         drawing.turning = MeanSpread{json.at("turning").at(0).get<double>(), json.at("turning").at(1).get<double>()};
@@ -194,10 +203,8 @@ std::string run_info_text(const RunInfo& info) {
 }
 
 RunInfo read_run_info(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (!in)
-        throw InputError(fmt::format("{}: cannot be read; expected the run.json of a ricochet run", path.string()));
+    constexpr std::uint64_t kMostBytes = std::uint64_t{64} << 20;
+    const std::string text = read_regular_file(path, kMostBytes, "the run.json of a ricochet run");
     try {
         return run_info_of(Json::parse(text));
     } catch (const std::bad_alloc&) {

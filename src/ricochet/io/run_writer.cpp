@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -31,21 +32,6 @@ private:
     Clock::time_point start_ = Clock::now();
 };
 
-Box3 mesh_region(const Simulation& simulation) {
-    Box3 region;
-    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
-        const MovingPose pose = simulation.collider_pose(i, simulation.time());
-        const bool moves = is_moving(simulation.colliders()[i]);
-        auto mesh = simulation.collider_mesh(i);
-        if (!mesh) continue;
-        for (Vec3& vertex : mesh->vertices) {
-            if (moves) vertex = pose.point(vertex);
-        }
-        region.include(bounds(*mesh));
-    }
-    return region;
-}
-
 std::vector<ColliderInfo> describe_colliders(const Simulation& simulation) {
     std::vector<ColliderInfo> infos;
     for (const ColliderDescription& collider : simulation.colliders()) {
@@ -69,6 +55,31 @@ Box3 particle_region(const SimulationSetup& setup) {
     }
     if (setup.bounds) region.include(*setup.bounds);
     return region;
+}
+
+Box3 collider_region(const Simulation& simulation) {
+    Box3 region;
+    for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
+        const MovingPose pose = simulation.collider_pose(i, simulation.time());
+        const bool moves = is_moving(simulation.colliders()[i]);
+        auto mesh = simulation.collider_mesh(i);
+        if (!mesh) continue;
+        for (Vec3& vertex : mesh->vertices) {
+            if (moves) vertex = pose.point(vertex);
+        }
+        region.include(bounds(*mesh));
+    }
+    return region;
+}
+
+void list_kept_files(const std::filesystem::path& folder, const Checkpoint& checkpoint) {
+    const auto list = [&](const FileSeries& series, const std::vector<PvdEntry>& entries) {
+        std::error_code ignored;
+        if (std::filesystem::exists(folder / series.list, ignored)) write_file(folder / series.list, pvd_text(entries));
+    };
+    list(kParticleSeries, checkpoint.frames);
+    list(kContactSeries, checkpoint.contacts);
+    list(kMovingSeries, checkpoint.moving);
 }
 
 void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation) {
@@ -102,7 +113,7 @@ RunWriter::RunWriter(std::filesystem::path folder, RunInfo info, const Simulatio
     if (std::any_of(colliders.begin(), colliders.end(), is_moving)) {
         moving_.emplace(folder_, kMovingSeries, resumed ? resumed->moving : std::vector<PvdEntry>{}, thread_);
     }
-    region_.include(mesh_region(simulation));
+    if (!resumed) region_.include(collider_region(simulation));
     info_.colliders = describe_colliders(simulation);
     for (std::size_t i = 0; i < std::min(info_.looks.size(), info_.colliders.size()); ++i) {
         info_.colliders[i].looks = info_.looks[i];

@@ -20,6 +20,12 @@ namespace ricochet {
 /// Where particles are at the start, are born, and are kept: what a picture of a scene without meshes should show.
 [[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
 
+/// Returns the region of the colliders that are not planes, where they are now.
+[[nodiscard]] Box3 collider_region(const Simulation& simulation);
+
+/// Lists the files that a run to be resumed keeps, in place of all that it had: to be called before others are removed.
+void list_kept_files(const std::filesystem::path& folder, const Checkpoint& checkpoint);
+
 /// Fills in what a frame of the run holds: the particles that the simulation has, springs between them, the camera's
 /// place.
 void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/printable.h"
 
 namespace ricochet::detail {
 namespace {
@@ -35,7 +36,7 @@ std::string_view without_leading_blanks(std::string_view text) {
 }  // namespace
 
 void VtkSource::refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}; {}", path.string(), what, expected));
+    throw InputError(fmt::format("{}: {}; {}", path.string(), printable(what, 300), expected));
 }
 
 std::optional<XmlTag> XmlTags::next() {

@@ -100,4 +100,10 @@ const MeshInterior& MeshIndex::interior(InsideRule rule) const {
     return *interior_;
 }
 
+const std::vector<BoundaryEdge>& MeshIndex::boundary() const {
+    const std::lock_guard lock(making_);
+    if (!boundary_) boundary_ = boundary_of(*mesh_);
+    return *boundary_;
+}
+
 }  // namespace ricochet

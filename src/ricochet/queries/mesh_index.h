@@ -15,6 +15,7 @@
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/queries/mesh_winding.h"
 
 namespace ricochet {
 
@@ -50,6 +51,7 @@ public:
     [[nodiscard]] bool is_closed() const;
     /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and there is none.
     [[nodiscard]] const MeshInterior& interior(InsideRule rule) const;
+    [[nodiscard]] const std::vector<BoundaryEdge>& boundary() const;
 
 private:
     void finish();
@@ -63,6 +65,7 @@ private:
     mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
     mutable std::optional<ClosedSurface> closed_;
     mutable std::unique_ptr<MeshInterior> interior_;
+    mutable std::optional<std::vector<BoundaryEdge>> boundary_;
 };
 
 /// Throws InputError "name[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.

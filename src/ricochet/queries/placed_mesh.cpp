@@ -111,6 +111,14 @@ std::vector<std::uint8_t> PlacedMesh::inside(std::span<const Vec3> points, Insid
     return mesh_.inside(local_points(points, "points"), rule);
 }
 
+std::vector<double> PlacedMesh::winding_numbers(std::span<const Vec3> points) const {
+    std::vector<double> numbers = mesh_.winding_numbers(local_points(points, "points"));
+    if (world_from_mesh_.mirrors()) {
+        for (double& number : numbers) number = 0.0 - number;  // not -0
+    }
+    return numbers;
+}
+
 NearestPoints PlacedMesh::closest_points(std::span<const Vec3> points, double within) const {
     NearestPoints nearest = mesh_.closest_points(local_points(points, "points"), within / scale_);
     place(nearest.point);

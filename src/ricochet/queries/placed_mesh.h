@@ -19,7 +19,7 @@ namespace ricochet {
 /// Questions are mapped into the mesh's own coordinates, asked there, and the answers are mapped back. Each answer is
 /// exact for the mapped and rounded question, as MeshQueries says. The mapping rounds each coordinate by a few units in
 /// the last place of the largest number that takes part. Triangles keep their corners in their order, so that a
-/// reflection turns their normals, and crossings change their sign.
+/// reflection turns their normals, and crossings and winding numbers change their sign.
 class PlacedMesh {
 public:
     /// Shares the mesh. Throws InputError if the map is not finite or no similarity: scales that differ, or axes that
@@ -33,6 +33,7 @@ public:
     [[nodiscard]] std::vector<std::uint8_t> occluded(const RayBatch& rays) const;
     [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points,
                                                    InsideRule rule = InsideRule::parity) const;
+    [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
     [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,
                                                double within = std::numeric_limits<double>::infinity()) const;
     [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 #include "ricochet/geometry/sweep/point_sweep.h"
@@ -61,7 +62,10 @@ template <class Answer>
 void for_each_point(std::span<const Vec3> points, const Answer& answer) {
     require_positions(points, "points");
     parallel_for_blocks(points.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) answer(i);
+        for (std::size_t i = begin; i < end; ++i) {
+            poll_loop_stop();
+            answer(i);
+        }
     });
 }
 
@@ -71,6 +75,12 @@ std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points, Insi
     const MeshInterior& interior = index_->interior(rule);
     std::vector<std::uint8_t> answers(points.size());
     for_each_point(points, [&](std::size_t i) { answers[i] = interior.contains(points[i], rule) ? 1 : 0; });
+    return answers;
+}
+
+std::vector<double> MeshQueries::winding_numbers(std::span<const Vec3> points) const {
+    std::vector<double> answers(points.size());
+    for_each_point(points, [&](std::size_t i) { answers[i] = winding_number(*index_, points[i]); });
     return answers;
 }
 

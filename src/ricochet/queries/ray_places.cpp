@@ -121,23 +121,9 @@ int moved_crossing(const Ray& ray, const MetTriangle& met) {
     if (meeting.speed == 0) return 0;
     if (meeting.feature == TriangleFeature::kFace && meeting.t.hi > 0.0) return meeting.speed;
     const auto& [a, b, c] = met.corners;
-    const auto sign_along = [&](const Vec3& p, const Vec3& q, const Vec3& o) {
-        // o, p, q and the direction: (p - o) x (q - o) . d, and where that is 0 its change with o, -(q - p) x d.
-        const ExactDifference u(p, o);
-        const ExactDifference v(q, o);
-        const ExactDifference d(ray.direction, Vec3{});
-        const int sign = detail::exact_determinant(u, v, d).sign();
-        if (sign != 0) return sign;
-        const ExactDifference side(q, p);
-        for (int axis = 0; axis < 3; ++axis) {
-            const int change = detail::exact_cross_component(d, side, axis).sign();
-            if (change != 0) return change;
-        }
-        return 0;
-    };
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
-    for (const int side : {sign_along(a, b, ray.origin), sign_along(b, c, ray.origin), sign_along(c, a, ray.origin)}) {
+    for (const int side : {moved_side(ray, a, b), moved_side(ray, b, c), moved_side(ray, c, a)}) {
         if (side != meeting.speed) return 0;
     }
     int height = detail::exact_determinant(u, v, ExactDifference(a, ray.origin)).sign();
@@ -156,14 +142,30 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
         std::size_t& number = place_of[joined.root(k)];
         if (number == kNone) {
             number = places.size();
-            places.push_back({met.meeting.t, triangle, 0});
+            places.push_back({met.meeting.t, triangle, 0, true});
         }
         RayPlace& place = places[number];
+        place.is_in_plane = place.is_in_plane && met.meeting.in_plane;
         place.crossing = static_cast<std::int8_t>(place.crossing + moved_crossing(question.ray, met));
     }
 }
 
 }  // namespace
+
+int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
+    // o, p, q and the direction: (p - o) x (q - o) . d, and where that is 0 its change with o, -(q - p) x d.
+    const ExactDifference u(p, ray.origin);
+    const ExactDifference v(q, ray.origin);
+    const ExactDifference d(ray.direction, Vec3{});
+    const int sign = detail::exact_determinant(u, v, d).sign();
+    if (sign != 0) return sign;
+    const ExactDifference side(q, p);
+    for (int axis = 0; axis < 3; ++axis) {
+        const int change = detail::exact_cross_component(d, side, axis).sign();
+        if (change != 0) return change;
+    }
+    return 0;
+}
 
 std::optional<RayPlace> first_place(const MeshIndex& mesh, const RayQuestion& question) {
     const Reach reach(mesh, question);

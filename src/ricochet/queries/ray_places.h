@@ -29,10 +29,15 @@ struct RayPlace {
     DoubleDouble t;              ///< of the ray
     std::uint32_t triangle = 0;  ///< the smallest of those that are first there
     std::int8_t crossing = 0;    ///< see AllMeshHits
+    bool is_in_plane = false;    ///< the ray runs in the planes of all triangles there
 };
 
 /// The first one.
 [[nodiscard]] std::optional<RayPlace> first_place(const MeshIndex& mesh, const RayQuestion& question);
+/// Sign of the determinant of p and q, both as seen from the ray's origin, and its direction: +1 where the edge from p
+/// to q turns to the left about the ray. Never 0 for an edge across the ray: the origin counts as moved by an
+/// infinitesimal amount, as for crossings.
+[[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
 /// True when there is one.
 [[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);
 /// All of them in the order along the ray: MeshQueries::all_hits().

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/ray_triangle.h"
@@ -22,6 +23,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Rays between two looks at a request to stop, which costs as much as a short ray.
+constexpr std::size_t kPollEvery = 16;
 
 void require_rays(const RayBatch& rays) {
     require_same_length(rays.directions.size(), rays.origins.size(), "directions");
@@ -51,6 +55,7 @@ void for_each_ray(const RayBatch& rays, const Answer& answer) {
     parallel_for_blocks(
         rays.origins.size(), kQuestionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
+                if (i % kPollEvery == 0) poll_loop_stop();
                 answer(block, i, RayQuestion{Ray(rays.origins[i], rays.directions[i]), most_of(rays, i)});
             }
         });
@@ -114,6 +119,7 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
     std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
     all.hits = missed(all.first.back());
     all.crossing.assign(all.first.back(), 0);
+    all.in_plane.assign(all.first.back(), 0);
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
         std::size_t k = all.first[block * kQuestionBlock];
         for (const auto& [ray, place] : blocks[block]) {
@@ -121,7 +127,8 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
             all.hits.triangle[k] = place.triangle;
             all.hits.distance[k] = question.ray.distance(place.t);
             all.hits.point[k] = question.ray.at(place.t);
-            all.crossing[k++] = place.crossing;
+            all.crossing[k] = place.crossing;
+            all.in_plane[k++] = place.is_in_plane ? 1 : 0;
         }
         blocks[block] = {};
     });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/acceleration/box_tree.h"
@@ -68,6 +69,7 @@ MeshHits first_contacts(const Ways& ways, const First& first) {
     MeshHits hits = missed(ways.from.size());
     parallel_for_blocks(ways.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            poll_loop_stop();
             const std::optional<Contact> contact = first(i);
             if (!contact) continue;
             hits.triangle[i] = contact->triangle;

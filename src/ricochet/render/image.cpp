@@ -12,13 +12,13 @@
 #include <stb/stb_image.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
+#include "ricochet/core/printable.h"
+#include "ricochet/core/regular_file.h"
 
 namespace ricochet {
 
@@ -57,17 +57,27 @@ std::string png_bytes(const Image& image) {
     return bytes;
 }
 
+namespace {
+
+/// Why the decoder has given up: it may quote bytes of the file, and for some files it has no reason.
+std::string failure_reason() {
+    const char* const reason = stbi_failure_reason();
+    return reason == nullptr ? "a chunk does not fit in the file" : printable(reason, 60);
+}
+
+}  // namespace
+
 Image read_png(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    constexpr std::uint64_t kMostBytes = 0x7fffffff;  // that the decoder can count
+    const std::string bytes = read_regular_file(path, kMostBytes, "a PNG file");
     const auto refuse = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", path.string(), what)); };
-    if (!file || bytes.empty()) refuse("cannot be read, expected a PNG file");
+    if (bytes.empty()) refuse("is empty, expected a PNG file");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-    const int size = static_cast<int>(std::min(bytes.size(), std::size_t{0x7fffffff}));
+    const int size = static_cast<int>(bytes.size());
     Image image;
     int channels = 0;
     if (stbi_info_from_memory(data, size, &image.width, &image.height, &channels) == 0) {
-        refuse(fmt::format("is not a PNG file that can be read ({}), expected one", stbi_failure_reason()));
+        refuse(fmt::format("is not a PNG file that can be read ({}), expected one", failure_reason()));
     }
     const double pixels = static_cast<double>(image.width) * static_cast<double>(image.height);
     if (pixels > kMostPixelsRead) {
@@ -76,7 +86,7 @@ Image read_png(const std::filesystem::path& path) {
     require_memory(12.0 * pixels, path.string());
     const std::unique_ptr<stbi_uc, void (*)(void*)> decoded(
         stbi_load_from_memory(data, size, &image.width, &image.height, &channels, 4), &stbi_image_free);
-    if (!decoded) refuse(fmt::format("is damaged ({}), expected a PNG file", stbi_failure_reason()));
+    if (!decoded) refuse(fmt::format("is damaged ({}), expected a PNG file", failure_reason()));
     const bool has_alpha = channels == 2 || channels == 4;
     for (std::size_t i = 0; i < static_cast<std::size_t>(pixels); ++i) {
         image.rgb.insert(image.rgb.end(), decoded.get() + 4 * i, decoded.get() + 4 * i + 3);

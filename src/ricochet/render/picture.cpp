@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/loop_stop.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/render/filter.h"
 #include "ricochet/render/lamps.h"
@@ -94,6 +95,7 @@ void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
     const int width = out.picture.width;
     for (int top = begin; top < end; top += kTileHeight) {
         for (int left = 0; left < width; left += kTileWidth) {
+            poll_loop_stop();
             std::size_t count = 0;
             for (int y = top; y < std::min(top + kTileHeight, end); ++y) {
                 for (int x = left; x < std::min(left + kTileWidth, width); ++x) places[count++] = {x, y};

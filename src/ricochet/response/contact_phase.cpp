@@ -73,7 +73,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     slow_contacts_ = is_slow ? slow_contacts_ + 1 : 0;
     if (!support) return can_last ? drift(flight) : std::nullopt;
     if (!is_kicked(flight)) {
-        if (auto beside = impact_beside()) return beside;
+        if (auto beside = impact_beside(*support)) return beside;
     }
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
@@ -125,24 +125,33 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
 }
 
 /// Returns the impact on surfaces that are touched too, and that the particle moves into: the edge of two walls may be
-/// reached on one of them first. Those that begin to hold it take part.
-std::optional<Contact> ContactPhase::impact_beside() const {
-    // On a body that yields this would not keep the angular momentum of spheres: there, contact takes the approach.
-    const MovingColliders* const bodies = rules_.bodies;
-    if (bodies != nullptr && bodies->yields(bodies->body_of(manifold_[0].surface))) return std::nullopt;
+/// reached on one of them first. Surfaces that begin to hold it take part. Their own rebounds end here, because a
+/// surface holds a particle only if that does not leave it.
+std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support) {
     const double rounding = kSlowSlip * length(state_.velocity);
     const double slow = std::max(step_.resting_speed(), rounding);
+    // A body that yields answers its surfaces one after the other, which does not end in a narrow wedge of them. There,
+    // contact takes the approach.
+    const MovingColliders* const bodies = rules_.bodies;
+    if (bodies != nullptr && bodies->yields(bodies->body_of(manifold_[0].surface))) return std::nullopt;
+    std::array<double, kMostHolding> departures{};
+    const auto is_hit_at = [&](const Vec3& velocity) {
+        for (std::size_t k = 0; k < manifold_.size(); ++k) departures[k] = dot(velocity, manifold_.normals()[k]);
+        return *std::min_element(departures.begin(), departures.begin() + manifold_.size()) < -slow;
+    };
+    if (!is_hit_at(state_.velocity)) return std::nullopt;
+    const Vec3 velocity = support_.velocity_after_rebounds(rules_.forces.acceleration(state_));
+    if (!is_hit_at(velocity)) return std::nullopt;
+    impact_.push(support.surface, velocity - state_.velocity, false);
+    state_.velocity = velocity;
     Contact contact;
-    bool is_impact = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        const double departure = dot(state_.velocity, manifold_[k].normal);
-        if (departure > step_.resting_speed()) continue;
-        is_impact = is_impact || departure < -slow;
+        if (departures[k] > step_.resting_speed()) continue;
         ContactSurface& surface = contact.surfaces[static_cast<std::size_t>(contact.count++)];
         surface = manifold_[k];
-        surface.holds = departure >= -rounding;
+        surface.holds = std::fabs(departures[k]) <= rounding;
     }
-    return is_impact ? std::optional(contact) : std::nullopt;
+    return contact;
 }
 
 /// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.

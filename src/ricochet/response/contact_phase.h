@@ -43,7 +43,7 @@ private:
     [[nodiscard]] std::optional<ContactSurface> find_support(const Flight& flight, const Contact& contact);
     void land(const Motion& arriving);
     std::optional<Contact> drift(const Flight& flight);
-    [[nodiscard]] std::optional<Contact> impact_beside() const;
+    [[nodiscard]] std::optional<Contact> impact_beside(const ContactSurface& support);
     [[nodiscard]] Stop finish_cascade(const ContactSurface& support);
     [[nodiscard]] Stop spend_cascade(const ContactSurface& support, double left);
     std::optional<Contact> follow_surface(bool kicked);

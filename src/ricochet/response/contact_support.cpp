@@ -80,6 +80,18 @@ std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
     return along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
 }
 
+Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
+    const Pushes pushes = pushes_together(forces, step_.resting_speed());
+    const double rounding = kSlowSlip * length(state_.velocity);
+    std::array<Vec3, kMostHolding> normals;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const Vec3& normal = manifold_.normals()[k];
+        if (pushes[k] != Vec3{} && dot(state_.velocity, normal) >= -rounding) normals[count++] = normal;
+    }
+    return along_all(state_.velocity, std::span(normals).first(count));
+}
+
 /// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
 /// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
 ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, double fastest) const {

@@ -31,6 +31,10 @@ public:
     /// it leaves the impact: without one of the rebounds it slips another way, and others would hold.
     [[nodiscard]] std::optional<Motion> landing_on_all(const Vec3& forces) const;
 
+    /// Returns the velocity, m/s, once the slow rebounds off all surfaces that will hold it are over. Surfaces that it
+    /// moves into keep their approach.
+    [[nodiscard]] Vec3 velocity_after_rebounds(const Vec3& forces) const;
+
     /// The surface that it is pressed onto most.
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
     /// True when something presses it onto one of the surfaces, or nothing pulls it off.

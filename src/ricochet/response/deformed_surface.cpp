@@ -242,9 +242,10 @@ SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedCo
     return {side * height.normal, side * height.above};
 }
 
-double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path, double begin) {
+double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
+                 const std::function<Vec3(double)>& position_at, double duration, double begin) {
     const auto beyond_all = [&](double at) {
-        const Vec3 p = at < path.duration ? path.position(at) : path.end;
+        const Vec3 p = position_at(at);
         double least = std::numeric_limits<double>::infinity();
         for (const SurfaceId surface : contact.all) {
             least = std::min(least, beyond_rim(deforming, surface, p, begin + at));
@@ -253,15 +254,15 @@ double time_over(const DeformingColliders& deforming, const DeformedContact& con
     };
     const double most = beyond_all(0.0) + kOverRim * deforming.offset_of(contact.surface.surface);
     const auto is_over = [&](double at) { return beyond_all(at) <= most; };
-    if (is_over(path.duration)) return path.duration;
+    if (is_over(duration)) return duration;
     double on = 0.0;
-    double off = path.duration;
+    double off = duration;
     for (int k = 0; k < kRimHalvings; ++k) {
         const double middle = 0.5 * (on + off);
         (is_over(middle) ? on : off) = middle;
     }
     // What is shorter than the clock can tell does not lead off it.
-    return std::min(off + std::max(kPastRim * path.duration, kSimultaneousUlps * ulp(begin)), path.duration);
+    return std::min(off + std::max(kPastRim * duration, kSimultaneousUlps * ulp(begin)), duration);
 }
 
 }  // namespace ricochet

@@ -2,6 +2,7 @@
 /// Private to the exact response: a mesh that deforms, as contact that lasts sees it.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "ricochet/collision/contact.h"
@@ -44,9 +45,10 @@ struct SurfaceHeight {
 [[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact,
                                          const Vec3& position, double time);
 
-/// s along a path that begins at a time, until which it is over one of the triangles of a contact, with a face, or no
-/// further beyond all of their rims than it begins, or its duration: a little later than that where it leaves them.
-[[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact, const Path& path,
-                               double begin);
+/// s along a way that begins at a time and lasts so long, until which it is over one of the triangles of a contact,
+/// with a face, or no further beyond all of their rims than it begins, or its duration: a little later than that where
+/// it leaves them. position_at: m, by s since it began.
+[[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
+                               const std::function<Vec3(double)>& position_at, double duration, double begin);
 
 }  // namespace ricochet

@@ -50,6 +50,18 @@ bool ImpactAnswer::reflect(std::span<const ContactSurface> surfaces, bool is_fas
     return true;
 }
 
+void ImpactAnswer::release(Contact& contact) const {
+    const auto surfaces = std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count));
+    const auto holds = [](const ContactSurface& surface) { return surface.holds; };
+    if (std::none_of(surfaces.begin(), surfaces.end(), holds)) return;
+    const double rounding = kTurningAway * fastest(surfaces);
+    for (ContactSurface& surface : surfaces) {
+        const double departure = departure_from(surface);
+        const bool comes_back = std::min(-departure, advance_beside_path(surface)) > rounding;
+        if (departure > rounding || comes_back) surface.holds = false;
+    }
+}
+
 void ImpactAnswer::land(std::span<const ContactSurface> surfaces) {
     const Vec3 before = particle_.state.velocity;
     answer(surfaces, Rebound::none);
@@ -274,10 +286,11 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
             approached = true;
             const Vec3 before = particle_.state.velocity;
             RecordedImpact impact = impact_before({&surface, 1});
-            reflect_off(surface, material_of(surface.surface), surface.holds ? Rebound::none : rebound);
+            const Rebound own = surface.holds ? Rebound::none : rebound;
+            reflect_off(surface, material_of(surface.surface), own);
             push(surface.surface, particle_.state.velocity - before, pass == 0);
             record(surface, before);
-            note_impact_after(std::move(impact), {&surface, 1}, rebound);
+            note_impact_after(std::move(impact), {&surface, 1}, own);
             if (outcome_.is_absorbed()) return;
         }
         if (!approached) return settle_on_holding(surfaces);
@@ -330,12 +343,19 @@ Vec3 ImpactAnswer::velocity_beside_path(BodyId body, const Vec3& where) const {
     return velocity;
 }
 
+double ImpactAnswer::advance_beside_path(const ContactSurface& surface) const {
+    if (!yields(surface.surface)) return 0.0;
+    const double time = particle_.state.time;
+    const Vec3 foot = particle_.state.position - particle_.state.radius * surface.normal;
+    const Vec3 where = home_.in_world({foot, {}, {}}, time).position;
+    const Vec3 beside = velocity_beside_path(home_.bodies().body_of(surface.surface), where);
+    return dot(home_.direction_in_frame(beside, time), surface.normal);
+}
+
 /// m/s, towards a surface whose body goes on along its path, whatever it has been given.
 double ImpactAnswer::approach_of_path(const ContactSurface& surface) const {
     if (!yields(surface.surface)) return 0.0;
-    const Vec3 where = particle_.state.position - particle_.state.radius * surface.normal;
-    const Vec3 beside = velocity_beside_path(home_.bodies().body_of(surface.surface), where);
-    return -departure_from(surface) - dot(beside, surface.normal);
+    return -departure_from(surface) - advance_beside_path(surface);
 }
 
 double ImpactAnswer::approach_of_paths(std::span<const ContactSurface> surfaces) const {

@@ -38,6 +38,9 @@ public:
     bool reflect(std::span<const ContactSurface> surfaces) { return reflect(surfaces, true); }
     /// The same; is_fast: ColliderLoad::approach tells how fast it is. A slow one begins contact, and cuts no step.
     bool reflect(std::span<const ContactSurface> surfaces, bool is_fast);
+    /// Clears the mark of surfaces that hold the particle no more when it comes to an impact: it leaves them, or their
+    /// body comes back after an impulse that it has been given in this move.
+    void release(Contact& contact) const;
     /// Whether the next impacts are hits: the contact log and the counts of hits leave out those that only resume a
     /// contact. Their impulses count all the same.
     void set_hits(bool are_hits) { are_hits_ = are_hits; }
@@ -95,6 +98,10 @@ public:
     [[nodiscard]] double departure_from(const ContactSurface& surface) const {
         return dot(particle_.state.velocity, surface.normal) - advance_of(surface);
     }
+
+    /// m/s, with which a surface comes towards the particle beside the path of its body: the body has been given
+    /// impulses in this move, and stays on its path until the move ends.
+    [[nodiscard]] double advance_beside_path(const ContactSurface& surface) const;
 
     /// True where the particle comes towards a surface that does not hold it yet. The contact state decides, because
     /// the normal speed on a surface that holds the particle is rounding of either sign.

@@ -93,7 +93,29 @@ private:
         result.after.velocity += restitution_ * (result.after.velocity - before_.velocity);
         result.after.spin += restitution_ * (result.after.spin - before_.spin);
         for (Vec3& push : result.push) push *= 1.0 + restitution_;
+        keep_held(result);
         return result;
+    }
+
+    /// The normal speed on a surface that holds is rounding, and impulses that are repeated turn it around: no approach
+    /// to such a surface is left.
+    void keep_held(ImpactResult& result) const {
+        std::array<Vec3, ImpactResult::kMostSurfaces> normals;
+        std::array<double, ImpactResult::kMostSurfaces> lifts{};
+        std::size_t count = 0;
+        std::size_t last = 0;
+        for (std::size_t c = 0; c < count_; ++c) {
+            const ImpactSurface& surface = surfaces_[surface_of_[c]];
+            const double approach = surface.advance - dot(result.after.velocity, surface.normal);
+            if (!surface.holds || !(approach > 0.0)) continue;
+            normals[count] = surface.normal;
+            lifts[count++] = approach;
+            last = surface_of_[c];
+        }
+        if (count == 0) return;
+        const Vec3 shift = shift_by({normals.data(), count}, {lifts.data(), count});
+        result.after.velocity += shift;
+        result.push[last] += shift;
     }
 
     /// With all friction, where that is found quickly.

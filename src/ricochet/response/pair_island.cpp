@@ -13,6 +13,10 @@
 namespace ricochet {
 namespace {
 
+/// Part of the distance of two centres by which an impact may find the spheres apart: far above the rounding of
+/// predicted paths, far below what time that is lost on the way amounts to.
+constexpr double kMetGap = 1e-9;
+
 void append_to(std::vector<FlownPiece>& way, const std::vector<FlownPiece>& more) {
     way.insert(way.end(), more.begin(), more.end());
 }
@@ -131,12 +135,15 @@ void PairIsland::predict(std::size_t m) {
         stay(m);
         return;
     }
-    // What has spent its bounces on walls stays there, and others may come.
+    // What has spent its bounces on walls waits there, and others may come. Walls that move take it along.
     if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
         const FlownPiece& last = prediction.flown.back();
         const double begin = last.begin + last.duration;
-        const Path here = line_path(prediction.moved.state.position, Vec3{}, std::max(0.0, member.end - begin));
-        prediction.flown.push_back({here, begin, here.duration, Vec3{}, Vec3{}, false});
+        const double waits = std::max(0.0, member.end - begin);
+        const Vec3 from = last.path.position(last.duration);
+        const Vec3 carried = prediction.moved.state.position - from;
+        const Path way = line_path(from, waits > 0.0 ? carried / waits : Vec3{}, waits);
+        prediction.flown.push_back({way, begin, way.duration, Vec3{}, Vec3{}, false});
     }
     Box3 box;
     for (const FlownPiece& piece : prediction.flown) box.include(box_of(piece.path, piece.duration));
@@ -154,13 +161,27 @@ void PairIsland::stay(std::size_t m) {
 }
 
 /// Moves a member to a time along the path that is predicted. What bounces off a wall just then, as one that lies on a
-/// floor does when it is hit, has met the other on its way back: so it bounces first.
-void PairIsland::bring(std::size_t m, double time) {
+/// floor does when it is hit, has met the other on its way back: so it bounces first. True if it has lost time on the
+/// way, and so need not be where the prediction has it.
+bool PairIsland::bring(std::size_t m, double time) {
     const IslandMember& member = (*members_)[m];
-    if (member.is_fixed || member.is_cut_off) return;
+    if (member.is_fixed || member.is_cut_off) return false;
+    const double lost = member.outcome.unsimulated_time;
     go_to(m, time);
     const double just_after = std::nextafter(time, std::numeric_limits<double>::infinity());
     if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
+    return member.outcome.unsimulated_time > lost;
+}
+
+/// True if two do not meet after all: one is gone, or one that is late stands elsewhere. late: members, ascending.
+bool PairIsland::is_missed(const PairContact& contact, const std::vector<std::size_t>& late) const {
+    const IslandMember& a = (*members_)[contact.first];
+    const IslandMember& b = (*members_)[contact.second];
+    if (a.is_gone() || b.is_gone()) return true;
+    const auto is_late = [&](std::size_t m) { return std::binary_search(late.begin(), late.end(), m); };
+    if (!is_late(contact.first) && !is_late(contact.second)) return false;
+    const double distance = length(b.moving.state.position - a.moving.state.position);
+    return distance > (1.0 + kMetGap) * (a.radius() + b.radius());
 }
 
 bool PairIsland::bounces_at(std::size_t m, double time) const {
@@ -346,10 +367,11 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
     for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    for (const std::size_t m : changed) bring(m, time);
-    std::erase_if(contacts, [&](const PairContact& c) {
-        return (*members_)[c.first].is_gone() || (*members_)[c.second].is_gone();
-    });
+    std::vector<std::size_t> late;
+    for (const std::size_t m : changed) {
+        if (bring(m, time)) late.push_back(m);
+    }
+    std::erase_if(contacts, [&](const PairContact& c) { return is_missed(c, late); });
     std::vector<PairBody> bodies;
     for (const std::size_t m : changed) bodies.push_back(body_of((*members_)[m]));
     const std::vector<PairBody> before = bodies;

@@ -97,7 +97,8 @@ private:
     void predict(std::size_t m);
     void stay(std::size_t m);
     void fly_freely(IslandMember& member, double duration);
-    void bring(std::size_t m, double time);
+    [[nodiscard]] bool bring(std::size_t m, double time);
+    [[nodiscard]] bool is_missed(const PairContact& contact, const std::vector<std::size_t>& late) const;
     void go_to(std::size_t m, double time);
     [[nodiscard]] bool bounces_at(std::size_t m, double time) const;
     void commit(std::size_t m);

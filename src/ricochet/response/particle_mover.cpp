@@ -37,6 +37,7 @@ MoveOutcome ParticleMover::run() {
         outcome.free_for = outcome.candidates_for = 0.0;
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
         while (contact && !outcome.is_absorbed() && step_.has_budget() && has_room()) {
+            step_.impact().release(*contact);
             contact = answer(flight, *contact);
         }
         if (outcome.is_absorbed()) break;

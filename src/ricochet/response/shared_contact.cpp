@@ -139,47 +139,68 @@ SharedContact::Hold SharedContact::plan(double duration) {
     return Hold::single;
 }
 
-/// A position at a time put at the contact offset from the surfaces that hold it.
+/// A position at a time put at the contact offset from the surfaces that press on it, and not behind others.
 Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
         std::array<Vec3, kMostHolding> normals;
         std::array<double, kMostHolding> lifts{};
         std::size_t count = 0;
         for (std::size_t k = 0; k < count_; ++k) {
-            if (interval_.push[k] == Vec3{}) continue;
             const Height height = height_above(touched_[k], end, time);
+            const double missing = state_.radius + height.offset - height.above;
+            if (interval_.push[k] == Vec3{} && !(missing > 0.0)) continue;
             normals[count] = height.normal;
-            lifts[count++] = state_.radius + height.offset - height.above;
+            lifts[count++] = missing;
         }
         end += shift_by({normals.data(), count}, {lifts.data(), count});
     }
     return flush_tiny(end);
 }
 
+/// A path is certified to touch nothing that it goes along, but may end nearer to it than positions are rounded there.
+/// On which side of the surface it is would be rounding from then on: puts it at the contact offset.
+void SharedContact::lift() {
+    const bool is_low = std::any_of(touched().begin(), touched().end(), [&](const Touched& one) {
+        const Height height = height_above(one, state_.position, state_.time);
+        return height.above - state_.radius < 0.25 * height.offset;
+    });
+    if (is_low) step_.shift_to(kept_off(state_.position, state_.time));
+}
+
 /// Between its ends the path of a point can be behind surfaces that turn, by the cubic's error, where it would be
-/// stopped: lifts it, by 4 s (1 - s) of a height over its duration. The lift turns with the surface: along one normal
-/// it would lead into others that hold the particle as well.
+/// stopped: lifts it, by 4 s (1 - s) of a height over its duration. The lift turns with the surfaces, and is one for
+/// all of them: one off each surface by itself would lead into others that hold the particle as well.
 void SharedContact::lift_middle(Path& path) const {
-    const auto height_at = [&](std::size_t k, double time) {
-        return height_above(touched_[k], path.position(time), state_.time + time);
-    };
+    std::array<Vec3, kMostHolding> normals;
+    std::array<Vec3, kMostHolding> last_normals;
+    std::array<double, kMostHolding> lifts{};
+    std::size_t count = 0;
+    bool is_behind = false;
     for (std::size_t k = 0; k < count_; ++k) {
-        if (interval_.push[k] == Vec3{}) continue;
+        const auto height_at = [&](double time) {
+            return height_above(touched_[k], path.position(time), state_.time + time);
+        };
         double behind = 0.0;
         for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
-            const Height height = height_at(k, part * path.duration);
+            const Height height = height_at(part * path.duration);
             const double missing = state_.radius + height.offset - height.above;
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
         }
-        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) continue;
-        const Vec3 normal = height_at(k, 0.0).normal;
-        const Vec3 turn = height_at(k, path.duration).normal - normal;
-        const double speed = 4.0 * behind / path.duration;
-        path.c[1] += speed * normal;
-        path.c[2] += (speed / path.duration) * (turn - normal);
-        path.c[3] -= (speed / path.duration / path.duration) * turn;
-        path.degree = std::max(path.degree, turn == Vec3{} ? 2 : 3);
+        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) behind = 0.0;
+        if (interval_.push[k] == Vec3{} && behind == 0.0) continue;
+        is_behind = is_behind || behind > 0.0;
+        normals[count] = height_at(0.0).normal;
+        last_normals[count] = height_at(path.duration).normal;
+        lifts[count++] = behind;
     }
+    if (!is_behind) return;
+    const Vec3 first = (4.0 / path.duration) * shift_by({normals.data(), count}, {lifts.data(), count});
+    const Vec3 last = (4.0 / path.duration) * shift_by({last_normals.data(), count}, {lifts.data(), count});
+    const Vec3 turn = last - first;
+    path.c[1] += first;
+    path.c[2] += (turn - first) / path.duration;
+    path.c[3] -= turn / path.duration / path.duration;
+    path.degree = std::max(path.degree, turn == Vec3{} ? 2 : 3);
 }
 
 /// Along the interval, to where the surfaces will be.
@@ -250,6 +271,7 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
     };
     const std::vector<SurfaceId> held_by = held(path);
     followed.contact = step_.follow(path, held_by, closer);
+    if (followed.contact) lift();
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
     // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.

@@ -77,6 +77,7 @@ private:
     };
     [[nodiscard]] Height height_above(const Touched& touched, const Vec3& position, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
+    void lift();
     void lift_middle(Path& path) const;
     [[nodiscard]] std::vector<SurfaceId> held(const Path& path) const;
     [[nodiscard]] static Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position);

@@ -173,13 +173,17 @@ std::optional<double> SharedContact::next_jump() const {
     return first;
 }
 
-/// s, in which it is over the faces of meshes that deform that hold it.
+/// s, in which it is over the faces of meshes that deform that hold it. What the path bulges off one face in the edge
+/// of two leads beyond the rim of the other: it counts as put back.
 double SharedContact::until_rim(const Path& path) const {
+    const auto position_at = [&](double at) {
+        return at < path.duration ? kept_off(path.position(at), state_.time + at) : path.end;
+    };
     double most = path.duration;
     for (std::size_t k = 0; k < count_; ++k) {
         const Touched& one = touched_[k];
         if (interval_.push[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
-        most = std::min(most, time_over(deforming(), {one.surface, one.all}, path, state_.time));
+        most = std::min(most, time_over(deforming(), {one.surface, one.all}, position_at, path.duration, state_.time));
     }
     return most;
 }

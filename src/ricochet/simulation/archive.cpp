@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <type_traits>
 #include <vector>
 
@@ -155,13 +156,15 @@ void Simulation::Impl::require_sound_state() const {
     };
     const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestCoordinate; };
     require(p.size() < kNoSupport, "more particles than there can be");
-    std::vector<std::uint64_t> ids = p.id;
-    std::sort(ids.begin(), ids.end());
-    require(std::adjacent_find(ids.begin(), ids.end()) == ids.end(), "two particles of one id");
-    require(ids.empty() || ids.back() < store.next_id(), "an id that is not given yet");
+    require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
+            "particles that are not in the order of their ids");
+    require(p.id.empty() || p.id.back() < store.next_id(), "an id that is not given yet");
     for (std::size_t i = 0; i < p.size(); ++i) {
         for (const SurfaceId surface : p.support[i]) {
             require(surface == kNoSupport || surface < world.surface_count(), "a particle on no surface");
+            const bool may_sleep_there =
+                surface == kNoSupport || !bodies || bodies->body_of(surface) == kAtRest || p.held[i] == 0;
+            require(may_sleep_there, "a particle that sleeps on a surface that moves");
         }
         const bool moves = p.frozen[i] == 0;
         require(!moves || (in_range(p.position[i]) && in_range(p.velocity[i]) && in_range(p.spin[i])),
@@ -169,8 +172,13 @@ void Simulation::Impl::require_sound_state() const {
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
         require(!pairs || pairs->has_material(i), "a particle of no material");
+        const bool is_let_go = p.cascade_left[i] < 0.0 && p.cascade_left[i] != KeptContact::kPlaced;
+        require(!is_let_go || bodies, "a particle that a body has let go, without bodies");
+        require(store.is_sound(i), "a particle with a history that none can have");
         require(!clouds || clouds->is_sound(i, store.next_id()), "a particle of a cloud that there is not");
     }
+    require(!pairs || pairs->is_sound(store.next_id()), "contacts or sleepers that there cannot be");
+    require(driven.is_sound(clock.time_at(recorder.statistics().steps)), "a body with a path that none can have");
     for (const DrivenBody& body : driven.bodies()) {
         require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),
                 "a body that is nowhere");

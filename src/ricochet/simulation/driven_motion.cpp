@@ -134,7 +134,9 @@ void DrivenMotion::plan_paths(double begin, double end) {
         }
         frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
-        if (!(size <= kLargestCoordinate) || !(next.bounds(begin, end).origin[1] < kMaxSpeed)) {
+        // A body may turn about its centre alone: a sweep past such turns would not end.
+        const MotionBounds motion = next.bounds(begin, end);
+        if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
             throw DivergedError(fmt::format(
                 "by t = {:.6g} s the body '{}' has left the range of the arithmetic: its motion has diverged; use a "
                 "shorter time step or weaker forces",

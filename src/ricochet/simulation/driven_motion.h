@@ -77,6 +77,9 @@ public:
         a(is_planned_), a(longest_part_);
     }
 
+    /// Returns false for bodies that no run leaves behind at a time, s.
+    [[nodiscard]] bool is_sound(double time) const;
+
 private:
     /// How the load of a plan fits to what came back from it.
     struct Fit {
@@ -91,6 +94,7 @@ private:
         return frames_->paths(frame_of_[body]);
     }
     [[nodiscard]] const BodyPath& planned(std::size_t body) const { return paths_of(body).back(); }
+    [[nodiscard]] bool has_sound_paths(std::size_t body) const;
     [[nodiscard]] std::vector<ImpactTally> no_impacts() const;
     void plan_paths(double begin, double end);
     void set_shares(std::vector<double> shares);

@@ -124,6 +124,8 @@ struct Simulation::Impl {
     void inherit_sides(std::size_t i, const Child& child);
     void prepare_radius(double radius);
     [[nodiscard]] bool starts_on_surface(const Particle& particle) const;
+    /// Gives the parts of a run what they need of each other, and begins the first step of colliders and bodies.
+    void connect();
     /// The setup's particles, which are taken out of it, and warnings of those that begin in overlap.
     void add_first(std::vector<Particle>& first);
     /// A sentence about those of the setup's particles that are in overlap; nothing without any.

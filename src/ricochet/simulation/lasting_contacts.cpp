@@ -43,6 +43,11 @@ constexpr double kAlongPull = 0.5;
 
 }  // namespace
 
+bool LastingContacts::is_sound(std::uint64_t next_id) const {
+    const std::size_t surfaces = parts_.response.rules().world.surface_count();
+    return memory_.is_sound(next_id, surfaces) && piles_.is_sound(next_id, surfaces);
+}
+
 void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
     wakings_ = 0;

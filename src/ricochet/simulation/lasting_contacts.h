@@ -78,6 +78,9 @@ public:
         piles_.archive(a);
     }
 
+    /// Returns false for a state that no run leaves behind. next_id: of the next particle.
+    [[nodiscard]] bool is_sound(std::uint64_t next_id) const;
+
 private:
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
     [[nodiscard]] std::vector<SleeperPush> pushes_on_sleepers(std::span<const DenseTrace* const> traces,

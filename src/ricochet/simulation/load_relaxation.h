@@ -10,6 +10,7 @@
 /// solvers with dynamic relaxation", Computational Mechanics 43, 2008).
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "ricochet/core/mobility.h"
@@ -48,6 +49,9 @@ public:
     void archive(Archive& a) {
         a(is_heavy_), a(heaviness_);
     }
+
+    /// Returns false for a state that no run leaves behind.
+    [[nodiscard]] bool is_sound() const { return heaviness_ >= 0.0 && std::isfinite(heaviness_); }
 
 private:
     struct Tried {

@@ -60,6 +60,9 @@ public:
         a(unsolved_);
     }
 
+    /// Returns false for contacts and sleepers that no run leaves behind. next_id: of the next particle.
+    [[nodiscard]] bool is_sound(std::uint64_t next_id) const { return contacts_.is_sound(next_id); }
+
 private:
     [[nodiscard]] bool wake_those_pushed(const TimeSpan& step);
     void take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);

@@ -152,6 +152,20 @@ void ParticleStore::prefetch(std::size_t i) const {
     __builtin_prefetch(&particles_.contacts[i], 1);
 }
 
+bool ParticleStore::is_sound(std::size_t i) const {
+    const std::span<const SideMemory> sides = sides_of(i);
+    const bool are_sides_known = std::all_of(sides.begin(), sides.end(), [](const SideMemory& memory) {
+        return memory.side >= -1 && memory.side <= 1 && !std::isnan(memory.depth);
+    });
+    const bool is_core_inside = !cores_.has(i) || cores_.radius(i) <= particles_.radius[i];
+    const bool is_ride_finite =
+        !keeps_rides_ || (!std::isinf(rides_[i].stored_time) && is_finite(rides_[i].ridden.position) &&
+                          is_finite(rides_[i].ridden.spin) && rides_[i].is_ridden <= 1);
+    return are_sides_known && is_core_inside && is_ride_finite && std::isfinite(particles_.birth_time[i]) &&
+           !std::isnan(particles_.lifetime[i]) && std::isfinite(particles_.accounted_until[i]) &&
+           std::isfinite(particles_.cascade_left[i]) && std::isfinite(particles_.unsimulated_time[i]);
+}
+
 std::optional<std::size_t> ParticleStore::index_of(std::uint64_t id) const {
     const std::vector<std::uint64_t>& ids = particles_.id;
     if (ids.empty() || id < ids.front()) return std::nullopt;

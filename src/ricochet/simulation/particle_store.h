@@ -101,6 +101,9 @@ public:
     template <class Archive>
     void archive(Archive& a);
 
+    /// Returns false for a memory of particle i that no run leaves behind.
+    [[nodiscard]] bool is_sound(std::size_t i) const;
+
     /// rad/s, of particle i as the response has moved it, as it is stored.
     [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
 

@@ -238,6 +238,20 @@ void Simulation::Impl::add_first(std::vector<Particle>& first) {
     if (auto warning = sphere_overlap_warning()) warnings.push_back(std::move(*warning));
 }
 
+void Simulation::Impl::connect() {
+    coupled.call_between([this] { stop.poll(); });
+    world.set_culling(acceleration.culling);
+    if (bodies) {
+        bodies->set_culling(acceleration.culling);
+        if (driven.is_active()) driven.plan(0.0, options.time_step, 0.0);
+        bodies->begin_step(0.0, options.time_step);
+    }
+    if (clouds) {
+        mover.set_clouds(clouds.get());
+        offspring->set_clouds(clouds.get(), place_test());
+    }
+}
+
 Simulation::Impl::Impl(SimulationSetup setup)
     : options(validated(setup).options),
       particle_bytes(bytes_per_particle(setup)),
@@ -282,17 +296,7 @@ Simulation::Impl::Impl(SimulationSetup setup)
           mover)),
       pairs(make_pairs(options, store, schedule, mover, *response, coupled)),
       retirement(store, schedule, bounds) {
-    coupled.call_between([this] { stop.poll(); });
-    world.set_culling(acceleration.culling);
-    if (bodies) {
-        bodies->set_culling(acceleration.culling);
-        if (driven.is_active()) driven.plan(0.0, options.time_step, 0.0);
-        bodies->begin_step(0.0, options.time_step);
-    }
-    if (clouds) {
-        mover.set_clouds(clouds.get());
-        offspring->set_clouds(clouds.get(), place_test());
-    }
+    connect();
     if (!share.is_alone()) keep_springs_together();
     add_first(setup.particles);
     if (!share.is_alone()) keep_share();

@@ -25,6 +25,22 @@ auto range_of(List& list, std::uint64_t particle) {
 
 }  // namespace
 
+bool SleepingPiles::is_sound(std::uint64_t next_id, std::size_t surfaces) const {
+    const auto ascend = [](const auto& list) {
+        const auto falls = [](const auto& a, const auto& b) { return a.particle >= b.particle; };
+        return std::adjacent_find(list.begin(), list.end(), falls) == list.end();
+    };
+    const auto is_sleeper_sound = [&](const Sleeper& s) { return s.particle < next_id && s.pile <= s.particle; };
+    const auto is_weight_sound = [&](const Weight& w) {
+        return has(w.particle) && w.surface < surfaces && is_finite(w.force);
+    };
+    const auto has_sleeper = [](const Ends& ends) { return ends.first != kNobody || ends.second != kNobody; };
+    return ascend(sleepers_) && ascend(still_) && std::is_sorted(weights_.begin(), weights_.end(), by_particle) &&
+           std::all_of(sleepers_.begin(), sleepers_.end(), is_sleeper_sound) &&
+           std::all_of(weights_.begin(), weights_.end(), is_weight_sound) && contacts_.is_sound(next_id, surfaces) &&
+           std::all_of(ends_.begin(), ends_.end(), has_sleeper);
+}
+
 void SleepingPiles::find_slots() {
     slots_.clear();
     for (const Sleeper& sleeper : sleepers_) slots_.emplace(sleeper.particle, slot_of(sleeper));

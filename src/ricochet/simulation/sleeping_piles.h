@@ -80,6 +80,11 @@ public:
         ++version_;
     }
 
+    /// Returns false for a state that no run leaves behind: lists must be in ascending order, piles must be numbered by
+    /// one of their particles, and all weights and contacts must be those of sleepers. next_id: of the next particle;
+    /// surfaces: how many there are.
+    [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
+
 private:
     struct Sleeper {
         std::uint64_t particle = 0;

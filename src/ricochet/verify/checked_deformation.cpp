@@ -140,8 +140,12 @@ CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
         while (begin_of(0, round) > time) round -= 1.0;
         while (begin_of(0, round + 1.0) <= time) round += 1.0;
     }
+    // Bisection: colliders that are scaled in time have thousands of keys.
     std::size_t key = 0;
-    while (key + 1 < last && begin_of(key + 1, round) <= time) ++key;
+    for (std::size_t after = last; after - key > 1;) {
+        const std::size_t middle = key + (after - key) / 2;
+        (begin_of(middle, round) <= time ? key : after) = middle;
+    }
     const bool wraps = surface_.repeats && key + 1 == last;
     const double begin = begin_of(key, round);
     const double end = wraps ? begin_of(0, round + 1.0) : begin_of(key + 1, round);

@@ -1,6 +1,7 @@
 #include "ricochet/verify/rebound.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -15,8 +16,8 @@ constexpr double kReboundRounding = 1e-9;
 /// The same where friction of several surfaces decides: wedges are solved as nearly as there is an answer.
 constexpr double kReboundInWedge = 1e-3;
 
-/// Part of the speeds up to which a surface that holds the particle may seem to be approached.
-constexpr double kHeldApproach = 1e-6;
+/// Part of the speeds up to which a surface that holds the particle may seem to be approached or left.
+constexpr double kHeldSpeed = 1e-6;
 
 double restitution_of(const RecordedImpact::Surface& surface, double approach) {
     const double threshold = surface.restitution_threshold;
@@ -43,27 +44,34 @@ double scale_of(const RecordedImpact& impact) {
 
 bool has_wrong_rebound(const RecordedImpact& impact) {
     const double scale = scale_of(impact);
-    // The interval may have touched both sides of a thin body. One that is really approached has not held the particle.
+    const auto moves_along = [&](const RecordedImpact::Surface& surface) {
+        return std::fabs(before(impact, surface)) <= kHeldSpeed * scale;
+    };
+    // The interval may have touched both sides of a thin body, and may have led away from a surface.
     const auto holds = [&](const RecordedImpact::Surface& surface) {
         const bool is_listed =
             std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
-        return surface.holds || (is_listed && before(impact, surface) >= -kHeldApproach * scale);
+        return surface.holds || (is_listed && moves_along(surface));
     };
     const auto is_hit = [&](const RecordedImpact::Surface& surface) {
         return !holds(surface) && before(impact, surface) < 0.0;
     };
     double restitution = 1.0;
+    double held_speed = 0.0;  // m/s: counts as zero in the impact, and changes the rebound off others by as much
     std::size_t hit = 0;
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
-        if (holds(surface) && before(impact, surface) < -kHeldApproach * scale) return true;
+        if (holds(surface) && !moves_along(surface)) return true;
+        if (holds(surface)) held_speed += std::fabs(before(impact, surface));
         if (!is_hit(surface)) continue;
         ++hit;
         restitution = std::min(restitution, restitution_of(surface, -before(impact, surface)));
     }
-    const double rounding = scale * (impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding);
+    const double part = impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding;
+    const double rounding = part * scale + 2.0 * held_speed;
     double least = std::numeric_limits<double>::infinity();
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
-        const double rebound = is_hit(surface) ? -restitution * before(impact, surface) : 0.0;
+        // Moreau's law lets it come back to a surface that it left, at most e times as fast. That surface is hit next.
+        const double rebound = holds(surface) ? 0.0 : -restitution * before(impact, surface);
         const double more = after(impact, surface) - rebound;
         if (more < -rounding) return true;
         if (is_hit(surface)) least = std::min(least, more);

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/core/loop_stop.h"
+
 namespace ricochet {
 namespace {
 
@@ -85,6 +87,7 @@ void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end
 
 /// A node over these in the order, and the nodes below it. Returns its number.
 std::uint32_t BoxTree::add_node(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes) {
+    poll_loop_stop();
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     const Quad none{kNone, kNone, kNone, kNone};
     nodes_.push_back({none, none, none, none, none, none, {kNoChild, kNoChild, kNoChild, kNoChild}});

@@ -91,9 +91,19 @@ std::vector<std::uint32_t> shells_of(const TriangleMesh& joined) {
 }
 
 TriangleMesh shell_alone(const TriangleMesh& mesh, const std::vector<std::uint32_t>& shell_of, std::uint32_t shell) {
-    TriangleMesh alone{mesh.vertices, {}};
+    TriangleMesh alone;
+    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnknown);
     for (std::size_t t = 0; t < shell_of.size(); ++t) {
-        if (shell_of[t] == shell) alone.triangles.push_back(mesh.triangles[t]);
+        if (shell_of[t] != shell) continue;
+        Triangle triangle = mesh.triangles[t];
+        for (std::uint32_t& v : triangle) {
+            if (renamed[v] == kUnknown) {
+                renamed[v] = static_cast<std::uint32_t>(alone.vertices.size());
+                alone.vertices.push_back(mesh.vertices[v]);
+            }
+            v = renamed[v];
+        }
+        alone.triangles.push_back(triangle);
     }
     return alone;
 }

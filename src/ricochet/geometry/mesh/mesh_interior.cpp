@@ -13,6 +13,11 @@ namespace {
 
 constexpr double kMaxCells = 1024.0;  // along either axis: a million columns are enough for any mesh
 
+/// Entries in lists of columns, for each triangle and in every mesh. Fewer: columns of ordinary meshes would be too
+/// wide. More: large triangles one upon the other would take memory beyond proportion.
+constexpr std::size_t kEntriesPerTriangle = 64;
+constexpr std::size_t kEntries = std::size_t{1} << 20;
+
 Point2 flat(const Vec3& p) { return {p.x, p.y}; }
 
 // True when the horizontal ray to the right of the moved point p crosses the edge from a to b, seen from above.
@@ -40,6 +45,19 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     return box.contains(p) && point_on_triangle(p, a, b, c);
 }
 
+/// Calls use(triangle) for all triangles of a mesh but those left out.
+template <class Use>
+void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>& left_out, const Use& use) {
+    auto skipped = left_out.begin();
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (skipped != left_out.end() && *skipped == t) {
+            ++skipped;
+        } else {
+            use(t);
+        }
+    }
+}
+
 }  // namespace
 
 bool is_closed(const TriangleMesh& mesh) { return closed_surface(mesh).closed; }
@@ -51,7 +69,25 @@ MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::
     : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
     cells_ =
         static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMaxCells));
+    const std::size_t most = kEntries + kEntriesPerTriangle * mesh_->triangles.size();
+    while (cells_ > 1 && entries(left_out) > most) cells_ /= 2;
     fill_columns(left_out);
+}
+
+MeshInterior::Columns MeshInterior::columns_of(const Triangle& t) const {
+    Box3 box;
+    for (const std::uint32_t v : t) box.include(mesh_->vertices[v]);
+    return {{cell_of(box.lower.x, 0), cell_of(box.lower.y, 1)}, {cell_of(box.upper.x, 0), cell_of(box.upper.y, 1)}};
+}
+
+/// How many there are in the lists of all columns.
+std::size_t MeshInterior::entries(const std::vector<std::uint32_t>& left_out) const {
+    std::size_t count = 0;
+    for_each_counted(*mesh_, left_out, [&](std::uint32_t t) {
+        const auto [first, last] = columns_of(mesh_->triangles[t]);
+        count += (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
+    });
+    return count;
 }
 
 // Monotone in the value, so that a point's column lies within those of every triangle above or below it.
@@ -65,18 +101,12 @@ std::size_t MeshInterior::cell_of(double value, int axis) const {
 void MeshInterior::fill_columns(const std::vector<std::uint32_t>& left_out) {
     column_begin_.assign(cells_ * cells_ + 1, 0);
     const auto for_each_column = [&](auto&& use) {
-        auto skipped = left_out.begin();
-        for (std::uint32_t t = 0; t < mesh_->triangles.size(); ++t) {
-            if (skipped != left_out.end() && *skipped == t) {
-                ++skipped;
-                continue;
+        for_each_counted(*mesh_, left_out, [&](std::uint32_t t) {
+            const auto [first, last] = columns_of(mesh_->triangles[t]);
+            for (std::size_t y = first[1]; y <= last[1]; ++y) {
+                for (std::size_t x = first[0]; x <= last[0]; ++x) use(y * cells_ + x, t);
             }
-            Box3 box;
-            for (const std::uint32_t v : mesh_->triangles[t]) box.include(mesh_->vertices[v]);
-            for (std::size_t y = cell_of(box.lower.y, 1); y <= cell_of(box.upper.y, 1); ++y) {
-                for (std::size_t x = cell_of(box.lower.x, 0); x <= cell_of(box.upper.x, 0); ++x) use(y * cells_ + x, t);
-            }
-        }
+        });
     };
     for_each_column([&](std::size_t k, std::uint32_t /*triangle*/) { ++column_begin_[k + 1]; });
     for (std::size_t k = 1; k < column_begin_.size(); ++k) column_begin_[k] += column_begin_[k - 1];

@@ -7,6 +7,7 @@
 /// the exact predicates.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -34,6 +35,13 @@ public:
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:
+    /// Along x and y, of a triangle.
+    struct Columns {
+        std::array<std::size_t, 2> first;
+        std::array<std::size_t, 2> last;
+    };
+    [[nodiscard]] Columns columns_of(const Triangle& t) const;
+    [[nodiscard]] std::size_t entries(const std::vector<std::uint32_t>& left_out) const;
     [[nodiscard]] std::size_t cell_of(double value, int axis) const;
     void fill_columns(const std::vector<std::uint32_t>& left_out);
 

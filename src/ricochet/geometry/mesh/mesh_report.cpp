@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -268,13 +267,42 @@ void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warni
     }
 }
 
+/// Tests of pairs of triangles, for each triangle and in every mesh. Fewer: pairs of ordinary meshes would not all be
+/// counted. More: triangles that all cross each other would take time beyond proportion.
+constexpr std::size_t kPairTestsPerTriangle = 256;
+constexpr std::size_t kPairTests = std::size_t{1} << 20;
+constexpr std::size_t kPairBlock = 256;  // triangles that one thread looks at in a row
+constexpr std::size_t kPairBlocks = 16;  // that are looked at side by side
+
+/// The pairs of a row of triangles with those behind them, as far as they have been looked for.
+struct PairSearch {
+    std::size_t next = 0;  ///< triangle
+    std::size_t end = 0;
+    std::size_t pairs = 0;  ///< found so far
+    std::size_t tests = 0;  ///< made so far
+
+    /// Ends with the triangle at which so many more tests have been made.
+    void go_on(const BoxTree& tree, const std::vector<Box3>& boxes, const std::vector<std::uint32_t>& numbers,
+               const PairTest& intersect, std::size_t most) {
+        const std::size_t last = tests + most;
+        for (; next < end && tests < last; ++next) {
+            tree.for_each_overlap(boxes[next], [&](std::uint32_t j) {
+                if (j <= next) return;
+                ++tests;
+                pairs += intersect(numbers[next], numbers[j]) ? 1 : 0;
+            });
+        }
+    }
+};
+
 void warn_of_self_intersections(const MeshReport& report, std::vector<std::string>& warnings) {
     if (report.self_intersections == 0) return;
-    warnings.push_back(
-        fmt::format("{} or cross each other: every triangle stops particles, so nothing leaks, but where parts overlap "
-                    "the volume counts "
-                    "twice",
-                    counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
+    warnings.push_back(fmt::format(
+        "{}{} or cross each other: every triangle stops particles, so nothing leaks, but where parts overlap "
+        "the volume counts "
+        "twice",
+        report.self_intersections_are_all ? "" : "at least ",
+        counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
 }
 
 std::vector<std::string> warnings_for(const MeshReport& report) {
@@ -304,23 +332,36 @@ PolygonMesh joined_by_position(const ImportedMesh& imported, const TriangleMesh&
 
 }  // namespace
 
-std::size_t count_self_intersections(const TriangleMesh& mesh) {
-    const PairTest intersect(mesh);
+SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
     const TriangleBoxes triangles(mesh);
     const std::vector<std::uint32_t>& numbers = triangles.numbers;
-    const BoxTree tree(triangles.boxes);
-    std::atomic<std::size_t> pairs{0};
-    constexpr std::size_t kBlock = 1024;
-    parallel_for_blocks(numbers.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        std::size_t found = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            tree.for_each_overlap(triangles.boxes[i], [&](std::uint32_t j) {
-                found += j > i && intersect(numbers[i], numbers[j]) ? 1 : 0;
-            });
+    const std::vector<Box3>& boxes = triangles.boxes;
+    const BoxTree tree(boxes);
+    const PairTest intersect(mesh);
+    std::size_t left = kPairTests + kPairTestsPerTriangle * boxes.size();
+    SelfIntersections result;
+    // The blocks of a round share the remaining tests in equal parts. Blocks that need more go on one after the other.
+    // The end of the search thus does not depend on threads.
+    for (std::size_t begin = 0; begin < boxes.size() && left > 0; begin += kPairBlocks * kPairBlock) {
+        std::array<PairSearch, kPairBlocks> searches;
+        parallel_for_blocks(kPairBlocks, 1, [&](std::size_t, std::size_t first, std::size_t last) {
+            for (std::size_t k = first; k < last; ++k) {
+                searches[k] = {std::min(boxes.size(), begin + k * kPairBlock),
+                               std::min(boxes.size(), begin + (k + 1) * kPairBlock)};
+                searches[k].go_on(tree, boxes, numbers, intersect, left / kPairBlocks);
+            }
+        });
+        for (const PairSearch& search : searches) left -= std::min(left, search.tests);
+        for (PairSearch& search : searches) {
+            const std::size_t before = search.tests;
+            search.go_on(tree, boxes, numbers, intersect, left);
+            left -= std::min(left, search.tests - before);
+            result.pairs += search.pairs;
+            result.are_all = result.are_all && search.next == search.end;
         }
-        pairs += found;
-    });
-    return pairs;
+        result.are_all = result.are_all && (left > 0 || begin + kPairBlocks * kPairBlock >= boxes.size());
+    }
+    return result;
 }
 
 std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(const TriangleMesh& mesh,
@@ -331,9 +372,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(const
     const std::vector<std::uint32_t>& numbers = triangles.numbers;
     const BoxTree tree(triangles.boxes);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (std::size_t i = 0; i < numbers.size() && pairs.size() < most; ++i) {
+    std::size_t left = kPairTests + kPairTestsPerTriangle * numbers.size();
+    for (std::size_t i = 0; i < numbers.size() && pairs.size() < most && left > 0; ++i) {
         tree.for_each_overlap(triangles.boxes[i], [&](std::uint32_t j) {
-            if (j <= i || part_of[numbers[i]] == part_of[numbers[j]] || pairs.size() == most) return;
+            if (j <= i || left == 0) return;
+            --left;
+            if (part_of[numbers[i]] == part_of[numbers[j]] || pairs.size() == most) return;
             if (intersect(numbers[i], numbers[j])) pairs.emplace_back(numbers[i], numbers[j]);
         });
     }
@@ -360,7 +404,9 @@ MeshReport report_on(const ImportedMesh& imported) {
         report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
     }
     report.degenerate_triangles = count_degenerate(imported.mesh);
-    report.self_intersections = count_self_intersections(joined);
+    const SelfIntersections found = find_self_intersections(joined);
+    report.self_intersections = found.pairs;
+    report.self_intersections_are_all = found.are_all;
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;
     report.crossing_faces = imported.crossing_faces;
     report.weld = imported.weld;

@@ -34,22 +34,33 @@ struct MeshReport {
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
     std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, equal positions joined
-    std::optional<WeldReport> weld;      ///< STL and glTF only
-    bool y_up = false;                   ///< the file has y up; the bounds have z up
-    std::vector<NamedTriangles> names;   ///< by which faces can be meant
-    std::vector<std::string> notes;      ///< what the file holds and was not read
-    std::vector<std::string> warnings;   ///< one sentence per kind of defect: what it is, what it means for leaks
+    bool self_intersections_are_all = true;
+    std::optional<WeldReport> weld;     ///< STL and glTF only
+    bool y_up = false;                  ///< the file has y up; the bounds have z up
+    std::vector<NamedTriangles> names;  ///< by which faces can be meant
+    std::vector<std::string> notes;     ///< what the file holds and was not read
+    std::vector<std::string> warnings;  ///< one sentence per kind of defect: what it is, what it means for leaks
 };
 
 /// Examines a mesh. Time and memory are close to linear in its size.
 [[nodiscard]] MeshReport report_on(const ImportedMesh& imported);
 
-/// Pairs of triangles that have a point in common besides the vertices and the edge that both name: they cross, touch
-/// or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on the
-/// number of threads. Time is close to linear in the number of triangles and of pairs whose boxes overlap.
-[[nodiscard]] std::size_t count_self_intersections(const TriangleMesh& mesh);
+/// How often triangles of a mesh touch or cross each other.
+struct SelfIntersections {
+    std::size_t pairs = 0;
+    bool are_all = true;  ///< false where the search has ended early
+};
+/// Counts pairs of triangles that have a point in common besides the vertices and the edge that both name: they cross,
+/// touch or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on
+/// the number of threads. Time is close to linear in the number of triangles: the search ends early after some hundred
+/// pairs with overlapping boxes for each triangle.
+[[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh);
+[[nodiscard]] inline std::size_t count_self_intersections(const TriangleMesh& mesh) {
+    return find_self_intersections(mesh).pairs;
+}
 
-/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle.
+/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle. The
+/// search ends early after as many pairs with overlapping boxes.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(
     const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of, std::size_t most);
 

@@ -48,10 +48,13 @@ PointCache read_point_cache(const std::filesystem::path& name, std::string_view 
     require(std::isfinite(first) && std::isfinite(step) && step > 0.0F,
             fmt::format("the first frame is {} and samples are {} frames apart, expected a number, and one above 0",
                         first, step));
-    const std::uint64_t expected =
-        kHeader + kPoint * static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples);
-    require(bytes.size() == expected,
-            fmt::format("{} samples of {} points are {} bytes, found {}", samples, points, expected, bytes.size()));
+    // Points of all samples are below 2^62, but their bytes may be more than 2^64.
+    const std::uint64_t all = static_cast<std::uint64_t>(points) * static_cast<std::uint64_t>(samples);
+    const bool is_countable = all < std::uint64_t{1} << 58U;
+    const std::uint64_t expected = kHeader + kPoint * all;
+    require(is_countable && bytes.size() == expected,
+            fmt::format("{} samples of {} points are {} bytes, found {}", samples, points,
+                        is_countable ? std::to_string(expected) : "more than 2^61", bytes.size()));
     PointCache cache;
     std::size_t at = kHeader;
     for (std::int32_t k = 0; k < samples; ++k) {

@@ -16,8 +16,8 @@
 namespace ricochet {
 
 /// A number as the exact sum of at most Capacity doubles, in increasing order of magnitude, strongly non-overlapping,
-/// none zero. Exact while no component overflows and none has bits below 2^-1074. Only the first `size` are
-/// initialised.
+/// none zero. Exact while no component overflows and none has bits below 2^-1074. Sums and products of numbers that are
+/// not finite are wrong, yet never have more components than there is room for. Only the first `size` are initialised.
 template <int Capacity>
 struct Expansion {
     std::array<double, static_cast<std::size_t>(Capacity)> components;
@@ -46,12 +46,16 @@ struct Expansion {
 template <int M, int N>
 [[nodiscard]] Expansion<M + N> operator+(const Expansion<M>& e, const Expansion<N>& f) {
     Expansion<M + N> sum;
-    double carried = 0.0;
     int i = 0;
     int j = 0;
-    while (i < e.size || j < f.size) {
+    const auto next = [&] {
         const bool from_e = j == f.size || (i < e.size && std::fabs(e[i]) < std::fabs(f[j]));
-        const DoubleDouble s = two_sum(carried, from_e ? e[i++] : f[j++]);
+        return from_e ? e[i++] : f[j++];
+    };
+    if (e.size + f.size == 0) return sum;
+    double carried = next();
+    while (i < e.size || j < f.size) {
+        const DoubleDouble s = two_sum(carried, next());
         sum.append(s.lo);
         carried = s.hi;
     }
@@ -74,8 +78,11 @@ template <int M, int N>
 template <int N>
 [[nodiscard]] Expansion<2 * N> operator*(const Expansion<N>& e, double factor) {
     Expansion<2 * N> product;
-    double carried = 0.0;
-    for (int i = 0; i < e.size; ++i) {
+    if (e.size == 0) return product;
+    const DoubleDouble first = two_product(e[0], factor);
+    product.append(first.lo);
+    double carried = first.hi;
+    for (int i = 1; i < e.size; ++i) {
         const DoubleDouble term = two_product(e[i], factor);
         const DoubleDouble low = two_sum(carried, term.lo);
         const DoubleDouble high = fast_two_sum(term.hi, low.hi);

@@ -97,7 +97,10 @@ std::string SceneContext::unique_name(const ObjectView& view, std::size_t index,
     return name;
 }
 
-std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& known) {
+std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& all) {
+    // A scene may have as many names as errors: each error looks at some of them.
+    constexpr std::size_t kMostNames = 200;
+    const std::vector<std::string_view> known(all.begin(), all.begin() + std::min(all.size(), kMostNames));
     const std::string unknown = fmt::format("there is no {} \"{}\"", kind, printable(name, 60));
     if (known.empty()) return unknown + ", the scene has none";
     const std::string help = did_you_mean(nearest_names(name, known));

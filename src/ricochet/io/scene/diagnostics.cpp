@@ -14,7 +14,8 @@ namespace ricochet::detail {
 
 namespace {
 
-constexpr std::size_t kMostLines = 100;
+constexpr std::size_t kMostErrors = 10;
+constexpr std::size_t kMostLines = 100;  // of warnings and notes
 
 bool is_plain(std::string_view key) {
     return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
@@ -61,15 +62,19 @@ Diagnostics::Entry Diagnostics::entry(const SourceLocation& location, const std:
     return {location, printable(line, kLongestLine)};
 }
 
-std::vector<std::string> Diagnostics::lines(std::vector<Entry> entries) {
+std::vector<std::string> Diagnostics::errors() const { return lines(errors_, kMostErrors); }
+std::vector<std::string> Diagnostics::warnings() const { return lines(warnings_, kMostLines); }
+std::vector<std::string> Diagnostics::notes() const { return lines(notes_, kMostLines); }
+
+std::vector<std::string> Diagnostics::lines(std::vector<Entry> entries, std::size_t most) {
     std::stable_sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
         return std::tie(a.location.override_index, a.location.line, a.location.column) <
                std::tie(b.location.override_index, b.location.line, b.location.column);
     });
     std::vector<std::string> result;
     for (Entry& e : entries) {
-        if (result.size() == kMostLines) {
-            result.push_back(fmt::format("... and {} more of this file", entries.size() - kMostLines));
+        if (result.size() == most) {
+            result.push_back(fmt::format("... and {} more of this file", entries.size() - most));
             break;
         }
         result.push_back(std::move(e.line));

@@ -28,10 +28,10 @@ public:
     void note(const SourceLocation& location, const std::string& path, std::string_view what);
 
     [[nodiscard]] bool failed() const { return !errors_.empty(); }
-    /// One line each, in the order of their source locations.
-    [[nodiscard]] std::vector<std::string> errors() const { return lines(errors_); }
-    [[nodiscard]] std::vector<std::string> warnings() const { return lines(warnings_); }
-    [[nodiscard]] std::vector<std::string> notes() const { return lines(notes_); }
+    /// One line each, in the order of their source locations; behind ten errors, or a hundred others, their count.
+    [[nodiscard]] std::vector<std::string> errors() const;
+    [[nodiscard]] std::vector<std::string> warnings() const;
+    [[nodiscard]] std::vector<std::string> notes() const;
     [[nodiscard]] const std::vector<std::string>& overrides() const { return overrides_; }
 
 private:
@@ -40,7 +40,7 @@ private:
         std::string line;
     };
     [[nodiscard]] Entry entry(const SourceLocation& location, const std::string& path, std::string_view what) const;
-    [[nodiscard]] static std::vector<std::string> lines(std::vector<Entry> entries);
+    [[nodiscard]] static std::vector<std::string> lines(std::vector<Entry> entries, std::size_t most);
 
     std::string file_;
     std::vector<std::string> overrides_;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -169,10 +171,11 @@ bool are_good_parents(const SceneContext& context, const std::vector<FrameDescri
                       const std::vector<ObjectView>& views) {
     std::vector<std::string_view> names;
     for (const FrameDescription& frame : frames) names.push_back(frame.name);
+    const std::unordered_set<std::string_view> known(names.begin(), names.end());
     bool good = true;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const std::string& parent = frames[i].parent;
-        if (parent.empty() || std::find(names.begin(), names.end(), parent) != names.end()) continue;
+        if (parent.empty() || known.contains(parent)) continue;
         context.error(views[i], "parent", unknown_name("frame", parent, names));
         good = false;
     }

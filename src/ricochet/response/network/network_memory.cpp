@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "ricochet/core/prefetch.h"
@@ -47,6 +48,20 @@ void NetworkMemory::add(const std::vector<Entry>& more) {
     const std::vector<Entry> before = std::move(entries_);
     const std::array<const std::vector<Entry>*, 2> both{&before, &more};
     replace(both);
+}
+
+bool NetworkMemory::is_sound(std::uint64_t next_id, std::size_t surfaces) const {
+    const auto is_entry_sound = [&](const Entry& entry) {
+        const NetworkKey& key = entry.key;
+        const bool has_partner =
+            key.is_wall() ? key.surface() < surfaces : key.particle < key.other && key.other < next_id;
+        const NetworkImpulse& impulse = entry.impulse;
+        return key.particle < next_id && has_partner && std::isfinite(impulse.normal) &&
+               is_finite(impulse.tangential) && is_finite(impulse.moment);
+    };
+    const auto is_out_of_order = [](const Entry& a, const Entry& b) { return !(a.key < b.key); };
+    return std::all_of(entries_.begin(), entries_.end(), is_entry_sound) &&
+           std::adjacent_find(entries_.begin(), entries_.end(), is_out_of_order) == entries_.end();
 }
 
 void NetworkMemory::find_particles() {

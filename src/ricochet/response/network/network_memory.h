@@ -25,6 +25,8 @@ struct NetworkKey {
         return {particle, surface | std::uint64_t{1} << 63U};
     }
     [[nodiscard]] bool is_wall() const { return (other >> 63U) != 0; }
+    /// Of a wall.
+    [[nodiscard]] std::uint64_t surface() const { return other & ~(std::uint64_t{1} << 63U); }
 
     friend auto operator<=>(const NetworkKey&, const NetworkKey&) = default;
 };
@@ -92,6 +94,10 @@ public:
         });
         find_particles();
     }
+
+    /// Returns false for a memory that no run leaves behind: its entries must be in ascending order, each once, between
+    /// particles with ids below next_id, or one of them and one of so many surfaces.
+    [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
 private:
     void find_particles();

@@ -1,0 +1,54 @@
+/// \file
+/// What help() and inspect.signature() show of compiled functions.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <utility>
+
+namespace ricochet::python {
+
+namespace py = pybind11;
+
+/// Objects of ricochet._results, by their classes, so that signatures name them.
+template <class Name>
+struct ResultObject : py::object {
+    ResultObject() = default;
+    ResultObject(py::object made) : py::object(std::move(made)) {}  // NOLINT(google-explicit-constructor)
+};
+struct HitsName {};
+struct AllHitsName {};
+struct ContactsName {};
+struct TriangleTotalsName {};
+using HitsObject = ResultObject<HitsName>;
+using AllHitsObject = ResultObject<AllHitsName>;
+using ContactsObject = ResultObject<ContactsName>;
+using TriangleTotalsObject = ResultObject<TriangleTotalsName>;
+
+/// Rewrites the texts of the functions in a class or a module: pybind11 puts the signature into the first line, where
+/// Python sees only text. Python gets it in the form that it reads, and the type of the result goes to the end, with
+/// the fields of named tuples. Once for each class and module, after its last function.
+void write_signatures(const py::object& class_or_module);
+
+}  // namespace ricochet::python
+
+namespace pybind11::detail {
+
+template <>
+struct handle_type_name<ricochet::python::HitsObject> {
+    static constexpr auto name = const_name("ricochet.Hits");
+};
+template <>
+struct handle_type_name<ricochet::python::AllHitsObject> {
+    static constexpr auto name = const_name("ricochet.AllHits");
+};
+template <>
+struct handle_type_name<ricochet::python::ContactsObject> {
+    static constexpr auto name = const_name("ricochet.Contacts");
+};
+template <>
+struct handle_type_name<ricochet::python::TriangleTotalsObject> {
+    static constexpr auto name = const_name("ricochet.TriangleTotals");
+};
+
+}  // namespace pybind11::detail

@@ -10,11 +10,13 @@ import ricochet
 class Signatures(unittest.TestCase):
     def test_are_those_that_python_reads(self):
         for function, signature in (
-            (ricochet.Mesh.first_hits, "(self, origins, directions, most=None)"),
-            (ricochet.Mesh.closest_points, "(self, points, within=inf)"),
-            (ricochet.Mesh.sweep, "(self, from_points, to_points, radius=0.0, vertices_after=None)"),
+            (ricochet.Mesh.first_hits, "(self, origins, directions, most=None, transform=None)"),
+            (ricochet.Mesh.closest_points, "(self, points, within=inf, transform=None)"),
+            (ricochet.Mesh.sweep, "(self, from_points, to_points, radius=0.0, vertices_after=None, transform=None)"),
             (ricochet.Simulation.remove_particles, "(self, ids)"),
             (ricochet.set_threads, "(threads)"),
+            (ricochet.Mesh.inside, "(self, points, rule='parity', transform=None)"),
+            (ricochet.Mesh.read, "(file, up=None, scale=1.0, merge=None)"),
             (ricochet.Mesh, "(vertices, faces)"),
         ):
             self.assertEqual(str(inspect.signature(function)), signature, function)
@@ -29,7 +31,7 @@ class Signatures(unittest.TestCase):
 class Texts(unittest.TestCase):
     def test_name_the_result_and_its_fields(self):
         shown = pydoc.render_doc(ricochet.Mesh, renderer=pydoc.plaintext)
-        self.assertIn("first_hits(self, origins, directions, most=None)", shown)
+        self.assertIn("first_hits(self, origins, directions, most=None, transform=None)", shown)
         for function, result in (
             (ricochet.Mesh.first_hits, "Returns ricochet.Hits: triangle, distance, point."),
             (ricochet.Mesh.all_hits, "Returns ricochet.AllHits: ray, triangle, distance, point, crossing, first."),

@@ -1,5 +1,7 @@
 import gc
+import os
 import pickle
+import tempfile
 import threading
 import unittest
 
@@ -30,6 +32,77 @@ class Mesh(unittest.TestCase):
         origins = [[-1, 0.5, 0.5], [-1, -1, -1], [-1, 0, 0]]
         directions = [[1, 0, 0], [1, 1, 1], [1, 0, 0]]
         np.testing.assert_array_equal(box().count_hits(origins, directions), [2, 2, 1])
+
+    def test_inside_goes_by_parity_or_by_winding_number(self):
+        cubes = ricochet.Mesh(
+            np.concatenate([BOX_VERTICES, np.array(BOX_VERTICES) + [0.5, 0.25, 0.125]]),
+            np.concatenate([BOX_FACES, np.array(BOX_FACES) + len(BOX_VERTICES)]),
+        )
+        points = np.array([[0.75, 0.6, 0.5], [0.25, 0.6, 0.5], [1.25, 0.6, 0.5], [3, 3, 3]])
+        np.testing.assert_array_equal(cubes.inside(points), [False, True, True, False])
+        np.testing.assert_array_equal(cubes.inside(points, rule="winding"), [True, True, True, False])
+        np.testing.assert_array_equal(cubes.signed_distances(points, "winding") < 0, [True, True, True, False])
+        with self.assertRaisesRegex(ricochet.InputError, 'rule: found "nearest", expected "parity" or "winding"'):
+            cubes.inside(points, rule="nearest")
+
+    def test_seams_leave_a_mesh_closed(self):
+        soup = np.array(BOX_VERTICES)[np.array(BOX_FACES)].reshape(-1, 3)
+        mesh = ricochet.Mesh(soup, np.arange(len(soup)).reshape(-1, 3))
+        self.assertTrue(mesh.is_closed)
+        self.assertEqual(len(mesh.vertices), len(soup))
+        np.testing.assert_array_equal(mesh.inside([[0.5, 0.25, 0.5], [2, 2, 2]]), [True, False])
+
+    def test_reading_turns_scales_and_merges(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "t.obj")
+            with open(file, "w") as out:
+                out.write("v 0 0 0\nv 100 0 0\nv 0 200 0\nv 0 0 300\nv 0 0 0.001\n")
+                out.write("f 1 3 2\nf 5 2 4\nf 2 3 4\nf 1 4 3\n")
+            plain = ricochet.Mesh.read(file)
+            np.testing.assert_array_equal(plain.bounds[1], [100, 200, 300])
+            self.assertFalse(plain.is_closed)
+            turned = ricochet.Mesh.read(file, up="y", scale=0.5)
+            np.testing.assert_array_equal(turned.bounds, [[0, -150, 0], [50, 0, 100]])
+            np.testing.assert_array_equal(ricochet.Mesh.read(file, up="z").vertices, plain.vertices)
+            merged = ricochet.Mesh.read(file, scale=0.001, merge=1e-5)
+            self.assertTrue(merged.is_closed)
+            self.assertEqual(len(merged.vertices), 4)
+            self.assertAlmostEqual(merged.volume, 0.001, places=12)
+            for wrong in ({"up": "x"}, {"scale": 0}, {"scale": float("nan")}, {"merge": -1.0}, {"merge": 1e-20}):
+                with self.assertRaises(ricochet.InputError):
+                    ricochet.Mesh.read(file, **wrong)
+
+    def test_a_transform_places_the_mesh_for_one_question(self):
+        transform = np.array([[0, -2, 0, 5], [2, 0, 0, -1], [0, 0, 2, 3], [0, 0, 0, 1]], dtype=float)
+        corners = np.array(BOX_VERTICES) @ transform[:3, :3].T + transform[:3, 3]
+        moved = ricochet.Mesh(corners, BOX_FACES)
+        origins, directions = rays(500)
+        origins += [4, 0, 4]
+        points = origins + 0.3 * directions
+        for ask in ("first_hits", "all_hits"):
+            found = getattr(box(), ask)(origins, directions, transform=transform)
+            known = getattr(moved, ask)(origins, directions)
+            np.testing.assert_array_equal(found.triangle, known.triangle)
+            np.testing.assert_allclose(found.distance, known.distance, rtol=1e-12)
+            np.testing.assert_allclose(found.point, known.point, rtol=1e-12)
+        for ask in ("count_hits", "occluded"):
+            found = getattr(box(), ask)(origins, directions, transform=transform)
+            np.testing.assert_array_equal(found, getattr(moved, ask)(origins, directions))
+        np.testing.assert_array_equal(box().inside(points, transform=transform), moved.inside(points))
+        np.testing.assert_array_equal(box().winding_numbers(points, transform=transform), moved.winding_numbers(points))
+        mirror = np.diag([-1.0, 1, 1, 1])
+        self.assertEqual(box().winding_numbers([[-0.5, 0.25, 0.5]], transform=mirror)[0], -1.0)
+        distances = box().signed_distances(points, transform=transform)
+        np.testing.assert_allclose(distances, moved.signed_distances(points), rtol=1e-12)
+        near = box().closest_points(points, within=1.0, transform=transform)
+        np.testing.assert_array_equal(near.triangle, moved.closest_points(points, within=1.0).triangle)
+        met = box().sweep(origins, points, 0.125, transform=transform)
+        np.testing.assert_array_equal(met.triangle, moved.sweep(origins, points, 0.125).triangle)
+        met = box().sweep(origins, points, 0.125, vertices_after=corners + 0.5, transform=transform)
+        np.testing.assert_array_equal(met.triangle, moved.sweep(origins, points, 0.125, corners + 0.5).triangle)
+        for wrong in (np.eye(3), np.diag([1.0, 2, 1, 1]), np.zeros((4, 4)), np.full((4, 4), np.nan), "up"):
+            with self.assertRaises((ricochet.InputError, TypeError)):
+                box().inside(points, transform=wrong)
 
     def test_a_miss_says_so(self):
         hits = box().first_hits([[5, 5, 5]], [[1, 0, 0]])

@@ -70,6 +70,7 @@ Json json_of(const MeshReport& report, const std::string& file) {
     }
     out["notes"] = report.notes;
     out["welded_corners"] = report.weld ? Json(report.weld->corners) : Json(nullptr);
+    out["joined_vertices"] = report.joined_vertices;
     out["warnings"] = report.warnings;
     return out;
 }
@@ -93,7 +94,7 @@ void print_sizes(const MeshReport& report) {
     if (report.y_up) print_line("up", "y, as glTF says; read as (x, -z, y), so that z points up");
     print_line("bounds", fmt::format("{} to {}", text_of(report.bounds.lower), text_of(report.bounds.upper)));
     print_line("area", fmt::format("{:.6g} m^2", report.area));
-    print_line("volume", report.volume ? fmt::format("{:.6g} m^3", *report.volume) : "none (open surface)");
+    print_line("volume", report.volume ? fmt::format("{:.6g} m^3", *report.volume) : "none (not closed)");
     if (report.weld) {
         print_line("weld", fmt::format("{} corners joined to {} vertices (equal coordinates)", report.weld->corners,
                                        report.weld->vertices));
@@ -102,6 +103,12 @@ void print_sizes(const MeshReport& report) {
 
 void print_topology(const MeshReport& report) {
     const TopologyReport& topology = report.topology;
+    if (report.joined_vertices > 0) {
+        print_line("joined", fmt::format("{} that another vertex has, so that they count as one below",
+                                         report.joined_vertices == 1
+                                             ? std::string("1 vertex has a position")
+                                             : fmt::format("{} vertices have positions", report.joined_vertices)));
+    }
     print_line("closed", yes_or_no(topology.closed));
     print_line("shells", topology.shells);
     print_line("boundary edges", topology.boundary_edges);

@@ -108,7 +108,7 @@ void make_scene(const NewArguments& arguments) {
         cli::print("  the gas is around the mesh, in a box, not in it: {}\n",
                    is_to_be_filled ? "where edges belong to three faces or more, or almost nothing is enclosed, the "
                                      "mesh has no inside that could be filled"
-                                   : "the mesh is open");
+                                   : "the mesh is not closed, `ricochet info` tells why");
     }
     cli::print("  where the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
     cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "python/arrays.h"
@@ -12,9 +15,11 @@
 #include "python/help_texts.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/placed_mesh.h"
 
 namespace ricochet::python {
 namespace {
@@ -29,6 +34,18 @@ TriangleMesh mesh_of(const py::handle& vertices, const py::handle& faces) {
         mesh.triangles[k / 3][k % 3] = static_cast<std::uint32_t>(corners[k]);
     }
     return mesh;
+}
+
+AffineMap map_of(const py::object& transform) {
+    const Doubles m = numbers(transform, "transform", 4);
+    const std::span<const double> rows = values(m);
+    if (rows.size() != 16 || rows[12] != 0.0 || rows[13] != 0.0 || rows[14] != 0.0 || rows[15] != 1.0) {
+        throw InputError("transform: expected a matrix of shape (4, 4) whose last row is 0, 0, 0, 1");
+    }
+    return {{rows[0], rows[1], rows[2]},
+            {rows[4], rows[5], rows[6]},
+            {rows[8], rows[9], rows[10]},
+            {rows[3], rows[7], rows[11]}};
 }
 
 /// Keeps names of triangles, one each, or none, in the object's dictionary. Throws InputError for others.
@@ -70,11 +87,13 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
 constexpr py::ssize_t kFewQuestions = 256;
 
 /// Puts `count` questions while other threads of Python run; Ctrl-C ends them. A copy answers them, so that
-/// set_vertices() may run beside.
+/// set_vertices() may run beside. transform: where the mesh stands; None: as its vertices say.
 template <class Ask>
-auto ask(const MeshQueries& mesh, py::ssize_t count, const Ask& question) {
-    const MeshQueries asked = mesh;
-    return CtrlC().run(count <= kFewQuestions, [&] { return question(asked); });
+auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
+    const auto answer = [&](const auto& asked) {
+        return CtrlC().run(count <= kFewQuestions, [&] { return question(asked); });
+    };
+    return transform.is_none() ? answer(MeshQueries(mesh)) : answer(PlacedMesh(mesh, map_of(transform)));
 }
 
 py::object result(const char* name) { return py::module_::import("ricochet._results").attr(name); }
@@ -102,19 +121,19 @@ struct Rays {
 };
 
 HitsObject first_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                      const py::object& most) {
+                      const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return hits_of(ask(mesh, rays.count(), [&](const MeshQueries& m) { return m.first_hits(batch); }));
+    return hits_of(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
 /// Returns AllHits, and whether each ray runs in the planes of all triangles that it meets there.
 py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                              const py::object& most) {
+                              const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
     std::vector<std::int64_t> ray;
-    AllMeshHits all = ask(mesh, rays.count(), [&](const MeshQueries& m) {
+    AllMeshHits all = ask(mesh, rays.count(), transform, [&](const auto& m) {
         AllMeshHits found = m.all_hits(batch);
         ray.reserve(found.first.back());
         for (std::size_t i = 0; i + 1 < found.first.size(); ++i) {
@@ -129,60 +148,74 @@ py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins
 }
 
 AllHitsObject all_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                       const py::object& most) {
-    return py::object(all_hits_and_planes(mesh, origins, directions, most)[0]);
+                       const py::object& most, const py::object& transform) {
+    return py::object(all_hits_and_planes(mesh, origins, directions, most, transform)[0]);
 }
 
 py::array count_hits(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                     const py::object& most) {
+                     const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given(ask(mesh, rays.count(), [&](const MeshQueries& m) { return m.count_hits(batch); }));
+    return given(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.count_hits(batch); }));
 }
 
 py::array occluded(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
-                   const py::object& most) {
+                   const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
     const RayBatch batch = rays.batch();
-    return given_flags(ask(mesh, rays.count(), [&](const MeshQueries& m) { return m.occluded(batch); }));
+    return given_flags(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.occluded(batch); }));
 }
 
-py::array inside(const MeshQueries& mesh, const py::object& where) {
+InsideRule rule_named(const std::string& name) {
+    if (name == "parity") return InsideRule::parity;
+    if (name == "winding") return InsideRule::winding;
+    throw InputError(fmt::format("rule: found \"{}\", expected \"parity\" or \"winding\"", name));
+}
+
+py::array inside(const MeshQueries& mesh, const py::object& where, const std::string& rule,
+                 const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    return given_flags(ask(mesh, places.shape(0), [&](const MeshQueries& m) { return m.inside(points(places)); }));
+    const InsideRule chosen = rule_named(rule);
+    return given_flags(
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.inside(points(places), chosen); }));
 }
 
-py::array winding_numbers(const MeshQueries& mesh, const py::object& where) {
+py::array winding_numbers(const MeshQueries& mesh, const py::object& where, const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    return given(ask(mesh, places.shape(0), [&](const MeshQueries& m) { return m.winding_numbers(points(places)); }));
+    return given(
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.winding_numbers(points(places)); }));
 }
 
-HitsObject closest_points(const MeshQueries& mesh, const py::object& where, double within) {
+HitsObject closest_points(const MeshQueries& mesh, const py::object& where, double within,
+                          const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
     NearestPoints found =
-        ask(mesh, places.shape(0), [&](const MeshQueries& m) { return m.closest_points(points(places), within); });
+        ask(mesh, places.shape(0), transform, [&](const auto& m) { return m.closest_points(points(places), within); });
     return result("Hits")(given(std::move(found.triangle)), given(std::move(found.distance)),
                           given(std::move(found.point)));
 }
 
-py::array signed_distances(const MeshQueries& mesh, const py::object& where) {
+py::array signed_distances(const MeshQueries& mesh, const py::object& where, const std::string& rule,
+                           const py::object& transform) {
     const Doubles places = numbers(where, "points", 3);
-    return given(ask(mesh, places.shape(0), [&](const MeshQueries& m) { return m.signed_distances(points(places)); }));
+    const InsideRule chosen = rule_named(rule);
+    return given(ask(mesh, places.shape(0), transform,
+                     [&](const auto& m) { return m.signed_distances(points(places), chosen); }));
 }
 
 HitsObject sweep(const MeshQueries& mesh, const py::object& from, const py::object& to, const py::object& radius,
-                 const py::object& vertices_after) {
+                 const py::object& vertices_after, const py::object& transform) {
     Doubles starts = vectors(from, "from_points");
     Doubles ends = vectors(to, "to_points");
     repeat_one(starts, ends, "from_points");
     repeat_one(ends, starts, "to_points");
     const Doubles radii = numbers_or_one(radius, "radius");
     if (vertices_after.is_none()) {
-        return hits_of(ask(mesh, starts.shape(0),
-                           [&](const MeshQueries& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
+        return hits_of(ask(mesh, starts.shape(0), transform,
+                           [&](const auto& m) { return m.sweep(points(starts), points(ends), values(radii)); }));
     }
     const Doubles after = numbers(vertices_after, "vertices_after", 3);
-    return hits_of(ask(mesh, starts.shape(0), [&](const MeshQueries& m) {
+    return hits_of(ask(mesh, starts.shape(0), transform, [&](const auto& m) {
         return m.sweep_moving(points(starts), points(ends), values(radii), points(after));
     }));
 }
@@ -216,9 +249,26 @@ py::array bounds_of(const MeshQueries& mesh) {
     return given(std::vector<Vec3>{box.lower, box.upper});
 }
 
-MeshQueries read(const std::filesystem::path& file) {
+/// As a scene reads it: first the axis that points up, then the unit.
+MeshQueries read(const std::filesystem::path& file, const std::optional<std::string>& up, double scale,
+                 const std::optional<double>& merge) {
+    if (up && *up != "y" && *up != "z") {
+        throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
+    }
+    if (!(scale > 0.0) || !std::isfinite(scale)) {
+        throw InputError(fmt::format("scale: found {}, expected a finite number above 0, such as 0.001 for mm", scale));
+    }
     const Unlocked unlocked;
-    return MeshQueries(read_mesh(file.string()).mesh);
+    ImportedMesh imported = read_mesh(file.string());
+    const bool turns_up = up == "y" && !imported.y_up;
+    const bool turns_back = up == "z" && imported.y_up;
+    for (Vec3& vertex : imported.mesh.vertices) {
+        if (turns_up) vertex = y_up_as_z_up(vertex);
+        if (turns_back) vertex = z_up_as_y_up(vertex);
+        if (scale != 1.0) vertex = scale * vertex;
+    }
+    if (merge) return MeshQueries(merged_within(imported.mesh, *merge));
+    return MeshQueries(std::move(imported.mesh));
 }
 
 constexpr const char* kMeshText = R"(A mesh of triangles, and exact questions about it.
@@ -227,38 +277,48 @@ vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 
 
 Whether a ray hits, and what it hits first, is decided exactly for the doubles given: also at edges and vertices, also far
 from the origin. Answers are the same bits for any number of threads and any order. Questions run on all threads and let
-other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.)";
+other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.
+
+transform: a matrix of shape (4, 4) that places the mesh for one question: a rotation or reflection times one scale, and a
+translation. The question is mapped and rounded, and nothing is copied.)";
 
 void bind_rays(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("first_hits", &first_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none(),
              "The first hit of each ray. Directions have any length above 0; one origin may stand for all rays, or one "
              "direction. most: how far rays reach, in metres, one number or one each.")
         .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none(),
              "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
              "and a way along the surface is where it begins.")
-        .def("_all_hits_and_planes", &all_hits_and_planes, arg("origins"), arg("directions"), arg("most") = py::none())
+        .def("_all_hits_and_planes", &all_hits_and_planes, arg("origins"), arg("directions"), arg("most") = py::none(),
+             arg("transform") = py::none())
         .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
-             "How many places all_hits() finds for each ray.")
+             arg("transform") = py::none(), "How many places all_hits() finds for each ray.")
         .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
-             "Whether each ray hits anything; cheaper than first_hits().");
+             arg("transform") = py::none(), "Whether each ray hits anything; cheaper than first_hits().");
 }
 
 void bind_points(py::class_<MeshQueries>& type) {
     using py::arg;
-    type.def("inside", &inside, arg("points"),
-             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed.")
-        .def("winding_numbers", &winding_numbers, arg("points"),
+    type.def("inside", &inside, arg("points"), arg("rule") = "parity", arg("transform") = py::none(),
+             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed. rule: "
+             "\"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not 0: "
+             "overlapping shells are joined).")
+        .def("winding_numbers", &winding_numbers, arg("points"), arg("transform") = py::none(),
              "How often the mesh winds around each point: 1 inside a closed mesh wound outward, 0 outside, added up "
-             "where "
-             "shells overlap. In an open mesh between: above 1/2 where the surface surrounds more than half of the "
-             "point.")
+             "where shells overlap and triangles repeat. In an open mesh between: above 1/2 where the surface "
+             "surrounds more than half of the point.")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
+             arg("transform") = py::none(),
              "The point of the mesh nearest to each point, where one is within that distance.")
-        .def("signed_distances", &signed_distances, arg("points"),
-             "Distance of each point from the surface, negative inside. The mesh must be closed.")
+        .def("signed_distances", &signed_distances, arg("points"), arg("rule") = "parity",
+             arg("transform") = py::none(),
+             "Distance of each point from the surface, negative inside by the rule of inside(). The mesh must be "
+             "closed.")
         .def("sweep", &sweep, arg("from_points"), arg("to_points"), arg("radius") = 0.0,
-             arg("vertices_after") = py::none(),
+             arg("vertices_after") = py::none(), arg("transform") = py::none(),
              "What points, or spheres of a radius (one number or one each), meet first on straight ways. "
              "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
 }
@@ -292,7 +352,11 @@ void bind_mesh(py::module_& module) {
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))
-        .def_static("read", &read, arg("file"), "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles.")
+        .def_static(
+            "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
+            "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
+            "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres. merge: joins "
+            "vertices within that distance, m (0: equal positions); no vertex moves farther.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")
@@ -301,8 +365,10 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
             "Of a closed mesh; above 0 where it is wound outward.")
-        .def_property_readonly("is_closed", &MeshQueries::is_closed,
-                               "Whether every edge has an even number of triangles.")
+        .def_property_readonly(
+            "is_closed", &MeshQueries::is_closed,
+            "Whether there is an inside: every edge has an even number of triangles. Vertices at equal "
+            "positions count as one, and repeated triangles once. The winding has no influence.")
         .def("set_vertices", &set_vertices, arg("vertices"),
              "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
         .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })

@@ -17,6 +17,7 @@
 #include "ricochet/collision/signed_distance.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/simulation/validation.h"
 
@@ -101,9 +102,10 @@ const std::vector<MeshInterior>& CollisionQueries::Impl::interiors() const {
     std::call_once(interiors_made_, [&] {
         for (std::size_t i = 0; i < world->colliders().size(); ++i) {
             auto mesh = world->mesh_of(i);
-            if (mesh && is_closed(*mesh)) {
-                interiors_.emplace_back(std::make_shared<const TriangleMesh>(std::move(*mesh)));
-            }
+            if (!mesh) continue;
+            const ClosedSurface surface = closed_surface(*mesh);
+            if (!surface.closed) continue;
+            interiors_.emplace_back(std::make_shared<const TriangleMesh>(std::move(*mesh)), surface.left_out);
         }
     });
     return interiors_;

@@ -89,6 +89,8 @@ protected:
     }
     static std::string gravity() { return R"(, "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}])"; }
 
+    SampleFolder& folder() { return folder_; }
+
 private:
     SampleFolder folder_;
 };
@@ -105,6 +107,25 @@ TEST_F(CheckWarnings, TellsOfALeakOnlyToWhatBeginsInside) {
     EXPECT_EQ(warnings(mesh("leaky.obj") + outside), "");
     EXPECT_EQ(warnings(mesh("hull.obj") + inside), "");
     EXPECT_EQ(warnings(mesh("funnel.obj") + inside), "");
+}
+
+TEST_F(CheckWarnings, TellsOfShellsThatOverlapInOneMesh) {
+    const TriangleMesh cube = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    const auto write = [&](const char* name, const TriangleMesh& other) {
+        (void)folder().write(name, obj_of(testing::merged(cube, other)));
+    };
+    write("overlap.obj", testing::box_mesh({0.5, 0.25, 0.125}, {1.5, 1.25, 1.125}));
+    write("touch.obj", testing::box_mesh({1, 0.25, 0.25}, {2, 0.75, 0.75}));
+    write("nest.obj", testing::box_mesh({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}));
+    const std::string one = R"(, "particles": [{"position": [0, 0, 3]}])";
+    EXPECT_EQ(warnings(mesh("overlap.obj") + one).rfind("colliders[0] 'c': shells of its mesh overlap", 0), 0U);
+    EXPECT_EQ(warnings(mesh("touch.obj") + one), "");
+    EXPECT_EQ(warnings(mesh("nest.obj") + one), "");
+    const auto volume = [](const std::string& file) {
+        return R"("emitters": [{"name": "e", "burst": 10, "type": "mesh", "volume": true, "file": ")" + file + "\"}]";
+    };
+    EXPECT_EQ(warnings(volume("overlap.obj")).rfind("emitters[0] 'e': shells of its mesh overlap", 0), 0U);
+    EXPECT_EQ(warnings(volume("touch.obj")), "");
 }
 
 TEST_F(CheckWarnings, TellsOfStartsOnBothSidesOfAClosedCollider) {

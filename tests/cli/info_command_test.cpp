@@ -189,7 +189,7 @@ TEST(InfoCommand, PrintsATableWithAWarningPerDefect) {
     const test::TemporaryFolder folder;
     const test::ProgramResult result = test::run_ricochet({"info", folder.write("t.obj", kOpen)});
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_NE(result.output.find("volume                none (open surface)\n"), std::string::npos) << result.output;
+    EXPECT_NE(result.output.find("volume                none (not closed)\n"), std::string::npos) << result.output;
     EXPECT_NE(result.output.find("warning: open surface, 3 boundary edges in 1 loop: particles pass"),
               std::string::npos);
     EXPECT_NE(result.output.find("warning: 1 vertex belongs to no face"), std::string::npos);

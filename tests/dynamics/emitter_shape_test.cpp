@@ -99,6 +99,22 @@ TEST(EmitterShape, AMeshVolumeIsFilledUniformly) {
     expect_uniform(places, 40, [](const LaunchPlace& p) { return 0.5 * (1.0 + p.direction.z); });
 }
 
+// As programs write it that give each side of a seam vertices of its own; with a face listed twice.
+TEST(EmitterShape, AMeshVolumeWithSeamsAndARepeatedFaceIsFilledAsTheClosedMesh) {
+    const TriangleMesh box = testing::box_mesh({-1, 0, 2}, {1, 3, 2.5});
+    TriangleMesh seamed;
+    for (const Triangle& t : box.triangles) {
+        const auto first = static_cast<std::uint32_t>(seamed.vertices.size());
+        for (const std::uint32_t v : t) seamed.vertices.push_back(box.vertices[v]);
+        seamed.triangles.push_back({first, first + 1, first + 2});
+    }
+    seamed.triangles.push_back(seamed.triangles[4]);
+    const auto places = samples(MeshVolumeShape{shared(seamed)});
+    const auto expected = samples(MeshVolumeShape{shared(box)});
+    ASSERT_EQ(places.size(), expected.size());
+    for (std::size_t k = 0; k < places.size(); ++k) ASSERT_EQ(places[k].position, expected[k].position);
+}
+
 TEST(EmitterShape, ABallWithAHoleIsFilledByVolumeAndTheHoleStaysEmpty) {
     const TriangleMesh shell =
         testing::merged(testing::sphere_mesh({}, 2.0, 3), testing::flipped(testing::sphere_mesh({}, 1.0, 3)));

@@ -73,10 +73,15 @@ TEST(MeshInterior, RaysThroughVerticesAndAlongEdgesAreCountedRight) {
     }
 }
 
-// Each of large triangles one upon the other lies in every column.
+// Each of large triangles one upon the other lies in every column. Both sides of a sheet count.
 TEST(MeshInterior, TakesMemoryInProportionToTheTriangles) {
     TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
-    for (int k = 0; k < 10000; ++k) mesh.triangles.insert(mesh.triangles.end(), {{0, 1, 2}, {0, 1, 2}});
+    for (std::uint32_t k = 0; k < 10000; ++k) {
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+        const double z = 0.25 + 1e-5 * k;
+        mesh.vertices.insert(mesh.vertices.end(), {{0, 0, z}, {1, 0, z}, {0, 1, z}});
+        mesh.triangles.insert(mesh.triangles.end(), 2, {first, first + 1, first + 2});
+    }
     const auto many = shared(std::move(mesh));
     const test::AllocationGuard guard;
     const MeshInterior interior(many);

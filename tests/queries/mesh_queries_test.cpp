@@ -175,5 +175,27 @@ TEST(MeshQueries, AnswerAtEverySizeOrRefuseItByName) {
     }
 }
 
+TEST(MeshQueries, SeamsAndRepeatedTrianglesLeaveAMeshClosed) {
+    const TriangleMesh sphere = testing::sphere_mesh({0, 0, 0}, 1.0, 2);
+    TriangleMesh seamed;
+    for (const Triangle& t : sphere.triangles) {
+        const auto first = static_cast<std::uint32_t>(seamed.vertices.size());
+        for (const std::uint32_t v : t) seamed.vertices.push_back(sphere.vertices[v]);
+        seamed.triangles.push_back({first, first + 1, first + 2});
+    }
+    seamed.triangles.push_back(seamed.triangles[7]);
+    MeshQueries mesh(seamed);
+    EXPECT_TRUE(mesh.is_closed());
+    EXPECT_EQ(mesh.mesh().vertices.size(), seamed.vertices.size());
+    const Points points{{0.1, 0.2, 0.3}, {2, 0, 0}, {0, 0, -0.9}, {0, 0, -1.1}};
+    EXPECT_EQ(mesh.inside(points), (std::vector<std::uint8_t>{1, 0, 1, 0}));
+    EXPECT_EQ(mesh.signed_distances(points), MeshQueries(sphere).signed_distances(points));
+    // Moved vertices are joined anew.
+    seamed.vertices[0] = 1.5 * seamed.vertices[0];
+    mesh.set_vertices(seamed.vertices);
+    EXPECT_FALSE(mesh.is_closed());
+    EXPECT_THROW((void)mesh.inside(points), InputError);
+}
+
 }  // namespace
 }  // namespace ricochet

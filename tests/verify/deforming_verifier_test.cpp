@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "ricochet/verify/checked_deformation.h"
 #include "ricochet/verify/verifier.h"
 #include "support/simple_meshes.h"
 
@@ -144,6 +145,28 @@ TEST(ADeformingMesh, SeesASphereThatItHasReached) {
               0U);
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.6}, 0.0}, {{0.2, 0.2, 0.6}, 0.55}}, 0.1), ViolationKind::overlap),
               1U);
+}
+
+/// Each triangle has vertices of its own, as exporters write seams.
+TEST(DeformingVerifier, SeamsThatStayTogetherCloseAMeshAndThoseThatOpenDoNot) {
+    const TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    VerifiedDeformation seamed;
+    seamed.times = {0.0, 1.0};
+    seamed.vertices.resize(2);
+    for (const Triangle& t : box.triangles) {
+        const auto first = static_cast<std::uint32_t>(seamed.vertices[0].size());
+        for (const std::uint32_t v : t) {
+            seamed.vertices[0].push_back(box.vertices[v]);
+            seamed.vertices[1].push_back(2.0 * box.vertices[v]);
+        }
+        seamed.triangles.push_back({first, first + 1, first + 2});
+    }
+    const verify::CheckedDeformation closed(0, seamed);
+    ASSERT_TRUE(closed.is_closed());
+    EXPECT_EQ(closed.side({0.5, 0.25, 0.5}, 0.5), Side::inside);
+    EXPECT_EQ(closed.side({1.75, 1.75, 1.8}, 0.5), Side::outside);
+    seamed.vertices[1][7].z += 0.5;
+    EXPECT_FALSE(verify::CheckedDeformation(0, seamed).is_closed());
 }
 
 }  // namespace

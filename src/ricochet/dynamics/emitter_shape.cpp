@@ -7,8 +7,8 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -79,11 +79,11 @@ std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
 }
 
 void check_volume(const TriangleMesh& mesh) {
-    const TopologyReport report = MeshTopology(mesh).report();
-    require(report.closed && report.nonmanifold_edges == 0, "the mesh is not closed, so it has no inside");
+    require(is_closed(mesh), "the mesh is not closed, so it has no inside");
     const Vec3 size = bounds(mesh).size();
     const double box = size.x * size.y * size.z;
-    require(std::isfinite(box) && std::fabs(signed_volume(mesh)) >= ShapeSampler::kSmallestFill * box && box > 0.0,
+    require(std::isfinite(box) &&
+                std::fabs(signed_volume(counted_surface(mesh))) >= ShapeSampler::kSmallestFill * box && box > 0.0,
             "the mesh's volume is less than a ten thousandth of its box");
 }
 

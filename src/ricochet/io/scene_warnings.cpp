@@ -16,6 +16,8 @@
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -153,6 +155,7 @@ public:
 
     std::vector<std::string> lines() {
         review_surfaces();
+        review_emitted_volumes();
         if (auto line = long_step_warning(simulation_.options(), extent(), fall_)) lines_.push_back(std::move(*line));
         std::ranges::move(pair_method_warnings(simulation_, fall_), std::back_inserter(lines_));
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
@@ -167,6 +170,8 @@ private:
     [[nodiscard]] Box3 extent() const;
     void review_surfaces();
     void review_area(const TriangleMesh& mesh, const std::string& where);
+    void review_shells(const TriangleMesh& mesh, const std::string& where);
+    void review_emitted_volumes();
     void review_collider(std::size_t i);
     void review_precision(const TriangleMesh& mesh, const std::string& where);
     void review_sides(const Starts& starts, const Solid& solid, const std::string& where);
@@ -239,6 +244,7 @@ void SceneReview::review_collider(std::size_t i) {
         const TriangleMesh mesh = *simulation_.collider_mesh(i);
         review_precision(mesh, where);
         review_area(mesh, where);
+        review_shells(mesh, where);
     }
     if (const std::optional<OpenMesh> open = open_mesh(simulation_, i, where)) {
         for (const Starts& starts : starts_) {
@@ -259,6 +265,21 @@ void SceneReview::review_area(const TriangleMesh& mesh, const std::string& where
     lines_.push_back(
         fmt::format("{}: none of its triangles ({}) has an area, so that nothing hits it: look at the file", where,
                     mesh.triangles.size()));
+}
+
+/// Open meshes have no inside that an overlap could be missing from.
+void SceneReview::review_shells(const TriangleMesh& mesh, const std::string& where) {
+    if (!is_closed(mesh) || !shells_overlap(mesh)) return;
+    lines_.push_back(where +
+                     ": shells of its mesh overlap: every triangle stops particles, but an overlap of two counts as "
+                     "outside for emitters and inside tests; join the shells if that is not meant");
+}
+
+void SceneReview::review_emitted_volumes() {
+    for (std::size_t k = 0; k < emitters_.size(); ++k) {
+        const auto* const volume = std::get_if<MeshVolumeShape>(&emitters_[k].shape);
+        if (volume != nullptr && volume->mesh) review_shells(*volume->mesh, named("emitters", k, emitters_[k].name));
+    }
 }
 
 /// What coordinates far from the origin leave of small triangles.

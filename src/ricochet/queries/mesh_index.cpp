@@ -50,10 +50,6 @@ MeshIndex::MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices) {
     require_same_length(vertices.size(), other.mesh().vertices.size(), "vertices");
     mesh_ = std::make_shared<const TriangleMesh>(checked({{vertices.begin(), vertices.end()}, other.mesh().triangles}));
     clusters_ = std::make_shared<const TriangleClusters>(refitted(*other.clusters_, mesh_->vertices, mesh_->triangles));
-    {
-        const std::lock_guard lock(other.making_);
-        closed_ = other.closed_;  // of the triangles alone
-    }
     finish();
 }
 
@@ -83,17 +79,24 @@ const TriangleBvh& MeshIndex::hierarchy(double radius) const {
 
 bool MeshIndex::is_closed() const {
     const std::lock_guard lock(making_);
-    if (!closed_) closed_ = ricochet::is_closed(*mesh_);
-    return *closed_;
+    if (!closed_) closed_ = closed_surface(*mesh_);
+    return closed_->closed;
 }
 
-const MeshInterior& MeshIndex::interior() const {
+const MeshInterior& MeshIndex::interior(InsideRule rule) const {
     if (!is_closed()) {
         throw InputError(
-            "mesh: found one that is open, expected a closed one: every edge with an even number of triangles");
+            "mesh: found one that is open, expected a closed one: every edge with an even number of triangles, "
+            "vertices "
+            "at equal positions being one and repeated triangles counted once");
     }
     const std::lock_guard lock(making_);
-    if (!interior_) interior_ = std::make_unique<MeshInterior>(mesh_);
+    if (rule == InsideRule::winding && !closed_->oriented) {
+        throw InputError(
+            "mesh: found triangles that are wound against their neighbours, expected a consistent winding for the rule "
+            "winding: repair the mesh, or choose the rule parity");
+    }
+    if (!interior_) interior_ = std::make_unique<MeshInterior>(mesh_, closed_->left_out);
     return *interior_;
 }
 

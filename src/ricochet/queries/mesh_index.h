@@ -12,6 +12,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/acceleration/triangle_bvh.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/queries/mesh_winding.h"
@@ -48,8 +49,8 @@ public:
     /// For spheres up to that radius, m; there is one for each power of two.
     [[nodiscard]] const TriangleBvh& hierarchy(double radius = 0.0) const;
     [[nodiscard]] bool is_closed() const;
-    /// Throws InputError where the mesh is open.
-    [[nodiscard]] const MeshInterior& interior() const;
+    /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and there is none.
+    [[nodiscard]] const MeshInterior& interior(InsideRule rule) const;
     [[nodiscard]] const std::vector<BoundaryEdge>& boundary() const;
 
 private:
@@ -62,7 +63,7 @@ private:
     std::unique_ptr<TriangleBvh> for_points_;
     mutable std::mutex making_;
     mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
-    mutable std::optional<bool> closed_;
+    mutable std::optional<ClosedSurface> closed_;
     mutable std::unique_ptr<MeshInterior> interior_;
     mutable std::optional<std::vector<BoundaryEdge>> boundary_;
 };

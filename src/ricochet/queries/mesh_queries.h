@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
@@ -76,7 +77,9 @@ public:
     /// than a new one. Answers are those of a new one. Copies of this object keep asking the old vertices. Throws as
     /// the constructor does, and for another number of vertices; then nothing has changed.
     void set_vertices(std::span<const Vec3> vertices);
-    /// Every edge has an even number of triangles: there is an inside.
+    /// Returns true if there is an inside: every edge belongs to an even number of triangles. Vertices at equal
+    /// positions are one vertex, and triangles that repeat an earlier one count once. The winding of the triangles has
+    /// no influence; where it changes, the signs of crossings and of the volume mean nothing.
     [[nodiscard]] bool is_closed() const;
 
     /// The first hit of every ray.
@@ -89,18 +92,21 @@ public:
     /// 1 for rays that hit anything; cheaper than first_hits().
     [[nodiscard]] std::vector<std::uint8_t> occluded(const RayBatch& rays) const;
 
-    /// 1 for points inside a closed mesh, exactly; 0 for points on its surface. InputError where the mesh is open.
-    [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points) const;
+    /// Returns 1 for points inside a closed mesh, exactly, and 0 for points on its surface. Throws InputError if the
+    /// mesh is open, or if the rule needs a consistent winding and there is none.
+    [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points,
+                                                   InsideRule rule = InsideRule::parity) const;
     /// Winding numbers of the mesh around points: 1 inside a closed mesh wound outward, -1 if it is wound inward, 0
-    /// outside, and added up where shells overlap. Around points beside an open mesh the part of all directions in
-    /// which its back faces the point, less that in which its front does. The error is at most some 2^-32 for each
-    /// boundary edge, and 2^-50 as a rule.
+    /// outside, and added up where shells overlap and triangles repeat. Around points beside an open mesh the part of
+    /// all directions in which its back faces the point, less that in which its front does. The error is at most some
+    /// 2^-32 for each boundary edge, and 2^-50 as a rule.
     [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
     /// The nearest points of the mesh; triangle kNoHit where none is within `within` (m, >= 0).
     [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,
                                                double within = std::numeric_limits<double>::infinity()) const;
-    /// Distance from the surface, m, negative inside; the sign is exact. InputError where the mesh is open.
-    [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points) const;
+    /// Returns distances from the surface, m, negative inside by the rule. The sign is exact. Throws as inside() does.
+    [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points,
+                                                       InsideRule rule = InsideRule::parity) const;
 
     /// What points (radius 0) or spheres on straight ways meet first. radii: m, one for all or one each. For points the
     /// closed segment between the two positions decides, exactly. `distance` is the fraction of the way, `point` the

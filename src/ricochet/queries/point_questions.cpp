@@ -71,10 +71,10 @@ void for_each_point(std::span<const Vec3> points, const Answer& answer) {
 
 }  // namespace
 
-std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points) const {
-    const MeshInterior& interior = index_->interior();
+std::vector<std::uint8_t> MeshQueries::inside(std::span<const Vec3> points, InsideRule rule) const {
+    const MeshInterior& interior = index_->interior(rule);
     std::vector<std::uint8_t> answers(points.size());
-    for_each_point(points, [&](std::size_t i) { answers[i] = interior.contains(points[i]) ? 1 : 0; });
+    for_each_point(points, [&](std::size_t i) { answers[i] = interior.contains(points[i], rule) ? 1 : 0; });
     return answers;
 }
 
@@ -103,13 +103,13 @@ NearestPoints MeshQueries::closest_points(std::span<const Vec3> points, double w
     return result;
 }
 
-std::vector<double> MeshQueries::signed_distances(std::span<const Vec3> points) const {
-    const MeshInterior& interior = index_->interior();
+std::vector<double> MeshQueries::signed_distances(std::span<const Vec3> points, InsideRule rule) const {
+    const MeshInterior& interior = index_->interior(rule);
     std::vector<double> answers(points.size());
     for_each_point(points, [&](std::size_t i) {
         const auto found = nearest(*index_, points[i], kInfinity);
         const double far = found ? distance(*index_, *found, points[i]) : kInfinity;
-        answers[i] = interior.contains(points[i]) ? -far : far;
+        answers[i] = interior.contains(points[i], rule) ? -far : far;
     });
     return answers;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "ricochet/core/error.h"
@@ -19,12 +20,33 @@ void require(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
-/// Every edge belongs to an even number of sides.
-bool encloses(const std::vector<Triangle>& triangles) {
+/// Returns the smallest vertex that is at the same positions at all keys, for each vertex.
+std::vector<std::uint32_t> joined_vertices(const std::vector<std::vector<Vec3>>& keys) {
+    std::vector<std::uint32_t> order(keys.front().size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto compare = [&](std::uint32_t a, std::uint32_t b) {
+        for (const std::vector<Vec3>& key : keys) {
+            for (int axis = 0; axis < 3; ++axis) {
+                if (key[a][axis] != key[b][axis]) return key[a][axis] < key[b][axis] ? -1 : 1;
+            }
+        }
+        return 0;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return compare(a, b) < 0; });
+    std::vector<std::uint32_t> joined(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        joined[order[i]] = i > 0 && compare(order[i - 1], order[i]) == 0 ? joined[order[i - 1]] : order[i];
+    }
+    return joined;
+}
+
+/// Every edge belongs to an even number of sides. Vertices that are never apart are one.
+bool encloses(const VerifiedDeformation& surface) {
+    const std::vector<std::uint32_t> joined = joined_vertices(surface.vertices);
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
-    for (const Triangle& t : triangles) {
+    for (const Triangle& t : surface.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
-            bool& odd = is_odd[std::minmax(t[k], t[(k + 1) % 3])];
+            bool& odd = is_odd[std::minmax(joined[t[k]], joined[t[(k + 1) % 3]])];
             odd = !odd;
         }
     }
@@ -39,7 +61,7 @@ bool meet(const Box3& a, const Box3& b) {
 }  // namespace
 
 CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface)
-    : collider_(collider), surface_(std::move(surface)), is_closed_(encloses(surface_.triangles)) {
+    : collider_(collider), surface_(std::move(surface)) {
     require(surface_.times.size() > 1 && surface_.times.size() == surface_.vertices.size(),
             "verified mesh that deforms: expected two keys or more, and vertices at each");
     for (const std::vector<Vec3>& key : surface_.vertices) {
@@ -52,6 +74,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
                 "verified mesh that deforms: found a corner that is not there");
     }
     require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
+    is_closed_ = encloses(surface_);
     // What names a vertex twice never has an area.
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
         if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) order_.push_back(t);

@@ -84,7 +84,7 @@ GltfAccessor::GltfAccessor(const GltfPlace& accessor, GltfBuffers& buffers, std:
     : components_(components),
       type_(accessor.at("componentType").whole_number()),
       component_bytes_(bytes_of_type(accessor, type_)),
-      is_normalized_(accessor.flag("normalized")),
+      is_normalized_(accessor.flag("normalized", false)),
       count_(count_in(accessor)),
       stride_(components * component_bytes_) {
     const std::string expected = components == 3 ? "VEC3" : "SCALAR";

@@ -119,8 +119,9 @@ GltfBuffers::View GltfBuffers::view(const GltfPlace& owner, std::string_view key
     }
     const std::uint64_t stride = view.whole_number("byteStride", 0);
     constexpr std::uint64_t kLargestStride = 252;
-    if (view.has("byteStride") && (stride < 4 || stride > kLargestStride)) {
-        view.fail(fmt::format("found the byteStride {}, expected 4 to {}", stride, kLargestStride));
+    // Several exporters write 0 for elements that follow each other without a gap.
+    if (stride != 0 && (stride < 4 || stride > kLargestStride)) {
+        view.fail(fmt::format("found the byteStride {}, expected 4 to {}, or 0 for none", stride, kLargestStride));
     }
     return {bytes.substr(offset, length), static_cast<std::size_t>(stride)};
 }

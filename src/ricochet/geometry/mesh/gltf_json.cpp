@@ -68,7 +68,8 @@ public:
     bool key(std::string& name) override {
         if (skipped_depth_ > 0) return true;
         const bool is_top = open_.size() == 1;
-        const bool is_kept = is_top ? contains(kTopKeys, name) : !contains(kLeftOut, name);
+        if (is_top) is_in_nodes_ = name == "nodes";
+        const bool is_kept = is_top ? contains(kTopKeys, name) : is_kept_below(name);
         skips_next_ = !is_kept;
         // Of animations it matters whether there are any.
         if (is_kept || (is_top && name == "animations"))
@@ -87,6 +88,14 @@ public:
     GltfValue take() { return std::move(root_); }
 
 private:
+    // Of a node's extensions it matters whether they hide it.
+    [[nodiscard]] bool is_kept_below(std::string_view name) const {
+        constexpr std::size_t kInNode = 3;  // nodes[0] is the third of the open containers
+        if (is_in_nodes_ && open_.size() == kInNode && name == "extensions") return true;
+        if (is_in_nodes_ && open_.size() == kInNode + 1) return name == kGltfVisibility;
+        return !contains(kLeftOut, name);
+    }
+
     template <typename Value>
     bool add(Value value) {
         if (skipped_depth_ > 0) return true;
@@ -143,6 +152,7 @@ private:
     std::vector<GltfValue*> open_;
     std::size_t skipped_depth_ = 0;
     bool skips_next_ = false;
+    bool is_in_nodes_ = false;
     std::size_t count_ = 0;
 };
 
@@ -240,8 +250,8 @@ std::uint64_t GltfPlace::whole_number(std::string_view key, std::uint64_t otherw
     return has(key) ? at(key).whole_number() : otherwise;
 }
 
-bool GltfPlace::flag(std::string_view key) const {
-    if (!has(key)) return false;
+bool GltfPlace::flag(std::string_view key, bool otherwise) const {
+    if (!has(key)) return otherwise;
     const GltfPlace place = at(key);
     const auto* flag = std::get_if<bool>(&place.value_->value);
     if (flag == nullptr) place.fail_expected("true or false");

@@ -17,6 +17,9 @@
 
 namespace ricochet {
 
+/// The extension that hides nodes, the only one that is kept of `extensions`.
+inline constexpr std::string_view kGltfVisibility = "KHR_node_visibility";
+
 struct GltfMember;
 
 /// One JSON value.
@@ -83,7 +86,7 @@ public:
 
     // Values of keys that may be missing.
     [[nodiscard]] std::uint64_t whole_number(std::string_view key, std::uint64_t otherwise) const;
-    [[nodiscard]] bool flag(std::string_view key) const;
+    [[nodiscard]] bool flag(std::string_view key, bool otherwise) const;
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] std::optional<std::uint32_t> index_below(std::string_view key, std::size_t count,
                                                            std::string_view what) const;

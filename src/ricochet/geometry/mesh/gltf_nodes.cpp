@@ -17,9 +17,9 @@ constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 
 // What a file may require and triangles do not depend on.
-constexpr std::array<std::string_view, 7> kHarmless = {"KHR_materials_",       "KHR_texture_",        "EXT_texture_",
-                                                       "MSFT_texture_",        "KHR_lights_punctual", "KHR_xmp_json_ld",
-                                                       "KHR_animation_pointer"};
+constexpr std::array<std::string_view, 8> kHarmless = {
+    "KHR_materials_",      "KHR_texture_",    "EXT_texture_",          "MSFT_texture_",
+    "KHR_lights_punctual", "KHR_xmp_json_ld", "KHR_animation_pointer", kGltfVisibility};
 
 // Divided by the square of its length, so that quarter turns are exact whatever digits their root of 1/2 has.
 void turn(AffineMap& map, const GltfPlace& node, const std::vector<double>& q) {
@@ -72,7 +72,7 @@ public:
           has_parent_(nodes_.size(), false),
           is_reached_(nodes_.size(), false) {}
 
-    std::vector<PlacedGltfMesh> walk() {
+    GltfScenery walk() {
         find_parents();
         const GltfList scenes = document_.items("scenes");
         if (scenes.size() == 0) {
@@ -82,7 +82,7 @@ public:
         } else {
             walk_scene(scenes[document_.index_below("scene", scenes.size(), "scenes").value_or(0)]);
         }
-        return std::move(placed_);
+        return {std::move(placed_), hidden_nodes_};
     }
 
 private:
@@ -137,6 +137,10 @@ private:
 
     void enter(std::uint32_t number, const AffineMap& world_from_parent, std::optional<std::uint32_t> named) {
         const GltfPlace node = nodes_[number];
+        if (is_hidden(node)) {
+            ++hidden_nodes_;
+            return;
+        }
         const AffineMap world = joined(world_from_parent, parent_from(node));
         if (!node.text("name").empty()) named = number;
         if (const auto mesh = node.index_below("mesh", meshes_.size(), "meshes")) {
@@ -144,6 +148,11 @@ private:
             placed_.push_back({*mesh, world, named ? nodes_[*named].text("name") : std::string()});
         }
         open_.push_back({number, 0, world, named});
+    }
+
+    static bool is_hidden(const GltfPlace& node) {
+        if (!node.has("extensions") || !node.at("extensions").has(kGltfVisibility)) return false;
+        return !node.at("extensions").at(kGltfVisibility).flag("visible", true);
     }
 
     // What poses a mesh otherwise than its node does.
@@ -169,6 +178,7 @@ private:
     std::vector<bool> is_reached_;
     std::vector<Open> open_;
     std::vector<PlacedGltfMesh> placed_;
+    std::size_t hidden_nodes_ = 0;
 };
 
 bool lists(const GltfPlace& document, std::string_view key, std::string_view name) {
@@ -181,7 +191,7 @@ bool lists(const GltfPlace& document, std::string_view key, std::string_view nam
 
 }  // namespace
 
-std::vector<PlacedGltfMesh> placed_gltf_meshes(const GltfPlace& document) { return NodeWalk(document).walk(); }
+GltfScenery placed_gltf_meshes(const GltfPlace& document) { return NodeWalk(document).walk(); }
 
 void require_known_extensions(const GltfPlace& document) {
     if (lists(document, "extensionsUsed", kInstancing)) {

@@ -2,6 +2,7 @@
 /// Private to the glTF reader: which meshes a file shows, and where.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,9 +19,15 @@ struct PlacedGltfMesh {
     std::string name;        ///< the node's, or of the nearest node above that has one
 };
 
-/// The meshes of the scene that the file shows (of all its nodes where it has no scenes), parents before children.
-/// Throws InputError where nodes are no tree, or pose their mesh by joints or shapes.
-[[nodiscard]] std::vector<PlacedGltfMesh> placed_gltf_meshes(const GltfPlace& document);
+/// What the nodes of a file show.
+struct GltfScenery {
+    std::vector<PlacedGltfMesh> meshes;
+    std::size_t hidden_nodes = 0;  ///< left out, with all nodes below them: KHR_node_visibility hides them
+};
+
+/// Returns the meshes of the scene that the file shows (of all its nodes if it has no scenes), parents before children.
+/// Throws InputError if nodes are no tree, or pose their mesh by joints or shapes.
+[[nodiscard]] GltfScenery placed_gltf_meshes(const GltfPlace& document);
 
 /// Throws InputError where the file needs an extension that changes where triangles are and is not known here.
 void require_known_extensions(const GltfPlace& document);

@@ -108,9 +108,10 @@ public:
 
     ParsedMesh read(std::string format) {
         require_known_extensions(document_);
-        const std::vector<PlacedGltfMesh> placed = placed_gltf_meshes(document_);
-        reserve(placed);
-        for (const PlacedGltfMesh& one : placed) add(one);
+        const GltfScenery scenery = placed_gltf_meshes(document_);
+        hidden_nodes_ = scenery.hidden_nodes;
+        reserve(scenery.meshes);
+        for (const PlacedGltfMesh& one : scenery.meshes) add(one);
         ParsedMesh result = builder_.finish(std::move(format));
         result.files = buffers_.files();
         result.notes = notes();
@@ -233,6 +234,12 @@ private:
             notes.push_back(fmt::format("{} of points and lines left out: particles do not hit them",
                                         left_out_ == 1 ? "1 primitive" : fmt::format("{} primitives", left_out_)));
         }
+        if (hidden_nodes_ > 0) {
+            notes.push_back(fmt::format(
+                "{} by {} left out, with all below: particles pass there",
+                hidden_nodes_ == 1 ? "1 node that is hidden" : fmt::format("{} nodes that are hidden", hidden_nodes_),
+                kGltfVisibility));
+        }
         if (document_.has("animations")) {
             notes.emplace_back("animations are not played: everything stands as the nodes of the file say");
         }
@@ -254,6 +261,7 @@ private:
     std::map<std::uint32_t, GltfAccessor> indices_;
     PlacedMeshBuilder builder_;
     std::size_t left_out_ = 0;
+    std::size_t hidden_nodes_ = 0;
 };
 
 }  // namespace

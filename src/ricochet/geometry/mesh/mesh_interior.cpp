@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -30,12 +31,12 @@ bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
     return turn > 0;  // on a vertical edge the move to the right decides: p is not on the left
 }
 
-// True when the ray upwards from the moved point crosses the triangle.
-bool is_crossed(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+// Returns +1 if the ray upwards from the moved point crosses the triangle along its normal, -1 against it, or 0.
+int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
-    if (!covers) return false;
+    if (!covers) return 0;
     const int turn = orient2d(flat(a), flat(b), flat(c));
-    return turn != 0 && orient3d(a, b, c, p) == -turn;  // the normal's z has the sign of the turn
+    return turn != 0 && orient3d(a, b, c, p) == -turn ? turn : 0;  // the normal's z has the sign of the turn
 }
 
 bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
@@ -44,34 +45,33 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     return box.contains(p) && point_on_triangle(p, a, b, c);
 }
 
-}  // namespace
-
-bool is_closed(const TriangleMesh& mesh) {
-    std::vector<std::array<std::uint32_t, 2>> edges;
-    edges.reserve(3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = t[k];
-            const std::uint32_t b = t[(k + 1) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b)});
+/// Calls use(triangle) for all triangles of a mesh but those left out.
+template <class Use>
+void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>& left_out, const Use& use) {
+    auto skipped = left_out.begin();
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (skipped != left_out.end() && *skipped == t) {
+            ++skipped;
+        } else {
+            use(t);
         }
     }
-    std::sort(edges.begin(), edges.end());
-    for (std::size_t k = 0; k < edges.size();) {
-        std::size_t end = k;
-        while (end < edges.size() && edges[end] == edges[k]) ++end;
-        if ((end - k) % 2 != 0) return false;
-        k = end;
-    }
-    return !edges.empty();
 }
 
-MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
+}  // namespace
+
+bool is_closed(const TriangleMesh& mesh) { return closed_surface(mesh).closed; }
+
+MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh)
+    : MeshInterior(mesh, closed_surface(*mesh).left_out) {}
+
+MeshInterior::MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out)
+    : mesh_(std::move(mesh)), box_(bounds(*mesh_)) {
     cells_ =
         static_cast<std::size_t>(std::clamp(std::sqrt(static_cast<double>(mesh_->triangles.size())), 1.0, kMaxCells));
     const std::size_t most = kEntries + kEntriesPerTriangle * mesh_->triangles.size();
-    while (cells_ > 1 && entries() > most) cells_ /= 2;
-    fill_columns();
+    while (cells_ > 1 && entries(left_out) > most) cells_ /= 2;
+    fill_columns(left_out);
 }
 
 MeshInterior::Columns MeshInterior::columns_of(const Triangle& t) const {
@@ -81,12 +81,12 @@ MeshInterior::Columns MeshInterior::columns_of(const Triangle& t) const {
 }
 
 /// How many there are in the lists of all columns.
-std::size_t MeshInterior::entries() const {
+std::size_t MeshInterior::entries(const std::vector<std::uint32_t>& left_out) const {
     std::size_t count = 0;
-    for (const Triangle& t : mesh_->triangles) {
-        const auto [first, last] = columns_of(t);
+    for_each_counted(*mesh_, left_out, [&](std::uint32_t t) {
+        const auto [first, last] = columns_of(mesh_->triangles[t]);
         count += (last[0] - first[0] + 1) * (last[1] - first[1] + 1);
-    }
+    });
     return count;
 }
 
@@ -98,37 +98,39 @@ std::size_t MeshInterior::cell_of(double value, int axis) const {
     return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(cells_ - 1)));
 }
 
-void MeshInterior::fill_columns() {
+void MeshInterior::fill_columns(const std::vector<std::uint32_t>& left_out) {
     column_begin_.assign(cells_ * cells_ + 1, 0);
-    const auto for_each_column = [&](const Triangle& t, auto&& use) {
-        const auto [first, last] = columns_of(t);
-        for (std::size_t y = first[1]; y <= last[1]; ++y) {
-            for (std::size_t x = first[0]; x <= last[0]; ++x) use(y * cells_ + x);
-        }
+    const auto for_each_column = [&](auto&& use) {
+        for_each_counted(*mesh_, left_out, [&](std::uint32_t t) {
+            const auto [first, last] = columns_of(mesh_->triangles[t]);
+            for (std::size_t y = first[1]; y <= last[1]; ++y) {
+                for (std::size_t x = first[0]; x <= last[0]; ++x) use(y * cells_ + x, t);
+            }
+        });
     };
-    for (const Triangle& t : mesh_->triangles) for_each_column(t, [&](std::size_t k) { ++column_begin_[k + 1]; });
+    for_each_column([&](std::size_t k, std::uint32_t /*triangle*/) { ++column_begin_[k + 1]; });
     for (std::size_t k = 1; k < column_begin_.size(); ++k) column_begin_[k] += column_begin_[k - 1];
     column_triangles_.resize(column_begin_.back());
     std::vector<std::uint32_t> next(column_begin_.begin(), column_begin_.end() - 1);
-    for (std::size_t t = 0; t < mesh_->triangles.size(); ++t) {
-        for_each_column(mesh_->triangles[t],
-                        [&](std::size_t k) { column_triangles_[next[k]++] = static_cast<std::uint32_t>(t); });
-    }
+    for_each_column([&](std::size_t k, std::uint32_t t) { column_triangles_[next[k]++] = t; });
 }
 
-bool MeshInterior::contains(const Vec3& point) const {
+bool MeshInterior::contains(const Vec3& point, InsideRule rule) const {
     if (!is_finite(point) || !box_.contains(point)) return false;
     const std::size_t column = cell_of(point.y, 1) * cells_ + cell_of(point.x, 0);
-    bool inside = false;
+    std::int64_t crossings = 0;
+    std::int64_t winding = 0;
     for (std::uint32_t k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
         const Triangle& t = mesh_->triangles[column_triangles_[k]];
         const Vec3& a = mesh_->vertices[t[0]];
         const Vec3& b = mesh_->vertices[t[1]];
         const Vec3& c = mesh_->vertices[t[2]];
         if (is_on(a, b, c, point)) return false;
-        if (is_crossed(a, b, c, point)) inside = !inside;
+        const int sign = crossing(a, b, c, point);
+        crossings += sign != 0 ? 1 : 0;
+        winding += sign;
     }
-    return inside;
+    return rule == InsideRule::parity ? crossings % 2 != 0 : winding != 0;
 }
 
 }  // namespace ricochet

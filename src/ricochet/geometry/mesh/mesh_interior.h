@@ -15,21 +15,23 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet {
 
-/// True when every edge has an even number of triangles, so that there is an inside.
+/// Returns true if the mesh separates an inside from an outside, see closed_surface.h.
 [[nodiscard]] bool is_closed(const TriangleMesh& mesh);
 
-/// Thread-safe. For closed meshes only (TopologyReport::closed). A point inside an even number of nested shells is
-/// outside.
+/// Thread-safe. For closed meshes only (closed_surface.h).
 class MeshInterior {
 public:
     explicit MeshInterior(std::shared_ptr<const TriangleMesh> mesh);
+    /// left_out: what closed_surface() says of the mesh.
+    MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out);
 
     /// Exact; false for a point on the surface itself.
-    [[nodiscard]] bool contains(const Vec3& point) const;
+    [[nodiscard]] bool contains(const Vec3& point, InsideRule rule = InsideRule::parity) const;
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:
@@ -39,9 +41,9 @@ private:
         std::array<std::size_t, 2> last;
     };
     [[nodiscard]] Columns columns_of(const Triangle& t) const;
-    [[nodiscard]] std::size_t entries() const;
+    [[nodiscard]] std::size_t entries(const std::vector<std::uint32_t>& left_out) const;
     [[nodiscard]] std::size_t cell_of(double value, int axis) const;
-    void fill_columns();
+    void fill_columns(const std::vector<std::uint32_t>& left_out);
 
     std::shared_ptr<const TriangleMesh> mesh_;
     Box3 box_;

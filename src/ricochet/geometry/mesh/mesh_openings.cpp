@@ -8,6 +8,7 @@
 #include <span>
 
 #include "ricochet/core/box3.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {
@@ -61,7 +62,7 @@ double width_of(const TriangleMesh& mesh, std::span<const std::uint32_t> loop) {
 
 std::vector<MeshOpening> openings_of(const TriangleMesh& mesh) {
     std::vector<MeshOpening> openings;
-    for (const std::vector<std::uint32_t>& loop : MeshTopology(mesh).boundary_loops()) {
+    for (const std::vector<std::uint32_t>& loop : MeshTopology(joined_by_position(mesh)).boundary_loops()) {
         Box3 box;
         for (const std::uint32_t v : loop) box.include(mesh.vertices[v]);
         openings.push_back({width_of(mesh, loop), box.diagonal()});

@@ -15,9 +15,9 @@ struct MeshOpening {
     double diameter = 0.0;  ///< m, diagonal of its box
 };
 
-/// One for each of MeshTopology::boundary_loops(). The width is the smallest extent of the loop in the plane in which
-/// it encloses most, across its edges (up to some 500) and in 90 more directions: exact for convex loops; 0 for a loop
-/// that encloses nothing.
+/// One for each of MeshTopology::boundary_loops(), equal positions joined. The width is the smallest extent of the loop
+/// in the plane in which it encloses most, across its edges (up to some 500) and in 90 more directions: exact for
+/// convex loops; 0 for a loop that encloses nothing.
 [[nodiscard]] std::vector<MeshOpening> openings_of(const TriangleMesh& mesh);
 
 /// The part of all directions from p in which the surface stands with its back to p, less the part in which it faces p:

@@ -9,19 +9,23 @@
 /// Formats (sources: the OBJ appendix B1 of the Advanced Visualizer manual; G. Turk's PLY description; 3D Systems' STL
 /// description; the Geomview manual's OFF page):
 ///  - OBJ: v (x y z, with w or colours after them, which are not used), f with any number of corners and v, v/t, v//n,
-///    v/t/n, negative indices, continuation lines; texture coordinates, normals, points, lines and render settings are
-///    ignored; free-form curves and surfaces, `call` and `csh` are refused.
+///    v/t/n, negative indices, continuation lines in every statement; texture coordinates, normals, points, lines and
+///    render settings are ignored; statements that OBJ does not have are left out and noted; free-form curves and
+///    surfaces, `call` and `csh` are refused. A comment ends the name after `usemtl`, `g` or `o`.
 ///  - PLY: ASCII and both binary byte orders, elements and properties in any order, unknown ones skipped, faces as
-///    vertex_indices or vertex_index lists, triangle strips.
-///  - STL: ASCII (several solids too) and binary, distinguished by size. Corners with equal coordinates become one
-///  vertex.
+///    vertex_indices or vertex_index lists, triangle strips. An unknown header line before the first element is left
+///    out and noted, later ones are refused.
+///  - STL: ASCII (several solids too, whose names are the groups of their facets) and binary, distinguished by size.
+///    Corners with equal coordinates become one vertex. Lines of an ASCII file may begin with '#' as comments; one byte
+///    or line end behind a binary file is left out and noted.
 ///  - glTF 2.0 (the Khronos specification), as text and binary: triangles, strips and fans where the nodes of its scene
 ///    put them, in metres. It has y up; what is read has z up: (x, y, z) is read as (x, -z, y). Meshes that skins or
-///    morph targets pose, and compressed ones, are refused; points and lines are left out and noted.
+///    morph targets pose, and compressed ones, are refused; points, lines, and nodes that KHR_node_visibility hides are
+///    left out and noted.
 ///  - FBX, DAE (Collada), 3DS and others by the Assimp library, where this build has it: coordinates have its single
 ///    precision, and time and memory are not bounded by the file's size.
-///  - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used); 4OFF, nOFF and binary OFF are
-///    refused.
+///  - OFF: with any of the prefixes ST, C, N (extra values per vertex are not used), by lines or as free-form text, the
+///    number of vertices also right behind the keyword; 4OFF, nOFF and binary OFF are refused.
 #pragma once
 
 #include <cstddef>

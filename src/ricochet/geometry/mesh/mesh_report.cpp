@@ -12,6 +12,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -165,6 +166,23 @@ private:
     const TriangleMesh& mesh_;
 };
 
+/// The triangles that have an area, and their boxes.
+struct TriangleBoxes {
+    explicit TriangleBoxes(const TriangleMesh& mesh) {
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const Triangle& t = mesh.triangles[i];
+            if (are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
+            Box3 box;
+            for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
+            boxes.push_back(box);
+            numbers.push_back(i);
+        }
+    }
+
+    std::vector<std::uint32_t> numbers;
+    std::vector<Box3> boxes;
+};
+
 std::size_t count_degenerate(const TriangleMesh& mesh) {
     const auto without_area = [&mesh](const Triangle& t) {
         return are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
@@ -180,10 +198,17 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
 void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) {
     const TopologyReport& topology = report.topology;
     if (topology.closed) return;
+    if (topology.boundary_edges == 0) {
+        warnings.push_back(
+            "not closed, though without an opening: edges belong to three faces or another odd number of them, as "
+            "where walls part an inside, or polygons that are listed twice are cut along different diagonals, so "
+            "nothing leaks, but inside and outside cannot be told apart");
+        return;
+    }
     warnings.push_back(fmt::format("open surface, {} in {}: particles pass through the openings",
                                    counted(topology.boundary_edges, "boundary edge", "boundary edges"),
                                    counted(topology.boundary_loops, "loop", "loops")));
-    if (report.weld) {
+    if (report.weld || report.joined_vertices > 0) {
         warnings.push_back(
             "corners are joined only where their coordinates are equal: facets that nearly meet leave a gap as "
             "wide as the difference, through which particles can pass");
@@ -236,7 +261,8 @@ void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warni
     }
     if (report.duplicate_faces > 0) {
         warnings.push_back(
-            fmt::format("{} an earlier face: nothing leaks, but inside and outside may not be told apart",
+            fmt::format("{} an earlier face: nothing leaks, and repeated faces count once where an inside is told from "
+                        "an outside",
                         counted(report.duplicate_faces, "face repeats", "faces repeat")));
     }
 }
@@ -293,19 +319,23 @@ std::vector<std::string> warnings_for(const MeshReport& report) {
     return warnings;
 }
 
+PolygonMesh joined_by_position(const ImportedMesh& imported, const TriangleMesh& joined) {
+    std::vector<std::uint32_t> renamed(imported.mesh.vertices.size());
+    std::iota(renamed.begin(), renamed.end(), 0U);
+    for (std::size_t t = 0; t < joined.triangles.size(); ++t) {
+        for (std::size_t k = 0; k < 3; ++k) renamed[imported.mesh.triangles[t][k]] = joined.triangles[t][k];
+    }
+    PolygonMesh polygons = imported.polygons;
+    for (std::uint32_t& corner : polygons.corners) corner = renamed[corner];
+    return polygons;
+}
+
 }  // namespace
 
 SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> numbers;
-    std::vector<Box3> boxes;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-        const Triangle& t = mesh.triangles[i];
-        if (are_collinear(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]])) continue;
-        Box3 box;
-        for (const std::uint32_t v : t) box.include(mesh.vertices[v]);
-        boxes.push_back(box);
-        numbers.push_back(i);
-    }
+    const TriangleBoxes triangles(mesh);
+    const std::vector<std::uint32_t>& numbers = triangles.numbers;
+    const std::vector<Box3>& boxes = triangles.boxes;
     const BoxTree tree(boxes);
     const PairTest intersect(mesh);
     std::size_t left = kPairTests + kPairTestsPerTriangle * boxes.size();
@@ -334,6 +364,26 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
     return result;
 }
 
+std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(const TriangleMesh& mesh,
+                                                                           const std::vector<std::uint32_t>& part_of,
+                                                                           std::size_t most) {
+    const PairTest intersect(mesh);
+    const TriangleBoxes triangles(mesh);
+    const std::vector<std::uint32_t>& numbers = triangles.numbers;
+    const BoxTree tree(triangles.boxes);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    std::size_t left = kPairTests + kPairTestsPerTriangle * numbers.size();
+    for (std::size_t i = 0; i < numbers.size() && pairs.size() < most && left > 0; ++i) {
+        tree.for_each_overlap(triangles.boxes[i], [&](std::uint32_t j) {
+            if (j <= i || left == 0) return;
+            --left;
+            if (part_of[numbers[i]] == part_of[numbers[j]] || pairs.size() == most) return;
+            if (intersect(numbers[i], numbers[j])) pairs.emplace_back(numbers[i], numbers[j]);
+        });
+    }
+    return pairs;
+}
+
 MeshReport report_on(const ImportedMesh& imported) {
     MeshReport report;
     report.format = imported.format;
@@ -342,15 +392,19 @@ MeshReport report_on(const ImportedMesh& imported) {
     report.triangles = imported.mesh.triangles.size();
     report.bounds = bounds(imported.mesh);
     report.area = surface_area(imported.mesh);
-    report.topology = MeshTopology(imported.mesh).report();
-    report.duplicate_faces = count_duplicate_faces(imported.polygons);
+    const TriangleMesh joined = joined_by_position(imported.mesh);
+    report.topology = MeshTopology(joined).report();
+    const std::size_t unused = count_unused_vertices(imported.mesh);
+    report.joined_vertices = report.topology.unused_vertices - unused;
+    report.topology.unused_vertices = unused;
+    report.duplicate_faces = count_duplicate_faces(joined_by_position(imported, joined));
     if (report.topology.closed) {
-        const double volume = signed_volume(imported.mesh);
+        const double volume = signed_volume(counted_surface(imported.mesh));
         report.volume = std::fabs(volume);
         report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
     }
     report.degenerate_triangles = count_degenerate(imported.mesh);
-    const SelfIntersections found = find_self_intersections(imported.mesh);
+    const SelfIntersections found = find_self_intersections(joined);
     report.self_intersections = found.pairs;
     report.self_intersections_are_all = found.are_all;
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;

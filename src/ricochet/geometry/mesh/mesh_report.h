@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -25,12 +27,13 @@ struct MeshReport {
     double area = 0.0;                     ///< m^2
     std::optional<double> volume;          ///< enclosed volume, m^3, not negative; nothing when the surface is open
     bool wound_inward = false;             ///< closed, and the faces' normals point to the inside
-    TopologyReport topology;               ///< of the collision mesh
+    TopologyReport topology;               ///< of the collision mesh, equal positions joined
+    std::size_t joined_vertices = 0;       ///< used vertices at the position of an earlier one, joined for the topology
     std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
     std::size_t degenerate_triangles = 0;  ///< exactly without area
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
-    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross: SelfIntersections::pairs
+    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, equal positions joined
     bool self_intersections_are_all = true;
     std::optional<WeldReport> weld;     ///< STL and glTF only
     bool y_up = false;                  ///< the file has y up; the bounds have z up
@@ -55,5 +58,10 @@ struct SelfIntersections {
 [[nodiscard]] inline std::size_t count_self_intersections(const TriangleMesh& mesh) {
     return find_self_intersections(mesh).pairs;
 }
+
+/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle. The
+/// search ends early after as many pairs with overlapping boxes.
+[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(
+    const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of, std::size_t most);
 
 }  // namespace ricochet

@@ -171,13 +171,33 @@ std::string_view TextCursor::word() {
     return {start, static_cast<std::size_t>(at_ - start)};
 }
 
-std::string_view TextCursor::rest_of_line() {
-    while (at_ != end_ && is_blank(*at_)) ++at_;
-    const char* start = at_;
-    while (at_ != end_ && !is_line_break(*at_)) ++at_;
-    const char* last = at_;
-    while (last != start && is_blank(last[-1])) --last;
-    return {start, static_cast<std::size_t>(last - start)};
+std::string TextCursor::rest_of_line() {
+    std::string rest;
+    while (!at_line_end()) {
+        const char* const start = at_;
+        const char* last = at_;  // behind the last word of this line
+        while (at_ != end_ && !is_line_break(*at_)) {
+            if (is_blank(*at_)) {
+                ++at_;
+                continue;
+            }
+            if (at_word_end() || (syntax_.hash_comments && *at_ == '#')) break;  // a continuation, or a comment
+            (void)word();
+            last = at_;
+        }
+        if (!rest.empty()) rest += ' ';
+        rest.append(start, last);
+    }
+    return rest;
+}
+
+void TextCursor::skip_statement() {
+    const char* line_end = at_;
+    while (line_end != end_ && !is_line_break(*line_end)) ++line_end;
+    if (syntax_.backslash_continues_line && line_end != at_ && line_end[-1] == '\\') {
+        while (!at_line_end()) (void)word();
+    }
+    next_line();
 }
 
 void TextCursor::next_line_slowly() {
@@ -214,6 +234,19 @@ double TextCursor::number(const char* what) {
                          in_quotes(word_here())));
     }
     return value;
+}
+
+bool TextCursor::skip_number(const char* what) {
+    if (at_line_end()) fail(fmt::format("the line ends before {}, expected a number", what));
+    const std::string_view found = word_here();
+    const std::string_view digits = found.substr(found.starts_with('-') || found.starts_with('+') ? 1 : 0);
+    for (const std::string_view start : {"nan", "NaN", "NAN", "inf", "Inf", "INF", "1.#"}) {
+        if (!digits.starts_with(start)) continue;
+        (void)word();
+        return false;
+    }
+    (void)number(what);
+    return true;
 }
 
 double TextCursor::limit_value(const char* word_start, const char* what) const {

@@ -99,8 +99,11 @@ public:
     }
     /// Next word of the line; empty at its end.
     [[nodiscard]] std::string_view word();
-    /// Rest of the line without blanks at its ends, comments included.
-    [[nodiscard]] std::string_view rest_of_line();
+    /// Returns the rest of the line without blanks at its ends, as the syntax says: without a comment that begins after
+    /// a blank, and with continuation lines, each joined by one blank.
+    [[nodiscard]] std::string rest_of_line();
+    /// Goes to the line after the statement, and thus behind its continuation lines.
+    void skip_statement();
     /// Goes to the start of the next line.
     void next_line() {
         if (!comes_next('\n')) return next_line_slowly();
@@ -109,6 +112,8 @@ public:
     }
     /// Goes to the next line that has a word; false when there is none.
     [[nodiscard]] bool next_filled_line();
+    /// Goes back by characters of the word that was read last.
+    void step_back(std::size_t characters) { at_ -= characters; }
     /// Number of the line the cursor is in; 1 for the first.
     [[nodiscard]] std::size_t line() const { return line_; }
     [[nodiscard]] const MeshSource& source() const { return source_; }
@@ -116,6 +121,9 @@ public:
 
     /// Next word of the line as a finite number; `what` names it in errors.
     [[nodiscard]] double number(const char* what);
+    /// Skips a number that is not used; false if it is none that is finite, as programs write for a colour that they do
+    /// not know ("nan", "-nan(ind)", "inf", "1.#QNAN").
+    [[nodiscard]] bool skip_number(const char* what);
     /// The same within the range of coordinates; tiny values become zero.
     [[nodiscard]] double coordinate(const char* what);
     [[nodiscard]] Vec3 point(const char* what);
@@ -166,7 +174,9 @@ private:
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
 
 /// Reads OFF text with any of the prefixes ST, C and N; every vertex and every face has a line of its own. Values
-/// after the coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used.
+/// after the coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. A
+/// file that cannot be read so is read as free-form text, in which line ends separate numbers as blanks do. It must
+/// then hold exactly the numbers that its counts and prefixes promise.
 [[nodiscard]] ParsedMesh read_off(const MeshSource& source);
 
 /// True when the text's first word is the keyword OFF with some of its prefixes.
@@ -177,13 +187,15 @@ private:
 /// line of its own. Triangles of a strip that repeat a vertex only turn the strip; they are not faces.
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 
-/// True when the size is exactly what the triangle count at byte 80 requires; the header's text does not matter.
+/// True when the size is what the triangle count at byte 80 requires, or larger by one byte or by CR LF; the header's
+/// text does not matter.
 [[nodiscard]] bool has_binary_stl_size(const MeshSource& source);
 
-/// True when the text starts with the word "solid".
+/// True when the text starts with the word "solid", after lines that begin with '#' if there are any.
 [[nodiscard]] bool starts_with_solid(const MeshSource& source);
 
-/// Reads STL and joins corners of equal coordinates. The facets' normals are not used.
+/// Reads STL and joins corners of equal coordinates. The facets' normals are not used. The name of a solid in an ASCII
+/// file is the group of its facets.
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 
 /// Corners of triangles that a glTF file may show however small it is; beyond, 16 for each of its bytes.

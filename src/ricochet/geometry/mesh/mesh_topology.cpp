@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "ricochet/geometry/mesh/closed_surface.h"
+
 namespace ricochet {
 
 EdgeTable::EdgeTable(const FaceList& faces, std::size_t vertex_count)
@@ -79,12 +81,6 @@ Corners corners_of(const TriangleMesh& mesh) {
     return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
 }
 
-FaceList faces_of(const TriangleMesh& mesh) {
-    FaceList faces = with_room_for(mesh.triangles.size(), 3 * mesh.triangles.size());
-    for (const Triangle& t : mesh.triangles) add_face(t, faces);
-    return faces;
-}
-
 // Half-edges that run along one edge in both directions, one each, can be glued.
 bool is_manifold_edge(const FaceList& faces, std::span<const std::uint32_t> uses) {
     return uses.size() == 2 && faces.corners[uses[0]] != faces.corners[uses[1]];
@@ -110,7 +106,6 @@ public:
     }
 
     TopologyReport finish() {
-        report_.closed = report_.boundary_edges == 0;
         report_.consistently_oriented = report_.inconsistent_edges == 0;
         report_.shells = shells_.count();
         count_vertices();
@@ -156,6 +151,16 @@ std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
 }
 
 }  // namespace
+
+FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers) {
+    FaceList faces = with_room_for(mesh.triangles.size(), 3 * mesh.triangles.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        const std::size_t count = faces.face_count();
+        add_face(mesh.triangles[t], faces);
+        if (numbers != nullptr && faces.face_count() > count) numbers->push_back(t);
+    }
+    return faces;
+}
 
 // The half-edge mesh is assembled from the edge table instead of by add_face: that function searches all edges of a
 // vertex for every face (quadratic at the tip of a large fan) and refuses what is not manifold. Here every vertex is
@@ -281,6 +286,7 @@ std::unique_ptr<MeshTopology::Impl> MeshTopology::Impl::of(const FaceList& faces
     auto impl = std::make_unique<Impl>();
     const EdgeTable edges(faces, vertex_count);
     impl->report = ReportBuilder(faces, edges, vertex_count).finish();
+    impl->report.closed = closed_surface(faces, edges).closed;
     impl->assemble(faces, edges);
     return impl;
 }
@@ -294,7 +300,7 @@ MeshTopology::MeshTopology(const PolygonMesh& mesh) : MeshTopology(Impl::of(face
 }
 
 MeshTopology::MeshTopology(const TriangleMesh& mesh) : MeshTopology(Impl::of(faces_of(mesh), mesh.vertices.size())) {
-    impl_->report.unused_vertices = count_unnamed(corners_of(mesh), mesh.vertices.size());
+    impl_->report.unused_vertices = count_unused_vertices(mesh);
 }
 
 MeshTopology::~MeshTopology() = default;
@@ -344,8 +350,7 @@ std::vector<MeshEdge> MeshTopology::edges() const {
     return edges;
 }
 
-std::size_t count_duplicate_faces(const PolygonMesh& mesh) {
-    const FaceList faces = faces_of(mesh);
+std::vector<std::uint32_t> repeated_faces(const FaceList& faces) {
     const std::size_t count = faces.face_count();
     std::vector<std::uint32_t> sorted = faces.corners;
     std::vector<std::uint32_t> order(count);
@@ -357,14 +362,23 @@ std::size_t count_duplicate_faces(const PolygonMesh& mesh) {
         return std::span(sorted.data() + faces.face_offsets[f], faces.face_offsets[f + 1] - faces.face_offsets[f]);
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return std::ranges::lexicographical_compare(corners_of(a), corners_of(b));
+        const auto by_corners = std::lexicographical_compare_three_way(corners_of(a).begin(), corners_of(a).end(),
+                                                                       corners_of(b).begin(), corners_of(b).end());
+        return by_corners != 0 ? by_corners < 0 : a < b;
     });
-    std::size_t duplicates = 0;
+    std::vector<std::uint32_t> repeated;
     for (std::size_t i = 1; i < count; ++i) {
-        duplicates += std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i])) ? 1 : 0;
+        if (std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i]))) repeated.push_back(order[i]);
     }
-    return duplicates;
+    std::sort(repeated.begin(), repeated.end());
+    return repeated;
 }
+
+std::size_t count_unused_vertices(const TriangleMesh& mesh) {
+    return count_unnamed(corners_of(mesh), mesh.vertices.size());
+}
+
+std::size_t count_duplicate_faces(const PolygonMesh& mesh) { return repeated_faces(faces_of(mesh)).size(); }
 
 const char* openmesh_version() {
     static const std::string version =

@@ -27,6 +27,12 @@ struct FaceList {
     [[nodiscard]] std::size_t face_count() const { return face_offsets.size() - 1; }
 };
 
+/// Lists triangles that name three vertices. numbers, if given, receives the triangle that each face is.
+[[nodiscard]] FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers = nullptr);
+
+/// Returns the faces with the same vertices as an earlier one, in whatever order, in increasing order.
+[[nodiscard]] std::vector<std::uint32_t> repeated_faces(const FaceList& faces);
+
 /// All uses of all edges, grouped by edge. The half-edge of corner c runs from its vertex to that of next_corner[c].
 /// Bucket sort by the edge's smaller vertex: linear in the number of corners for meshes of bounded valence.
 class EdgeTable {
@@ -88,11 +94,11 @@ private:
     std::vector<std::uint32_t> parent_;
 };
 
-/// Counts that say whether a surface is watertight and two-manifold, by vertex index: coincident vertices with
-/// different indices are different. A face that names a vertex several times in a row counts it once; faces with fewer
-/// than three corners left are ignored.
+/// Counts that say whether a surface is watertight and two-manifold, by vertex index: where coincident vertices are to
+/// be one, joined_by_position() comes first. A face that names a vertex several times in a row counts it once; faces
+/// with fewer than three corners left are ignored.
 struct TopologyReport {
-    bool closed = false;                   ///< no boundary edge
+    bool closed = false;                   ///< there is an inside, see closed_surface.h
     std::size_t shells = 0;                ///< sets of faces connected by edges
     std::size_t boundary_edges = 0;        ///< edges of one face
     std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
@@ -143,6 +149,9 @@ private:
     explicit MeshTopology(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
+
+/// Vertices that no triangle names.
+[[nodiscard]] std::size_t count_unused_vertices(const TriangleMesh& mesh);
 
 /// Faces with the same vertices as an earlier one, in whatever order.
 [[nodiscard]] std::size_t count_duplicate_faces(const PolygonMesh& mesh);

@@ -57,13 +57,15 @@ public:
         mesh_.face_offsets.push_back(0);
     }
 
-    PolygonMesh read() {
+    ParsedMesh read() {
         while (cursor_.next_filled_line()) {
             read_statement();
-            cursor_.next_line();
+            cursor_.skip_statement();
         }
         if (forward_.index > static_cast<std::int64_t>(mesh_.vertices.size())) fail_past_end(forward_);
-        return std::move(mesh_);
+        ParsedMesh result{std::move(mesh_), "OBJ", std::nullopt};
+        result.notes = notes();
+        return result;
     }
 
 private:
@@ -100,9 +102,41 @@ private:
             cursor_.fail(fmt::format("statement {} (curves, surfaces and calls) is not supported, export polygons only",
                                      in_quotes(keyword)));
         } else if (!contains(kIgnored, keyword)) {
+            leave_out(keyword);
+        }
+    }
+
+    // Programs add statements of their own. A word that no program would choose, or a slip of the pen for a vertex or a
+    // face, is refused, because a part of the surface would be missing.
+    void leave_out(std::string_view keyword) {
+        constexpr std::array<std::string_view, 6> kSlips = {"V", "F", "vertex", "face", "VT", "VN"};
+        const auto is_in_name = [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+        };
+        const bool is_name = !(keyword[0] >= '0' && keyword[0] <= '9') && keyword[0] != '-' &&
+                             std::all_of(keyword.begin(), keyword.end(), is_in_name);
+        if (!is_name || contains(kSlips, keyword)) {
             cursor_.fail(fmt::format("unknown statement {}, expected an OBJ statement such as 'v x y z' or 'f 1 2 3'",
                                      in_quotes(keyword)));
         }
+        if (left_out_++ == 0) first_left_out_ = fmt::format("{} in line {}", in_quotes(keyword), cursor_.line());
+    }
+
+    [[nodiscard]] std::vector<std::string> notes() const {
+        std::vector<std::string> notes;
+        if (left_out_ == 1) {
+            notes.push_back(fmt::format("statement {} left out: OBJ has none of that name", first_left_out_));
+        } else if (left_out_ > 1) {
+            notes.push_back(fmt::format("{} statements left out, the first is {}: OBJ has none of these names",
+                                        left_out_, first_left_out_));
+        }
+        if (strange_colours_ > 0) {
+            notes.push_back(fmt::format("{} that are not finite numbers: colours are not used",
+                                        strange_colours_ == 1
+                                            ? std::string("1 vertex has a colour with values")
+                                            : fmt::format("{} vertices have colours with values", strange_colours_)));
+        }
+        return notes;
     }
 
     // After x y z may come w (a weight of curves) or red green blue, with w or alpha.
@@ -111,7 +145,11 @@ private:
             cursor_.fail(fmt::format("more than {} vertices", kLargestIndexCount));
         mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
         int more = 0;
-        for (; !cursor_.at_line_end(); ++more) (void)cursor_.number("value after the vertex coordinates");
+        bool is_strange = false;
+        for (; !cursor_.at_line_end(); ++more) {
+            is_strange = !cursor_.skip_number("value after the vertex coordinates") || is_strange;
+        }
+        strange_colours_ += is_strange ? 1 : 0;
         if (more != 0 && more != 1 && more != 3 && more != 4) {
             cursor_.fail(
                 fmt::format("vertex has {} values, expected x y z, x y z w or x y z red green blue", 3 + more));
@@ -163,13 +201,16 @@ private:
     PolygonMesh mesh_;
     IndexUse forward_;
     FaceGroupTable names_;
+    std::size_t left_out_ = 0;
+    std::string first_left_out_;
+    std::size_t strange_colours_ = 0;
 };
 
 }  // namespace
 
 ParsedMesh read_obj(const MeshSource& source) {
     require_plain_text(source);
-    return {ObjReader(source).read(), "OBJ", std::nullopt};
+    return ObjReader(source).read();
 }
 
 bool looks_like_obj(const MeshSource& source) {

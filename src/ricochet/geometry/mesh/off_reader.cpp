@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet {
@@ -18,8 +19,15 @@ struct OffHeader {
     bool any_dimension = false;
 };
 
+// The keyword with its prefixes. Some programs write the number of vertices right behind it ("OFF8 12 0").
+std::string_view keyword_in(std::string_view word) {
+    const std::size_t digits = word.find_last_not_of("0123456789");
+    return word.substr(0, digits == std::string_view::npos ? 0 : digits + 1);
+}
+
 // Programs write the prefixes in different orders.
 std::optional<OffHeader> parse_keyword(std::string_view word) {
+    word = keyword_in(word);
     if (!word.ends_with("OFF")) return std::nullopt;
     word.remove_suffix(3);
     OffHeader header;
@@ -36,9 +44,17 @@ std::optional<OffHeader> parse_keyword(std::string_view word) {
     return header;
 }
 
+/// How a file uses line ends.
+enum class OffForm : std::uint8_t {
+    lines,  ///< the counts, each vertex, and each face have a line of their own
+    free,   ///< line ends separate numbers as blanks do; only a face's colour ends with its line
+};
+
 class OffReader {
 public:
-    explicit OffReader(const MeshSource& source) : cursor_(source, kSyntax) { mesh_.face_offsets.push_back(0); }
+    OffReader(const MeshSource& source, OffForm form) : cursor_(source, kSyntax), is_free_(form == OffForm::free) {
+        mesh_.face_offsets.push_back(0);
+    }
 
     PolygonMesh read() {
         read_header();
@@ -63,6 +79,9 @@ private:
                 "{} has vertices that are not three-dimensional, expected OFF, COFF, NOFF or STOFF", in_quotes(word)));
         }
         header_ = *header;
+        if (const std::string_view count = word.substr(keyword_in(word).size()); !count.empty()) {
+            cursor_.step_back(count.size());
+        }
         if (cursor_.at_line_end()) cursor_.next_line();
     }
 
@@ -70,10 +89,12 @@ private:
     void read_counts() {
         if (!cursor_.next_filled_line()) cursor_.fail("file ends before the counts of vertices and faces");
         vertex_count_ = count("number of vertices", 6);
+        cross_line_end();
         face_count_ = count("number of faces", 8);
+        cross_line_end();
         if (!cursor_.at_line_end()) (void)cursor_.integer("number of edges");
-        if (!cursor_.at_line_end()) cursor_.fail("the line of counts has more than three numbers");
-        cursor_.next_line();
+        if (!is_free_ && !cursor_.at_line_end()) cursor_.fail("the line of counts has more than three numbers");
+        if (!is_free_) cursor_.next_line();
         mesh_.vertices.reserve(vertex_count_);
         mesh_.face_offsets.reserve(face_count_ + 1);
     }
@@ -96,6 +117,7 @@ private:
             cursor_.fail(fmt::format("file ends after {} vertices, expected {} vertices and {} faces", i, vertex_count_,
                                      face_count_));
         }
+        if (is_free_) return read_free_vertex();
         mesh_.vertices.push_back(cursor_.point("vertex coordinate"));
         const int announced = (header_.normal ? 3 : 0) + (header_.color ? 1 : 0) + (header_.texture ? 2 : 0);
         const int most = announced + (header_.color ? 3 : 4);
@@ -105,6 +127,25 @@ private:
                 fmt::format("vertex line has {} numbers, expected {} to {}", 3 + more, 3 + announced, 3 + most));
         }
         cursor_.next_line();
+    }
+
+    void read_free_vertex() {
+        Vec3 point;
+        for (int axis = 0; axis < 3; ++axis) {
+            cross_line_end();
+            point[axis] = cursor_.coordinate("vertex coordinate");
+        }
+        mesh_.vertices.push_back(point);
+        const int more = (header_.normal ? 3 : 0) + (header_.color ? 4 : 0) + (header_.texture ? 2 : 0);
+        for (int k = 0; k < more; ++k) {
+            cross_line_end();
+            (void)cursor_.skip_number("value after the vertex coordinates");
+        }
+    }
+
+    /// In a free-form file the next number may be in a later line.
+    void cross_line_end() {
+        if (is_free_ && !cursor_.next_filled_line()) cursor_.fail("file ends within a list of numbers");
     }
 
     void read_face(std::uint64_t i) {
@@ -128,6 +169,7 @@ private:
     }
 
     void read_corner() {
+        cross_line_end();
         const std::int64_t index = cursor_.integer("vertex index of a face");
         if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count_) {
             cursor_.fail(fmt::format("vertex index {} is out of range, expected 0 to {}", index,
@@ -138,11 +180,12 @@ private:
 
     int skip_numbers(const char* what) {
         int count = 0;
-        for (; !cursor_.at_line_end(); ++count) (void)cursor_.number(what);
+        for (; !cursor_.at_line_end(); ++count) (void)cursor_.skip_number(what);
         return count;
     }
 
     TextCursor cursor_;
+    bool is_free_;
     PolygonMesh mesh_;
     OffHeader header_;
     std::uint64_t vertex_count_ = 0;
@@ -161,7 +204,17 @@ void refuse_binary(const MeshSource& source) {
 ParsedMesh read_off(const MeshSource& source) {
     refuse_binary(source);
     require_plain_text(source);
-    return {OffReader(source).read(), "OFF", std::nullopt};
+    try {
+        return {OffReader(source, OffForm::lines).read(), "OFF", std::nullopt};
+    } catch (const InputError& by_lines) {
+        // The reason that the common form gives is the one to show.
+        const std::string reason = by_lines.what();
+        try {
+            return {OffReader(source, OffForm::free).read(), "OFF", std::nullopt};
+        } catch (const InputError&) {
+            throw InputError(reason);
+        }
+    }
 }
 
 bool looks_like_off(const MeshSource& source) {

@@ -61,12 +61,25 @@ private:
         } else if (keyword == "property") {
             read_property();
         } else {
-            cursor_.fail(
-                fmt::format("unknown header line {}, expected format, element, property, comment or end_header",
-                            in_quotes(keyword)));
+            leave_out(keyword);
+            return;
         }
         if (!cursor_.at_line_end())
             cursor_.fail(fmt::format("{} after the {} line's values", in_quotes(cursor_.word()), keyword));
+    }
+
+    // Before the first element a line says nothing about the data: programs write their name there. A misspelt element
+    // is refused when its first property comes.
+    void leave_out(std::string_view keyword) {
+        const std::string what = fmt::format(
+            "unknown header line {}, expected format, element, property, comment or end_header", in_quotes(keyword));
+        if (!header_.elements.empty()) cursor_.fail(what);
+        left_out_ = what;
+        left_out_line_ = cursor_.line();
+        if (!header_.notes.empty()) return;
+        header_.notes.push_back(
+            fmt::format("header line {} ({} ...) left out: without the word comment the format has no such line",
+                        cursor_.line(), in_quotes(keyword)));
     }
 
     void read_format() {
@@ -102,6 +115,7 @@ private:
     }
 
     void read_property() {
+        if (header_.elements.empty() && left_out_line_ > 0) cursor_.source().fail_at_line(left_out_line_, left_out_);
         if (header_.elements.empty()) cursor_.fail("property before any element");
         PlyProperty property;
         std::string_view word = cursor_.word();
@@ -149,6 +163,8 @@ private:
     TextCursor cursor_;
     PlyHeader header_;
     bool has_format_ = false;
+    std::string left_out_;  // why the last line that was left out would be refused
+    std::size_t left_out_line_ = 0;
 };
 
 // A value of an ASCII file takes at least a digit and a blank or line end.

@@ -41,8 +41,9 @@ struct PlyElement {
 struct PlyHeader {
     PlyEncoding encoding = PlyEncoding::kAscii;
     std::vector<PlyElement> elements;
-    std::size_t body_byte = 0;  ///< first byte after the header
-    std::size_t body_line = 0;  ///< its line number
+    std::size_t body_byte = 0;       ///< first byte after the header
+    std::size_t body_line = 0;       ///< its line number
+    std::vector<std::string> notes;  ///< lines that were left out
 
     [[nodiscard]] const PlyElement* find(std::string_view element) const;
 };

@@ -296,6 +296,18 @@ ParsedMesh read_body(const MeshSource& source, const PlyHeader& header, std::uin
     return {BodyReader<ValueSource>(source, header, vertices).read(header), format, std::nullopt};
 }
 
+ParsedMesh read_body_as(const MeshSource& source, const PlyHeader& header, std::uint64_t vertices) {
+    switch (header.encoding) {
+        case PlyEncoding::kLittleEndian:
+            return read_body<BinaryValues<false>>(source, header, vertices, "PLY, binary little endian");
+        case PlyEncoding::kBigEndian:
+            return read_body<BinaryValues<true>>(source, header, vertices, "PLY, binary big endian");
+        case PlyEncoding::kAscii:
+            break;
+    }
+    return read_body<AsciiValues>(source, header, vertices, "PLY, ASCII");
+}
+
 }  // namespace
 
 ParsedMesh read_ply(const MeshSource& source) {
@@ -303,15 +315,9 @@ ParsedMesh read_ply(const MeshSource& source) {
     const PlyElement* const vertex = header.find("vertex");
     if (vertex == nullptr) source.fail("the header has no element 'vertex'");
     if (vertex->count > kLargestIndexCount) source.fail(fmt::format("more than {} vertices", kLargestIndexCount));
-    switch (header.encoding) {
-        case PlyEncoding::kLittleEndian:
-            return read_body<BinaryValues<false>>(source, header, vertex->count, "PLY, binary little endian");
-        case PlyEncoding::kBigEndian:
-            return read_body<BinaryValues<true>>(source, header, vertex->count, "PLY, binary big endian");
-        case PlyEncoding::kAscii:
-            break;
-    }
-    return read_body<AsciiValues>(source, header, vertex->count, "PLY, ASCII");
+    ParsedMesh result = read_body_as(source, header, vertex->count);
+    result.notes = header.notes;
+    return result;
 }
 
 }  // namespace ricochet

@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
+#include "ricochet/geometry/mesh/face_group_table.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
 
 namespace ricochet {
 namespace {
+
+// The format has no comments, but some programs write them.
+constexpr TextCursor::Syntax kSyntax = {.hash_comments = true};
 
 constexpr std::size_t kCountByte = 80;
 constexpr std::size_t kFirstFacet = 84;
@@ -36,13 +41,24 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
     return true;
 }
 
+/// Bytes behind the last facet of a binary file.
+std::string_view bytes_behind(const MeshSource& source) {
+    const std::uint64_t size = kFirstFacet + kFacetBytes * facets_promised(source);
+    return source.bytes.substr(std::min<std::uint64_t>(size, source.bytes.size()));
+}
+
 // Joins facet corners while they are read.
 class FacetCollector {
 public:
     FacetCollector() { mesh_.face_offsets.push_back(0); }
 
     void add_corner(const Vec3& position) { mesh_.corners.push_back(welder_.index_of(position)); }
-    void end_facet() { close_face(mesh_); }
+    void end_facet() {
+        close_face(mesh_);
+        names_.record(mesh_);
+    }
+    /// Of the facets that follow.
+    void set_solid(const std::string& name) { names_.names().group = name; }
     [[nodiscard]] std::size_t corners() const { return mesh_.corners.size(); }
     void reserve(std::size_t facets) {
         mesh_.corners.reserve(3 * facets);
@@ -56,6 +72,7 @@ public:
 
 private:
     PolygonMesh mesh_;
+    FaceGroupTable names_;
     VertexWelder welder_{mesh_.vertices};
 };
 
@@ -84,12 +101,17 @@ ParsedMesh read_binary(const MeshSource& source) {
         }
         collector.end_facet();
     }
-    return collector.finish("STL, binary");
+    ParsedMesh result = collector.finish("STL, binary");
+    if (const std::size_t more = bytes_behind(source).size(); more > 0) {
+        result.notes.push_back(
+            fmt::format("{} more than its {} triangles take, left out", more == 1 ? "1 byte" : "a line end", facets));
+    }
+    return result;
 }
 
 class AsciiStlReader {
 public:
-    explicit AsciiStlReader(const MeshSource& source) : cursor_(source, {}) {}
+    explicit AsciiStlReader(const MeshSource& source) : cursor_(source, kSyntax) {}
 
     ParsedMesh read() {
         do {
@@ -102,6 +124,7 @@ private:
     // solid NAME facet ... endsolid NAME; a file may hold several.
     void read_solid() {
         expect("solid");
+        collector_.set_solid(cursor_.rest_of_line());
         cursor_.next_line();
         std::string_view word = next_word("'facet' or 'endsolid'");
         for (; is_keyword(word, "facet"); word = next_word("'facet' or 'endsolid'")) read_facet();
@@ -144,12 +167,14 @@ private:
 }  // namespace
 
 bool has_binary_stl_size(const MeshSource& source) {
-    return source.bytes.size() >= kFirstFacet &&
-           source.bytes.size() - kFirstFacet == kFacetBytes * facets_promised(source);
+    if (source.bytes.size() < kFirstFacet) return false;
+    if (source.bytes.size() - kFirstFacet < kFacetBytes * facets_promised(source)) return false;
+    const std::string_view more = bytes_behind(source);
+    return more.size() <= 1 || more == "\r\n";
 }
 
 bool starts_with_solid(const MeshSource& source) {
-    TextCursor cursor(source, {});
+    TextCursor cursor(source, kSyntax);
     return cursor.next_filled_line() && is_keyword(cursor.word(), "solid");
 }
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mass_moments.h"
-#include "ricochet/geometry/mesh/mesh_topology.h"
 #include "ricochet/io/scene/body_volume.h"
 #include "ricochet/io/scene/context.h"
 
@@ -112,9 +112,10 @@ private:
     [[nodiscard]] static std::optional<MassMoments> moments(const PlaneShape& /*plane*/) { return std::nullopt; }
     [[nodiscard]] static std::optional<MassMoments> moments(const MeshShape& shape) {
         if (!shape.mesh || shape.mesh->triangles.empty()) return std::nullopt;
-        const TopologyReport report = MeshTopology(*shape.mesh).report();
+        const TriangleMesh surface = counted_surface(*shape.mesh);
+        const TopologyReport report = MeshTopology(surface).report();
         if (!report.closed || !report.consistently_oriented) return std::nullopt;
-        const MassMoments found = moments_of(transformed(*shape.mesh, shape.placement));
+        const MassMoments found = moments_of(transformed(surface, shape.placement));
         return found.volume < 0.0 ? negative(found) : found;  // wound inward
     }
     [[nodiscard]] static std::optional<MassMoments> moments(const BallShape& shape) {

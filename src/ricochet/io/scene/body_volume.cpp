@@ -13,6 +13,7 @@
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/random.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
 
 namespace ricochet::detail {
@@ -31,8 +32,8 @@ class ClosedPart {
 public:
     explicit ClosedPart(const ColliderDescription& collider) : name_(collider.name) {
         if (const auto* mesh = std::get_if<MeshShape>(&collider.shape)) {
-            mesh_ = transformed(*mesh->mesh, mesh->placement);
-            for (const Vec3& vertex : mesh_.vertices) box_.include(vertex);
+            mesh_ = transformed(counted_surface(*mesh->mesh), mesh->placement);
+            box_ = bounds(mesh_);
             return;
         }
         ColliderDescription own = collider;

@@ -1,0 +1,58 @@
+/// \file
+/// Questions about a mesh where a map places it, without a copy of the mesh.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "ricochet/core/transform.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/geometry/mesh/inside_rule.h"
+#include "ricochet/queries/mesh_queries.h"
+
+namespace ricochet {
+
+/// A mesh that a similarity places: a rotation or reflection, one scale for all axes, and a translation.
+///
+/// Questions are mapped into the mesh's own coordinates, asked there, and the answers are mapped back. Each answer is
+/// exact for the mapped and rounded question, as MeshQueries says. The mapping rounds each coordinate by a few units in
+/// the last place of the largest number that takes part. Triangles keep their corners in their order, so that a
+/// reflection turns their normals, and crossings and winding numbers change their sign.
+class PlacedMesh {
+public:
+    /// Shares the mesh. Throws InputError if the map is not finite or no similarity: scales that differ, or axes that
+    /// are not perpendicular, by more than 1e-9 of the scale. That admits rotations written with ten digits.
+    PlacedMesh(const MeshQueries& mesh, const AffineMap& world_from_mesh);
+
+    // The questions of MeshQueries, in world coordinates and lengths.
+    [[nodiscard]] MeshHits first_hits(const RayBatch& rays) const;
+    [[nodiscard]] AllMeshHits all_hits(const RayBatch& rays) const;
+    [[nodiscard]] std::vector<std::uint64_t> count_hits(const RayBatch& rays) const;
+    [[nodiscard]] std::vector<std::uint8_t> occluded(const RayBatch& rays) const;
+    [[nodiscard]] std::vector<std::uint8_t> inside(std::span<const Vec3> points,
+                                                   InsideRule rule = InsideRule::parity) const;
+    [[nodiscard]] std::vector<double> winding_numbers(std::span<const Vec3> points) const;
+    [[nodiscard]] NearestPoints closest_points(std::span<const Vec3> points,
+                                               double within = std::numeric_limits<double>::infinity()) const;
+    [[nodiscard]] std::vector<double> signed_distances(std::span<const Vec3> points,
+                                                       InsideRule rule = InsideRule::parity) const;
+    [[nodiscard]] MeshHits sweep(std::span<const Vec3> from, std::span<const Vec3> to,
+                                 std::span<const double> radii) const;
+    [[nodiscard]] MeshHits sweep_moving(std::span<const Vec3> from, std::span<const Vec3> to,
+                                        std::span<const double> radii, std::span<const Vec3> vertices_after) const;
+
+private:
+    struct LocalRays;
+    [[nodiscard]] std::vector<Vec3> local_points(std::span<const Vec3> points, const char* name) const;
+    [[nodiscard]] std::vector<double> local_lengths(std::span<const double> lengths) const;
+    void place(std::vector<Vec3>& points) const;
+    void scale(std::vector<double>& lengths) const;
+
+    MeshQueries mesh_;
+    AffineMap world_from_mesh_;
+    double scale_ = 1.0;
+};
+
+}  // namespace ricochet

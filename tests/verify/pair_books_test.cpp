@@ -38,6 +38,24 @@ TEST(PairBooks, RightImpactsAddUp) {
     EXPECT_FALSE(is_wrong(meeting_of(0.0, 0.0), {.restitution = 0.5, .resting_speed = 1.5}));
 }
 
+/// A sphere that is held and turns about z at `spin`, rad/s, throws another one along y; both slide to the end.
+PairMeeting meeting_with_turning(double spin) {
+    const Vec3 impulse{1.5, 2.25, 0};
+    const Vec3 turn = (1.0 / (0.4 * 0.1 * 0.1)) * cross(Vec3{-0.1, 0, 0}, impulse);
+    PairMeeting meeting{0.5, {{}, {}}, {{0, 1, impulse}}};
+    meeting.spheres[0] = {1, 1.0, 0.1, true, {{}, {}, {0, 0, spin}}, {{}, {}, {0, 0, spin}}};
+    meeting.spheres[1] = {
+        2, 1.0, 0.1, false, {{0.2, 0, 0}, {-1, 0, 0}, {}}, {{0.2, 0, 0}, {-1.0 + 1.5, 2.25, 0}, turn}};
+    return meeting;
+}
+
+TEST(PairBooks, AHeldSphereThatTurnsDoesWork) {
+    const PairBooks books{.restitution = 0.5, .friction = 1.5};
+    EXPECT_FALSE(is_wrong(meeting_with_turning(100.0), books));  // it gives 22.5 J, of which 8.5 J are kept
+    EXPECT_TRUE(is_wrong(meeting_with_turning(-100.0), books));
+    EXPECT_TRUE(is_wrong(meeting_with_turning(0.0), books));
+}
+
 TEST(PairBooks, EachKindOfMistakeIsSeen) {
     const PairBooks books{.restitution = 0.5, .friction = 0.3};
     const std::vector<std::pair<std::string, std::function<void(PairMeeting&)>>> mistakes = {

@@ -8,176 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "verify/schema_tables.h"
+
 namespace ricochet::test {
 namespace {
-
-/// Unit of a range of numbers.
-enum class Unit { plain, logarithm, of_duration, per_duration };
-
-struct Range {
-    double low = 0.0;
-    double high = 1.0;
-    Unit unit = Unit::plain;
-};
-
-/// Ranges by OWNER.KEY or KEY. Others go from 0 to 1, or from -1 to 1 where a schema lets them be negative.
-const std::map<std::string, Range>& ranges() {
-    static const std::map<std::string, Range> all = {
-        {"resting_speed", {0, 0.1}},
-        {"tolerance.position", {-8, -4, Unit::logarithm}},
-        {"tolerance.velocity", {-8, -4, Unit::logarithm}},
-        {"time_tolerance", {-9, -5, Unit::logarithm}},
-        {"offset", {-7, -3, Unit::logarithm}},
-        {"penalty.stiffness", {2, 4, Unit::logarithm}},
-        {"contact_steps", {10, 30}},
-        {"substeps", {1, 12}},
-        {"frame_rate", {10, 100}},
-        {"max_depth", {0, 3}},
-        {"most_particles", {20, 120}},
-        {"bounce_budget", {8, 200}},
-        {"impact_budget", {1, 100}},
-        {"seed", {0, 1000}},
-        {"acceleration", {-10, 10}},
-        {"gravity", {-10, 10}},
-        {"velocity", {-4, 4}},
-        {"angular_velocity", {-4, 4}},
-        {"spin", {-20, 20}},
-        {"emitter.speed", {0, 8}},
-        {"fluid_density", {0, 100}},
-        {"viscosity", {-5, 0, Unit::logarithm}},
-        {"ambient_temperature", {100, 400}},
-        {"wall_temperature", {1, 400}},
-        {"strength", {-5, 5}},
-        {"exponent", {-3, 3}},
-        {"softening", {0.05, 0.5}},
-        {"core_radius", {0.1, 1}},
-        {"magnetic", {-5, 5}},
-        {"stiffness", {0, 20}},
-        {"depth", {0.01, 0.1}},
-        {"diameter", {0.1, 0.3}},
-        {"cutoff", {1.5, 4}},
-        {"range", {0.01, 0.1}},
-        {"octaves", {1, 3}},
-        {"gain", {0.2, 1}},
-        {"length", {0.3, 2}},
-        {"friction", {0, 1.5}},
-        {"spinning_friction", {0, 0.02}},
-        {"rolling_friction", {0, 0.3}},
-        {"absorption", {0, 0.5}},
-        {"collider.radius", {0.3, 1.6}},
-        {"collider.size", {0.2, 2.5}},
-        {"height", {0.2, 2}},
-        {"scale", {0.3, 1.5}},
-        {"degrees", {-360, 360}},
-        {"time", {-0.1, 1.1, Unit::of_duration}},
-        {"start", {0, 1, Unit::of_duration}},
-        {"stop", {0, 1, Unit::of_duration}},
-        {"lifetime", {0.1, 1.2, Unit::of_duration}},
-        {"scale_curve_key.value", {0.5, 1.5}},
-        {"frame_motion(spin).rate", {-300, 300}},
-        {"frame_motion(swing).amplitude", {0, 60}},
-        {"frame_motion(oscillation).amplitude", {-0.4, 0.4}},
-        {"frequency", {0.1, 8}},
-        {"phase", {0, 360}},
-        {"mass", {-2, 2, Unit::logarithm}},
-        {"density", {-1, 3, Unit::logarithm}},
-        {"inertia", {0.3, 0.5}},
-        {"inertia_products", {-0.05, 0.05}},
-        {"body.center", {-0.2, 0.2}},
-        {"spring", {0, 20}},
-        {"motor_most", {0, 10}},
-        {"burst", {0, 10}},
-        {"emitter.rate", {0, 10, Unit::per_duration}},
-        {"rate_per_area", {0, 1e-3}},
-        {"limit", {0, 12}},
-        {"cone", {0, 180}},
-        {"particle_radius", {0.01, 0.2}},
-        {"particle.radius", {0.01, 0.2}},
-        {"particle_size", {0, 0.1}},
-        {"count", {0.5, 4}},
-        {"angle", {0, 80}},
-        {"springs.radius", {0.005, 0.04}},
-        {"nodes", {2, 8}},
-        {"links", {1, 7}},
-        {"link_length", {0.1, 0.5}},
-        {"cells_u", {1, 3}},
-        {"cells_v", {1, 3}},
-        {"pinned", {0, 4}},
-        {"breaking_stretch", {0.05, 2}},
-        {"specific_heat", {1, 1000}},
-        {"prandtl", {0.5, 8}},
-        {"coefficient", {0, 2}},
-        {"components", {1, 4}},
-        {"lower", {-3, -1.5}},
-        {"upper", {1.5, 3}},
-        {"field_of_view", {20, 100}},
-        {"image_height", {10, 1000}},
-    };
-    return all;
-}
-
-/// Probabilities of optional keys by OWNER.KEY or KEY; others have kUsual.
-constexpr double kUsual = 0.25;
-const std::map<std::string, double>& probabilities() {
-    static const std::map<std::string, double> all = {{"scene.simulation", 1.0},
-                                                      {"scene.colliders", 0.9},
-                                                      {"scene.emitters", 0.8},
-                                                      {"scene.particle_contacts", 0.35},
-                                                      {"scene.particles", 0.8},
-                                                      {"scene.materials", 1.0},
-                                                      {"scene.forces", 0.8},
-                                                      {"scene.springs", 0.2},
-                                                      {"scene.heat", 0.2},
-                                                      {"scene.bounds", 0.1},
-                                                      {"scene.frames", 0.4},
-                                                      {"scene.attributes", 0.4},
-                                                      {"scene.flows", 0.3},
-                                                      {"scene.output", 0.3},
-                                                      {"scene.particle_forces", 0.12},
-                                                      {"particle_contacts.method", 0.6},
-                                                      {"restitution", 0.8},
-                                                      {"friction", 0.6},
-                                                      {"burst", 0.8},
-                                                      {"emitter.speed", 0.7},
-                                                      {"collider.material", 0.85},
-                                                      {"particle_radius", 0.5},
-                                                      {"particle.radius", 0.5},
-                                                      {"force.particles", 0.05},
-                                                      {"emitter.frame", 0.1},
-                                                      {"limit", 0.1},
-                                                      {"absorption", 0.05},
-                                                      {"diffuse", 0.1},
-                                                      {"wall_temperature", 0.05},
-                                                      {"cloud(cone).parent_ends", 0.9},
-                                                      {"cloud(cone).turning", 0.9},
-                                                      {"convection.flow", 0.8},
-                                                      {"convection.prandtl", 0.8},
-                                                      {"surface_motion", 0.12},
-                                                      {"rate_per_area", 0.05},
-                                                      {"parent", 0.4},
-                                                      {"simulation.motion", 0.1},
-                                                      {"simulation.flow", 0.1},
-                                                      {"particle.pinned", 0.05},
-                                                      {"position", 0.8},
-                                                      {"motions", 0.7},
-                                                      {"body", 0.45},
-                                                      {"breaking_stretch", 0.15},
-                                                      {"center", 0.7},
-                                                      {"scene.reference_camera", 0.1},
-                                                      {"collider.up", 0.1},
-                                                      {"volume", 0.4},
-                                                      {"mass", 0.5}};
-    return all;
-}
-
-/// Finds a table's entry by OWNER(TYPE).KEY, OWNER.KEY or KEY.
-template <class Value>
-const Value* entry(const std::map<std::string, Value>& table, const std::string& owner, const std::string& key) {
-    for (const std::string& name : {owner + "." + key, owner.substr(0, owner.find('(')) + "." + key, key}) {
-        if (const auto found = table.find(name); found != table.end()) return &found->second;
-    }
-    return nullptr;
-}
 
 /// Numbers of items by KEY; other lists have one or two.
 std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
@@ -247,8 +81,7 @@ std::string SchemaScene::one_of(const std::string& prefix, std::uint64_t count) 
 }
 
 bool SchemaScene::is_drawn(const std::string& owner, const std::string& key) {
-    const double* const probability = entry(probabilities(), owner, key);
-    const bool drawn = chance(probability == nullptr ? kUsual : *probability);
+    const bool drawn = chance(probability_of(owner, key));
     return drawn && reason_not_drawn(owner + "." + key).empty();
 }
 
@@ -380,14 +213,14 @@ nlohmann::json SchemaScene::list(const Json& rule, const std::string& owner, con
 }
 
 nlohmann::json SchemaScene::number(const Json& rule, const std::string& owner, const std::string& key) {
-    const Range* const known = entry(ranges(), owner, key);
-    Range range = known == nullptr ? Range{rule.value("minimum", 0.0) < 0.0 ? -1.0 : 0.0, 1.0} : *known;
+    const Range unknown{rule.value("minimum", 0.0) < 0.0 ? -1.0 : 0.0, 1.0};
+    const Range range = range_of(owner, key).value_or(unknown);
     double drawn = between(range.low, range.high);
     if (chance(0.1)) drawn = range.low;
     if (chance(0.1)) drawn = range.high;
-    if (range.unit == Unit::logarithm) drawn = std::pow(10.0, drawn);
-    if (range.unit == Unit::of_duration) drawn *= duration_;
-    if (range.unit == Unit::per_duration) drawn /= duration_;
+    if (range.unit == Range::Unit::logarithm) drawn = std::pow(10.0, drawn);
+    if (range.unit == Range::Unit::of_duration) drawn *= duration_;
+    if (range.unit == Range::Unit::per_duration) drawn /= duration_;
     if (rule.contains("exclusiveMinimum")) drawn = std::max(drawn, rule["exclusiveMinimum"].get<double>() + 1e-3);
     if (rule.contains("minimum")) drawn = std::max(drawn, rule["minimum"].get<double>());
     if (rule.contains("maximum")) drawn = std::min(drawn, rule["maximum"].get<double>());

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -40,14 +39,6 @@ bool is_known_limit(const Violation& violation, const Simulation& simulation, bo
         default:
             return false;
     }
-}
-
-/// Seeds whose alarms are open faults, with what is known of them. Nothing else may raise an alarm.
-const std::map<std::uint64_t, std::string>& open_faults() {
-    static const std::map<std::uint64_t, std::string> all = {
-        {1053, "spheres are 3e-6 m apart at an impact after one has slid 0.09 m on a mesh that turns at 50 rad/s"},
-        {2690, "an impact of two spheres at 0.0069 s does not add up; its cause is not known"}};
-    return all;
 }
 
 struct Outcome {
@@ -108,8 +99,7 @@ void run_scenes(std::uint64_t count, std::set<std::string>* keys) {
         const Outcome outcome = run(std::move(read->setup));
         runs += outcome.was_run ? 1 : 0;
         with_impacts += outcome.impacts > 0 ? 1 : 0;
-        EXPECT_TRUE(outcome.alarms.empty() || open_faults().contains(seed))
-            << "RICOCHET_SEED=" << seed << ": " << outcome.alarms;
+        EXPECT_TRUE(outcome.alarms.empty()) << "RICOCHET_SEED=" << seed << ": " << outcome.alarms;
         if (outcome.was_run && keys != nullptr) add_keys(schema, scene, *keys);
     }
     std::cout << count << " scenes, " << runs << " accepted, " << with_impacts << " with impacts\n";

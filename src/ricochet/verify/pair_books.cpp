@@ -161,6 +161,19 @@ private:
         return !has_fixed && !(size(turning) <= kPairAngularBooks * turning_scale);
     }
 
+    /// J, that a sphere which does not move gives the other one: it may turn, and rubs.
+    [[nodiscard]] Long work_of_fixed(const MetContact& contact) const {
+        const auto surface_speed = [&](const MetSphere& sphere, Long side) {
+            const LongVec arm = (side * sphere.radius) * normal(contact);
+            return wide(sphere.before.velocity) + moment(wide(sphere.before.spin), arm);
+        };
+        const LongVec impulse = wide(contact.impulse);
+        Long work = 0;
+        if (first(contact).is_fixed) work += product(impulse, surface_speed(first(contact), 1));
+        if (second(contact).is_fixed) work -= product(impulse, surface_speed(second(contact), -1));
+        return work;
+    }
+
     [[nodiscard]] bool gains_energy() const {
         Long before = 0;
         Long after = 0;
@@ -169,7 +182,13 @@ private:
             before += energy(sphere, sphere.before);
             after += energy(sphere, sphere.after);
         }
-        const Long rounding = kPairBooks * (before + after);
+        Long scale = before + after;
+        for (const MetContact& contact : meeting_.contacts) {
+            const Long work = work_of_fixed(contact);
+            before += work;
+            scale += std::fabs(work);
+        }
+        const Long rounding = kPairBooks * scale;
         if (!(after - before <= rounding)) return true;
         const bool keeps = !rubs() && !resists_rolling() &&
                            holds_for_all([](const PairBooks::Pair& pair) { return pair.restitution == 1.0; });

@@ -17,6 +17,11 @@ namespace {
 /// predicted paths, far below what time that is lost on the way amounts to.
 constexpr double kMetGap = 1e-9;
 
+/// The same as a part of the ways along walls, and of the smaller radius, in the step. Reason: such ways consist of
+/// arcs, which are planned anew up to the time of impact; 3e-7 of the way is usual. Smaller: impacts are planned anew
+/// for nothing. Larger: spheres that do not touch push each other.
+constexpr double kBoundMetGap = 1e-6;
+
 void append_to(std::vector<FlownPiece>& way, const std::vector<FlownPiece>& more) {
     way.insert(way.end(), more.begin(), more.end());
 }
@@ -161,27 +166,29 @@ void PairIsland::stay(std::size_t m) {
 }
 
 /// Moves a member to a time along the path that is predicted. What bounces off a wall just then, as one that lies on a
-/// floor does when it is hit, has met the other on its way back: so it bounces first. True if it has lost time on the
-/// way, and so need not be where the prediction has it.
-bool PairIsland::bring(std::size_t m, double time) {
+/// floor does when it is hit, has met the other on its way back: so it bounces first.
+void PairIsland::bring(std::size_t m, double time) {
     const IslandMember& member = (*members_)[m];
-    if (member.is_fixed || member.is_cut_off) return false;
-    const double lost = member.outcome.unsimulated_time;
+    if (is_still(m)) return;
     go_to(m, time);
     const double just_after = std::nextafter(time, std::numeric_limits<double>::infinity());
     if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
-    return member.outcome.unsimulated_time > lost;
 }
 
-/// True if two do not meet after all: one is gone, or one that is late stands elsewhere. late: members, ascending.
-bool PairIsland::is_missed(const PairContact& contact, const std::vector<std::size_t>& late) const {
+/// True if two do not meet after all: one is gone, or has lost time on the way, or its way along a wall that turns fast
+/// differs from the one that was predicted.
+bool PairIsland::is_missed(const PairContact& contact, double time) const {
     const IslandMember& a = (*members_)[contact.first];
     const IslandMember& b = (*members_)[contact.second];
     if (a.is_gone() || b.is_gone()) return true;
-    const auto is_late = [&](std::size_t m) { return std::binary_search(late.begin(), late.end(), m); };
-    if (!is_late(contact.first) && !is_late(contact.second)) return false;
-    const double distance = length(b.moving.state.position - a.moving.state.position);
-    return distance > (1.0 + kMetGap) * (a.radius() + b.radius());
+    const PhaseState first{a.moving.state.position, a.moving.state.velocity};
+    const PhaseState second{b.moving.state.position, b.moving.state.velocity};
+    const double touching = a.radius() + b.radius();
+    const double way = a.bound_way + b.bound_way;
+    const double bound = way > 0.0 ? kBoundMetGap * (std::min(a.radius(), b.radius()) + way) : 0.0;
+    const double rounding = kSameImpactUlps * (ulp(max_abs(first.position)) + ulp(max_abs(second.position)) +
+                                               ulp(time) * (length(first.velocity) + length(second.velocity)));
+    return length(second.position - first.position) > touching + kMetGap * touching + bound + rounding;
 }
 
 bool PairIsland::bounces_at(std::size_t m, double time) const {
@@ -367,22 +374,24 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
     for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-    std::vector<std::size_t> late;
-    for (const std::size_t m : changed) {
-        if (bring(m, time)) late.push_back(m);
+    for (const std::size_t m : changed) bring(m, time);
+    // Missed ones count too, so that every step ends.
+    for (const PairContact& contact : contacts) {
+        for (const std::size_t m : {contact.first, contact.second}) {
+            most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
+        }
     }
-    std::erase_if(contacts, [&](const PairContact& c) { return is_missed(c, late); });
+    std::erase_if(contacts, [&](const PairContact& c) { return is_missed(c, time); });
     std::vector<PairBody> bodies;
     for (const std::size_t m : changed) bodies.push_back(body_of((*members_)[m]));
     const std::vector<PairBody> before = bodies;
     const auto number = [&](std::size_t m) {
         return static_cast<std::size_t>(std::lower_bound(changed.begin(), changed.end(), m) - changed.begin());
     };
+    std::vector<std::uint8_t> is_hit(changed.size(), 0);
     for (PairContact& contact : contacts) {
-        for (const std::size_t m : {contact.first, contact.second}) {
-            most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
-        }
         contact.first = number(contact.first), contact.second = number(contact.second);
+        is_hit[contact.first] = is_hit[contact.second] = 1;
     }
     // No direction parts those of one centre, as children of one place are.
     std::erase_if(contacts,
@@ -393,7 +402,10 @@ void PairIsland::answer(std::vector<PairContact>& contacts, double time) {
         if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
     }
     for (std::size_t k = 0; k < changed.size(); ++k) {
-        if (!(*members_)[changed[k]].is_gone()) take_over(changed[k], bodies[k]);
+        const std::size_t m = changed[k];
+        if (is_still(m)) continue;
+        if (is_hit[k] != 0) take_over(m, bodies[k]);
+        go_on(m);
     }
     predict_anew(changed);
 }
@@ -409,10 +421,9 @@ PairBody PairIsland::body_of(const IslandMember& member) {
     return body;
 }
 
-/// A member goes on from an impact: what touched it is met anew.
+/// A member takes the motion after an impact: what touched it is met anew.
 void PairIsland::take_over(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
-    if (member.is_fixed || member.is_cut_off) return;
     member.is_free = false;  // also where it is hit at the begin of the step, and has not been brought anywhere
     MovingParticle& moving = member.moving;
     const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
@@ -432,11 +443,16 @@ void PairIsland::take_over(std::size_t m, const PairBody& body) {
         part.end = {moving.state.position, moving.state.velocity, moving.spin};
         member.lists.motions.push_back(part);
     }
+}
+
+/// A member goes on from where it has been brought, unless it has spent its impacts.
+void PairIsland::go_on(std::size_t m) {
+    IslandMember& member = (*members_)[m];
     resume(m);
     if (member.impacts < impact_budget_) return;
     member.is_cut_off = true;
-    member.outcome.unsimulated_time += member.end - moving.state.time;
-    moving.step_end = member.end;
+    member.outcome.unsimulated_time += member.end - member.moving.state.time;
+    member.moving.step_end = member.end;
 }
 
 /// Where forces act by a kick at the begin they have acted already.

@@ -97,8 +97,12 @@ private:
     void predict(std::size_t m);
     void stay(std::size_t m);
     void fly_freely(IslandMember& member, double duration);
-    [[nodiscard]] bool bring(std::size_t m, double time);
-    [[nodiscard]] bool is_missed(const PairContact& contact, const std::vector<std::size_t>& late) const;
+    void bring(std::size_t m, double time);
+    [[nodiscard]] bool is_missed(const PairContact& contact, double time) const;
+    [[nodiscard]] bool is_still(std::size_t m) const {
+        const IslandMember& member = (*members_)[m];
+        return member.is_fixed || member.is_cut_off || member.is_gone();
+    }
     void go_to(std::size_t m, double time);
     [[nodiscard]] bool bounces_at(std::size_t m, double time) const;
     void commit(std::size_t m);
@@ -113,6 +117,7 @@ private:
     void answer(std::vector<PairContact>& contacts, double time);
     [[nodiscard]] static PairBody body_of(const IslandMember& member);
     void take_over(std::size_t m, const PairBody& body);
+    void go_on(std::size_t m);
     void resume(std::size_t m);
     void record(const PairContact& contact, const std::vector<std::size_t>& changed,
                 const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);

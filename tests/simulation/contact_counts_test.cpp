@@ -97,5 +97,40 @@ TEST(ContactCounts, RowsHoldTheImpulsesOfTheTotalsAndThoseOfPenaltyNone) {
     }
 }
 
+/// A point that lies 1e-10 m above the common vertex of the triangles of a slope, on which it would rest.
+SimulationSetup lying_on_a_slope(std::uint64_t number) {
+    RandomSequence random(137, 0, number);
+    const Vec3 up = random.unit_vector();
+    const Vec3 east = normalized(cross(up, random.unit_vector()));
+    const Vec3 north = cross(up, east);
+    TriangleMesh mesh;
+    for (int k = 0; k < 9; ++k) mesh.vertices.push_back(3000.0 * ((k % 3 - 1) * east + (k / 3 - 1) * north));
+    for (const std::uint32_t corner : {0U, 1U, 3U, 4U}) {
+        mesh.triangles.push_back({corner, corner + 1, corner + 4});
+        mesh.triangles.push_back({corner, corner + 4, corner + 3});
+    }
+    SimulationSetup setup;
+    setup.options.time_step = 0.2 * (1.0 + random.uniform());
+    setup.options.duration = 3.0 * setup.options.time_step;
+    setup.options.resting_speed = 0.05;
+    setup.options.record_contacts = true;
+    setup.materials = {{.name = "stone", .restitution = 0.6, .friction = 0.5}};
+    setup.colliders = {{"slope", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, ""}, 0}};
+    setup.forces.push_back(make_gravity(100.0 * ((0.2 + 0.29 * random.uniform()) * east - up)));
+    Particle particle;
+    particle.position = 1e-10 * up + 1e-11 * random.unit_vector();
+    setup.particles.push_back(particle);
+    return setup;
+}
+
+// The slide of the landing stops within microseconds of a long step. Where the clock rounded its duration up, a speed
+// of 1e-19 m/s was left, whose direction is rounding too, and took the point off the slope for another landing.
+TEST(ContactCounts, WhatLandsAndStaysHasLandedOnce) {
+    for (std::uint64_t k = 0; k < 300; ++k) {
+        SCOPED_TRACE(k);
+        EXPECT_EQ(counts_of(lying_on_a_slope(k)).contacts, 1U);
+    }
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -153,8 +153,9 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
+    const bool is_over = !stop.is_early() || elapsed >= interval.duration;
     Motion motion =
-        end_of_interval(interval, elapsed, state_.velocity, state_.radius, manifold_.holding(impact_).all());
+        motion_after(interval, elapsed, is_over, state_.velocity, state_.radius, manifold_.holding(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
     if (!manifold_.is_driven(impact_)) {
         limit_energy(motion, state_.radius, most + 2.0 * work,

@@ -321,8 +321,11 @@ private:
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
-            const bool is_soon_over =
-                left < kMostHeadingTurn * r.speed && left * interval.duration <= grip_.negligible_path;
+            // On a slope next to the angle of friction what brakes is a small difference of large forces, and rounded
+            // as these are.
+            const double rounding = kHoldRounding * scale() * interval.duration;
+            const bool is_soon_over = left < kMostHeadingTurn * r.speed &&
+                                      (left <= rounding || left * interval.duration <= grip_.negligible_path);
             sticks = left <= kStopRounding * r.speed || is_soon_over;
             // Whatever else moves on: what slips no further than that only hides who holds it afterwards.
             if (sticks && r.speed * interval.duration <= grip_.negligible_path) interval.ends_at_once = true;
@@ -395,10 +398,10 @@ ContactInterval plan_interval_by_middle(const Motion& motion, double radius, con
     return Plan(motion, radius, a, before, middle, grip, duration, {}).interval();
 }
 
-Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity, double radius,
-                       std::span<const HoldingSurface> surfaces) {
+Motion motion_after(const ContactInterval& interval, double elapsed, bool is_over, const Vec3& velocity, double radius,
+                    std::span<const HoldingSurface> surfaces) {
     const Motion motion{velocity, interval.motion.spin + elapsed * interval.spin_acceleration};
-    if (elapsed < interval.duration) return motion;
+    if (!is_over) return motion;
     return along_surfaces(motion, radius, surfaces, interval.stuck, std::sqrt(twice_kinetic(interval.motion, radius)));
 }
 

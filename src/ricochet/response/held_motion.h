@@ -65,8 +65,10 @@ inline constexpr double kShortestIntervals = 32.0;
                                                       std::span<const HoldingSurface> middle, const Grip& grip,
                                                       double duration);
 
-/// The motion after `elapsed` seconds of an interval. velocity: what the path gave there.
-[[nodiscard]] Motion end_of_interval(const ContactInterval& interval, double elapsed, const Vec3& velocity,
-                                     double radius, std::span<const HoldingSurface> surfaces);
+/// Returns the motion after `elapsed` seconds of an interval. velocity: what the path gave there. is_over: the interval
+/// has come to its end, so that slip which ends with it is gone to the last bit. The caller knows that better than
+/// `elapsed`, which may be a rounded difference.
+[[nodiscard]] Motion motion_after(const ContactInterval& interval, double elapsed, bool is_over, const Vec3& velocity,
+                                  double radius, std::span<const HoldingSurface> surfaces);
 
 }  // namespace ricochet

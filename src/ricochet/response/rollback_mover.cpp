@@ -181,9 +181,10 @@ void RollbackMover::follow_interval(double elapsed) {
     const Vec3 before = state_.velocity;
     const bool rests = interval_->at_rest;
     if (!rests) state_.position = flush_tiny(flight_.path.position(elapsed));
+    const bool is_over = elapsed >= interval_->duration;
     const Motion motion = rests ? interval_->motion
-                                : end_of_interval(*interval_, elapsed, flight_.path.velocity(elapsed), state_.radius,
-                                                  manifold_.holding(impact_).all());
+                                : motion_after(*interval_, elapsed, is_over, flight_.path.velocity(elapsed),
+                                               state_.radius, manifold_.holding(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);

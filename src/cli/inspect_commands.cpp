@@ -207,8 +207,10 @@ void run_check(const cli::SceneArguments& arguments) {
     try {
         const std::vector<EmitterDescription> emitters = scene.setup.emitters;
         const Vec3 fall = uniform_acceleration(scene.setup);
+        const std::vector<std::string> outside = bounds_warnings(scene.setup);
         const Simulation simulation(std::move(scene.setup));
         print_warnings(arguments.file, simulation.warnings());
+        print_warnings(arguments.file, outside);
         print_warnings(arguments.file, scene_warnings(simulation, emitters, fall));
         cli::print("{}: ok: {}, {} of {:.6g} s, about {} of memory\n", arguments.file, counts,
                    counted(simulation.step_count(), "step"), simulation.options().time_step, memory);

@@ -51,6 +51,15 @@ Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     }
 }
 
+// Warnings by the setup alone, before the simulation takes it over.
+std::vector<std::string> setup_warnings(const SceneDescription& scene) {
+    try {
+        return bounds_warnings(scene.setup);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    }
+}
+
 // Finds out before the work, not after it, whether the file can be written.
 void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
@@ -198,12 +207,14 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     prepared.region = particle_region(scene.setup);
     prepared.plan = RunPlan{.output = scene.output, .fingerprint = scene.fingerprint, .run = &run};
     const Vec3 fall = uniform_acceleration(scene.setup);
+    const std::vector<std::string> outside = setup_warnings(scene);
     scene.setup.ranks = run.ranks();
     run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
     // Before a checkpoint is read: planes are drawn in the same size whether the run was interrupted or not.
     if (arguments.resume) prepared.region.include(collider_region(*prepared.simulation));
     std::vector<std::string> warnings = prepared.simulation->warnings();
+    std::ranges::copy(outside, std::back_inserter(warnings));
     std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));
     for (const std::string& warning : warnings) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);

@@ -18,6 +18,7 @@
 #include "ricochet/core/printable.h"
 #include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene_warnings.h"
 
@@ -153,7 +154,12 @@ void print_names(const MeshReport& report, FaceNameKind kind) {
 }
 
 void run_info(const InfoOptions& options) {
-    const MeshReport report = report_on(read_mesh(options.mesh));
+    MeshReport report = report_on(read_mesh(options.mesh));
+    if (const auto doubt = implausible_size(report.bounds, size_origin(report.format))) {
+        report.warnings.push_back(*doubt +
+                                  ": give the unit to `ricochet new` (--unit mm), or a \"scale\" to the collider in a "
+                                  "scene (0.001 for millimetres)");
+    }
     if (options.json) {
         // File names are bytes; JSON wants UTF-8.
         fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));

@@ -369,5 +369,23 @@ TEST_F(CheckWarnings, SaysNothingOfBoundsThatHoldAllThatBegins) {
     EXPECT_EQ(warnings(plane() + parent + child + bounds), "");
 }
 
+TEST_F(CheckWarnings, DoubtsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
+    TriangleMesh hopper = funnel_mesh(205.0, 20.0);
+    for (Vec3& vertex : hopper.vertices) vertex.z *= 300.0;
+    (void)folder().write("millimetres.obj", obj_of(hopper));
+    const auto with_scale = [&](const std::string& scale) {
+        return warnings(collider(R"("type": "mesh", "file": "millimetres.obj")" + scale) +
+                        emitter(R"("type": "point", "center": [0, 0, 900])"));
+    };
+    const std::string text = with_scale("");
+    EXPECT_NE(text.find("colliders[0].file: the mesh is 410 m large if its numbers are metres, 0.41 m if they are "
+                        "millimetres; "),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("\"scale\": 0.001 for millimetres, or \"scale\": 1"), std::string::npos) << text;
+    EXPECT_EQ(with_scale(R"(, "scale": 1)"), "");
+    EXPECT_EQ(with_scale(R"(, "scale": 0.001)"), "");
+}
+
 }  // namespace
 }  // namespace ricochet

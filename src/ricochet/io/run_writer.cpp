@@ -164,9 +164,9 @@ void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t sce
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
 
-void RunWriter::remove_checkpoint() const {
+void RunWriter::keep_checkpoint_for_extension() const {
     std::error_code ignored;
-    std::filesystem::remove(folder_ / kCheckpointFile, ignored);
+    std::filesystem::rename(folder_ / kCheckpointFile, folder_ / kExtensionFile, ignored);
 }
 
 RunSummary RunWriter::finish(const Simulation& simulation) {

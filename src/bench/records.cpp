@@ -277,7 +277,7 @@ constexpr ExtraColumn kExtraColumns[] = {
 
 Table to_table(std::span<const Row> rows) {
     Table table{{"case", "particles", "triangles", "threads", "steps/s", "contacts/s", "/raw", "/sorted", "/native",
-                 "leaks", "hits/step", "state", "B/particle", "B/triangle"}};
+                 "native leaks", "hits/step", "state", "B/particle", "B/triangle"}};
     for (const Row& row : rows) table.push_back(cells_of(row));
     for (const ExtraColumn& column : kExtraColumns) {
         const auto has_it = [&](const Row& row) { return column.value(row).has_value(); };

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -72,21 +75,42 @@ void Command::on_call(std::function<void()> action) { app_->callback(std::move(a
 
 bool Command::is_called() const { return app_->parsed(); }
 
-/// What the command knows instead of the first option that it does not.
-static std::string meant_options(const CLI::App& app) {
-    for (const CLI::App* command : app.get_subcommands()) {
-        std::vector<std::string> known;
-        for (const CLI::Option* option : command->get_options()) {
-            for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-        }
-        for (const std::string& word : command->remaining()) {
-            if (!word.starts_with("--")) continue;
-            return detail::did_you_mean(
-                detail::nearest_names(word.substr(0, word.find('=')), {known.begin(), known.end()}));
-        }
-    }
-    return "";
+namespace {
+
+/// Names of options that a word may stand for: by spelling, or by the letter that they begin with.
+std::vector<std::string_view> meant_options(std::string_view word, const std::vector<std::string_view>& known) {
+    std::string_view name = word.substr(0, word.find('='));
+    name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
+    if (name.size() != 1) return detail::nearest_names(name, known);
+    std::vector<std::string_view> meant;
+    std::copy_if(known.begin(), known.end(), std::back_inserter(meant),
+                 [&](std::string_view option) { return option.starts_with(fmt::format("--{}", name)); });
+    return meant;
 }
+
+/// Returns a message on the first word that looks like an option of the command and is none, or nothing.
+std::optional<std::string> unknown_option(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : command.get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    for (const std::string& word : command.remaining()) {
+        if (word.size() < 2 || word.front() != '-' || word == "--") continue;
+        const std::string help = detail::did_you_mean(meant_options(word, {names.begin(), names.end()}));
+        return fmt::format("The following argument was not expected: {}{}", word, help.empty() ? "" : "; " + help);
+    }
+    return std::nullopt;
+}
+
+/// The same for the program and the command that was called.
+std::optional<std::string> unknown_option_of_any(const CLI::App& program) {
+    for (const CLI::App* command : program.get_subcommands()) {
+        if (auto message = unknown_option(*command)) return message;
+    }
+    return unknown_option(program);
+}
+
+}  // namespace
 
 CommandLine::CommandLine(const std::string& help, const std::string& program)
     : app_(std::make_unique<CLI::App>(help, program)) {
@@ -109,16 +133,17 @@ std::vector<std::string> CommandLine::commands() const {
     return names;
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv, const std::string& hint) {
+void CommandLine::add_footer(const std::string& text) { app_->footer(text); }
+
+std::optional<int> CommandLine::parse(std::vector<std::string> words, const std::string& hint) {
+    std::reverse(words.begin(), words.end());  // as CLI11 wants them
     try {
-        app_->parse(argc, argv);
+        app_->parse(words);
     } catch (const CLI::Success& help_or_version) {
         return app_->exit(help_or_version);
-    } catch (const CLI::ExtrasError& error) {
-        const std::string help = meant_options(*app_);
-        throw InputError(fmt::format("{}{} ({})", error.what(), help.empty() ? "" : "; " + help, hint));
     } catch (const CLI::ParseError& error) {
-        throw InputError(fmt::format("{} ({})", error.what(), hint));
+        // A misspelt option is missing under its right name, too: the spelling is the cause.
+        throw InputError(fmt::format("{} ({})", unknown_option_of_any(*app_).value_or(error.what()), hint));
     }
     return std::nullopt;
 }

@@ -75,9 +75,13 @@ public:
     /// Names of the commands, in the order in which they were added.
     [[nodiscard]] std::vector<std::string> commands() const;
 
-    /// Reads the arguments and calls the commands that they name. Returns the exit code where help or version was asked
-    /// for and printed, else nothing. Throws InputError on wrong arguments, with `hint` in brackets.
-    std::optional<int> parse(int argc, char** argv, const std::string& hint);
+    /// Ends the program's help with a line; commands that are added before have none.
+    void add_footer(const std::string& text);
+
+    /// Reads the words behind the program's name and calls the command that they name. Returns the exit code where help
+    /// or version was asked for and printed, else nothing. Throws InputError on wrong arguments, with `hint` in
+    /// brackets.
+    std::optional<int> parse(std::vector<std::string> words, const std::string& hint);
 
 private:
     std::unique_ptr<CLI::App> app_;

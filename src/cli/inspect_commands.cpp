@@ -18,6 +18,7 @@
 #include "ricochet/core/printable.h"
 #include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene_warnings.h"
 
@@ -153,7 +154,12 @@ void print_names(const MeshReport& report, FaceNameKind kind) {
 }
 
 void run_info(const InfoOptions& options) {
-    const MeshReport report = report_on(read_mesh(options.mesh));
+    MeshReport report = report_on(read_mesh(options.mesh));
+    if (const auto doubt = implausible_size(report.bounds, size_origin(report.format))) {
+        report.warnings.push_back(*doubt +
+                                  ": give the unit to `ricochet new` (--unit mm), or a \"scale\" to the collider in a "
+                                  "scene (0.001 for millimetres)");
+    }
     if (options.json) {
         // File names are bytes; JSON wants UTF-8.
         fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));
@@ -207,8 +213,10 @@ void run_check(const cli::SceneArguments& arguments) {
     try {
         const std::vector<EmitterDescription> emitters = scene.setup.emitters;
         const Vec3 fall = uniform_acceleration(scene.setup);
+        const std::vector<std::string> outside = bounds_warnings(scene.setup);
         const Simulation simulation(std::move(scene.setup));
         print_warnings(arguments.file, simulation.warnings());
+        print_warnings(arguments.file, outside);
         print_warnings(arguments.file, scene_warnings(simulation, emitters, fall));
         cli::print("{}: ok: {}, {} of {:.6g} s, about {} of memory\n", arguments.file, counts,
                    counted(simulation.step_count(), "step"), simulation.options().time_step, memory);

@@ -61,10 +61,13 @@ int report_error(std::string message, int exit_code) {
     return exit_code;
 }
 
-// What is no command is told as such, with the one that may be meant.
-void check_command(const cli::CommandLine& line, int argc, char** argv) {
-    const std::string word = argc > 1 ? argv[1] : "";
-    const std::vector<std::string> known = line.commands();
+constexpr const char* kHelp = "help";
+
+// Throws InputError unless the first word is a command, or an option.
+void check_command(const cli::CommandLine& line, const std::vector<std::string>& words) {
+    const std::string word = words.empty() ? "" : words.front();
+    std::vector<std::string> known = line.commands();
+    known.emplace_back(kHelp);
     if (word.empty() || word.front() == '-' || std::find(known.begin(), known.end(), word) != known.end()) return;
     const std::vector<std::string_view> names(known.begin(), known.end());
     const std::vector<std::string_view> nearest = detail::nearest_names(word, names);
@@ -72,17 +75,28 @@ void check_command(const cli::CommandLine& line, int argc, char** argv) {
     throw InputError(fmt::format("unknown command \"{}\"; {}", word, help));
 }
 
-int parse_and_run(int argc, char** argv) {
+// Returns `run --help` for `help run`, and `--help` for `help`.
+std::vector<std::string> without_help_command(std::vector<std::string> words) {
+    while (!words.empty() && words.front() == kHelp) {
+        words.erase(words.begin());
+        words.insert(words.begin() + (words.empty() ? 0 : 1), "--help");
+    }
+    return words;
+}
+
+int parse_and_run(const std::vector<std::string>& arguments) {
     cli::CommandLine line("Particles against triangle meshes, exactly", "ricochet");
     line.add_version(version_text);
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(line.program(), exit_code);
-    check_command(line, argc, argv);
+    line.add_footer("`ricochet help COMMAND`, or `ricochet COMMAND --help`, lists the options of a command.");
+    const std::vector<std::string> words = without_help_command(arguments);
+    check_command(line, words);
     try {
-        if (const auto printed = line.parse(argc, argv, "ricochet --help lists commands and options")) return *printed;
+        if (const auto printed = line.parse(words, "ricochet --help lists commands and options")) return *printed;
     } catch (...) {
         // Of processes that share a run one tells what is wrong.
-        if (argc < 2 || argv[1] != std::string_view("run")) throw;
+        if (words.empty() || words.front() != "run") throw;
         if (const auto failed = cli::fail_together(std::current_exception())) return *failed;
         throw;
     }
@@ -91,7 +105,7 @@ int parse_and_run(int argc, char** argv) {
 
 int run(int argc, char** argv) {
     try {
-        const int exit_code = parse_and_run(argc, argv);
+        const int exit_code = parse_and_run({argv + std::min(argc, 1), argv + argc});
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw RunError("standard output cannot be written");
         return exit_code;
     } catch (const SceneError& error) {

@@ -1,10 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "cli/command_line.h"
 #include "cli/commands.h"
@@ -13,6 +17,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_report.h"
+#include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
@@ -24,7 +29,8 @@ struct NewArguments {
     std::string mesh;
     std::string output;
     std::string kind = "rain";
-    std::string up;  ///< empty: as the format says
+    std::string up;    ///< empty: as the format says
+    std::string unit;  ///< of the mesh file; empty: metres, which nobody has said
     bool force = false;
 };
 
@@ -39,6 +45,40 @@ Box3 turned(const Box3& box, Vec3 (*turn)(const Vec3&)) {
     Box3 result;
     for (const Vec3& corner : {box.lower, box.upper}) result.include(turn(corner));
     return result;
+}
+
+struct Unit {
+    std::string_view name;
+    double metres;
+};
+constexpr std::array<Unit, 9> kUnits = {{{"um", 1e-6},
+                                         {"mm", 1e-3},
+                                         {"cm", 0.01},
+                                         {"dm", 0.1},
+                                         {"m", 1.0},
+                                         {"km", 1e3},
+                                         {"in", 0.0254},
+                                         {"ft", 0.3048},
+                                         {"yd", 0.9144}}};
+
+// Metres in a unit.
+double metres_in(const std::string& unit) {
+    std::vector<std::string_view> names;
+    for (const auto& [name, metres] : kUnits) {
+        if (name == unit) return metres;
+        names.push_back(name);
+    }
+    throw InputError(fmt::format("--unit: found \"{}\", expected one of {}", unit, fmt::join(names, ", ")));
+}
+
+void warn_of_size(const NewArguments& arguments, const Box3& bounds, const std::string& format) {
+    if (arguments.unit == "m") return;
+    const bool is_stated = !arguments.unit.empty();
+    const auto doubt = implausible_size(bounds, is_stated ? SizeOrigin::stated : size_origin(format));
+    if (!doubt) return;
+    cli::print(stderr, "ricochet: warning: {}: {}{}\n", arguments.mesh, *doubt,
+               is_stated ? fmt::format(" by --unit {}: give the unit that its numbers have", arguments.unit)
+                         : "; give --unit mm (or cm, in, ...), or --unit m to keep the size");
 }
 
 // As the scene names it: from its own folder, so that both can be moved together.
@@ -59,8 +99,11 @@ cli::FittedMesh fitted_mesh(const NewArguments& arguments) {
     mesh.format_up = report.y_up ? "y" : "z";
     mesh.closed = report.topology.closed;
     mesh.file = file_from(arguments.output, arguments.mesh);
+    if (!arguments.unit.empty()) mesh.scale = metres_in(arguments.unit);
+    if (mesh.scale > 0.0) mesh.bounds = {mesh.scale * mesh.bounds.lower, mesh.scale * mesh.bounds.upper};
     if (!(mesh.bounds.diagonal() > 0.0) || !std::isfinite(mesh.bounds.diagonal()))
         throw InputError(fmt::format("{}: the mesh has no extent, a scene cannot be fitted to it", arguments.mesh));
+    warn_of_size(arguments, mesh.bounds, report.format);
     return mesh;
 }
 
@@ -103,7 +146,9 @@ void make_scene(const NewArguments& arguments) {
     write_file(target, text);
     const std::string folder = (target.parent_path() / target.stem()).generic_string();
     const std::string up = mesh.up.empty() ? mesh.format_up : mesh.up;
-    cli::print("{}: a {} scene for {}, {} up\n", arguments.output, arguments.kind, arguments.mesh, up);
+    const Vec3 size = mesh.bounds.size();
+    cli::print("{}: a {} scene for {} of {:.3g} x {:.3g} x {:.3g} m, {} up\n", arguments.output, arguments.kind,
+               arguments.mesh, size.x, size.y, size.z, up);
     if (kind == cli::SceneTemplate::gas && !mesh.closed) {
         cli::print("  the gas is around the mesh, in a box, not in it: {}\n",
                    is_to_be_filled ? "where edges belong to three faces or more, or almost nothing is enclosed, the "
@@ -126,6 +171,8 @@ void add_new_command(cli::Command program, int& exit_code) {
         .show_default();
     command.add_option("--up", arguments->up, "Axis of the mesh file that points up (default: y of glTF, else z)")
         .type_name("z|y");
+    command.add_option("--unit", arguments->unit, "Unit of the mesh file's numbers; scenes are in metres (default: m)")
+        .type_name("um|mm|cm|dm|m|km|in|ft|yd");
     command.add_flag("--force", arguments->force, "Replace a scene file of that name");
     command.on_call([arguments, &exit_code] {
         make_scene(*arguments);

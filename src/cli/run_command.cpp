@@ -51,6 +51,15 @@ Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     }
 }
 
+// Warnings by the setup alone, before the simulation takes it over.
+std::vector<std::string> setup_warnings(const SceneDescription& scene) {
+    try {
+        return bounds_warnings(scene.setup);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    }
+}
+
 // Finds out before the work, not after it, whether the file can be written.
 void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
@@ -109,6 +118,18 @@ private:
     std::atomic<Clock::rep> first_asked_ = 0;  // when the signal was seen
 };
 
+// Returns whether the last step is exactly as long as the others, so that the end of the run is a step of longer runs.
+bool has_whole_last_step(const Simulation& simulation) {
+    const SimulationOptions& options = simulation.options();
+    return options.duration == static_cast<double>(simulation.step_count()) * options.time_step;
+}
+
+// Returns the last step with a frame from which a longer run of the same scene can go on.
+std::uint64_t last_step_to_extend(const Simulation& simulation, std::uint64_t every) {
+    const std::uint64_t steps = simulation.step_count();
+    return steps == 0 ? 0 : (has_whole_last_step(simulation) ? steps : steps - 1) / every * every;
+}
+
 // Steps to the end, to the end of the step in which a signal came (to its begin where it takes long), or to the one
 // that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
 // the guard lives from then on.
@@ -116,6 +137,7 @@ std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput
                                           cli::RunProgress& progress, std::optional<InterruptGuard>& guard) {
     output.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
+    const std::uint64_t last_to_extend = last_step_to_extend(simulation, plan.output.every);
     const auto after_step = [&] {
         if (!guard) guard.emplace();
         output.add_step(simulation);
@@ -137,7 +159,8 @@ std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput
         const std::uint64_t step = simulation.step_index();
         if (step % plan.output.every != 0) continue;
         output.write_frame(simulation);
-        if (plan.output.checkpoint_every == 0 || step - last_checkpoint < plan.output.checkpoint_every) continue;
+        const bool is_due = plan.output.checkpoint_every > 0 && step - last_checkpoint >= plan.output.checkpoint_every;
+        if (!is_due && step != last_to_extend) continue;
         output.write_checkpoint(simulation, plan.seconds());
         last_checkpoint = step;
     }
@@ -147,6 +170,7 @@ std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput
 SceneDescription scene_of(const RunArguments& arguments) {
     cli::SceneArguments wanted = arguments.scene;
     if (!arguments.response.empty()) wanted.overrides.push_back("simulation.response=" + arguments.response);
+    if (!arguments.extend.empty()) wanted.overrides.push_back("simulation.duration=" + arguments.extend);
     SceneDescription scene = cli::load_scene(wanted);
     scene.setup.options.verify = arguments.verify;
     return scene;
@@ -170,6 +194,9 @@ void add_options(cli::Command command, RunArguments& a) {
         "with 1");
     command.add_flag("--resume", a.resume,
                      "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
+    command
+        .add_option("--extend", a.extend, "With --resume: go on to this time, s, with an interrupted or a finished run")
+        .type_name("T");
 }
 
 // Everything that a run is made of. Where ranks share it, the first one alone has a writer, and the folder unless all
@@ -187,8 +214,25 @@ struct PreparedRun {
     cli::RunOutput out{};
 };
 
+// Throws InputError unless the option is a time and the run is resumed.
+void check_extension(const RunArguments& arguments) {
+    if (arguments.extend.empty()) return;
+    const std::optional<double> time = cli::parse_number(arguments.extend);
+    if (!time || !(*time > 0.0)) {
+        throw InputError(fmt::format("--extend {}: expected a number above 0, the time in s at which the run is to end",
+                                     arguments.extend));
+    }
+    if (!arguments.resume) {
+        throw InputError(
+            fmt::format("--extend {}: goes together with --resume; for a new run use --set "
+                        "simulation.duration={}",
+                        arguments.extend, arguments.extend));
+    }
+}
+
 // What can be said before a file of the folder is touched.
 void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
+    check_extension(arguments);
     prepared.progress = cli::parse_progress(arguments.progress);
     prepared.limit.emplace(run.threads_for(cli::parse_thread_count(arguments.threads)));
     SceneDescription& scene = prepared.scene = scene_of(arguments);
@@ -198,12 +242,14 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     prepared.region = particle_region(scene.setup);
     prepared.plan = RunPlan{.output = scene.output, .fingerprint = scene.fingerprint, .run = &run};
     const Vec3 fall = uniform_acceleration(scene.setup);
+    const std::vector<std::string> outside = setup_warnings(scene);
     scene.setup.ranks = run.ranks();
     run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
     // Before a checkpoint is read: planes are drawn in the same size whether the run was interrupted or not.
     if (arguments.resume) prepared.region.include(collider_region(*prepared.simulation));
     std::vector<std::string> warnings = prepared.simulation->warnings();
+    std::ranges::copy(outside, std::back_inserter(warnings));
     std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));
     for (const std::string& warning : warnings) {
         cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
@@ -217,12 +263,43 @@ void open_folder(const RunArguments& arguments, PreparedRun& prepared) {
     check_writable(arguments.output_state);
 }
 
-// Puts the simulation where the interrupted run in the folder has stopped.
+// Returns the file that the run in the folder goes on from. Throws InputError where it is finished, unless it is
+// extended by a step at least.
+std::filesystem::path resumed_file(const RunArguments& arguments, const Simulation& simulation) {
+    const std::filesystem::path folder(arguments.output);
+    const bool is_finished = !std::filesystem::exists(std::filesystem::symlink_status(folder / kCheckpointFile)) &&
+                             std::filesystem::exists(std::filesystem::symlink_status(folder / kExtensionFile));
+    if (!is_finished) return folder / kCheckpointFile;
+    if (arguments.extend.empty()) {
+        throw InputError(fmt::format("{}: the run is finished; --resume --extend T goes on to a later time T, in s",
+                                     arguments.output));
+    }
+    const std::uint64_t made = open_run_folder(folder).frames.back().step;
+    if (simulation.step_count() <= made) {
+        throw InputError(
+            fmt::format("--extend {}: the run is finished and has made {} steps of {:.6g} s, expected a "
+                        "time of {} steps or more",
+                        arguments.extend, made, simulation.options().time_step, made + 1));
+    }
+    return folder / kExtensionFile;
+}
+
+// Throws InputError where the run has gone beyond the end that is asked for. A killed run may be at its end.
+void require_end_ahead(const RunArguments& arguments, const Simulation& simulation) {
+    const std::uint64_t end = simulation.step_count() + (has_whole_last_step(simulation) ? 1 : 0);
+    if (simulation.step_index() < end) return;
+    throw InputError(fmt::format(
+        "{}: the run has made {} steps of {:.6g} s, which is beyond its end at {:.6g} s; "
+        "--resume --extend T goes on to a later time T, in s",
+        arguments.output, simulation.step_index(), simulation.options().time_step, simulation.options().duration));
+}
+
+// Puts the simulation where the run in the folder has stopped.
 std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& prepared) {
     if (!arguments.resume) return std::nullopt;
     Simulation& simulation = *prepared.simulation;
-    Checkpoint checkpoint = read_checkpoint(std::filesystem::path(arguments.output) / kCheckpointFile,
-                                            prepared.plan.fingerprint, simulation);
+    Checkpoint checkpoint = read_checkpoint(resumed_file(arguments, simulation), prepared.plan.fingerprint, simulation);
+    require_end_ahead(arguments, simulation);
     if (prepared.folder) {
         list_kept_files(arguments.output, checkpoint);
         prepared.folder->remove_after(simulation.step_index());
@@ -329,10 +406,7 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     summary.interrupted = is_interrupted;
     writer.write_summary(summary);
     // Only now: until all is on disk the run can go on from there.
-    if (!diverged && !is_interrupted) {
-        writer.remove_checkpoint();
-        prepared.folder->remove_checkpoint_parts();
-    }
+    if (!diverged && !is_interrupted) writer.keep_checkpoint_for_extension();
     return summary;
 }
 

@@ -18,6 +18,7 @@ struct RunArguments {
     std::string progress = "auto";  ///< auto, always or never
     bool quiet = false;
     bool resume = false;
+    std::string extend;  ///< s, the time to which a run goes on; empty: as the scene says
     bool verify = false;
     bool shared = false;  ///< with the processes that mpirun has started beside this one, if it has
 };

@@ -227,11 +227,11 @@ Part part_of(SceneTemplate kind, const Fit& fit, bool closed) {
 constexpr const char* kGlass = R"(, "looks": {"glass": true})";
 
 std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& part) {
-    const std::string turned =
-        mesh.up.empty() || mesh.up == mesh.format_up ? "" : fmt::format(R"(, "up": "{}")", mesh.up);
+    std::string placement = mesh.up.empty() || mesh.up == mesh.format_up ? "" : fmt::format(R"(, "up": "{}")", mesh.up);
+    if (mesh.scale > 0.0) placement += fmt::format(R"(, "scale": {})", mesh.scale);
     std::string text =
         fmt::format(R"(    {{"name": "mesh", "type": "mesh", "file": {}, "material": "surface"{}{}}})",
-                    nlohmann::json(mesh.file).dump(), turned, part.has_gravity || part.has_box ? "" : kGlass);
+                    nlohmann::json(mesh.file).dump(), placement, part.has_gravity || part.has_box ? "" : kGlass);
     if (part.has_gravity) {
         text += fmt::format(
             ",\n    {{\"name\": \"ground\", \"type\": \"plane\", \"point\": {}, \"normal\": [0, 0, 1], \"material\": "

@@ -22,6 +22,7 @@ struct FittedMesh {
     Box3 bounds;            ///< m, as the mesh stands in the scene; not empty
     std::string up;         ///< axis of the file that points up, "y" or "z"; empty: as its format says
     std::string format_up;  ///< and what that says
+    double scale = 0.0;     ///< m a unit of the file; 0 where it is not stated: metres
     bool closed = false;    ///< its edges say that a gas can be inside
 };
 

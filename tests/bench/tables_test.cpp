@@ -41,6 +41,16 @@ TEST(BenchTables, ShowCostsAndSpeedupsOnlyWhereThereAreSome) {
     EXPECT_EQ(table[2].back(), "1.75");
 }
 
+TEST(BenchTables, SayThatTheLeaksAreThoseOfTheNativeLoop) {
+    Row row = row_with_steps();
+    row.leaks = 7;
+    const Table table = to_table(std::vector<Row>{row});
+    EXPECT_FALSE(has_column(table, "leaks"));
+    const auto column = std::find(table[0].begin(), table[0].end(), "native leaks") - table[0].begin();
+    ASSERT_LT(column, std::ssize(table[0]));
+    EXPECT_EQ(table[1][static_cast<std::size_t>(column)], "7");
+}
+
 TEST(BenchTables, SayWhichRatiosFell) {
     const Table table = to_table(std::vector<RatioChange>{{"gas", "ratio_raw", 2.0, 1.0, true}});
     EXPECT_EQ(table[1], (std::vector<std::string>{"gas", "ratio_raw", "2", "1", "-50 %", "fell"}));

@@ -87,6 +87,7 @@ protected:
     static std::string emitter(const std::string& keys) {
         return R"(, "emitters": [{"name": "e", "burst": 10, )" + keys + "}]";
     }
+    static std::string plane() { return collider(R"("type": "plane", "point": [0, 0, -0.5], "normal": [0, 0, 1])"); }
     static std::string gravity() { return R"(, "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}])"; }
 
     SampleFolder& folder() { return folder_; }
@@ -325,6 +326,65 @@ TEST_F(CheckWarnings, ARunNamesThemToo) {
     };
     EXPECT_NE(told("events").find("particle_contacts.method"), std::string::npos);
     EXPECT_EQ(told("auto"), "");
+}
+
+TEST_F(CheckWarnings, TellsWithEveryRunOfBoundsThatExcludeAnEmitter) {
+    const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
+    const std::string advice =
+        ": particles outside are removed at the end of a step; make `bounds` larger or move the emitter inside\n";
+    const std::string outside = plane() + emitter(R"("type": "point", "center": [0, 0, 3.5])") + bounds;
+    const std::string all =
+        "emitters[0] 'e': 256 of 256 positions that were tried lie outside `bounds`, the farthest by "
+        "2.5 m along z" +
+        advice;
+    EXPECT_EQ(warnings(outside), all);
+    EXPECT_NE(warnings_of_run(outside).find("warning: " + all), std::string::npos);
+    const std::string partly = emitter(R"("type": "box", "center": [1, 0, 0], "size": [0.5, 0.5, 0.5])");
+    const std::string text = warnings(plane() + partly + bounds);
+    EXPECT_NE(text.find(" of 256 positions that were tried lie outside `bounds`, the farthest by 0.2"),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find(" m along x" + advice), std::string::npos) << text;
+}
+
+TEST_F(CheckWarnings, TellsOfBoundsThatExcludeAnEmitterInAFrame) {
+    const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
+    const std::string frame = R"(, "frames": {"f": {"translation": [0, 0, 5]}})";
+    const std::string in_frame = emitter(R"("type": "point", "center": [0, 0, 0.5], "frame": "f")");
+    EXPECT_NE(warnings(plane() + frame + in_frame + bounds).find("256 of 256"), std::string::npos);
+}
+
+TEST_F(CheckWarnings, SaysNothingOfBoundsThatHoldAllThatBegins) {
+    const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
+    for (const char* shape : {R"("type": "point", "center": [0, 0, 1])",
+                              R"("type": "disk", "center": [0, 0, 1], "normal": [0, 0, 1], "radius": 1)",
+                              R"("type": "sphere", "center": [0, 0, 0.5], "radius": 0.5)"}) {
+        EXPECT_EQ(warnings(plane() + emitter(shape) + bounds), "") << shape;
+    }
+    // Children begin where their parents are.
+    const std::string child =
+        R"(, {"name": "c", "type": "child", "parent": "e", "on": "impact", "count": 2, "lifetime": 1}])";
+    std::string parent = emitter(R"("type": "point", "center": [0, 0, 0.5])");
+    parent.pop_back();
+    EXPECT_EQ(warnings(plane() + parent + child + bounds), "");
+}
+
+TEST_F(CheckWarnings, DoubtsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
+    TriangleMesh hopper = funnel_mesh(205.0, 20.0);
+    for (Vec3& vertex : hopper.vertices) vertex.z *= 300.0;
+    (void)folder().write("millimetres.obj", obj_of(hopper));
+    const auto with_scale = [&](const std::string& scale) {
+        return warnings(collider(R"("type": "mesh", "file": "millimetres.obj")" + scale) +
+                        emitter(R"("type": "point", "center": [0, 0, 900])"));
+    };
+    const std::string text = with_scale("");
+    EXPECT_NE(text.find("colliders[0].file: the mesh is 410 m large if its numbers are metres, 0.41 m if they are "
+                        "millimetres; "),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("\"scale\": 0.001 for millimetres, or \"scale\": 1"), std::string::npos) << text;
+    EXPECT_EQ(with_scale(R"(, "scale": 1)"), "");
+    EXPECT_EQ(with_scale(R"(, "scale": 0.001)"), "");
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -183,6 +184,29 @@ TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {
     EXPECT_EQ(info.at("area"), 6.0);
     EXPECT_EQ(info.at("bounds"), Json::parse("[[0.0,0.0,0.0],[3.0,4.0,0.0]]"));
     EXPECT_EQ(info.at("warnings").size(), 2U);
+}
+
+TEST(InfoCommand, DoubtsSizesThatAreImplausibleInMetres) {
+    const test::TemporaryFolder folder;
+    const auto doubts = [&](double size, const std::string& name) {
+        std::string mesh = fmt::format("v 0 0 0\nv {0} 0 0\nv 0 {0} 0\nv 0 0 {0}\n", size);
+        mesh += "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+        if (name.ends_with(".stl")) {
+            mesh = fmt::format(
+                "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex {0} 0 0\nvertex 0 {0} 0\nendloop\n"
+                "endfacet\nendsolid s\n",
+                size);
+        }
+        const test::ProgramResult result = test::run_ricochet({"info", folder.write(name, mesh).string()});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        EXPECT_EQ(result.output.find("ricochet new` (--unit mm)") != std::string::npos,
+                  result.output.find("large if its numbers are metres") != std::string::npos);
+        return result.output.find("large if its numbers are metres") != std::string::npos;
+    };
+    for (const double size : {410.0, 201.0, 4.1e-4, 1e9}) EXPECT_TRUE(doubts(size, "m.obj")) << size;
+    for (const double size : {199.0, 120.0, 1.0, 0.05, 1.1e-3}) EXPECT_FALSE(doubts(size, "m.obj")) << size;
+    for (const double size : {41.0, 410.0, 4.1e-4}) EXPECT_TRUE(doubts(size, "m.stl")) << size;
+    for (const double size : {19.0, 0.41}) EXPECT_FALSE(doubts(size, "m.stl")) << size;
 }
 
 TEST(InfoCommand, PrintsATableWithAWarningPerDefect) {

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -112,6 +114,70 @@ TEST(NewCommand, FitsToAMeshOfAnySizeAndPlace) {
     }
 }
 
+TEST(NewCommand, AMeshInAnotherUnitGetsTheSceneOfTheSameMeshInMetres) {
+    const test::TemporaryFolder folder;
+    const std::vector<std::pair<std::string, double>> units = {{"mm", 1e-3},   {"cm", 0.01}, {"in", 0.0254},
+                                                               {"ft", 0.3048}, {"km", 1e3},  {"um", 1e-6}};
+    (void)folder.write("metres.obj", "v 0 0 0\nv 0.41 0 0\nv 0 0.41 0.3\nf 1 2 3\n");
+    for (const std::string kind : {"rain", "debris", "sparks", "gas", "fountain"}) {
+        const std::string expected = folder.path("metres.json").string();
+        ASSERT_EQ(test::run_ricochet(
+                      {"new", folder.path("metres.obj").string(), "--output", expected, "--template", kind, "--force"})
+                      .exit_code,
+                  0);
+        for (const auto& [unit, metres] : units) {
+            SCOPED_TRACE(kind + " " + unit);
+            std::ostringstream mesh;
+            mesh.precision(17);
+            mesh << "v 0 0 0\nv " << 0.41 / metres << " 0 0\nv 0 " << 0.41 / metres << ' ' << 0.3 / metres
+                 << "\nf 1 2 3\n";
+            (void)folder.write("other.obj", mesh.str());
+            const std::string scene = folder.path("other.json").string();
+            const auto made = test::run_ricochet({"new", folder.path("other.obj").string(), "--output", scene,
+                                                  "--template", kind, "--unit", unit, "--force"});
+            ASSERT_EQ(made.exit_code, 0) << made.errors;
+            EXPECT_EQ(made.errors, "");
+            EXPECT_NE(made.output.find("0.41 x 0.41 x 0.3 m"), std::string::npos) << made.output;
+            std::string text = text_of(scene);
+            const std::size_t at = text.find(", \"scale\": ");
+            ASSERT_NE(at, std::string::npos);
+            text.erase(at, text.find('}', at) < text.find(", \"looks\"", at) ? text.find('}', at) - at
+                                                                             : text.find(", \"looks\"", at) - at);
+            text.replace(text.find("other.obj"), 9, "metres.obj");
+            EXPECT_EQ(text, text_of(expected));
+            const SceneDescription read = read_scene(scene);
+            const auto& shape = std::get<MeshShape>(read.setup.colliders[0].shape);
+            EXPECT_DOUBLE_EQ(shape.placement.scale.x, metres);
+            EXPECT_TRUE(read.warnings.empty());
+        }
+    }
+}
+
+TEST(NewCommand, DoubtsASizeThatIsImplausibleInMetresUntilAUnitIsStated) {
+    const test::TemporaryFolder folder;
+    const std::string hopper = folder.write("hopper.obj", "v 0 0 0\nv 410 0 0\nv 0 410 300\nf 1 2 3\n");
+    const std::string scene = folder.path("s.json").string();
+    const auto errors_with = [&](std::vector<std::string> more) {
+        std::vector<std::string> arguments = {"new", hopper, "--output", scene, "--force"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const auto made = test::run_ricochet(arguments);
+        EXPECT_EQ(made.exit_code, 0) << made.errors;
+        return made.errors;
+    };
+    EXPECT_EQ(errors_with({}), "ricochet: warning: " + hopper +
+                                   ": the mesh is 410 m large if its numbers are metres, 0.41 m if they are "
+                                   "millimetres; give --unit mm (or cm, in, ...), or --unit m to keep the size\n");
+    EXPECT_FALSE(read_scene(scene).warnings.empty());
+    EXPECT_EQ(errors_with({"--unit", "mm"}), "");
+    EXPECT_EQ(errors_with({"--unit", "cm"}), "");
+    EXPECT_TRUE(read_scene(scene).warnings.empty());
+    EXPECT_EQ(errors_with({"--unit", "um"}), "ricochet: warning: " + hopper +
+                                                 ": the mesh is 0.00041 m large by --unit um: give the unit that its "
+                                                 "numbers have\n");
+    EXPECT_EQ(errors_with({"--unit", "m"}), "");
+    EXPECT_TRUE(read_scene(scene).warnings.empty());
+}
+
 TEST(NewCommand, LeavesAFileThatIsThereAloneUnlessItIsTold) {
     const test::TemporaryFolder folder;
     const std::string mesh = folder.write("m.obj", test::kObjTetrahedron);
@@ -133,6 +199,7 @@ TEST(NewCommand, AnswersWrongInputWithOneLine) {
     const std::string point = folder.write("p.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
     const std::vector<std::vector<std::string>> cases = {{"new", mesh, "--output", scene, "--template", "snow"},
                                                          {"new", mesh, "--output", scene, "--up", "w"},
+                                                         {"new", mesh, "--output", scene, "--unit", "furlong"},
                                                          {"new", point, "--output", scene},
                                                          {"new", "missing.obj", "--output", scene}};
     for (const auto& arguments : cases) {

@@ -361,6 +361,8 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     EXPECT_FALSE(files.exists("out"));
     ASSERT_EQ(files.run().exit_code, 0);
     EXPECT_FALSE(files.exists("out/checkpoint.bin"));
+    expect_refused(files.run({"--resume"}), 2, "the run is finished; --resume --extend T goes on to a later time T");
+    std::filesystem::remove(files.folder.path("out/extension.bin"));
     expect_refused(files.run({"--resume"}), 2, "there is no checkpoint to resume from");
     EXPECT_TRUE(files.exists("out/summary.json"));
     (void)files.folder.write("out/checkpoint.bin", "not a checkpoint at all");

@@ -46,16 +46,20 @@ same_run() {
     diff <(ls -A "$folder/$1") <(ls -A "$folder/$2") || fail "$2 has other files than $1"
     for file in "$folder/$1"/*; do
         if [[ "$file" == */summary.json ]]; then continue; fi
+        if [[ "$file" == */extension.bin ]]; then
+            same_checkpoint "$1" "$2" extension.bin
+            continue
+        fi
         cmp "$file" "$folder/$2/$(basename "$file")" || fail "$2 has another $(basename "$file")"
     done
     cmp "$folder/$1.csv" "$folder/$2.csv" || fail "$2 ends in another state than $1"
 }
 
-# same_checkpoint A B: but for the seconds spent (16 bytes after the first 16) and the check sum over all (the last 8).
+# same_checkpoint A B [FILE]: but for the seconds spent (16 bytes after the first 16) and the check sum over all (the last 8).
 same_checkpoint() {
     local name
     for name in "$1" "$2"; do
-        tail -c +33 "$folder/$name/checkpoint.bin" | head -c -8 >"$folder/$name.state"
+        tail -c +33 "$folder/$name/${3:-checkpoint.bin}" | head -c -8 >"$folder/$name.state"
     done
     cmp "$folder/$1.state" "$folder/$2.state" || fail "$2 has another checkpoint than $1"
 }
@@ -71,7 +75,7 @@ same_particles() {
     done
     diff -r "$folder/$1.ply" "$folder/$2.ply" >/dev/null || fail "$2 has other particles than $1"
     for file in "$folder/$1"/*; do
-        case "$(basename "$file")" in summary.json | particles*) continue ;; esac
+        case "$(basename "$file")" in summary.json | extension.bin | particles*) continue ;; esac
         cmp "$file" "$folder/$2/$(basename "$file")" || fail "$2 has another $(basename "$file")"
     done
     [[ -z "$(compgen -G "$folder/$2/*.partial" || true)" ]] || fail "$2 holds unfinished files"

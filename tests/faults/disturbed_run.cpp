@@ -55,7 +55,8 @@ std::map<std::string, std::string> files_in(const std::filesystem::path& folder)
 
 bool is_whole(const std::string& name, const std::string& bytes) {
     if (name.ends_with(".json")) return !nlohmann::json::parse(bytes, nullptr, false).is_discarded();
-    if (name == kCheckpointFile || name == kRunMarkerFile) return true;  // resuming and running anew tell
+    if (name == kCheckpointFile || name == kExtensionFile || name == kRunMarkerFile)
+        return true;  // resuming and running anew tell
     return bytes.ends_with("</VTKFile>\n");
 }
 
@@ -133,6 +134,7 @@ DisturbedRun::DisturbedRun() {
     if (result.exit_code != 0) throw std::runtime_error("the undisturbed run failed: " + result.errors);
     files_ = files_in(output());
     files_.erase(kSummaryFile);
+    files_.erase(kExtensionFile);
     files_["state"] = folder_.read("out.csv");
     state_hash_ = state_hash();
     clear();
@@ -183,6 +185,7 @@ void DisturbedRun::expect_nothing_unfinished() const {
 void DisturbedRun::expect_complete() const {
     std::map<std::string, std::string> found = files_in(output());
     found.erase(kSummaryFile);
+    found.erase(kExtensionFile);
     found["state"] = folder_.read("out.csv");
     for (const auto& [name, bytes] : files_) {
         EXPECT_EQ(found.count(name), 1U) << name << " is missing";

@@ -352,5 +352,23 @@ TEST(SenselessArguments, CollisionQueriesRefuseThem) {
     EXPECT_TRUE(queries.first_hit({1e15, 0, 0}, {-1, 0, 0}).has_value());
 }
 
+std::string message_of(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "not refused";
+}
+
+TEST(SenselessArguments, ANumberOfWhatThereIsNoneOfIsNotAskedToBeBelowZero) {
+    SimulationSetup setup = sensible();
+    setup.materials.clear();
+    EXPECT_EQ(message_of([&] { const Simulation simulation(std::move(setup)); }),
+              "collider \"floor\": material: found 0, expected none: there are no materials; add one first");
+    const Simulation empty(SimulationSetup{});
+    EXPECT_EQ(message_of([&] { (void)empty.collider_mesh(0); }), "collider: found 0, but there is none to choose from");
+}
+
 }  // namespace
 }  // namespace ricochet

@@ -157,6 +157,66 @@ TEST(StabilityWarnings, OfLennardJonesComeFromTheCurvatureOfTheWell) {
     EXPECT_EQ(warnings_of(scene(1.001 * bound)).size(), 1U);
 }
 
+/// Two that repel each other from a third of their distance at rest.
+SimulationSetup repelling(double time_step, double distance) {
+    SimulationSetup setup = setup_of(time_step, 2000.0 * time_step);
+    setup.options.integrator.kind = IntegratorKind::velocity_verlet;
+    setup.particles = {grain({}), grain({distance, 0, 0})};
+    setup.particles_forces.push_back({make_lennard_jones({.depth = 1.0, .diameter = 1.0})});
+    return setup;
+}
+
+double energy_gain(SimulationSetup setup) {
+    Simulation simulation(std::move(setup));
+    const double before = simulation.potential_energy().value();
+    while (!simulation.finished()) simulation.step();
+    return (simulation.kinetic_energy() + simulation.potential_energy().value()) / before;
+}
+
+// U'' = 24 depth / r^2 (26 s^2 - 7 s) with s = (diameter / r)^6
+TEST(StabilityWarnings, OfParticlesThatBeginInOverlapAreForTheirFirstSteps) {
+    for (const double distance : {0.5, 0.7, 0.9}) {
+        SCOPED_TRACE(distance);
+        const double s = std::pow(distance, -6.0);
+        const double curvature = 24.0 / (distance * distance) * (26.0 * s * s - 7.0 * s);
+        const double bound = 2.0 / std::sqrt(2.0 * curvature);
+        EXPECT_TRUE(warnings_of(repelling(0.999 * bound, distance)).empty());
+        const auto warnings = warnings_of(repelling(1.001 * bound, distance));
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_NE(warnings[0].find("while particles are as near to each other as at the start: they may explode; place "
+                                   "them farther apart, or use a shorter step"),
+                  std::string::npos)
+            << warnings[0];
+        EXPECT_NEAR(energy_gain(repelling(0.05 * bound, distance)), 1.0, 1e-2);
+        EXPECT_GT(energy_gain(repelling(4.0 * bound, distance)), 2.0);
+    }
+}
+
+// Each of n grains about one place presses on all others: the stiffness of the mode in which one moves against them is
+// n k / 3 over its mass in a cloud that looks the same from all sides.
+TEST(StabilityWarnings, OfManyGrainsInOnePlaceCountAllNeighbours) {
+    std::vector<Particle> grains;
+    for (int k = 0; k < 120; ++k) {
+        grains.push_back(grain(0.2 * Vec3{std::sin(1.0 + 7.0 * k), std::sin(2.0 + 5.0 * k), std::sin(3.0 + 3.0 * k)}));
+    }
+    const auto scene = [&](double h) { return sticking(h, 0.0, IntegratorKind::velocity_verlet, grains); };
+    const double closest_packing = 2.0 / std::sqrt(8.0 * kStiffness);
+    EXPECT_EQ(warnings_of(scene(0.9 * closest_packing)).size(), 1U);
+    EXPECT_TRUE(explodes(scene(0.9 * closest_packing)));
+    const double bound = 2.0 / std::sqrt(2.0 * 119.0 * kStiffness);  // if all were in one line
+    EXPECT_TRUE(warnings_of(scene(bound)).empty());
+}
+
+TEST(StabilityWarnings, OfTheStartPassPinnedOnesOverAndThoseThatTakeNoPart) {
+    SimulationSetup pinned = repelling(0.1, 0.5);
+    pinned.particles[0].pinned = pinned.particles[1].pinned = true;
+    EXPECT_TRUE(warnings_of(std::move(pinned)).empty());
+    SimulationSetup others = repelling(0.1, 0.5);
+    others.particles.push_back(grain({9, 0, 0}));
+    others.particles_forces[0].particles = {1, 2};
+    EXPECT_TRUE(warnings_of(std::move(others)).empty());
+}
+
 /// What a run ends with; empty where it does not diverge.
 std::string end_of(SimulationSetup setup) {
     Simulation simulation(std::move(setup));

@@ -5,6 +5,7 @@
 namespace ricochet::detail {
 
 void refuse_index(std::size_t index, std::size_t size, const char* what) {
+    if (size == 0) throw InputError(fmt::format("{}: found {}, but there is none to choose from", what, index));
     throw InputError(fmt::format("{}: found {}, expected a number below {}", what, index, size));
 }
 

@@ -87,6 +87,18 @@ public:
     [[nodiscard]] bool depends_on_velocity() const override { return depends_on_velocity_; }
     [[nodiscard]] const Law& law() const { return law_; }
 
+    [[nodiscard]] std::vector<SteepPair> steep_pairs(const ParticlesView& particles) const {
+        NeighbourGrid grid;
+        std::vector<SteepPair> steep;
+        PairState state;
+        for (const NeighbourPair& pair : pairs_of(particles, grid)) {
+            if (!find_state(particles, pair, state)) continue;
+            const PairSteepness here = law_.steepness_at(state);
+            if (here.stiffness > 0.0) steep.push_back({pair.first, pair.second, state.direction, here});
+        }
+        return steep;
+    }
+
 private:
     [[nodiscard]] const std::vector<NeighbourPair>& pairs_of(const ParticlesView& particles,
                                                              NeighbourGrid& grid) const {
@@ -147,6 +159,10 @@ public:
     [[nodiscard]] PairSteepness steepness() const {
         return {72.0 / std::cbrt(2.0) * (depth_ / (diameter_ * diameter_)), 0.0};
     }
+    [[nodiscard]] PairSteepness steepness_at(const PairState& pair) const {
+        const double s = sixth_power(diameter_ / pair.distance);
+        return {24.0 * depth_ * (26.0 * s * s - 7.0 * s) / (pair.distance * pair.distance), 0.0};
+    }
 
 private:
     [[nodiscard]] double bare_force(double r) const {
@@ -186,6 +202,10 @@ public:
     }
     [[nodiscard]] double cutoff() const { return settings_.range; }
     [[nodiscard]] PairSteepness steepness() const { return {settings_.stiffness, settings_.damping}; }
+    [[nodiscard]] PairSteepness steepness_at(const PairState& pair) const {
+        const double s = std::max(0.0, gap_of(pair)) / settings_.range;
+        return {settings_.stiffness * (1.0 - s) * (1.0 - 3.0 * s), settings_.damping * (1.0 - s) * (1.0 - s)};
+    }
 
 private:
     static double gap_of(const PairState& pair) { return pair.distance - (pair.radii[0] + pair.radii[1]); }
@@ -194,17 +214,22 @@ private:
 };
 
 template <class Law>
-const Law* law_in(const ParticlesForce& force) {
-    const auto* const pairs = dynamic_cast<const PairForce<Law>*>(&force);
-    return pairs == nullptr ? nullptr : &pairs->law();
+const PairForce<Law>* pairs_in(const ParticlesForce& force) {
+    return dynamic_cast<const PairForce<Law>*>(&force);
 }
 
 }  // namespace
 
 std::optional<PairSteepness> steepness_of(const ParticlesForce& force) {
-    if (const Cohesion* const law = law_in<Cohesion>(force)) return law->steepness();
-    if (const LennardJones* const law = law_in<LennardJones>(force)) return law->steepness();
+    if (const auto* const pairs = pairs_in<Cohesion>(force)) return pairs->law().steepness();
+    if (const auto* const pairs = pairs_in<LennardJones>(force)) return pairs->law().steepness();
     return std::nullopt;
+}
+
+std::vector<SteepPair> steep_pairs(const ParticlesForce& force, const ParticlesView& particles) {
+    if (const auto* const pairs = pairs_in<Cohesion>(force)) return pairs->steep_pairs(particles);
+    if (const auto* const pairs = pairs_in<LennardJones>(force)) return pairs->steep_pairs(particles);
+    return {};
 }
 
 std::shared_ptr<const ParticlesForce> make_pair_force(PairLaw law) {

@@ -2,6 +2,7 @@
 /// Private to the library: the longest steps that integrators can make with what oscillates.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -60,6 +61,17 @@ struct PairSteepness {
 };
 /// Nothing for forces that are not known: those of the user's own, and those that grow without bound.
 [[nodiscard]] std::optional<PairSteepness> steepness_of(const ParticlesForce& force);
+
+/// Two particles nearer than the cutoff of a force of pairs, and how steep that is at their distance.
+struct SteepPair {
+    std::size_t first = 0;  ///< places in the lists
+    std::size_t second = 0;
+    Vec3 direction;  ///< of unit length
+    PairSteepness steepness;
+};
+/// Returns the near pairs at which the force holds or repels, so that particles could oscillate. None for forces whose
+/// steepness_of() is not known.
+[[nodiscard]] std::vector<SteepPair> steep_pairs(const ParticlesForce& force, const ParticlesView& particles);
 
 /// Gravity and charges without softening: the nearer two come to each other the more they do, without bound.
 [[nodiscard]] bool lacks_softening(const ParticlesForce& force);

@@ -87,8 +87,9 @@ OpenFile open_checkpoint(const std::filesystem::path& file) {
     if (opened) return opened;
     if (errno != ENOENT) fail_to_read(file);
     throw InputError(
-        fmt::format("{}: there is no checkpoint to resume from: the run was finished, or killed before "
-                    "its first checkpoint (output.checkpoint_every); run it without --resume",
+        fmt::format("{}: there is no checkpoint to resume from: the run was finished in less steps than "
+                    "output.every, or killed before its first checkpoint (output.checkpoint_every); run it without "
+                    "--resume",
                     file.string()));
 }
 

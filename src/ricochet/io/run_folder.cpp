@@ -158,12 +158,12 @@ bool is_run_file(std::string_view name) {
     const std::string_view finished = without_partial_ending(name);
     if (is_comparison_file(finished)) return true;
     return finished == kRunInfoFile || finished == kSummaryFile || finished == kCheckpointFile ||
-           finished == kParticleSeriesFile || finished == kColliderSeriesFile || finished == kContactSeriesFile ||
-           finished == kMovingSeriesFile || finished == kColliderTableFile || finished == kBodyTableFile ||
-           is_picture_file(finished, kParticleSpriteFile) || is_picture_file(finished, kParticleMeshFile) ||
-           step_of_frame_file(finished) || step_of_frame_index(finished) || step_of_piece_file(finished) ||
-           set_of_checkpoint_part(finished) || step_of_contact_file(finished) || step_of_moving_file(finished) ||
-           index_of_collider_file(finished);
+           finished == kExtensionFile || finished == kParticleSeriesFile || finished == kColliderSeriesFile ||
+           finished == kContactSeriesFile || finished == kMovingSeriesFile || finished == kColliderTableFile ||
+           finished == kBodyTableFile || is_picture_file(finished, kParticleSpriteFile) ||
+           is_picture_file(finished, kParticleMeshFile) || step_of_frame_file(finished) ||
+           step_of_frame_index(finished) || step_of_piece_file(finished) || set_of_checkpoint_part(finished) ||
+           step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
 }
 
 // The folder while a run writes.

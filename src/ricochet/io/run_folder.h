@@ -19,6 +19,7 @@ inline constexpr const char* kRunMarkerFile = ".ricochet-run";    ///< says that
 inline constexpr const char* kRunInfoFile = "run.json";           ///< what is being run; written at the start
 inline constexpr const char* kSummaryFile = "summary.json";       ///< what came out; written at the end
 inline constexpr const char* kCheckpointFile = "checkpoint.bin";  ///< of an interrupted run, to go on from
+inline constexpr const char* kExtensionFile = "extension.bin";    ///< of a finished run, to go on to a later time
 inline constexpr const char* kParticleSeriesFile = "particles.pvd";
 inline constexpr const char* kColliderSeriesFile = "colliders.pvd";
 inline constexpr const char* kContactSeriesFile = "contacts.pvd";

@@ -1,5 +1,7 @@
 #include "ricochet/io/run_writer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <system_error>
@@ -7,6 +9,7 @@
 #include <variant>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/core/error.h"
 #include "ricochet/io/camera_frames.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/picture_files.h"
@@ -164,9 +167,13 @@ void RunWriter::write_checkpoint(const Simulation& simulation, std::uint64_t sce
     ricochet::write_checkpoint(folder_ / kCheckpointFile, checkpoint, simulation);
 }
 
-void RunWriter::remove_checkpoint() const {
-    std::error_code ignored;
-    std::filesystem::remove(folder_ / kCheckpointFile, ignored);
+void RunWriter::keep_checkpoint_for_extension() const {
+    std::error_code error;
+    if (!std::filesystem::exists(folder_ / kCheckpointFile, error)) return;
+    std::filesystem::rename(folder_ / kCheckpointFile, folder_ / kExtensionFile, error);
+    if (!error) return;
+    throw RunError(fmt::format("{}: cannot be renamed to {} ({})", (folder_ / kCheckpointFile).string(), kExtensionFile,
+                               error.message()));
 }
 
 RunSummary RunWriter::finish(const Simulation& simulation) {

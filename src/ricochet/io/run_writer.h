@@ -65,8 +65,9 @@ public:
     /// where the simulation shows all but them. Throws like write_frame().
     void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
                           std::vector<CheckpointPart> parts = {});
-    /// A run that is finished needs no checkpoint.
-    void remove_checkpoint() const;
+    /// Makes the last checkpoint, if there is one, that from which a finished run can be extended. Throws RunError
+    /// where the system refuses.
+    void keep_checkpoint_for_extension() const;
     /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
     /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
     [[nodiscard]] RunSummary finish(const Simulation& simulation);

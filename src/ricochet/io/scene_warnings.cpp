@@ -9,12 +9,10 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <variant>
 
 #include "ricochet/collision_queries.h"
-#include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
@@ -24,8 +22,7 @@
 namespace ricochet {
 namespace {
 
-/// Starts that are looked at: of an emitter, of the explicit particles.
-constexpr std::uint64_t kStarts = 256;
+/// Explicit particles that are looked at.
 constexpr std::size_t kMostExplicit = 2000;
 
 /// Triangles times starts that are looked at where every triangle counts for every start.
@@ -51,11 +48,6 @@ struct Starts {
     double largest_radius = 0.0;    ///< m, of all
     std::uint64_t overlapping = 0;  ///< of an emitter: draws besides them that would be refused
 };
-
-std::string named(std::string_view list, std::size_t index, const std::string& name) {
-    const std::string path = fmt::format("{}[{}]", list, index);
-    return name.empty() ? path : fmt::format("{} '{}'", path, name);
-}
 
 Starts explicit_starts(const Simulation& simulation) {
     const Particles& all = simulation.particles();
@@ -112,18 +104,10 @@ bool overlaps(const Simulation& simulation, std::span<const Solid> moving, const
            });
 }
 
-/// Drawn for themselves, not as those of the run.
 Starts starts_of(const Simulation& simulation, std::span<const Solid> moving, const EmitterDescription& emitter,
                  std::size_t index) {
-    Starts starts{named("emitters", index, emitter.name), {}, emitter.radius.mean + emitter.radius.spread, 0};
-    const ShapeSampler sampler(emitter.shape);
-    RandomSequence random(0, 0, index);
-    for (std::uint64_t k = 0; k < kStarts; ++k) {
-        Particle particle;
-        particle.radius = random.uniform_around(emitter.radius.mean, emitter.radius.spread);
-        particle.position = sampler.draw(particle.radius, random).position;
-        particle.birth_time = emitter.start;
-        if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
+    Starts starts{name_in_list("emitters", index, emitter.name), {}, emitter.radius.mean + emitter.radius.spread, 0};
+    for (const Particle& particle : drawn_starts(emitter, index, kDrawnStarts)) {
         if (overlaps(simulation, moving, particle)) {
             ++starts.overlapping;
         } else {
@@ -213,7 +197,7 @@ void SceneReview::review_surfaces() {
     for (std::size_t k = 0; k < emitters_.size(); ++k) {
         if (!emitters_[k].parent || emitters_[k].parent->on != BirthEvent::impact) continue;
         lines_.push_back(fmt::format("{}: its particles are born at impacts, and there is nothing to hit: {}",
-                                     named("emitters", k, emitters_[k].name), advice));
+                                     name_in_list("emitters", k, emitters_[k].name), advice));
     }
     if (simulation_.options().response != ResponseKind::exact) {
         lines_.push_back(
@@ -238,7 +222,7 @@ std::optional<OpenMesh> open_mesh(const Simulation& simulation, std::size_t i, s
 
 void SceneReview::review_collider(std::size_t i) {
     const ColliderDescription& collider = simulation_.colliders()[i];
-    const std::string where = named("colliders", i, collider.name);
+    const std::string where = name_in_list("colliders", i, collider.name);
     if (std::holds_alternative<PlaneShape>(collider.shape)) return;
     if (std::holds_alternative<MeshShape>(collider.shape)) {
         const TriangleMesh mesh = *simulation_.collider_mesh(i);
@@ -278,7 +262,8 @@ void SceneReview::review_shells(const TriangleMesh& mesh, const std::string& whe
 void SceneReview::review_emitted_volumes() {
     for (std::size_t k = 0; k < emitters_.size(); ++k) {
         const auto* const volume = std::get_if<MeshVolumeShape>(&emitters_[k].shape);
-        if (volume != nullptr && volume->mesh) review_shells(*volume->mesh, named("emitters", k, emitters_[k].name));
+        if (volume != nullptr && volume->mesh)
+            review_shells(*volume->mesh, name_in_list("emitters", k, emitters_[k].name));
     }
 }
 
@@ -377,11 +362,11 @@ bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const
 /// Explicit particles in overlap are told by the simulation itself.
 void SceneReview::review_positions(const Starts& starts) {
     // Where one position in twenty is free, one birth in thirty finds none.
-    if (20 * starts.overlapping < 19 * kStarts) return;
+    if (20 * starts.overlapping < 19 * kDrawnStarts) return;
     lines_.push_back(
         fmt::format("{}: {} of {} positions that were tried overlap a surface: births there are refused; "
                     "make the spheres smaller or move the emitter off",
-                    starts.where, starts.overlapping, kStarts));
+                    starts.where, starts.overlapping, kDrawnStarts));
 }
 
 void SceneReview::review_radius(const Starts& starts) {

@@ -2,9 +2,11 @@
 /// What is probably not meant in a scene that can be run: `ricochet check` says so, and `run` a part of it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ricochet/dynamics/emitter.h"
@@ -28,5 +30,21 @@ namespace ricochet {
 /// A step in which what falls from rest falls further than all of the scene is large. Nothing where that is unknown.
 [[nodiscard]] std::optional<std::string> long_step_warning(const SimulationOptions& options, const Box3& scene,
                                                            const Vec3& fall);
+
+/// Emitters whose particles begin outside the setup's bounds, a line each. Told with every run, too. Throws InputError
+/// for shapes out of range, as the simulation does.
+[[nodiscard]] std::vector<std::string> bounds_warnings(const SimulationSetup& setup);
+
+// Parts of these reviews.
+
+/// Starts of an emitter that are looked at.
+inline constexpr std::size_t kDrawnStarts = 256;
+
+/// Draws starts of an emitter, which are not those of the run.
+[[nodiscard]] std::vector<Particle> drawn_starts(const EmitterDescription& emitter, std::size_t index,
+                                                 std::size_t count);
+
+/// Returns an entry's path in the scene, with its name if it has one: emitters[0] 'rain'.
+[[nodiscard]] std::string name_in_list(std::string_view list, std::size_t index, const std::string& name);
 
 }  // namespace ricochet

@@ -17,6 +17,7 @@
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/dynamics/stability.h"
 #include "ricochet/simulation/energy_warnings.h"
+#include "ricochet/simulation/start_rates.h"
 
 namespace ricochet {
 namespace {
@@ -128,6 +129,21 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
                     may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
 }
 
+/// Particles that begin in each other, or nearer than at rest, need a shorter step until they have parted.
+std::optional<std::string> start_warning(const SimulationSetup& setup, std::size_t number, double bound_later) {
+    // Packings differ from the closest one by rounding.
+    constexpr double kRounding = 1.0 - 1e-6;
+    const OscillationRates rates = rates_at_start(setup, setup.particles_forces[number]);
+    const double bound = longest_stable_step(setup.options.integrator.kind, rates);
+    if (!(bound < kRounding * bound_later) || setup.options.time_step <= bound) return std::nullopt;
+    const auto [step, longest] = told_apart(setup.options.time_step, bound);
+    return fmt::format(
+        "the time step of {} s exceeds {} s, up to which {} is sure to be stable with particle_forces[{}] while "
+        "particles are as near to each other as at the start: they may explode; place them farther apart, or use a "
+        "shorter step",
+        step, longest, name_of(setup.options.integrator.kind), number);
+}
+
 std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_t number) {
     const ParticlesForceEntry& entry = setup.particles_forces[number];
     const std::optional<PairSteepness> steepness = steepness_of(*entry.force);
@@ -137,6 +153,7 @@ std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_
     OscillationRates rates{neighbours * steepness->stiffness, neighbours * steepness->damping};
     if (steepness->stiffness > 0.0) rates.least_damper = steepness->damping / steepness->stiffness;
     const double bound = longest_stable_step(setup.options.integrator.kind, rates);
+    if (auto warning = start_warning(setup, number, bound)) return warning;
     std::string what = fmt::format("particle_forces[{}] (stiffness {:.3g} N/m, ", number, steepness->stiffness);
     if (steepness->damping > 0.0) what += fmt::format("damping {:.3g} N s/m, ", steepness->damping);
     what += fmt::format("lightest particle {:.3g} kg)", lightest.masses[0]);

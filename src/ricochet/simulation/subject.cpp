@@ -54,7 +54,9 @@ void Subject::require_direction(const Vec3& value, std::string_view what) const 
 }
 
 void Subject::require_index(std::size_t index, std::size_t count, std::string_view what, std::string_view of) const {
-    if (index >= count) refuse(what, index, fmt::format("a number below {}, the number of {}", count, of));
+    if (index < count) return;
+    if (count == 0) refuse(what, index, fmt::format("none: there are no {}; add one first", of));
+    refuse(what, index, fmt::format("a number below {}, the number of {}", count, of));
 }
 
 }  // namespace ricochet

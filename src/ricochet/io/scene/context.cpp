@@ -8,6 +8,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/printable.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 
 namespace ricochet::detail {
@@ -49,6 +50,7 @@ std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& vi
                               fmt::format("{} has y up, as {} says: read as (x, -z, y), so that z points up",
                                           path.string(), up == MeshUp::y ? "\"up\"" : "glTF"));
         }
+        warn_of_size(view, *mesh, path);
         for (const std::string& what : meshes_.notes(path)) {
             diagnostics_.note(view.location_of("file"), view.path_of("file"), path.string() + ": " + what);
         }
@@ -57,6 +59,17 @@ std::shared_ptr<const TriangleMesh> SceneContext::load_mesh(const ObjectView& vi
         error(view, "file", problem.what());
         return nullptr;
     }
+}
+
+void SceneContext::warn_of_size(const ObjectView& view, const TriangleMesh& mesh,
+                                const std::filesystem::path& path) const {
+    if (view.has("scale")) return;
+    const auto doubt = implausible_size(bounds(mesh), size_origin(path.extension().string()));
+    if (!doubt) return;
+    warn(view, "file",
+         *doubt +
+             "; give the factor that makes metres of them, for example \"scale\": 0.001 for millimetres, or "
+             "\"scale\": 1 to keep the size");
 }
 
 MeshUp up_of(const ObjectView& view) {

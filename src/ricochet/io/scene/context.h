@@ -75,6 +75,9 @@ public:
                                           std::set<std::string>& taken) const;
 
 private:
+    /// Warns of an implausible size of a mesh, unless a scale is stated.
+    void warn_of_size(const ObjectView& view, const TriangleMesh& mesh, const std::filesystem::path& path) const;
+
     ObjectView root_;
     std::filesystem::path folder_;
     Diagnostics& diagnostics_;

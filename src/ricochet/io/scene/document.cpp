@@ -210,6 +210,9 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kLeftOut{"output", "camera", "picture", "title", "description"};
 
+/// A state does not depend on the time at which its run ends, so a run can be extended.
+constexpr std::string_view kDuration = "duration";
+
 /// Adds a value with a number for its type, so that no two different scenes read alike.
 class ValueHasher {
 public:
@@ -255,7 +258,16 @@ std::uint64_t scene_fingerprint(const JsonNode& root) {
     const ValueHasher hasher(hash);
     if (root.object() == nullptr) return hash.value();
     for (const JsonMember& member : *root.object()) {
-        if (std::find(kLeftOut.begin(), kLeftOut.end(), member.key) == kLeftOut.end()) hasher.member(member);
+        if (std::find(kLeftOut.begin(), kLeftOut.end(), member.key) != kLeftOut.end()) continue;
+        const JsonNode::Object* const members = member.value.object();
+        if (member.key != "simulation" || members == nullptr) {
+            hasher.member(member);
+            continue;
+        }
+        hasher(member.key);
+        for (const JsonMember& setting : *members) {
+            if (setting.key != kDuration) hasher.member(setting);
+        }
     }
     return hash.value();
 }

@@ -269,7 +269,8 @@ that begin inside a mesh that is closed but for small holes (mouths as of cups a
 and some outside of a closed collider. Closed meshes of which shells overlap. Spheres born in overlap, emitters that find hardly a position off the surfaces,
 spheres wider than the narrowest opening of a funnel that they fall to, radii below 1000 units in the last place of the
 coordinates. Children at impacts, a response or a contact log without a collider. Penalty sub-steps and spring steps
-beyond their stability bounds. It looks at 256 draws of each emitter, at the start of its births, and at up to 2000
+beyond their stability bounds. Meshes of more than 200 m (STL 20 m), or less than 1 mm, without a stated `scale`, and `bounds`
+that leave out where particles begin: `run` warns of both, too. It looks at 256 draws of each emitter, at the start of its births, and at up to 2000
 explicit particles.
 
 ## Memory

@@ -1,0 +1,102 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/random.h"
+#include "ricochet/io/scene_warnings.h"
+
+namespace ricochet {
+namespace {
+
+/// Axis and distance, m, by which a point lies outside a box.
+struct Beyond {
+    int axis = 0;
+    double distance = 0.0;
+};
+
+Beyond beyond(const Box3& box, const Vec3& p) {
+    Beyond farthest;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double distance = std::max(box.lower[axis] - p[axis], p[axis] - box.upper[axis]);
+        if (distance > farthest.distance) farthest = {axis, distance};
+    }
+    return farthest;
+}
+
+/// Starts outside the bounds.
+class OutsideStarts {
+public:
+    explicit OutsideStarts(const Box3& bounds) : bounds_(bounds) {}
+
+    void add(const Particle& particle) {
+        ++all_;
+        if (bounds_.contains(particle.position)) return;
+        ++outside_;
+        const Beyond by = beyond(bounds_, particle.position);
+        if (by.distance > farthest_.distance) farthest_ = by;
+    }
+
+    /// Returns nothing where there are none.
+    [[nodiscard]] std::optional<std::string> warning(const std::string& where) const {
+        if (outside_ == 0) return std::nullopt;
+        return fmt::format(
+            "{}: {} of {} positions that were tried lie outside `bounds`, the farthest by {:.3g} m along {}: particles "
+            "outside are removed at the end of a step; make `bounds` larger or move the emitter inside",
+            where, outside_, all_, farthest_.distance, "xyz"[farthest_.axis]);
+    }
+
+private:
+    const Box3& bounds_;
+    std::size_t all_ = 0;
+    std::size_t outside_ = 0;
+    Beyond farthest_;
+};
+
+/// Shapes in a frame are placed by drawing.
+bool is_surely_inside(const EmitterDescription& emitter, const Box3& box) {
+    if (emitter.frames) return false;
+    const Box3 shape = bounds(emitter.shape);
+    return box.contains(shape.lower) && box.contains(shape.upper);
+}
+
+}  // namespace
+
+std::string name_in_list(std::string_view list, std::size_t index, const std::string& name) {
+    const std::string path = fmt::format("{}[{}]", list, index);
+    return name.empty() ? path : fmt::format("{} '{}'", path, name);
+}
+
+std::vector<Particle> drawn_starts(const EmitterDescription& emitter, std::size_t index, std::size_t count) {
+    std::vector<Particle> starts(count);
+    const ShapeSampler sampler(emitter.shape);
+    RandomSequence random(0, 0, index);
+    for (Particle& particle : starts) {
+        particle.radius = random.uniform_around(emitter.radius.mean, emitter.radius.spread);
+        particle.position = sampler.draw(particle.radius, random).position;
+        particle.birth_time = emitter.start;
+        if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
+    }
+    return starts;
+}
+
+std::vector<std::string> bounds_warnings(const SimulationSetup& setup) {
+    std::vector<std::string> lines;
+    if (!setup.bounds) return lines;
+    for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
+        const EmitterDescription& emitter = setup.emitters[k];
+        if (emitter.parent || is_surely_inside(emitter, *setup.bounds)) continue;
+        OutsideStarts drawn(*setup.bounds);
+        for (const Particle& particle : drawn_starts(emitter, k, kDrawnStarts)) drawn.add(particle);
+        auto line = drawn.warning(name_in_list("emitters", k, emitter.name));
+        if (line) lines.push_back(std::move(*line));
+    }
+    return lines;
+}
+
+}  // namespace ricochet

@@ -126,6 +126,9 @@ void print_looks(const RunPictures& pictures) {
     } else {
         cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
     }
+    if (const std::string note = pictures.collider_note(); !note.empty()) {
+        cli::print("note: the colliders' colours show {}; --collider-color impulse shows all\n", note);
+    }
     if (pictures.lacks_shutter()) {
         cli::print(
             "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "

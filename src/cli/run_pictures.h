@@ -150,6 +150,10 @@ public:
     [[nodiscard]] const ValueRange& range() const { return range_; }
     /// What the colours mean: of the particles, and of the colliders where a quantity colours them.
     [[nodiscard]] std::vector<ColorBar> color_bars() const;
+    /// What the colours of the colliders leave out; empty where that is nothing.
+    [[nodiscard]] std::string collider_note() const {
+        return style_.collider_quantity ? style_.collider_quantity->note(impulse_sizes_) : std::string();
+    }
     /// Array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
     /// True when the frames themselves say the colours.
@@ -246,6 +250,7 @@ private:
     std::vector<PreviewMesh> meshes_;
     std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
     ValueRange collider_range_;
+    ImpulseSizes impulse_sizes_;                   // on the colliders that a quantity colours
     std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
     std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them

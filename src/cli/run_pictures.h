@@ -15,6 +15,7 @@
 #include "cli/collider_quantity.h"
 #include "cli/run_timeline.h"
 #include "cli/run_turning.h"
+#include "cli/wall_clearance.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -111,7 +112,8 @@ struct PictureStyle {
     ParticleDrawing drawing = ParticleDrawing::automatic;
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
-    std::optional<double> particle_radius;  ///< m; nothing: the frames' own, or one that can be seen for points
+    /// m; nothing: the scene's. 0: the frames' own, or one that can be seen for points.
+    std::optional<double> particle_radius;
     std::optional<ColliderQuantity> collider_quantity;  ///< that colours the colliders
     std::optional<ValueRange> collider_range;
     std::vector<std::string> hidden;  ///< colliders that are left out, by name
@@ -219,7 +221,9 @@ private:
     [[nodiscard]] PreviewSpheres spheres_of(const Group& group, const VtkPolyData& frame,
                                             const std::vector<Vec3>& colors, const std::vector<double>& radii) const;
     void add_solid(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewMoving& moving);
-    void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    void set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    void keep_off_walls(const Moment& moment, const Group& group, PreviewSpheres& spheres);
+    [[nodiscard]] WallClearance walls_at_rest() const;
     static void add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
                             const PreviewSpheres& spheres, PreviewMoving& moving);
     void add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const;
@@ -264,6 +268,7 @@ private:
     std::vector<Vec3> emissions_;  // of the particles of the frame that is drawn; empty: none
     RunTurning turning_;
     std::string hiding_;
+    std::optional<WallClearance> walls_;  // at rest, once some ball is larger than its particle
     std::optional<Preview> preview_;
 };
 

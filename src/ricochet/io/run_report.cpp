@@ -69,6 +69,8 @@ PictureDescription picture_of(const Json& json) {
     if (json.contains("ground")) picture.ground = json.at("ground").get<double>();
     if (json.contains("black_body")) picture.black_body = json.at("black_body").get<double>();
     if (json.contains("stretch")) picture.stretch = stretch_of(json.at("stretch"));
+    if (json.contains("particle_radius")) picture.particle_radius = json.at("particle_radius").get<double>();
+    if (json.contains("time")) picture.time = json.at("time").get<double>();
     return picture;
 }
 
@@ -90,6 +92,8 @@ Json json_of(const PictureDescription& picture) {
     if (picture.ground) json["ground"] = *picture.ground;
     if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
     if (picture.black_body) json["black_body"] = *picture.black_body;
+    if (picture.particle_radius) json["particle_radius"] = *picture.particle_radius;
+    if (picture.time) json["time"] = *picture.time;
     if (const auto& stretch = picture.stretch) {
         json["stretch"] = {
             {"speed", stretch->speed}, {"impact", stretch->impact}, {"time", stretch->time}, {"most", stretch->most}};
@@ -122,6 +126,7 @@ RunInfo run_info_of(const Json& json) {
     info.version = json.at("version").get<std::string>();
     info.scene = json.at("scene").get<std::string>();
     info.up = vec3_of(json.at("up"));
+    info.time_step = json.value("time_step", 0.0);
     if (const Json& camera = json.at("camera"); !camera.is_null()) {
         info.camera.emplace();
         info.camera->position = vec3_of(camera.at("position"));
@@ -165,6 +170,7 @@ RunInfo run_info_of(const SceneDescription& scene) {
     RunInfo info;
     info.scene = scene.file;
     info.up = upward_axis(scene.setup);
+    info.time_step = scene.setup.options.time_step;
     info.camera = scene.camera;
     info.picture = scene.picture;
     info.drawings = scene.drawings;
@@ -179,6 +185,7 @@ std::string run_info_text(const RunInfo& info) {
     json["version"] = info.version;
     json["scene"] = info.scene;
     json["up"] = json_of(info.up);
+    json["time_step"] = info.time_step;
     json["camera"] = nullptr;
     if (info.camera) {
         json["camera"] = {{"position", json_of(info.camera->position)},

@@ -47,6 +47,7 @@ struct RunInfo {
     std::string version;                      ///< of ricochet
     std::string scene;                        ///< the scene file as it was named
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis
+    double time_step = 0.0;                   ///< s; 0: not known
     std::optional<CameraDescription> camera;  ///< its `up` is the one above
     std::optional<PictureDescription> picture;
     std::vector<ParticleDrawingDescription> drawings{};  ///< of the particles of some emitters

@@ -96,6 +96,8 @@ struct PictureDescription : ParticleDrawingDescription {
     /// K: particles shine by their attribute `temperature`, at this one as a white surface in the sun; nothing: no
     /// light.
     std::optional<double> black_body{};
+    std::optional<double> particle_radius{};  ///< m, by which particles are drawn; nothing: their own
+    std::optional<double> time{};             ///< s, that a single picture shows; nothing: the end
 };
 
 /// A scene, read and checked.

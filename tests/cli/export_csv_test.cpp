@@ -95,7 +95,7 @@ std::string busy_scene(const TemporaryFolder& folder) {
                        "g other\nusemtl b\nf 1 3 4\n");
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1.5},
         "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
-        "attributes": {"charge": {"default": 0.1}, "wind x": {"default": [1, 2, 3]}, "temperature": {"default": 300}},
+        "attributes": {"charge": {"default": 0.1}, "wind x": {"components": 3, "default": [1, 2, 3]}, "temperature": {"default": 300}},
         "materials": {"m": {"restitution": 0.3, "friction": 0.2}},
         "particle_contacts": {"restitution": 0.5},
         "colliders": [{"name": "plate, \"tilted\"", "type": "mesh", "file": "plate.obj", "material": "m"},

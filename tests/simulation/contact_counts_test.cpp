@@ -110,7 +110,8 @@ TEST(ContactCounts, RowsAndLastingContactTogetherAreTheTotals) {
                 setup.materials[0].restitution = 0.3;
                 setup.options.duration = 2.0;
                 const Counts counts = counts_of(std::move(setup));
-                EXPECT_LT(counts.lasting, -1.0);
+                // Each step of `project` that meets a wall is an impact.
+                EXPECT_TRUE(kind == ResponseKind::project ? counts.lasting == 0.0 : counts.lasting < -1.0);
                 EXPECT_NEAR(counts.impulse + counts.lasting, counts.given, 1e-9);
             }
         }
@@ -123,7 +124,7 @@ TEST(ContactCounts, TheWeightOfAStackAtRestIsLastingContact) {
         SimulationSetup setup;
         setup.options.time_step = 0.01;
         setup.options.duration = 1.0;
-        setup.options.sleeping = sleeping;
+        setup.acceleration.sleeping = sleeping;
         setup.options.particle_contacts.emplace();
         setup.materials.emplace_back();
         setup.materials[0].restitution = 0.0;

@@ -1234,6 +1234,8 @@ class Picture(Thing):
         white surface in the sun. Unit: K.
     stretch: Squash and stretch of spheres and meshes, at the same volume.
     ground: A level ground at this height along the upward axis. Unit: m.
+    particle_radius: Radius by which all particles are drawn. Collisions do not know it. Unit: m.
+    time: The moment that a single picture shows: the nearest frame. Films show all. Unit: s.
     """
 
 

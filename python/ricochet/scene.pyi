@@ -1041,6 +1041,8 @@ class Picture(Thing):
         black_body: Optional[float] = ...,
         stretch: Any = ...,
         ground: Optional[float] = ...,
+        particle_radius: Optional[float] = ...,
+        time: Optional[float] = ...,
     ) -> None: ...
 
 class PinBox(Thing):

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 
 #include "ricochet/core/error.h"
@@ -23,6 +25,14 @@ std::vector<FrameFile> chosen_frames(const RunFolder& folder, const std::string&
     }
     throw InputError(fmt::format("--frame {}: the run has no such frame; it has {} from step {} to {}", frame,
                                  folder.frames.size(), folder.frames.front().step, folder.frames.back().step));
+}
+
+FrameFile nearest_frame(const RunFolder& folder, double time) {
+    const auto away = [&](const FrameFile& frame) {
+        return std::fabs(static_cast<double>(frame.step) * folder.info.time_step - time);
+    };
+    return *std::min_element(folder.frames.begin(), folder.frames.end(),
+                             [&](const FrameFile& a, const FrameFile& b) { return away(a) < away(b); });
 }
 
 }  // namespace ricochet::cli

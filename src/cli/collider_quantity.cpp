@@ -1,5 +1,7 @@
 #include "cli/collider_quantity.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -29,6 +31,11 @@ std::string ColliderQuantity::unit() const {
     if (below.empty()) return above;
     if (per_area && per_time) below = "(" + below + ")";
     return (above.empty() ? "1" : above) + "/" + below;
+}
+
+std::string ColliderQuantity::note(const ImpulseSizes& sizes) const {
+    if (kind == Kind::impulse || !(sizes.lasting > 0.0)) return "";
+    return fmt::format("impacts only: {:.3g} % of impulse", 100.0 * sizes.share_of_impacts());
 }
 
 std::optional<ColliderQuantity> collider_quantity_from(const std::string& text) {
@@ -86,6 +93,19 @@ std::vector<double> quantity_values(const ColliderQuantity& quantity, const VtkP
         if (quantity.per_area) values[t] = areas[t] > 0.0 ? values[t] / areas[t] : 0.0;
     }
     return values;
+}
+
+void add_impulse_sizes(const VtkPolyData& collider, const ColliderInfo& info, ImpulseSizes& sizes) {
+    const VtkArray* const impulses = find_array(collider.cell_arrays, "impulse");
+    const VtkArray* const lasting = find_array(collider.cell_arrays, "lasting_impulse");
+    if (impulses == nullptr || lasting == nullptr) return;
+    const auto* const of_all = std::get_if<std::vector<Vec3>>(&impulses->values);
+    const auto* const of_lasting = std::get_if<std::vector<Vec3>>(&lasting->values);
+    if (of_all == nullptr || of_lasting == nullptr) return;
+    // Triangles of single surfaces carry the totals of the whole.
+    const bool is_single = is_one_surface(info) || info.type == "plane";
+    const std::size_t count = std::min<std::size_t>(of_all->size(), is_single ? 1 : of_all->size());
+    for (std::size_t t = 0; t < count; ++t) sizes.add((*of_all)[t], (*of_lasting)[t]);
 }
 
 std::vector<double> triangle_areas(const VtkPolyData& collider, const ColliderInfo& info) {

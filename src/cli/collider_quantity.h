@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ricochet/io/run_folder.h"
+#include "ricochet/io/surface_groups.h"
 #include "ricochet/io/vtk.h"
 
 namespace ricochet::cli {
@@ -21,6 +22,8 @@ struct ColliderQuantity {
 
     [[nodiscard]] std::string name() const;
     [[nodiscard]] std::string unit() const;
+    /// What pictures leave out by it: impacts alone are hits, and have a known energy. Empty where nothing is.
+    [[nodiscard]] std::string note(const ImpulseSizes& sizes) const;
 };
 
 /// hits, impulse or energy, with /area, /time or both behind it; nothing for other texts.
@@ -37,6 +40,9 @@ using TriangleEnergies = std::map<std::pair<std::uint32_t, std::int64_t>, double
 [[nodiscard]] std::vector<double> quantity_values(const ColliderQuantity& quantity, const VtkPolyData& collider,
                                                   const ColliderInfo& info, std::uint32_t index,
                                                   const TriangleEnergies& energies, double seconds);
+
+/// Adds the impulses on a collider, by where they came from.
+void add_impulse_sizes(const VtkPolyData& collider, const ColliderInfo& info, ImpulseSizes& sizes);
 
 /// Areas of the triangles of a collider's file, m^2; of a single surface the whole area for each.
 [[nodiscard]] std::vector<double> triangle_areas(const VtkPolyData& collider, const ColliderInfo& info);

@@ -19,7 +19,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array<std::string_view, 3> kFormats = {"ply", "pc2", "gltf"};
+constexpr std::array<std::string_view, 4> kFormats = {"ply", "pc2", "gltf", "csv"};
 
 // The arguments as they stand on the command line.
 struct ExportArguments {
@@ -36,7 +36,7 @@ void check_format(const std::string& format) {
     if (format == "glb") throw InputError("--format glb: expected gltf, which writes a .glb file");
     const auto nearest = detail::nearest_names(format, {kFormats.begin(), kFormats.end()});
     throw InputError(fmt::format("--format {}: {}", format,
-                                 nearest.empty() ? "expected ply, pc2 or gltf" : detail::did_you_mean(nearest)));
+                                 nearest.empty() ? "expected ply, pc2, gltf or csv" : detail::did_you_mean(nearest)));
 }
 
 void check_arguments(const ExportArguments& arguments) {
@@ -45,7 +45,8 @@ void check_arguments(const ExportArguments& arguments) {
         throw InputError(fmt::format("--frame: is for --format gltf; {} takes all frames", arguments.format));
     }
     if (arguments.consecutive && arguments.format != "ply") {
-        throw InputError(fmt::format("--consecutive: is for --format ply; {} has no numbered files", arguments.format));
+        throw InputError(fmt::format("--consecutive: is for --format ply; {} has {}", arguments.format,
+                                     arguments.format == "csv" ? "files by step" : "no numbered files"));
     }
     if (arguments.output.empty()) throw InputError("--output: expected a name, found an empty one");
     if (arguments.format != "gltf") return;
@@ -63,6 +64,7 @@ ExportReport write_files(const RunFolder& folder, const ExportArguments& argumen
         const auto numbers = arguments.consecutive ? ExportNumbers::consecutive : ExportNumbers::steps;
         return export_ply(folder, arguments.output, numbers, progress);
     }
+    if (arguments.format == "csv") return export_csv(folder, arguments.output, progress);
     if (arguments.format == "pc2") return export_pc2(folder, arguments.output, progress);
     const FrameFile frame = cli::chosen_frames(folder, arguments.frame.value_or("last"), false).front();
     return export_gltf(folder, frame, arguments.output);
@@ -83,12 +85,13 @@ void add_options(cli::Command command, ExportArguments& a) {
     command
         .add_option(
             "--format", a.format,
-            "ply: particles and moving colliders frame by frame; pc2: meshes with point caches; gltf: one frame")
-        .type_name("ply|pc2|gltf")
+            "ply: particles and moving colliders frame by frame; pc2: meshes with point caches; gltf: one frame; "
+            "csv: tables of particles, contacts and triangles")
+        .type_name("ply|pc2|gltf|csv")
         .required();
     command
         .add_option("--output", a.output,
-                    "Folder for ply and pc2 (new, empty, or an earlier export's), .glb file for gltf")
+                    "Folder for ply, pc2 and csv (new, empty, or an earlier export's), .glb file for gltf")
         .type_name("PATH")
         .required();
     command.add_option("--frame", a.frame, "Step of the frame of a gltf file, or last (default)").type_name("N");

@@ -126,6 +126,9 @@ void print_looks(const RunPictures& pictures) {
     } else {
         cli::print("{} from {:.4g} to {:.4g}\n", pictures.color_by(), pictures.range().low, pictures.range().high);
     }
+    if (const std::string note = pictures.collider_note(); !note.empty()) {
+        cli::print("note: the colliders' colours show {}; --collider-color impulse shows all\n", note);
+    }
     if (pictures.lacks_shutter()) {
         cli::print(
             "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "
@@ -137,6 +140,15 @@ void print_looks(const RunPictures& pictures) {
             "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
             name);
     }
+}
+
+// A film shows all frames unless it is told one. A picture without a frame shows the moment that the scene names.
+std::vector<FrameFile> frames_of(const RunFolder& folder, const std::string& asked, bool film) {
+    if (film && (asked.empty() || asked == "last")) return folder.frames;
+    const auto& own = folder.info.picture;
+    const bool is_told = asked.empty() && own && own->time && folder.info.time_step > 0.0;
+    return is_told ? std::vector{nearest_frame(folder, *own->time)}
+                   : chosen_frames(folder, asked.empty() ? "last" : asked, true);
 }
 
 void render(const RenderArguments& arguments) {
@@ -154,8 +166,7 @@ void render(const RenderArguments& arguments) {
     }
     const PictureStyle style = picture_style(arguments);
     const RunFolder folder = open_run_folder(arguments.folder);
-    const std::vector<FrameFile> frames =
-        chosen_frames(folder, film && arguments.frame == "last" ? "all" : arguments.frame, true);
+    const std::vector<FrameFile> frames = frames_of(folder, arguments.frame, film);
     const ThreadLimit limit(parse_thread_count(arguments.threads));
     RunPictures pictures(folder, frames, style, static_cast<double>(size.width) / size.height);
     require_room(size, pictures.draws_sprites(), film, arguments.size);

@@ -128,7 +128,7 @@ PictureStyle picture_style(const RenderArguments& arguments) {
     if (arguments.black_body != 0.0) style.black_body = arguments.black_body;
     style.range = parse_range("--range", arguments.range);
     style.map = parse_color_map(arguments.color_map);
-    if (arguments.particle_radius > 0.0) style.particle_radius = arguments.particle_radius;
+    style.particle_radius = arguments.particle_radius;
     style.collider_quantity = parse_collider_color(arguments.collider_color);
     style.collider_range = parse_range("--collider-range", arguments.collider_range);
     for (const std::string& name : arguments.hidden) {
@@ -167,7 +167,7 @@ void check_numbers(const RenderArguments& arguments) {
     in_range("--speed", film_speed(arguments), 1e-6, 1e6);
     if (arguments.shutter != RenderArguments{}.shutter) in_range("--shutter", arguments.shutter, 0, 1e6);
     if (arguments.black_body != 0.0) in_range("--black-body", arguments.black_body, 500, 20000);
-    in_range("--particle-radius", arguments.particle_radius, 0, 1e15);
+    in_range("--particle-radius", arguments.particle_radius.value_or(0.0), 0, 1e15);
 }
 
 int rays_a_pixel(const RenderArguments& arguments) { return arguments.samples.value_or(16); }
@@ -186,7 +186,8 @@ void check_film_options(const RenderArguments& arguments, bool film) {
 void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_option("DIR", a.folder, "Output folder of a run").required();
     command.add_option("--output", a.output, "Picture (.png) or film (.mp4, needs ffmpeg)").required();
-    command.add_option("--frame", a.frame, "Step number, last, or all (numbered pictures)").show_default();
+    command.add_option("--frame", a.frame,
+                       "Step number, last, or all (numbered pictures; default: the scene's, or last)");
     command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels").show_default();
     command.add_option("--camera", a.camera, "px,py,pz,tx,ty,tz[,fov]: position, target, vertical degrees");
     command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
@@ -216,7 +217,8 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_flag("--color-bar", a.color_bar, "Show what the colours mean, with unit and range");
     command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)").one_value_each();
     command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)").one_value_each();
-    command.add_option("--particle-radius", a.particle_radius, "Radius drawn, m (default: the particles' own)");
+    command.add_option("--particle-radius", a.particle_radius,
+                       "Radius drawn, m (default: the scene's; 0: the particles' own)");
     command.add_option("--samples", a.samples, "Rays a pixel (default: 16)");
     command.add_flag("--preview", a.preview,
                      "Draft: one ray a pixel, hard shadows, no light between surfaces, no blur");

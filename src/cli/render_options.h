@@ -15,7 +15,7 @@ namespace ricochet::cli {
 struct RenderArguments {
     std::string folder;
     std::string output;
-    std::string frame = "last";
+    std::string frame;  // empty: the scene's, or the last; of a film all
     std::string size = "1280x720";
     std::string camera;
     std::string up;
@@ -32,8 +32,8 @@ struct RenderArguments {
     bool color_bar = false;
     std::vector<std::string> hidden;
     std::vector<std::string> glass;
-    double particle_radius = 0.0;
-    std::optional<int> samples;  // 16
+    std::optional<double> particle_radius;  // the scene's
+    std::optional<int> samples;             // 16
     bool preview = false;
     std::optional<int> frames_per_second;  // 30
     double exposure = 1.0;

@@ -45,6 +45,7 @@ void RunPictures::color_colliders(const RunFolder& folder) {
         for (const ColliderInfo& one : folder.info.colliders) {
             if (one.file == file.filename().string()) info = one;
         }
+        add_impulse_sizes(data, info, impulse_sizes_);
         const auto index = static_cast<std::uint32_t>(index_of_collider_file(file.filename().string()).value_or(0));
         values.push_back(quantity_values(quantity, data, info, index, energies, data.time));
         const std::vector<double> areas = triangle_areas(data, info);
@@ -69,8 +70,9 @@ std::vector<ColorBar> RunPictures::color_bars() const {
     if (!own_colors_ && !plain_image_ && !embers_)
         bars.push_back({style_.color_by, unit_of(style_.color_by), range_, style_.map});
     if (style_.collider_quantity) {
+        const ColliderQuantity& quantity = *style_.collider_quantity;
         bars.push_back(
-            {style_.collider_quantity->name(), style_.collider_quantity->unit(), collider_range_, ColorMap::viridis});
+            {quantity.name(), quantity.unit(), collider_range_, ColorMap::viridis, quantity.note(impulse_sizes_)});
     }
     return bars;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "ricochet/core/hash.h"
+#include "ricochet/core/printable.h"
 
 namespace ricochet::cli {
 namespace {
@@ -14,6 +15,33 @@ namespace {
 // Nothing where no time has passed.
 std::string rate_text(std::uint64_t count, double seconds) {
     return seconds > 0.0 ? short_number(static_cast<double>(count) / seconds) : "-";
+}
+
+/// Impulses that impacts gave are told apart where contact that lasts gave at least this part of all.
+constexpr double kNotableShare = 0.01;
+
+void print_impulse_share(const ImpulseSizes& sizes) {
+    if (!sizes.any() || 1.0 - sizes.share_of_impacts() < kNotableShare) return;
+    print(
+        "  note: impacts gave {:.3g} % of the impulse on surfaces; hits and the contact log hold no contact that lasts "
+        "(impact_share, lasting_impulse)\n",
+        100.0 * sizes.share_of_impacts());
+}
+
+/// The groups of a collider with the most hits, on one line.
+void print_groups(const ColliderSummary& collider) {
+    constexpr std::size_t kMostGroups = 8;
+    if (collider.groups.empty()) return;
+    std::vector<GroupTotals> groups = collider.groups;
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const GroupTotals& a, const GroupTotals& b) { return a.hits > b.hits; });
+    std::string line;
+    for (std::size_t k = 0; k < std::min(groups.size(), kMostGroups); ++k) {
+        const std::string name = groups[k].name.empty() ? "(no name)" : printable(groups[k].name, 60);
+        line += fmt::format("{}{} {}", k == 0 ? "" : ", ", name, groups[k].hits);
+    }
+    if (groups.size() > kMostGroups) line += fmt::format(" and {} more", groups.size() - kMostGroups);
+    print("  hits on {} by group: {}\n", printable(collider.name, 60), line);
 }
 
 /// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
@@ -100,7 +128,9 @@ void print_report(const RunSummary& summary, const std::string& output) {
         print("  {} {} of spheres on each other, besides those that are planned together\n", statistics.pair_impacts,
               statistics.pair_impacts == 1 ? "impact" : "impacts");
     }
+    for (const ColliderSummary& collider : summary.colliders) print_groups(collider);
     print_notes(statistics);
+    print_impulse_share(summary.impulse_sizes());
     if (summary.leaks) {
         const bool all_judged = statistics.started_in_overlap == 0;
         print("  verified by independent exact checks: {} violations, {} of energy{}\n", *summary.leaks,

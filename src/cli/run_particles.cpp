@@ -109,16 +109,32 @@ PreviewSpheres RunPictures::spheres_of(const Group& group, const VtkPolyData& fr
     return spheres;
 }
 
+/// Moves balls that are larger than their particles off the walls.
+void RunPictures::keep_off_walls(const Moment& moment, const Group& group, PreviewSpheres& spheres) {
+    const std::vector<double> own = chosen_of(radii_of(moment.frame), group.shown);
+    const bool any_larger = !std::equal(own.begin(), own.end(), spheres.radii.begin(),
+                                        [](double radius, double drawn) { return drawn <= radius; });
+    if (!any_larger) return;
+    if (!walls_) walls_ = walls_at_rest();
+    WallClearance walls = *walls_;
+    for (const auto& [number, mesh] : moment.moving) {
+        const auto looks = moving_looks_.find(number);
+        if (looks != moving_looks_.end() && !looks->second.hidden) walls.add(mesh);
+    }
+    walls.clear({spheres.centers, spheres.radii, own});
+}
+
 /// Where spheres are on their ways while the shutter is open.
-void RunPictures::set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
-                           PreviewSpheres& spheres) const {
+void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const {
+    const ShutterPaths& paths = moment.paths;
     const std::size_t steps = way_steps(paths);
     spheres.ways.resize(shown.size());
     for (std::size_t k = 0; k < shown.size(); ++k) {
+        const Vec3 off_walls = spheres.centers[k] - moment.frame.points[shown[k]];
         for (std::size_t step = 0; step < steps; ++step) {
             const double part = static_cast<double>(step) / static_cast<double>(steps - 1);
             const double time = (1.0 - part) * paths.born[shown[k]] + part * paths.close;
-            spheres.ways[k].push_back(position_on_path(paths.nodes[shown[k]], time));
+            spheres.ways[k].push_back(position_on_path(paths.nodes[shown[k]], time) + off_walls);
         }
     }
 }
@@ -138,7 +154,8 @@ void RunPictures::add_solid(const Moment& moment, const Group& group, PreviewSph
         add_streaks(moment.paths, group.shown, spheres, moving);
         return;
     }
-    if (!moment.paths.empty()) set_ways(moment.paths, group.shown, spheres);
+    keep_off_walls(moment, group, spheres);
+    if (!moment.paths.empty()) set_ways(moment, group.shown, spheres);
     if (group.drawing->is_copy()) {
         add_copies(moment, group, std::move(spheres), moving.copies);
         return;

@@ -102,6 +102,7 @@ RunPictures::RunPictures(const RunFolder& folder, const std::vector<FrameFile>& 
     check_names("--hide", style_.hidden, folder);
     check_names("--glass", style_.glass, folder);
     choose_scenery(folder.info);
+    if (style_.particle_radius == 0.0) style_.particle_radius.reset();
     choose_shape(folder);
     survey(chosen);
     require_room_for_copies();

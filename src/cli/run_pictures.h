@@ -15,6 +15,7 @@
 #include "cli/collider_quantity.h"
 #include "cli/run_timeline.h"
 #include "cli/run_turning.h"
+#include "cli/wall_clearance.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -111,7 +112,8 @@ struct PictureStyle {
     ParticleDrawing drawing = ParticleDrawing::automatic;
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
-    std::optional<double> particle_radius;  ///< m; nothing: the frames' own, or one that can be seen for points
+    /// m; nothing: the scene's. 0: the frames' own, or one that can be seen for points.
+    std::optional<double> particle_radius;
     std::optional<ColliderQuantity> collider_quantity;  ///< that colours the colliders
     std::optional<ValueRange> collider_range;
     std::vector<std::string> hidden;  ///< colliders that are left out, by name
@@ -150,6 +152,10 @@ public:
     [[nodiscard]] const ValueRange& range() const { return range_; }
     /// What the colours mean: of the particles, and of the colliders where a quantity colours them.
     [[nodiscard]] std::vector<ColorBar> color_bars() const;
+    /// What the colours of the colliders leave out; empty where that is nothing.
+    [[nodiscard]] std::string collider_note() const {
+        return style_.collider_quantity ? style_.collider_quantity->note(impulse_sizes_) : std::string();
+    }
     /// Array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
     /// True when the frames themselves say the colours.
@@ -215,7 +221,9 @@ private:
     [[nodiscard]] PreviewSpheres spheres_of(const Group& group, const VtkPolyData& frame,
                                             const std::vector<Vec3>& colors, const std::vector<double>& radii) const;
     void add_solid(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewMoving& moving);
-    void set_ways(const ShutterPaths& paths, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    void set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const;
+    void keep_off_walls(const Moment& moment, const Group& group, PreviewSpheres& spheres);
+    [[nodiscard]] WallClearance walls_at_rest() const;
     static void add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
                             const PreviewSpheres& spheres, PreviewMoving& moving);
     void add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const;
@@ -246,6 +254,7 @@ private:
     std::vector<PreviewMesh> meshes_;
     std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
     ValueRange collider_range_;
+    ImpulseSizes impulse_sizes_;                   // on the colliders that a quantity colours
     std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
     std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them
@@ -259,6 +268,7 @@ private:
     std::vector<Vec3> emissions_;  // of the particles of the frame that is drawn; empty: none
     RunTurning turning_;
     std::string hiding_;
+    std::optional<WallClearance> walls_;  // at rest, once some ball is larger than its particle
     std::optional<Preview> preview_;
 };
 

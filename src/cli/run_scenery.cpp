@@ -13,6 +13,7 @@
 #include "ricochet/io/camera_frames.h"
 #include "ricochet/io/frame_reader.h"
 #include "ricochet/io/moving_meshes.h"
+#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
 
@@ -24,6 +25,7 @@ void RunPictures::choose_scenery(const RunInfo& info) {
         style_.drawing = drawing_from_name(own.particles).value_or(style_.drawing);
     }
     if (!style_.shutter) style_.shutter = own.shutter;
+    if (!style_.particle_radius) style_.particle_radius = own.particle_radius;
     if (!style_.black_body) style_.black_body = own.black_body;
     if (!style_.light && !own.light.empty()) style_.light = lighting_from_name(own.light);
     if (!style_.background) style_.background = Background{own.background, own.transparent};
@@ -73,6 +75,16 @@ void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
 Vec3 RunPictures::camera_place_in(const VtkPolyData& frame) const {
     const auto place = camera_of_frame(frame);
     return place && !style_.camera ? place->position : camera_.position;
+}
+
+/// The meshes that are shown and stand still, and the planes.
+WallClearance RunPictures::walls_at_rest() const {
+    WallClearance walls(planes_);
+    for (const std::filesystem::path& file : mesh_files_) {
+        VtkPolyData data = read_vtp(file);
+        walls.add({std::move(data.points), std::move(data.triangles)});
+    }
+    return walls;
 }
 
 // True for a mesh around most of the probes, but not around the eye.

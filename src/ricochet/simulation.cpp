@@ -132,8 +132,10 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
         const std::size_t at = impl().world.name_of(static_cast<SurfaceId>(first + k)).triangle;
         result.hits.resize(at + 1);
         result.impulse.resize(at + 1);
+        result.lasting_impulse.resize(at + 1);
         result.hits[at] += impl().recorder.totals().hits(first + k);
         result.impulse[at] += impl().recorder.totals().impulse(first + k);
+        result.lasting_impulse[at] += impl().recorder.totals().lasting_impulse(first + k);
     }
     impl().add_weights_of_sleepers(-1.0);
     return result;

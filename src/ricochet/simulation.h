@@ -117,6 +117,8 @@ struct SimulationStatistics {
 struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
     std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
+    /// The part of `impulse` that no hit gave, N s: sliding, weight at rest, and spheres that are planned together.
+    std::vector<Vec3> lasting_impulse = {};
 };
 
 /// What particles have done to one collider that moves, or whose material does, since the start.

@@ -101,6 +101,7 @@ TEST_P(Determinism, StateTotalsAndStatisticsDoNotDependOnTheNumberOfThreads) {
             const TriangleTotals totals = simulation->triangle_totals(collider);
             EXPECT_EQ(totals.hits, reference->triangle_totals(collider).hits);
             EXPECT_EQ(totals.impulse, reference->triangle_totals(collider).impulse);
+            EXPECT_EQ(totals.lasting_impulse, reference->triangle_totals(collider).lasting_impulse);
         }
     }
 }

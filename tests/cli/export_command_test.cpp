@@ -173,7 +173,7 @@ TEST(ExportCommand, RefusesWhatItCannotExportWithOneLine) {
         {{run, "--output", out}, "--format"},
         {{run, "--format", "glft", "--output", glb}, "did you mean \"gltf\""},
         {{run, "--format", "glb", "--output", glb}, "expected gltf, which writes a .glb file"},
-        {{run, "--format", "xyz", "--output", out}, "expected ply, pc2 or gltf"},
+        {{run, "--format", "xyz", "--output", out}, "expected ply, pc2, gltf or csv"},
         {{run, "--format", "ply", "--output", ""}, "--output"},
         {{run, "--format", "ply", "--output", run}, "not empty"},
         {{run, "--format", "pc2", "--output", run + "/run.json"}, "is not a folder"},

@@ -101,6 +101,9 @@ if [[ -f "$folder/resumed/checkpoint.bin" ]]; then
         cmp "$frame" "$folder/resumed/$(basename "$frame")" || fail "a moving collider of a resumed run differs"
         grep -q "$(basename "$frame")" "$folder/resumed/moving.pvd" || fail "a moving collider is missing in the series"
     done
+    for file in "$folder"/whole/collider_*.vtp; do
+        cmp "$file" "$folder/resumed/$(basename "$file")" || fail "a collider's totals differ after a resume"
+    done
     cmp "$folder/whole/colliders.pvd" "$folder/resumed/colliders.pvd" || fail "the series of colliders differs"
     open_with_vtk resumed --attribute charge
 else

@@ -314,5 +314,60 @@ TEST(RenderCommand, AFilmThatTheEncoderHasNotFinishedGetsNoName) {
     EXPECT_FALSE(files.exists("film.mp4"));
 }
 
+// A scene's own moment and radius are what the options would say; options come first.
+TEST(RenderCommand, PicturesAreAsTheSceneSays) {
+    const TemporaryFolder folder;
+    const auto run = [&](const std::string& name, const std::string& picture) {
+        const auto scene = folder.write(name + ".json", R"({"ricochet": 1,
+            "simulation": {"time_step": 0.1, "duration": 1}, "output": {"every": 2},
+            "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
+                          {"name": "box", "type": "box", "size": [1, 1, 1], "position": [0, 0, 0.5]}],
+            "particles": [{"position": [0.3, 0, 1.5], "velocity": [1, 0, -1]}, {"position": [-1, 0, 1e-9]}],
+            "camera": {"position": [0, -5, 2], "target": [0, 0, 0.5]}, "picture": )" +
+                                                            picture + "}");
+        const ProgramResult result =
+            run_ricochet({"run", scene.string(), "--output", folder.path(name).string(), "--quiet"});
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+    };
+    const auto picture = [&](const std::string& name, std::vector<std::string> more) {
+        const std::string output = folder.path("picture.png").string();
+        more.insert(more.begin(), {"render", folder.path(name).string(), "--output", output, "--size", "96x64",
+                                   "--samples", "1", "--quiet"});
+        const ProgramResult result = run_ricochet(more);
+        EXPECT_EQ(result.exit_code, 0) << result.errors;
+        return folder.read("picture.png");
+    };
+    run("plain", "{}");
+    run("told", R"({"time": 0.43, "particle_radius": 0.2, "light": "night"})");
+    const std::string told = picture("told", {});
+    EXPECT_TRUE(told == picture("plain", {"--frame", "4", "--particle-radius", "0.2", "--light", "night"}));
+    EXPECT_FALSE(told == picture("plain", {"--particle-radius", "0.2", "--light", "night"}));
+    EXPECT_TRUE(picture("told", {"--frame", "last", "--particle-radius", "0", "--light", "day"}) ==
+                picture("plain", {}));
+}
+
+// Points that lie on the floor, seen from below it: their balls are on the other side.
+TEST(RenderCommand, LargeBallsDoNotPokeThroughWalls) {
+    const TemporaryFolder folder;
+    std::vector<std::string> pictures;
+    for (const char* particle : {R"({"position": [0, 0, 1.0000000001]})", R"({"position": [0, 0, 40]})"}) {
+        const auto scene = folder.write("s.json", std::string(R"({"ricochet": 1,
+            "simulation": {"time_step": 0.1, "duration": 0.1},
+            "colliders": [{"name": "box", "type": "box", "size": [2, 2, 2]}],
+            "camera": {"position": [0, 0, 0.3], "target": [0, 0, 1], "up": [0, 1, 0], "field_of_view": 60},
+            "picture": {"particle_radius": 0.3}, "particles": [)") +
+                                                      particle + "]}");
+        ASSERT_EQ(run_ricochet({"run", scene.string(), "--output", folder.path("run").string(), "--quiet"}).exit_code,
+                  0);
+        const std::string output = folder.path("picture.png").string();
+        ASSERT_EQ(run_ricochet(
+                      {"render", folder.path("run").string(), "--output", output, "--size", "64x64", "--samples", "1"})
+                      .exit_code,
+                  0);
+        pictures.push_back(folder.read("picture.png"));
+    }
+    EXPECT_TRUE(pictures[0] == pictures[1]);
+}
+
 }  // namespace
 }  // namespace ricochet

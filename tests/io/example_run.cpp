@@ -1,5 +1,7 @@
 // Writes a small series, as a run does, for readers that are not ours: example_run FOLDER.
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "io/example_frames.h"
 #include "ricochet/core/atomic_file.h"
@@ -16,7 +18,10 @@ int main(int argc, char** argv) {
     region.include({1, 1, 1});
     const std::string mesh = collider_file_name(0, "tetrahedron");
     const std::string plane = collider_file_name(1, "floor");
-    write_vtp(folder.path() / mesh, mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0));
+    VtkPolyData tetrahedron = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
+    tetrahedron.cell_arrays.push_back({"group", std::vector<std::uint32_t>{0, 2, 1, 1}});
+    tetrahedron.texts = {{"group_names", {"", "a \"b\" <&>", std::string(3000, 'x')}}, {"none", {}}};
+    write_vtp(folder.path() / mesh, tetrahedron);
     write_vtp(folder.path() / plane, plane_collider_frame({}, region, {{12}, {{0, 0, -3}}}, 0.0));
     write_file(folder.path() / kColliderSeriesFile, pvd_text({{0.0, 0, mesh}, {0.0, 1, plane}}));
     FrameWriter contacts(folder.path(), kContactSeries);

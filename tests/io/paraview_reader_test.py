@@ -44,6 +44,8 @@ CONTACT_ARRAYS = {
 MOVING_CONTACT_ARRAYS = {"surface_velocity": ("double", 3)}  # where a surface moves
 MOVING_ARRAYS = {"collider": ("unsigned int", 1)}
 CELL_ARRAYS = {"hits": ("long long", 1), "impulse": ("double", 3)}
+RUN_CELL_ARRAYS = {"lasting_impulse": ("double", 3), "material": ("unsigned int", 1), "group": ("unsigned int", 1)}
+EXAMPLE_GROUPS = ["", 'a "b" <&>', "x" * 3000]
 LONG_NAMES = {"long": "long long"}  # the same 64 bits
 
 
@@ -113,8 +115,24 @@ def check_collider(folder, name):
     path = os.path.join(folder, name)
     data = read(path)
     check(data.GetNumberOfPolys() > 0, f"{path}: no triangles")
-    check_arrays(data.GetCellData(), CELL_ARRAYS, data.GetNumberOfPolys(), path)
+    cells = data.GetCellData()
+    more = {array: kind for array, kind in RUN_CELL_ARRAYS.items() if cells.GetArray(array)}
+    check_arrays(cells, {**CELL_ARRAYS, **more}, data.GetNumberOfPolys(), path)
+    if "group" in more:
+        check_groups(data, path)
     return data.GetNumberOfPolys()
+
+
+def check_groups(data, path):
+    names = data.GetFieldData().GetAbstractArray("group_names")
+    check(names is not None, f"{path}: groups without names")
+    names = [names.GetValue(i) for i in range(names.GetNumberOfValues())]
+    numbers = data.GetCellData().GetArray("group")
+    numbers = [int(numbers.GetValue(i)) for i in range(numbers.GetNumberOfTuples())]
+    check(max(numbers) < len(names), f"{path}: {len(names)} names for group {max(numbers)}")
+    if "tetrahedron" in path:
+        check(names == EXAMPLE_GROUPS and numbers == [0, 2, 1, 1], f"{path}: groups {numbers} of {names}")
+        check(data.GetFieldData().GetAbstractArray("none").GetNumberOfValues() == 0, f"{path}: texts of no one")
 
 
 def check_moving(folder, time, name):

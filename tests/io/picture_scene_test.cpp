@@ -84,7 +84,7 @@ TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
             "looks": {"color": [0.1, 0.2, 0.3], "roughness": 0.25, "glass": true}},
             {"name": "b", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true, "pattern": false}}],
         "picture": {"light": "studio", "background": [0, 0, 0.5], "transparent": true, "ground": -2,
-                    "particles": "streaks", "shutter": 0.02})");
+                    "particles": "streaks", "shutter": 0.02, "particle_radius": 0.125, "time": 0.75})");
     ASSERT_EQ(scene.looks.size(), 2U);
     RunInfo info = run_info_of(scene);
     info.colliders = {{"a", "plane", "collider_00_a.vtp", 0, false, info.looks[0]},
@@ -98,6 +98,9 @@ TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
     EXPECT_EQ(read.picture->ground, -2.0);
     EXPECT_EQ(read.picture->particles, "streaks");
     EXPECT_EQ(read.picture->shutter, 0.02);
+    EXPECT_EQ(read.picture->particle_radius, 0.125);
+    EXPECT_EQ(read.picture->time, 0.75);
+    EXPECT_EQ(read.time_step, scene.setup.options.time_step);
     EXPECT_EQ(read.colliders[0].looks.color, Vec3(0.1, 0.2, 0.3));
     EXPECT_EQ(read.colliders[0].looks.roughness, 0.25);
     EXPECT_TRUE(read.colliders[0].looks.glass && !read.colliders[0].looks.hidden);

@@ -329,6 +329,52 @@ TEST(VtkReader, RefusesCornersThatNameNoPoint) {
     }
 }
 
+TEST(Vtk, KeepsTexts) {
+    VtkPolyData frame = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
+    frame.texts = {{"names <&>", {"", "two words", "\"a\" <b> & c", "\xc3\xa4\xff"}}, {"none", {}}, {"many", {}}};
+    frame.texts[2].values.assign(200000, std::string(20, 'x'));  // more than a header may hold
+    const VtkPolyData read = written_and_read(frame);
+    ASSERT_EQ(read.texts.size(), 3U);
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_EQ(read.texts[k].name, frame.texts[k].name);
+        EXPECT_EQ(read.texts[k].values, frame.texts[k].values);
+    }
+    EXPECT_EQ(*find_texts(read, "none"), std::vector<std::string>{});
+    EXPECT_EQ(find_texts(read, "other"), nullptr);
+    expect_same_arrays(read.cell_arrays, frame.cell_arrays);
+}
+
+TEST(VtkReader, RefusesTextsThatAreNotThere) {
+    const TemporaryFolder folder;
+    VtkPolyData frame = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
+    frame.texts = {{"names", {"left", "right"}}};
+    write_vtp(folder.path("good.vtp"), frame);
+    const std::string good = folder.read("good.vtp");
+    const auto with = [&](const std::string& old, const std::string& now) {
+        std::string bytes = good;
+        const std::size_t at = bytes.find(old);
+        EXPECT_NE(at, std::string::npos) << old;
+        return bytes.replace(at, old.size(), now);
+    };
+    const std::string tuples = R"(NumberOfTuples="2" format="appended")";
+    const std::vector<std::pair<std::string, const char*>> damaged = {
+        {with(tuples, R"(NumberOfTuples="3" format="appended")"), "has 2 texts, not 3"},
+        {with(tuples, R"(NumberOfTuples="18446744073709551615" format="appended")"), "has 2 texts"},
+        {with(tuples, R"(NumberOfTuples="2" format="ascii")"), "format="},
+        {with(R"(type="String")", R"(type="Bit")"), "type="},
+        {with("right" + std::string(1, '\0'), "rightX"), "texts"},
+        {with(tuples + R"( offset="0")", tuples + R"( offset="99999999")"), "past the end"},
+    };
+    for (const auto& [bytes, message] : damaged) {
+        try {
+            (void)read_vtp(folder.write("bad.vtp", bytes));
+            ADD_FAILURE() << "was read: " << message;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+        }
+    }
+}
+
 // Each of them would take its own memory.
 TEST(VtkReader, RefusesArraysThatShareTheirBytes) {
     const TemporaryFolder folder;

@@ -35,8 +35,8 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"page", {"core", "geometry", "dynamics", "io", "render"}},
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
-         {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "render", "compare",
-          "bench", "mpi", "page"}},
+         {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "render",
+          "compare", "bench", "mpi", "page"}},
     };
     return table;
 }

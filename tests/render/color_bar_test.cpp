@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,8 +20,9 @@ Image grey(int width, int height) {
 
 TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
     Image image = grey(640, 360);
-    draw_color_bars(image, {{"speed", "m/s", {0.0, 12.5}, ColorMap::plasma}});
-    const BarPlace place = bar_place(640, 360, 0);
+    const std::vector<ColorBar> bars = {{"speed", "m/s", {0.0, 12.5}, ColorMap::plasma}};
+    draw_color_bars(image, bars);
+    const BarPlace place = bar_places(640, 360, bars)[0];
     const auto near = [](const std::array<int, 3>& pixel, std::array<int, 3> expected) {
         for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], expected[c], 1);
     };
@@ -31,12 +33,71 @@ TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
 
 TEST(ColorBar, StandsInsideThePictureBesideTheOthers) {
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {480, 480}}) {
-        const BarPlace first = bar_place(width, height, 0);
-        const BarPlace second = bar_place(width, height, 1);
+        const std::vector<BarPlace> places = bar_places(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
+        const BarPlace& first = places[0];
+        const BarPlace& second = places[1];
         EXPECT_GT(second.x, first.x + first.width);
         EXPECT_LT(second.x + second.width, width);
         EXPECT_LT(first.y + first.height + kLetterHeight * first.dot, height);
     }
+}
+
+// A name of 60 letters, with its unit.
+TEST(ColorBar, ShowsTheWholeLabel) {
+    const std::string name = "a_very_long_name_of_an_attribute_that_somebody_has_thought_of";
+    for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {200, 400}, {1000, 120}}) {
+        const std::vector<ColorBar> bars = {{name, "m/s", {0.0, 1.0}}, {name, "K", {0.0, 1.0}}};
+        const std::vector<BarPlace> places = bar_places(width, height, bars);
+        for (const BarPlace& place : places) {
+            EXPECT_GE(place.x, 0);
+            EXPECT_LE(place.x + place.width, width);
+        }
+        const bool is_beside = places[1].x > places[0].x + places[0].width;
+        EXPECT_TRUE(is_beside || places[1].y + places[1].height < places[0].y);
+        std::string whole;
+        for (const std::string& line : broken_text(name + " (m/s)", 29)) {
+            EXPECT_LE(line.size(), 29U);
+            whole += line;
+        }
+        EXPECT_EQ(whole, name + " (m/s)");
+    }
+    // Light letters reach as far as the text does.
+    Image image = grey(960, 540);
+    const std::vector<ColorBar> bars = {{"unsimulated_time_of_all", "s", {0.0, 1.0}}};
+    draw_color_bars(image, bars);
+    const BarPlace place = bar_places(960, 540, bars)[0];
+    EXPECT_GE(place.width, text_width("unsimulated_time_of_all (s)"));
+    bool is_lit = false;
+    for (int y = place.y - kLetterHeight - 3; y < place.y; ++y) {
+        for (int x = place.x + place.width - 5; x < place.x + place.width; ++x) {
+            is_lit = is_lit || image.pixel(x, y)[0] > 200;
+        }
+    }
+    EXPECT_TRUE(is_lit);
+}
+
+TEST(ColorBar, BreaksTextsBetweenWords) {
+    using Lines = std::vector<std::string>;
+    EXPECT_EQ(broken_text("", 5), Lines{});
+    EXPECT_EQ(broken_text("abc de", 6), Lines{"abc de"});
+    EXPECT_EQ(broken_text("abc de", 5), (Lines{"abc", "de"}));
+    EXPECT_EQ(broken_text("abcdef g", 3), (Lines{"abc", "def", "g"}));
+}
+
+TEST(ColorBar, ANoteStandsBelowTheNumbers) {
+    Image image = grey(960, 540);
+    const std::vector<ColorBar> plain = {{"hits", "", {0.0, 1.0}}};
+    std::vector<ColorBar> noted = plain;
+    noted[0].note = "impacts only";
+    const int line = kLetterHeight + 3;
+    EXPECT_EQ(bar_places(960, 540, noted)[0].y, bar_places(960, 540, plain)[0].y - line);
+    draw_color_bars(image, noted);
+    const BarPlace place = bar_places(960, 540, noted)[0];
+    bool is_lit = false;
+    for (int y = place.y + place.height + 3 + line; y < place.y + place.height + 3 + 2 * line; ++y) {
+        for (int x = place.x; x < place.x + place.width; ++x) is_lit = is_lit || image.pixel(x, y)[0] > 200;
+    }
+    EXPECT_TRUE(is_lit);
 }
 
 TEST(ColorBar, NumbersHaveThreeDigitsThatCount) {

@@ -118,6 +118,7 @@ TEST(SavedSimulation, KeepsAttributesAndBrokenSprings) {
     EXPECT_EQ(resumed.particles().attributes.value(0, 1).x, 101.0);
     EXPECT_EQ(resumed.triangle_totals(0).hits, whole.triangle_totals(0).hits);
     EXPECT_EQ(resumed.triangle_totals(0).impulse, whole.triangle_totals(0).impulse);
+    EXPECT_EQ(resumed.triangle_totals(0).lasting_impulse, whole.triangle_totals(0).lasting_impulse);
 }
 
 TEST(SavedSimulation, IsWatchedFromWhereItIs) {

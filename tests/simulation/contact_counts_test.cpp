@@ -21,6 +21,7 @@ struct Counts {
     std::uint64_t hits = 0;
     double impulse = 0.0;  ///< N s, all rows together, upwards
     double given = 0.0;    ///< and all triangles
+    double lasting = 0.0;  ///< the part of it that no hit gave
 };
 
 /// Points or spheres that bounce about in a box, in a fine ball of triangles, or on a plane.
@@ -65,6 +66,7 @@ Counts counts_of(SimulationSetup setup) {
     const TriangleTotals totals = simulation.triangle_totals(0);
     for (const std::uint64_t hits : totals.hits) counts.hits += hits;
     for (const Vec3& impulse : totals.impulse) counts.given += impulse.z;
+    for (const Vec3& impulse : totals.lasting_impulse) counts.lasting += impulse.z;
     counts.contacts = simulation.statistics().contacts;
     return counts;
 }
@@ -129,6 +131,50 @@ TEST(ContactCounts, WhatLandsAndStaysHasLandedOnce) {
     for (std::uint64_t k = 0; k < 300; ++k) {
         SCOPED_TRACE(k);
         EXPECT_EQ(counts_of(lying_on_a_slope(k)).contacts, 1U);
+// Spheres that slide, roll and come to rest: rows hold one part of the totals, lasting contact the other.
+TEST(ContactCounts, RowsAndLastingContactTogetherAreTheTotals) {
+    for (const ResponseKind kind : response_kinds()) {
+        for (int shape = 0; shape < 3; ++shape) {
+            for (const double radius : {0.0, 0.04}) {
+                SCOPED_TRACE(std::string(name_of(kind)) + " shape " + std::to_string(shape) + " radius " +
+                             std::to_string(radius));
+                SimulationSetup setup = bouncing(kind, shape, radius);
+                setup.materials[0].restitution = 0.3;
+                setup.options.duration = 2.0;
+                const Counts counts = counts_of(std::move(setup));
+                // Each step of `project` that meets a wall is an impact.
+                EXPECT_TRUE(kind == ResponseKind::project ? counts.lasting == 0.0 : counts.lasting < -1.0);
+                EXPECT_NEAR(counts.impulse + counts.lasting, counts.given, 1e-9);
+            }
+        }
+    }
+}
+
+// The floor carries the weight of both all the time, in contact that is planned or slept through; none of it is a hit.
+TEST(ContactCounts, TheWeightOfAStackAtRestIsLastingContact) {
+    for (const bool sleeping : {true, false}) {
+        SimulationSetup setup;
+        setup.options.time_step = 0.01;
+        setup.options.duration = 1.0;
+        setup.acceleration.sleeping = sleeping;
+        setup.options.particle_contacts.emplace();
+        setup.materials.emplace_back();
+        setup.materials[0].restitution = 0.0;
+        setup.colliders = {{"floor", PlaneShape{}, 0}};
+        setup.forces.push_back(make_gravity({0, 0, -10}));
+        for (const double height : {0.5, 1.5}) {
+            Particle particle;
+            particle.position = {0, 0, height};
+            particle.radius = 0.5;
+            particle.mass = 3.0;
+            setup.particles.push_back(particle);
+        }
+        Simulation simulation(std::move(setup));
+        while (!simulation.finished()) simulation.step();
+        const TriangleTotals totals = simulation.triangle_totals(0);
+        EXPECT_NEAR(totals.impulse[0].z, -2 * 3.0 * 10.0, 0.02 * 60.0) << sleeping;
+        EXPECT_EQ(totals.lasting_impulse[0], totals.impulse[0]) << sleeping;
+        EXPECT_EQ(totals.hits[0], 0U) << sleeping;
     }
 }
 

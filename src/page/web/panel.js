@@ -143,7 +143,7 @@ export class Panel {
     }
     const total = Math.max(0, ...bodies.map((body) => body.is_plane ? 0 : body.part[look.body_map] ?? 0));
     if (total > 0) {
-      const name = look.body_map === 'impulse' ? 'impulse of a triangle, N s' : 'hits of a triangle';
+      const name = look.body_map === 'impulse' ? 'impulse of a triangle, N s' : 'hits (impacts only) of a triangle';
       legend.append(...bar(`${name} (logarithmic)`, map_gradient(maps.viridis), ['0', number_text(total, 3)]));
     }
   }

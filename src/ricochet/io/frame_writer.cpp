@@ -13,6 +13,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/frames.h"
+#include "ricochet/io/surface_groups.h"
 
 namespace ricochet {
 
@@ -273,6 +274,7 @@ VtkPolyData contact_frame(ContactColumns columns, double time) {
         frame.point_arrays.push_back({"surface_velocity", std::move(*columns.surface_velocity)});
     }
     if (columns.other) frame.point_arrays.push_back({"other", std::move(*columns.other)});
+    frame.texts.push_back({kNote, {"impacts only: contact that lasts is in lasting_impulse of the collider files"}});
     return frame;
 }
 

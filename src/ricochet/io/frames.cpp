@@ -158,12 +158,23 @@ Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
 // A simulation that keeps no totals per triangle gives none.
 std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
     if (totals.hits.empty()) return {};
-    return list_of(VtkArray{"hits", as_signed(totals.hits)}, VtkArray{"impulse", totals.impulse});
+    std::vector<VtkArray> arrays =
+        list_of(VtkArray{"hits", as_signed(totals.hits)}, VtkArray{"impulse", totals.impulse});
+    if (!totals.lasting_impulse.empty()) arrays.push_back({"lasting_impulse", totals.lasting_impulse});
+    return arrays;
+}
+
+void require_lengths(const TriangleTotals& totals) {
+    require_same_length(totals.impulse.size(), totals.hits.size(), "impulses of a collider");
+    if (totals.lasting_impulse.empty()) return;
+    require_same_length(totals.lasting_impulse.size(), totals.hits.size(), "lasting impulses of a collider");
 }
 
 // A shape with a formula is one surface: every triangle that shows it has the whole surface's totals.
 TriangleTotals repeated(const TriangleTotals& totals, std::size_t count) {
-    return {std::vector<std::uint64_t>(count, totals.hits[0]), std::vector<Vec3>(count, totals.impulse[0])};
+    const std::size_t lasting = totals.lasting_impulse.empty() ? 0 : count;
+    return {std::vector<std::uint64_t>(count, totals.hits[0]), std::vector<Vec3>(count, totals.impulse[0]),
+            std::vector<Vec3>(lasting, lasting == 0 ? Vec3{} : totals.lasting_impulse[0])};
 }
 
 }  // namespace
@@ -250,7 +261,7 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
 
 VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time) {
     require_corners(mesh);
-    require_same_length(totals.impulse.size(), totals.hits.size(), "impulses of a collider");
+    require_lengths(totals);
     VtkPolyData frame;
     frame.time = time;
     frame.points = mesh.vertices;
@@ -282,7 +293,7 @@ VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region, co
     if (!totals.hits.empty()) {
         const std::uint64_t hits = std::accumulate(totals.hits.begin(), totals.hits.end(), std::uint64_t{0});
         const Vec3 impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
-        frame.cell_arrays = total_arrays({{hits, hits}, {impulse, impulse}});
+        frame.cell_arrays = total_arrays(repeated({{hits}, {impulse}, totals.lasting_impulse}, 2));
     }
     return frame;
 }

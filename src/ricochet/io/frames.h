@@ -33,7 +33,8 @@ void add_cloud_parents(VtkPolyData& frame, const Particles& particles, const std
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
                  const std::vector<SpringFace>& faces);
 
-/// A mesh in world coordinates with the cell arrays hits and impulse (N s); without them when the totals are empty.
+/// A mesh in world coordinates with the cell arrays hits, impulse and lasting_impulse (N s); without them when the
+/// totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);
 
 /// A plane as a square of two triangles around the foot point of the region's centre, its edge four times the region's

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ricochet/core/atomic_file.h"
+#include "ricochet/io/csv_file.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"
 
@@ -17,14 +18,6 @@ namespace {
 
 void append(std::string& text, const Vec3& v) {
     fmt::format_to(std::back_inserter(text), ",{:.17g},{:.17g},{:.17g}", v.x, v.y, v.z);
-}
-
-/// A name as a field of a table (RFC 4180).
-std::string field(const std::string& name) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-    std::string quoted = "\"";
-    for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
 }
 
 /// The rotation as a unit quaternion (w, x, y, z), w >= 0. Source: S. W. Shepperd, "Quaternion from Rotation Matrix",
@@ -72,14 +65,15 @@ void LoadTables::add(const Simulation& simulation) {
         if (!has_loads(simulation, i)) continue;
         const ColliderTotals& before = rows_.totals[i];
         const ColliderTotals& after = totals[i];
-        fmt::format_to(std::back_inserter(rows_.colliders), "{:.17g},{}", now, field(simulation.colliders()[i].name));
+        fmt::format_to(std::back_inserter(rows_.colliders), "{:.17g},{}", now,
+                       csv_field(simulation.colliders()[i].name));
         append(rows_.colliders, after.impulse - before.impulse);
         append(rows_.colliders, rate * (after.moment - before.moment));
         fmt::format_to(std::back_inserter(rows_.colliders), ",{:.17g},{}\n", rate * (after.work - before.work),
                        after.hits - before.hits);
     }
     for (const BodyState& body : simulation.bodies()) {
-        fmt::format_to(std::back_inserter(rows_.bodies), "{:.17g},{}", now, field(body.frame));
+        fmt::format_to(std::back_inserter(rows_.bodies), "{:.17g},{}", now, csv_field(body.frame));
         for (const Vec3& v : {body.center, body.velocity, body.angular_velocity}) append(rows_.bodies, v);
         const auto [w, x, y, z] = quaternion_of(body.world_from_frame);
         fmt::format_to(std::back_inserter(rows_.bodies), ",{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n",

@@ -37,6 +37,10 @@ ExportReport export_ply(const RunFolder& folder, const std::filesystem::path& ta
 /// same in all frames.
 ExportReport export_pc2(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress);
 
+/// A table (CSV) of the particles of every frame, one of the contact log where there is one, and one of all triangles
+/// of the colliders.
+ExportReport export_csv(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress);
+
 /// One frame of the run as a glTF file. The frame: one of the folder's.
 ExportReport export_gltf(const RunFolder& folder, const FrameFile& frame, const std::filesystem::path& target);
 

@@ -69,6 +69,8 @@ PictureDescription picture_of(const Json& json) {
     if (json.contains("ground")) picture.ground = json.at("ground").get<double>();
     if (json.contains("black_body")) picture.black_body = json.at("black_body").get<double>();
     if (json.contains("stretch")) picture.stretch = stretch_of(json.at("stretch"));
+    if (json.contains("particle_radius")) picture.particle_radius = json.at("particle_radius").get<double>();
+    if (json.contains("time")) picture.time = json.at("time").get<double>();
     return picture;
 }
 
@@ -90,6 +92,8 @@ Json json_of(const PictureDescription& picture) {
     if (picture.ground) json["ground"] = *picture.ground;
     if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
     if (picture.black_body) json["black_body"] = *picture.black_body;
+    if (picture.particle_radius) json["particle_radius"] = *picture.particle_radius;
+    if (picture.time) json["time"] = *picture.time;
     if (const auto& stretch = picture.stretch) {
         json["stretch"] = {
             {"speed", stretch->speed}, {"impact", stretch->impact}, {"time", stretch->time}, {"most", stretch->most}};
@@ -122,6 +126,7 @@ RunInfo run_info_of(const Json& json) {
     info.version = json.at("version").get<std::string>();
     info.scene = json.at("scene").get<std::string>();
     info.up = vec3_of(json.at("up"));
+    info.time_step = json.value("time_step", 0.0);
     if (const Json& camera = json.at("camera"); !camera.is_null()) {
         info.camera.emplace();
         info.camera->position = vec3_of(camera.at("position"));
@@ -165,10 +170,12 @@ RunInfo run_info_of(const SceneDescription& scene) {
     RunInfo info;
     info.scene = scene.file;
     info.up = upward_axis(scene.setup);
+    info.time_step = scene.setup.options.time_step;
     info.camera = scene.camera;
     info.picture = scene.picture;
     info.drawings = scene.drawings;
     info.looks = scene.looks;
+    info.groups = scene.groups;
     if (scene.camera && scene.camera->up) info.up = normalized(*scene.camera->up);
     return info;
 }
@@ -178,6 +185,7 @@ std::string run_info_text(const RunInfo& info) {
     json["version"] = info.version;
     json["scene"] = info.scene;
     json["up"] = json_of(info.up);
+    json["time_step"] = info.time_step;
     json["camera"] = nullptr;
     if (info.camera) {
         json["camera"] = {{"position", json_of(info.camera->position)},
@@ -219,12 +227,27 @@ RunInfo read_run_info(const std::filesystem::path& path) {
 
 namespace {
 
+/// Null where surfaces have got no impulse.
+Json share_of(const ImpulseSizes& sizes) { return sizes.any() ? Json(sizes.share_of_impacts()) : Json(nullptr); }
+
+Json json_of(const GroupTotals& group) {
+    return {{"name", group.name},
+            {"triangles", group.triangles},
+            {"hits", group.hits},
+            {"impulse", json_of(group.impulse)},
+            {"lasting_impulse", json_of(group.lasting_impulse)}};
+}
+
 Json json_of(const ColliderSummary& collider) {
     Json json = {{"name", collider.name},           {"type", collider.type}, {"file", collider.file},
                  {"triangles", collider.triangles}, {"hits", collider.hits}, {"impulse", json_of(collider.impulse)}};
-    if (!collider.loads) return json;
-    json["angular_impulse"] = json_of(collider.loads->moment);
-    json["work"] = collider.loads->work;
+    json["lasting_impulse"] = json_of(collider.lasting_impulse);
+    json["impact_share"] = share_of(collider.sizes);
+    if (collider.loads) {
+        json["angular_impulse"] = json_of(collider.loads->moment);
+        json["work"] = collider.loads->work;
+    }
+    for (const GroupTotals& group : collider.groups) json["groups"].push_back(json_of(group));
     return json;
 }
 
@@ -274,7 +297,7 @@ void add_statistics(Json& json, const SimulationStatistics& statistics) {
     json["penetration_deepest"] = statistics.penetration_deepest;
 }
 
-ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
+ColliderSummary collider_summary(const Simulation& simulation, std::size_t i, const TriangleGroups& groups) {
     const ColliderDescription& collider = simulation.colliders()[i];
     const TriangleTotals totals = simulation.triangle_totals(i);
     ColliderSummary summary;
@@ -289,12 +312,21 @@ ColliderSummary collider_summary(const Simulation& simulation, std::size_t i) {
         summary.loads = simulation.collider_totals()[i];
     }
     summary.impulse = std::accumulate(totals.impulse.begin(), totals.impulse.end(), Vec3{});
+    summary.lasting_impulse = std::accumulate(totals.lasting_impulse.begin(), totals.lasting_impulse.end(), Vec3{});
+    summary.sizes.add(totals);
+    summary.groups = totals_by_group(groups, totals);
     return summary;
 }
 
 }  // namespace
 
-RunSummary summarize(const Simulation& simulation) {
+ImpulseSizes RunSummary::impulse_sizes() const {
+    ImpulseSizes sizes;
+    for (const ColliderSummary& collider : colliders) sizes.add(collider.sizes);
+    return sizes;
+}
+
+RunSummary summarize(const Simulation& simulation, const std::vector<TriangleGroups>& groups) {
     RunSummary summary;
     summary.response = name_of(simulation.options().response);
     summary.seed = simulation.options().seed;
@@ -311,7 +343,7 @@ RunSummary summarize(const Simulation& simulation) {
     summary.potential_energy = simulation.potential_energy();
     summary.state_hash = simulation.state_hash();
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
-        summary.colliders.push_back(collider_summary(simulation, i));
+        summary.colliders.push_back(collider_summary(simulation, i, i < groups.size() ? groups[i] : TriangleGroups{}));
     }
     summary.bodies = simulation.bodies();
     return summary;
@@ -356,6 +388,7 @@ std::string summary_text(const RunSummary& summary) {
     json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
     json["state_hash_algorithm"] = StateHash::kName;
     json["peak_memory_bytes"] = summary.peak_memory_bytes;
+    json["impact_share"] = share_of(summary.impulse_sizes());
     json["colliders"] = Json::array();
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
     for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));

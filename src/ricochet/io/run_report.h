@@ -14,6 +14,7 @@
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/io/scene.h"
+#include "ricochet/io/surface_groups.h"
 #include "ricochet/simulation.h"
 
 namespace ricochet {
@@ -46,11 +47,13 @@ struct RunInfo {
     std::string version;                      ///< of ricochet
     std::string scene;                        ///< the scene file as it was named
     Vec3 up{0, 0, 1};                         ///< against gravity, along the nearest axis
+    double time_step = 0.0;                   ///< s; 0: not known
     std::optional<CameraDescription> camera;  ///< its `up` is the one above
     std::optional<PictureDescription> picture;
     std::vector<ParticleDrawingDescription> drawings{};  ///< of the particles of some emitters
     std::vector<ColliderInfo> colliders;
-    std::vector<ColliderLooks> looks{};  ///< of all colliders, before they are described
+    std::vector<ColliderLooks> looks{};    ///< of all colliders, before they are described
+    std::vector<TriangleGroups> groups{};  ///< of all colliders; run.json leaves them out
 };
 
 /// What a scene says about its own picture: camera and the upward axis. Version and colliders are left empty.
@@ -69,6 +72,9 @@ struct ColliderSummary {
     Vec3 impulse;  ///< N s
     /// Of one that moves, or whose material does; nothing of others.
     std::optional<ColliderTotals> loads = {};
+    Vec3 lasting_impulse = {};             ///< N s, the part of `impulse` that no hit gave
+    ImpulseSizes sizes = {};               ///< of the impulses of its triangles
+    std::vector<GroupTotals> groups = {};  ///< of its triangles; empty where the mesh has none
 };
 
 /// Everything that summary.json says.
@@ -99,10 +105,14 @@ struct RunSummary {
     std::uint64_t peak_memory_bytes = 0;  ///< of all processes, each at its peak
     std::vector<ColliderSummary> colliders;
     std::vector<BodyState> bodies;  ///< that impulses move, at the end
+
+    /// Of the impulses of all colliders.
+    [[nodiscard]] ImpulseSizes impulse_sizes() const;
 };
 
 /// What the simulation itself knows for its summary; the colliders' files are left empty.
-[[nodiscard]] RunSummary summarize(const Simulation& simulation);
+/// groups: of the triangles of its colliders, in their order; those that are missing have none.
+[[nodiscard]] RunSummary summarize(const Simulation& simulation, const std::vector<TriangleGroups>& groups = {});
 /// The JSON text of summary.json. Numbers that are not finite become null.
 [[nodiscard]] std::string summary_text(const RunSummary& summary);
 

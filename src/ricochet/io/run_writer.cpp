@@ -196,7 +196,7 @@ RunSummary RunWriter::close(const Simulation& simulation) {
         write_colliders(simulation);
         loads_.write(simulation);
     }
-    RunSummary summary = summarize(simulation);
+    RunSummary summary = summarize(simulation, info_.groups);
     summary.frames = frames_.submitted();
     summary.output_seconds = output_seconds_;
     for (std::size_t i = 0; i < summary.colliders.size(); ++i) summary.colliders[i].file = info_.colliders[i].file;
@@ -209,13 +209,15 @@ void RunWriter::write_summary(const RunSummary& summary) const {
 
 void RunWriter::write_colliders(const Simulation& simulation) const {
     for (std::size_t i = 0; i < info_.colliders.size(); ++i) {
+        const ColliderDescription& collider = simulation.colliders()[i];
         const TriangleTotals totals = simulation.triangle_totals(i);
         const auto mesh = simulation.collider_mesh(i);
         const double time = simulation.time();
-        write_vtp(
-            folder_ / info_.colliders[i].file,
-            mesh ? mesh_collider_frame(*mesh, totals, time)
-                 : plane_collider_frame(std::get<PlaneShape>(simulation.colliders()[i].shape), region_, totals, time));
+        VtkPolyData frame = mesh ? mesh_collider_frame(*mesh, totals, time)
+                                 : plane_collider_frame(std::get<PlaneShape>(collider.shape), region_, totals, time);
+        const TriangleGroups groups = i < info_.groups.size() ? info_.groups[i] : TriangleGroups{};
+        add_surfaces(frame, collider, simulation.materials(), groups, totals);
+        write_vtp(folder_ / info_.colliders[i].file, frame);
     }
 }
 

@@ -57,6 +57,15 @@ struct ColliderLooks {
     friend bool operator==(const ColliderLooks&, const ColliderLooks&) = default;
 };
 
+/// Groups of a mesh collider's triangles, as its file names them.
+struct TriangleGroups {
+    std::vector<std::uint32_t> triangles;  ///< index into `names`, one a triangle
+    /// One a combination of object, group and material: those that the file gives, joined by "/".
+    std::vector<std::string> names;
+
+    [[nodiscard]] bool empty() const { return names.empty(); }
+};
+
 /// How drawn particles change their shape as they move, at the same volume; it does nothing to the run.
 struct StretchDescription {
     double speed = 0.0;   ///< s/m: along the velocity they are longer by 1 + this times the speed
@@ -87,6 +96,8 @@ struct PictureDescription : ParticleDrawingDescription {
     /// K: particles shine by their attribute `temperature`, at this one as a white surface in the sun; nothing: no
     /// light.
     std::optional<double> black_body{};
+    std::optional<double> particle_radius{};  ///< m, by which particles are drawn; nothing: their own
+    std::optional<double> time{};             ///< s, that a single picture shows; nothing: the end
 };
 
 /// A scene, read and checked.
@@ -99,6 +110,7 @@ struct SceneDescription {
     /// says.
     std::vector<ParticleDrawingDescription> drawings;
     std::vector<ColliderLooks> looks;          ///< of the setup's colliders, one each
+    std::vector<TriangleGroups> groups;        ///< the same; empty for those without
     std::string file;                          ///< as it was named
     std::vector<std::string> warnings;         ///< one line each, with file and source location
     std::vector<std::string> notes;            ///< of the same kind: what was done to meshes as they were read

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numeric>
 #include <span>
@@ -78,6 +79,18 @@ public:
               std::holds_alternative<std::vector<Vec3>>(array.values) ? 3 : 1, bytes_of(array.values));
     }
 
+    /// Texts end with a byte 0 each. Source of the format: vtkXMLDataReader, which reads them from appended data.
+    void texts(const VtkTexts& list) {
+        std::string& bytes = own_bytes_.emplace_back();
+        for (const std::string& value : list.values) (bytes += value.substr(0, value.find('\0'))) += '\0';
+        header_ += fmt::format(
+            R"(<Array type="String" Name="{}" NumberOfComponents="1" NumberOfTuples="{}" format="appended" offset="{}"/>)",
+            escaped(list.name), list.values.size(), offset_);
+        header_ += '\n';
+        blocks_.push_back(bytes);
+        offset_ += sizeof(std::uint64_t) + bytes.size();
+    }
+
     std::uint64_t write(AtomicFile& file) const {
         file.write(header_);
         for (const std::string_view bytes : blocks_) {
@@ -92,6 +105,7 @@ public:
 
 private:
     std::string header_;
+    std::deque<std::string> own_bytes_;  // of blocks that are not in the data; they stay where they are
     std::vector<std::string_view> blocks_;
     std::uint64_t offset_ = 0;
 };
@@ -172,6 +186,7 @@ void lay_out_fields(Layout& layout, const VtkPolyData& data) {
     layout.text("<FieldData>\n");
     field("TimeValue", {&data.time, 1});
     for (const VtkField& entry : data.fields) field(entry.name, entry.values);
+    for (const VtkTexts& entry : data.texts) layout.texts(entry);
     layout.text("</FieldData>\n");
 }
 
@@ -278,6 +293,12 @@ const std::vector<double>* find_field(const VtkPolyData& data, std::string_view 
     const auto found =
         std::find_if(data.fields.begin(), data.fields.end(), [&](const VtkField& field) { return field.name == name; });
     return found == data.fields.end() ? nullptr : &found->values;
+}
+
+const std::vector<std::string>* find_texts(const VtkPolyData& data, std::string_view name) {
+    const auto found =
+        std::find_if(data.texts.begin(), data.texts.end(), [&](const VtkTexts& texts) { return texts.name == name; });
+    return found == data.texts.end() ? nullptr : &found->values;
 }
 
 std::vector<double> scalar_values(const VtkArray& array) {

@@ -46,6 +46,12 @@ struct VtkField {
     std::vector<double> values;
 };
 
+/// A few named texts that belong to the whole file; none of them holds a byte 0.
+struct VtkTexts {
+    std::string name;
+    std::vector<std::string> values;
+};
+
 /// Two indices into the points.
 using VtkLine = std::array<std::uint32_t, 2>;
 
@@ -60,6 +66,7 @@ struct VtkPolyData {
     std::vector<Triangle> triangles;     ///< alone (without `has_vertices`): a mesh
     bool has_vertices = false;           ///< the points are a poly-vertex cell although there are triangles
     std::vector<VtkArray> cell_arrays;   ///< each as long as there are cells; none for points alone
+    std::vector<VtkTexts> texts{};       ///< field data as well
 
     /// True when the points are one poly-vertex cell.
     [[nodiscard]] bool shows_points() const { return !points.empty() && (triangles.empty() || has_vertices); }
@@ -96,6 +103,8 @@ struct PvdEntry {
 [[nodiscard]] const VtkArray* find_array(const std::vector<VtkArray>& arrays, std::string_view name);
 /// The values of the field of that name; nullptr when there is none.
 [[nodiscard]] const std::vector<double>* find_field(const VtkPolyData& data, std::string_view name);
+/// The texts of that name; nullptr when there are none.
+[[nodiscard]] const std::vector<std::string>* find_texts(const VtkPolyData& data, std::string_view name);
 /// The array as one number an entry: lengths for vectors.
 [[nodiscard]] std::vector<double> scalar_values(const VtkArray& array);
 

@@ -62,7 +62,7 @@ struct ArrayHeader {
     std::string section;
     std::string type;
     std::string name;
-    std::uint64_t components = 1;
+    std::uint64_t components = 1;  ///< of texts: how many there are
     std::uint64_t offset = 0;
 };
 
@@ -71,6 +71,7 @@ struct Header {
     double time = 0.0;
     std::vector<VtkField> fields;
     std::vector<ArrayHeader> arrays;
+    std::vector<ArrayHeader> texts;
     std::uint64_t data_start = 0;  // first byte after the underscore
 };
 
@@ -98,6 +99,8 @@ private:
             take_piece(tag);
         } else if (tag.name == "DataArray") {
             section_ == "FieldData" ? take_field(tag) : take_array(tag);
+        } else if (tag.name == "Array" && section_ == "FieldData") {
+            take_texts(tag);
         } else if (std::find(std::begin(kSections), std::end(kSections), tag.name) != std::end(kSections)) {
             section_ = tag.name;
         } else {
@@ -136,6 +139,13 @@ private:
         } else {
             header_.fields.push_back(std::move(field));
         }
+    }
+
+    void take_texts(const detail::XmlTag& tag) {
+        expect(tag, "type", "String");
+        expect(tag, "format", "appended");
+        header_.texts.push_back(
+            {section_, "String", attribute(tag, "Name"), number(tag, "NumberOfTuples"), number(tag, "offset")});
     }
 
     void take_array(const detail::XmlTag& tag) {
@@ -188,22 +198,32 @@ public:
 
     template <typename T>
     std::vector<T> read(const ArrayHeader& array, std::uint64_t count) {
+        const std::uint64_t bytes = size_of(array);
         const std::uint64_t position = data_start_ + array.offset;
-        std::uint64_t bytes = 0;
-        if (array.offset > file_.size()) refuse(path_, fmt::format("array {} starts past the end", array.name));
-        file_.read(position, &bytes, sizeof bytes);
         if (bytes % sizeof(T) != 0 || bytes / sizeof(T) != count) {
             refuse(path_, fmt::format("array {} has {} bytes at byte {}, not {} entries of {}", array.name, bytes,
                                       position, count, sizeof(T)));
         }
-        if (bytes > file_.size() - position - sizeof bytes) {
-            refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, position));
-        }
-        read_ += bytes;
-        if (read_ > file_.size()) refuse(path_, fmt::format("array {} shares its bytes with others", array.name));
+        take(array, bytes);
         std::vector<T> values(static_cast<std::size_t>(count));
         file_.read(position + sizeof bytes, values.data(), bytes);
         return values;
+    }
+
+    VtkTexts texts(const ArrayHeader& array) {
+        const std::uint64_t size = size_of(array);
+        take(array, size);
+        std::string bytes(static_cast<std::size_t>(size), '\0');
+        file_.read(data_start_ + array.offset + sizeof size, bytes.data(), size);
+        const auto count = static_cast<std::uint64_t>(std::count(bytes.begin(), bytes.end(), '\0'));
+        if (count != array.components || (!bytes.empty() && bytes.back() != '\0')) {
+            refuse(path_, fmt::format("array {} has {} texts, not {}", array.name, count, array.components));
+        }
+        VtkTexts texts{array.name, {}};
+        for (std::size_t at = 0; at < bytes.size(); at += texts.values.back().size() + 1) {
+            texts.values.emplace_back(bytes.c_str() + at);
+        }
+        return texts;
     }
 
     VtkArray array(const ArrayHeader& array, std::uint64_t count) {
@@ -226,6 +246,24 @@ public:
     }
 
 private:
+    // Of a block, as it says itself.
+    std::uint64_t size_of(const ArrayHeader& array) {
+        std::uint64_t bytes = 0;
+        if (array.offset > file_.size()) refuse(path_, fmt::format("array {} starts past the end", array.name));
+        file_.read(data_start_ + array.offset, &bytes, sizeof bytes);
+        return bytes;
+    }
+
+    // Refuses a block that the file does not hold, before there is memory for it.
+    void take(const ArrayHeader& array, std::uint64_t bytes) {
+        const std::uint64_t position = data_start_ + array.offset;
+        if (bytes > file_.size() - position - sizeof bytes) {
+            refuse(path_, fmt::format("array {} at byte {} is cut off", array.name, position));
+        }
+        read_ += bytes;
+        if (read_ > file_.size()) refuse(path_, fmt::format("array {} shares its bytes with others", array.name));
+    }
+
     std::filesystem::path path_;
     FileBytes& file_;
     std::uint64_t data_start_;
@@ -288,6 +326,7 @@ VtkPolyData read_vtp(const std::filesystem::path& path) {
     VtkPolyData data;
     data.time = header.time;
     data.fields = header.fields;
+    for (const ArrayHeader& texts : header.texts) data.texts.push_back(blocks.texts(texts));
     data.points = blocks.read<Vec3>(only_array(path, header, "Points", "Points"), header.points);
     std::vector<ArrayHeader> cell_arrays;
     for (const ArrayHeader& array : header.arrays) {

@@ -16,6 +16,7 @@ struct ColorBar {
     std::string unit;  ///< empty: none
     ValueRange range;
     ColorMap map = ColorMap::plasma;
+    std::string note{};  ///< a line below the numbers; empty: none
 };
 
 /// Where a bar stands in a picture, pixels; x to the right, y down.
@@ -27,8 +28,13 @@ struct BarPlace {
     int dot = 1;  ///< pixels a dot of its letters
 };
 
-/// The place of a bar, by its number among those of the picture. They stand beside each other.
-[[nodiscard]] BarPlace bar_place(int picture_width, int picture_height, std::size_t number);
+/// Returns the places of the bars of a picture. Each is as wide as its texts need; they stand beside each other, and
+/// above each other where the picture is too narrow.
+[[nodiscard]] std::vector<BarPlace> bar_places(int picture_width, int picture_height,
+                                               const std::vector<ColorBar>& bars);
+
+/// Breaks a text into lines of at most so many letters, between words where it can.
+[[nodiscard]] std::vector<std::string> broken_text(const std::string& text, std::size_t letters);
 
 /// Draws the bars. Pictures less than 200 pixels wide or 100 high have no room for them and stay as they are.
 void draw_color_bars(Image& image, const std::vector<ColorBar>& bars);

@@ -227,6 +227,7 @@ void ImpactAnswer::answer_together(std::span<const ContactSurface> surfaces, Reb
             particle_.state.velocity += result.push[k];
             push(met[k].surface, result.push[k], pass == 0 && is_hit,
                  spin_change_by(result.push[k], met[k].normal, particle_.state.radius));
+            scratch_.hits.back().again = pass > 0 && is_hit && are_hits_;
             if (is_hit) record(met[k], before);
         }
         particle_.state.velocity = result.after.velocity;
@@ -289,6 +290,7 @@ void ImpactAnswer::answer_in_turn(std::span<const ContactSurface> surfaces, Rebo
             const Rebound own = surface.holds ? Rebound::none : rebound;
             reflect_off(surface, material_of(surface.surface), own);
             push(surface.surface, particle_.state.velocity - before, pass == 0);
+            scratch_.hits.back().again = pass > 0 && are_hits_;
             record(surface, before);
             note_impact_after(std::move(impact), {&surface, 1}, own);
             if (outcome_.is_absorbed()) return;

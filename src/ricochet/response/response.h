@@ -31,6 +31,7 @@ struct SurfaceHit {
     SurfaceId surface = 0;
     Vec3 impulse;        ///< N s, given to the surface
     bool impact = true;  ///< false: the push of a contact interval
+    bool again = false;  ///< a further pass of an impact that has been counted
 };
 
 /// What a particle does to a collider that moves, or whose material does, at one time or in one interval.

@@ -21,7 +21,7 @@ namespace ricochet {
 namespace {
 
 /// Begins every saved state; its last digits change with the layout.
-constexpr std::uint64_t kStateFormat = 0x5249434f5354000cULL;
+constexpr std::uint64_t kStateFormat = 0x5249434f5354000dULL;
 
 /// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
 constexpr std::uint64_t kReplaySlices = 1000;

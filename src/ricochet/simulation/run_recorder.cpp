@@ -26,37 +26,57 @@ std::uint64_t SurfaceTotals::add(std::span<const SurfaceHit> hits) {
         if (k + kPrefetchDistance < hits.size()) {
             const Entry& later = entries_[hits[k + kPrefetchDistance].surface];
             __builtin_prefetch(&later.hits, 1);
-            __builtin_prefetch(&later.z, 1);
+            __builtin_prefetch(&later.lasting[0], 1);
         }
         const SurfaceHit& hit = hits[k];
         Entry& entry = entries_[hit.surface];
         if (hit.impact) entry.hits.fetch_add(1, std::memory_order_relaxed);
-        const bool x = entry.x.add(hit.impulse.x, kImpulseUnit);
-        const bool y = entry.y.add(hit.impulse.y, kImpulseUnit);
-        const bool z = entry.z.add(hit.impulse.z, kImpulseUnit);
+        ImpulseSum& sum = hit.impact || hit.again ? entry.of_impacts : entry.lasting;
+        const bool x = sum[0].add(hit.impulse.x, kImpulseUnit);
+        const bool y = sum[1].add(hit.impulse.y, kImpulseUnit);
+        const bool z = sum[2].add(hit.impulse.z, kImpulseUnit);
         lost += x && y && z ? 0 : 1;
     }
     return lost;
 }
 
+namespace {
+
+/// Adds a sum to another one, exactly.
+void add_words(FixedPointSum& sum, const FixedPointSum& more) {
+    const auto [low, high] = sum.words();
+    const auto [low_more, high_more] = more.words();
+    const std::uint64_t carry = low + low_more < low ? 1 : 0;
+    sum.set_words({low + low_more, high + high_more + carry});
+}
+
+}  // namespace
+
 void SurfaceTotals::add(const SurfaceTotals& other) {
-    const auto add_words = [](FixedPointSum& sum, const FixedPointSum& more) {
-        const auto [low, high] = sum.words();
-        const auto [low_more, high_more] = more.words();
-        const std::uint64_t carry = low + low_more < low ? 1 : 0;
-        sum.set_words({low + low_more, high + high_more + carry});
-    };
     for (std::size_t k = 0; k < entries_.size(); ++k) {
         entries_[k].hits.fetch_add(other.hits(k), std::memory_order_relaxed);
-        add_words(entries_[k].x, other.entries_[k].x);
-        add_words(entries_[k].y, other.entries_[k].y);
-        add_words(entries_[k].z, other.entries_[k].z);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            add_words(entries_[k].of_impacts[axis], other.entries_[k].of_impacts[axis]);
+            add_words(entries_[k].lasting[axis], other.entries_[k].lasting[axis]);
+        }
     }
 }
 
 Vec3 SurfaceTotals::impulse(std::size_t surface) const {
     const Entry& entry = entries_[surface];
-    return {entry.x.value(kImpulseUnit), entry.y.value(kImpulseUnit), entry.z.value(kImpulseUnit)};
+    Vec3 impulse;
+    for (int axis = 0; axis < 3; ++axis) {
+        FixedPointSum sum;
+        add_words(sum, entry.of_impacts[static_cast<std::size_t>(axis)]);
+        add_words(sum, entry.lasting[static_cast<std::size_t>(axis)]);
+        impulse[axis] = sum.value(kImpulseUnit);
+    }
+    return impulse;
+}
+
+Vec3 SurfaceTotals::lasting_impulse(std::size_t surface) const {
+    const auto& [x, y, z] = entries_[surface].lasting;
+    return {x.value(kImpulseUnit), y.value(kImpulseUnit), z.value(kImpulseUnit)};
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,7 @@ class ParticleStore;
 
 // Hits and impulses of every surface, added up from any number of threads to the same bits.
 
-/// Sums since the start of the run, one entry a surface.
+/// Sums since the start of the run, one entry a surface. Impulses of impacts and of lasting contact are summed apart.
 class SurfaceTotals {
 public:
     /// surfaces: how many; 0 where nothing is to be kept.
@@ -47,6 +48,8 @@ public:
     void add(const SurfaceTotals& other);
     /// N s, given to the surface.
     [[nodiscard]] Vec3 impulse(std::size_t surface) const;
+    /// The part of it that no impact gave: lasting contact, N s.
+    [[nodiscard]] Vec3 lasting_impulse(std::size_t surface) const;
 
     /// Saves or restores the sums; a: an archive of core/binary_archive.h.
     template <class Archive>
@@ -55,20 +58,22 @@ public:
             std::uint64_t hits = entry.hits.load(std::memory_order_relaxed);
             a(hits);
             if constexpr (Archive::kReads) entry.hits.store(hits, std::memory_order_relaxed);
-            for (FixedPointSum* sum : {&entry.x, &entry.y, &entry.z}) {
-                auto words = sum->words();
-                a(words);
-                if constexpr (Archive::kReads) sum->set_words(words);
+            for (ImpulseSum* impulse : {&entry.of_impacts, &entry.lasting}) {
+                for (FixedPointSum& sum : *impulse) {
+                    auto words = sum.words();
+                    a(words);
+                    if constexpr (Archive::kReads) sum.set_words(words);
+                }
             }
         }
     }
 
 private:
+    using ImpulseSum = std::array<FixedPointSum, 3>;  // along x, y and z
     struct Entry {
         std::atomic<std::uint64_t> hits{0};
-        FixedPointSum x;
-        FixedPointSum y;
-        FixedPointSum z;
+        ImpulseSum of_impacts;
+        ImpulseSum lasting;
     };
 
     std::vector<Entry> entries_;

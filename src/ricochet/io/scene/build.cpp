@@ -311,6 +311,16 @@ Fields<Box3> box_fields(std::string_view upper_meaning) {
             {"upper", &Box3::upper, kCoordinate, "m", upper_meaning, kRequired}};
 }
 
+/// Groups of the colliders' triangles. What keeps a mesh from being read has been reported.
+static std::vector<TriangleGroups> groups_of_colliders(SceneContext& context) {
+    std::vector<TriangleGroups> groups;
+    for (const ObjectView& view : context.objects("colliders")) {
+        const MeshGroups* const found = view.type() == "mesh" ? context.load_groups(view) : nullptr;
+        groups.push_back(found == nullptr ? TriangleGroups{} : triangle_groups(*found));
+    }
+    return groups;
+}
+
 SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& folder, Diagnostics& diagnostics) {
     SceneContext context(root, folder, diagnostics);
     SceneDescription scene;
@@ -321,6 +331,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_bounds(context, scene.setup);
     std::vector<FrameDescription> frames = frames_of(context);
     build_colliders(context, scene.setup, frames);
+    scene.groups = groups_of_colliders(context);
     build_bodies(context, scene.setup, frames);
     scene.setup.frames = std::make_shared<const FrameTree>(std::move(frames));
     read_particle_contacts(context, scene.setup.options);

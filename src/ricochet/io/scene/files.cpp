@@ -165,6 +165,22 @@ MeshGroups groups_of(const ImportedMesh& imported) {
     return result;
 }
 
+TriangleGroups triangle_groups(const MeshGroups& groups) {
+    TriangleGroups result{groups.triangle_groups, {}};
+    for (const FaceGroup& group : groups.groups) {
+        std::string name;
+        std::string_view last;
+        for (const std::uint32_t part : {group.object, group.group, group.material}) {
+            const std::string_view text = groups.names[part];
+            if (text.empty() || text == last) continue;
+            name += (name.empty() ? "" : "/") + std::string(text);
+            last = text;
+        }
+        result.names.push_back(std::move(name));
+    }
+    return result;
+}
+
 TriangleMaterials materials_by_group(const MeshGroups& groups, const NamedMaterials& named) {
     TriangleMaterials result;
     std::set<std::string_view> used;

@@ -15,6 +15,7 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/io/scene.h"
 
 namespace ricochet::detail {
 
@@ -33,6 +34,9 @@ struct MeshGroups {
 };
 
 [[nodiscard]] MeshGroups groups_of(const ImportedMesh& imported);
+
+/// Returns one group for each combination of names that faces of the file have.
+[[nodiscard]] TriangleGroups triangle_groups(const MeshGroups& groups);
 
 /// Materials given to names.
 struct NamedMaterials {

@@ -264,7 +264,12 @@ const ObjectSpec& picture_spec() {
                     {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
                      Without{"they keep their shape"}, &stretch_spec()},
                     {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
-                     Without{"none"}}}}));
+                     Without{"none"}},
+                    {"particle_radius", &P::particle_radius, kLength, "m",
+                     "Radius by which all particles are drawn. Collisions do not know it.", Without{"their own"}},
+                    {"time", &P::time, kNotNegative, "s",
+                     "The moment that a single picture shows: the nearest frame. Films show all.",
+                     Without{"the last frame"}}}}));
     return spec;
 }
 

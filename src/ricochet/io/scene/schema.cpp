@@ -279,7 +279,7 @@ A scene that needs more memory than there is is refused before it takes any, wit
 for most of it (exit code 2): the particles that bursts, and rates over their times and lifetimes, bring to life at
 once, explicit particles, ropes and cloth, tables, grids, meshes, the contact log. `ricochet check` prints the estimate:
 about what a run takes at its peak, in units of 1000 (380 bytes a particle, 80 more with `run --verify`, 800 and 200 a
-spring where springs join them, four times as much with `implicit_euler`, 330 a triangle). Particles that `bounds`,
+spring where springs join them, four times as much with `implicit_euler`, 378 a triangle). Particles that `bounds`,
 absorbing surfaces or shattering may retire count for one step of their rate, since nobody knows how many will live; nor
 is it known how many children there will be. Where more are born than memory holds, the run ends with one line (exit
 code 1). There is what the control group of the process, `ulimit -v` and `ulimit -d` leave, and the available memory of

@@ -131,6 +131,9 @@ TEST(ContactCounts, WhatLandsAndStaysHasLandedOnce) {
     for (std::uint64_t k = 0; k < 300; ++k) {
         SCOPED_TRACE(k);
         EXPECT_EQ(counts_of(lying_on_a_slope(k)).contacts, 1U);
+    }
+}
+
 // Spheres that slide, roll and come to rest: rows hold one part of the totals, lasting contact the other.
 TEST(ContactCounts, RowsAndLastingContactTogetherAreTheTotals) {
     for (const ResponseKind kind : response_kinds()) {

@@ -20,6 +20,7 @@
 
 #include "cli/arguments.h"
 #include "cli/interrupts.h"
+#include "cli/run_extension.h"
 #include "cli/run_messages.h"
 #include "cli/run_output.h"
 #include "cli/run_scene.h"
@@ -118,18 +119,6 @@ private:
     std::atomic<Clock::rep> first_asked_ = 0;  // when the signal was seen
 };
 
-// Returns whether the last step is exactly as long as the others, so that the end of the run is a step of longer runs.
-bool has_whole_last_step(const Simulation& simulation) {
-    const SimulationOptions& options = simulation.options();
-    return options.duration == static_cast<double>(simulation.step_count()) * options.time_step;
-}
-
-// Returns the last step with a frame from which a longer run of the same scene can go on.
-std::uint64_t last_step_to_extend(const Simulation& simulation, std::uint64_t every) {
-    const std::uint64_t steps = simulation.step_count();
-    return steps == 0 ? 0 : (has_whole_last_step(simulation) ? steps : steps - 1) / every * every;
-}
-
 // Steps to the end, to the end of the step in which a signal came (to its begin where it takes long), or to the one
 // that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
 // the guard lives from then on.
@@ -137,7 +126,7 @@ std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput
                                           cli::RunProgress& progress, std::optional<InterruptGuard>& guard) {
     output.write_frame(simulation);
     std::uint64_t last_checkpoint = simulation.step_index();
-    const std::uint64_t last_to_extend = last_step_to_extend(simulation, plan.output.every);
+    const std::uint64_t last_to_extend = cli::last_step_to_extend(simulation, plan.output.every);
     const auto after_step = [&] {
         if (!guard) guard.emplace();
         output.add_step(simulation);
@@ -214,25 +203,9 @@ struct PreparedRun {
     cli::RunOutput out{};
 };
 
-// Throws InputError unless the option is a time and the run is resumed.
-void check_extension(const RunArguments& arguments) {
-    if (arguments.extend.empty()) return;
-    const std::optional<double> time = cli::parse_number(arguments.extend);
-    if (!time || !(*time > 0.0)) {
-        throw InputError(fmt::format("--extend {}: expected a number above 0, the time in s at which the run is to end",
-                                     arguments.extend));
-    }
-    if (!arguments.resume) {
-        throw InputError(
-            fmt::format("--extend {}: goes together with --resume; for a new run use --set "
-                        "simulation.duration={}",
-                        arguments.extend, arguments.extend));
-    }
-}
-
 // What can be said before a file of the folder is touched.
 void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
-    check_extension(arguments);
+    cli::check_extension(arguments);
     prepared.progress = cli::parse_progress(arguments.progress);
     prepared.limit.emplace(run.threads_for(cli::parse_thread_count(arguments.threads)));
     SceneDescription& scene = prepared.scene = scene_of(arguments);
@@ -263,43 +236,13 @@ void open_folder(const RunArguments& arguments, PreparedRun& prepared) {
     check_writable(arguments.output_state);
 }
 
-// Returns the file that the run in the folder goes on from. Throws InputError where it is finished, unless it is
-// extended by a step at least.
-std::filesystem::path resumed_file(const RunArguments& arguments, const Simulation& simulation) {
-    const std::filesystem::path folder(arguments.output);
-    const bool is_finished = !std::filesystem::exists(std::filesystem::symlink_status(folder / kCheckpointFile)) &&
-                             std::filesystem::exists(std::filesystem::symlink_status(folder / kExtensionFile));
-    if (!is_finished) return folder / kCheckpointFile;
-    if (arguments.extend.empty()) {
-        throw InputError(fmt::format("{}: the run is finished; --resume --extend T goes on to a later time T, in s",
-                                     arguments.output));
-    }
-    const std::uint64_t made = open_run_folder(folder).frames.back().step;
-    if (simulation.step_count() <= made) {
-        throw InputError(
-            fmt::format("--extend {}: the run is finished and has made {} steps of {:.6g} s, expected a "
-                        "time of {} steps or more",
-                        arguments.extend, made, simulation.options().time_step, made + 1));
-    }
-    return folder / kExtensionFile;
-}
-
-// Throws InputError where the run has gone beyond the end that is asked for. A killed run may be at its end.
-void require_end_ahead(const RunArguments& arguments, const Simulation& simulation) {
-    const std::uint64_t end = simulation.step_count() + (has_whole_last_step(simulation) ? 1 : 0);
-    if (simulation.step_index() < end) return;
-    throw InputError(fmt::format(
-        "{}: the run has made {} steps of {:.6g} s, which is beyond its end at {:.6g} s; "
-        "--resume --extend T goes on to a later time T, in s",
-        arguments.output, simulation.step_index(), simulation.options().time_step, simulation.options().duration));
-}
-
 // Puts the simulation where the run in the folder has stopped.
 std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& prepared) {
     if (!arguments.resume) return std::nullopt;
     Simulation& simulation = *prepared.simulation;
-    Checkpoint checkpoint = read_checkpoint(resumed_file(arguments, simulation), prepared.plan.fingerprint, simulation);
-    require_end_ahead(arguments, simulation);
+    Checkpoint checkpoint =
+        read_checkpoint(cli::resumed_file(arguments, simulation), prepared.plan.fingerprint, simulation);
+    cli::require_end_ahead(arguments, simulation);
     if (prepared.folder) {
         list_kept_files(arguments.output, checkpoint);
         prepared.folder->remove_after(simulation.step_index());

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -86,7 +87,8 @@ int run(int argc, char** argv) {
     Request request;
     const cli::Command list = line.program().add_command("list", "the shapes there are");
     for (const meshes::Kind& kind : meshes::kinds()) add_kind(line.program(), kind, request);
-    if (const auto printed = line.parse(argc, argv, "try ricochet-mesh --help")) return *printed;
+    const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+    if (const auto printed = line.parse(words, "try ricochet-mesh --help")) return *printed;
     if (list.is_called()) {
         print_kinds();
     } else {

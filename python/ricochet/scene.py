@@ -233,10 +233,10 @@ class MeshCollider(Thing):
     position: Where its origin is put; scale and rotation come first. Unit: m. Default: [0, 0, 0].
     rotation: Turns it.
     scale: Factor, or one for each of its own axes; a negative one mirrors. Default: 1.
-    group_materials: Materials of parts of an OBJ or glTF mesh: names that the file gives to its faces, each with
-        one of the names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed
-        by its `g` name (the whole line, then word by word; of glTF the mesh's), then by its `o` name (the node's).
-        Faces without a listed name take the collider's material.
+    group_materials: Materials of parts of an OBJ, glTF or ASCII STL mesh: names that the file gives to its faces,
+        each with one of the names in `materials`. A face goes by its `usemtl` name (the material's); where that is
+        not listed by its `g` name (the whole line, then word by word; of glTF the mesh's, of ASCII STL the
+        solid's), then by its `o` name (the node's). Faces without a listed name take the collider's material.
     deformation: Its vertices move: `file` says the faces only. Only with the response "exact", and without `frame`
         and `motion`.
     """

@@ -129,6 +129,11 @@ void print_looks(const RunPictures& pictures) {
     if (const std::string note = pictures.collider_note(); !note.empty()) {
         cli::print("note: the colliders' colours show {}; --collider-color impulse shows all\n", note);
     }
+    if (const auto end = pictures.totals_end()) {
+        cli::print(
+            "note: the run was interrupted: the colliders' colours show it up to {:.6g} s; run --resume finishes it\n",
+            *end);
+    }
     if (pictures.lacks_shutter()) {
         cli::print(
             "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "

@@ -225,7 +225,7 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     std::ranges::copy(outside, std::back_inserter(warnings));
     std::ranges::move(pair_method_warnings(*prepared.simulation, fall), std::back_inserter(warnings));
     for (const std::string& warning : warnings) {
-        cli::print(stderr, "ricochet: {}: warning: {}\n", scene.file, warning);
+        cli::print(stderr, "ricochet: warning: {}: {}\n", scene.file, warning);
     }
 }
 

@@ -49,7 +49,14 @@ std::filesystem::path resumed_file(const RunArguments& arguments, const Simulati
         throw InputError(fmt::format("{}: the run is finished; --resume --extend T goes on to a later time T, in s",
                                      arguments.output));
     }
-    const std::uint64_t made = open_run_folder(folder).frames.back().step;
+    const RunFolder run = open_run_folder(folder);
+    if (run.info.time_step > 0.0 && run.info.time_step != simulation.options().time_step) {
+        throw InputError(
+            fmt::format("{}: the run has steps of {:.6g} s and the scene has steps of {:.6g} s; --resume needs the "
+                        "scene of the run",
+                        arguments.output, run.info.time_step, simulation.options().time_step));
+    }
+    const std::uint64_t made = run.frames.back().step;
     if (simulation.step_count() <= made) {
         throw InputError(
             fmt::format("--extend {}: the run is finished and has made {} steps of {:.6g} s, expected a "

@@ -99,7 +99,7 @@ void RunProgress::show(const Simulation& simulation, const RunCounts& counts, do
 
 void print_losses(const std::string& scene, const SimulationStatistics& statistics) {
     const auto warn = [&scene](std::uint64_t count, const char* what) {
-        if (count > 0) print(stderr, "ricochet: {}: warning: {}: {}\n", scene, what, count);
+        if (count > 0) print(stderr, "ricochet: warning: {}: {}: {}\n", scene, what, count);
     };
     warn(statistics.frozen, "particles stopped because their state was not finite or absurdly large (frozen)");
     warn(statistics.lost_impulses,
@@ -107,7 +107,7 @@ void print_losses(const std::string& scene, const SimulationStatistics& statisti
          "beyond what a total can hold; the motion itself is right (lost_impulses)");
     if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
         print(stderr,
-              "ricochet: {}: warning: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
+              "ricochet: warning: {}: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
               "simulation.time_step smaller, radii and masses more alike, or room where surfaces press on them\n",
               scene, statistics.overlap_largest);
     }

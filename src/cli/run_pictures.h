@@ -156,6 +156,8 @@ public:
     [[nodiscard]] std::string collider_note() const {
         return style_.collider_quantity ? style_.collider_quantity->note(impulse_sizes_) : std::string();
     }
+    /// s, at which the totals that colour the colliders end, if that is before the last frame: the run was killed.
+    [[nodiscard]] std::optional<double> totals_end() const { return totals_end_; }
     /// Array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
     /// True when the frames themselves say the colours.
@@ -255,6 +257,7 @@ private:
     std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
     ValueRange collider_range_;
     ImpulseSizes impulse_sizes_;                   // on the colliders that a quantity colours
+    std::optional<double> totals_end_;             // s
     std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
     std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them

@@ -356,7 +356,8 @@ void bind_mesh(py::module_& module) {
             "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
             "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
             "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres. merge: joins "
-            "vertices within that distance, m (0: equal positions); no vertex moves farther.")
+            "vertices within that distance, m (0: equal positions); no vertex moves farther. Names that the file gives "
+            "to faces are not taken: a collider that names the file itself has them.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")

@@ -184,6 +184,7 @@ TEST(ExportCommand, RefusesWhatItCannotExportWithOneLine) {
         {{run, "--format", "ply", "--output", out, "--frame", "1"}, "--frame"},
         {{run, "--format", "pc2", "--output", out, "--consecutive"}, "--consecutive"},
         {{run + "x", "--format", "ply", "--output", out}, "no such folder"},
+        {{run + "/run.json", "--format", "ply", "--output", out}, "is a file"},
         {{text_of(folder.path("empty")), "--format", "ply", "--output", out}, "holds no frames"},
     };
     for (const auto& [words, expected] : cases) {

@@ -106,6 +106,28 @@ std::string busy_scene(const TemporaryFolder& folder) {
         "output": {"every": 50, "contacts": true}})";
 }
 
+// A run that is killed leaves the collider files of its begin.
+TEST(ExportCsv, TotalsOlderThanTheLastFrameAreTold) {
+    const TemporaryFolder folder;
+    const RunFolder run = run_of(folder, busy_scene(folder));
+    EXPECT_EQ(export_of(folder).output.find("interrupted"), std::string::npos);
+    const std::string file = "run/" + run.colliders.front().filename().string();
+    std::string text = folder.read(file);
+    const std::size_t value = text.find(">1.5<");
+    ASSERT_NE(value, std::string::npos);
+    text.replace(value, 5, ">0<");
+    (void)folder.write(file, text);
+    const ProgramResult result = run_ricochet(
+        {"export", folder.path("run").string(), "--format", "csv", "--output", folder.path("again").string()});
+    EXPECT_NE(result.output.find("hits and impulses of triangles.csv end at 0 s, before the last frame"),
+              std::string::npos)
+        << result.output;
+    const ProgramResult picture =
+        run_ricochet({"render", folder.path("run").string(), "--output", folder.path("a.png").string(), "--size",
+                      "32x24", "--collider-color", "hits"});
+    EXPECT_NE(picture.output.find("the colliders' colours show it up to 0 s"), std::string::npos) << picture.output;
+}
+
 TEST(ExportCsv, ParticlesReadBackToTheLastBit) {
     const TemporaryFolder folder;
     const RunFolder run = run_of(folder, busy_scene(folder));

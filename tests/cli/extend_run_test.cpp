@@ -143,6 +143,8 @@ TEST_F(ExtendedRun, TellsWhereItIsAtItsEndAlready) {
     refused({"--resume", "--extend", "soon"}, "--extend soon: expected a number above 0");
     refused({"--resume", "--extend", "-1"}, "expected a number above 0");
     refused({"--extend", "0.5"}, "goes together with --resume");
+    refused({"--resume", "--extend", "2", "--set", "simulation.time_step=0.02"},
+            "the run has steps of 0.01 s and the scene has steps of 0.02 s");
     refused({"--resume", "--extend", "0.5", "--set", "simulation.seed=4"}, "is not the one that was interrupted");
 }
 

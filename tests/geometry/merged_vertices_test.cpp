@@ -76,5 +76,14 @@ TEST(MergedVertices, RefuseAToleranceThatRoundingWouldDecide) {
     EXPECT_EQ(merged_within(box, 1e-11).vertices.size(), 8U);
 }
 
+TEST(MergedVertices, RefuseAToleranceThatLeavesNoTriangle) {
+    const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
+    EXPECT_THROW((void)merged_within(box, 10.0), InputError);
+    EXPECT_EQ(merged_within(box, 1.9).vertices.size(), 8U);
+    // Triangles that had no area before say nothing of the tolerance.
+    const TriangleMesh needle{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}};
+    EXPECT_EQ(merged_within(needle, 10.0).vertices.size(), 1U);
+}
+
 }  // namespace
 }  // namespace ricochet

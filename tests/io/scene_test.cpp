@@ -501,7 +501,7 @@ TEST(SceneGroupMaterials, RefuseMeshesThatHaveNoGroups) {
                "a name), leave this key out"}));
     EXPECT_EQ(error("plain.off"),
               (Lines{"s.json:2:53: colliders[0].group_materials: the mesh is a file of the format OFF, which has no "
-                     "groups; expected an OBJ or glTF file"}));
+                     "groups; expected OBJ, glTF or ASCII STL"}));
     EXPECT_EQ(error("none.obj").size(), 1U);
 }
 

@@ -140,6 +140,7 @@ TEST(ShellsOverlap, OnlyWhereAPointIsWithinTwoOfThem) {
     const TriangleMesh unit = box({0, 0, 0}, {1, 1, 1});
     const std::vector<TriangleMesh> overlapping = {
         box({0.5, 0.25, 0.125}, {1.5, 1.25, 1.125}),  // corner in corner
+        box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}),        // edges through the diagonals of sides
         box({0.5, 0, 0}, {1.5, 1, 1}),                // edges in faces, sides in one plane
         box({0.5, 0, 0}, {1.5, 1, 2}),
         box({-1, 0.25, 0.25}, {2, 0.75, 0.75}),  // a rod through it

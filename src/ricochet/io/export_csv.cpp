@@ -242,10 +242,15 @@ private:
     bool is_one_surface_ = false;
 };
 
-/// Returns where the impulses of all triangles came from.
-ImpulseSizes write_triangles(const std::filesystem::path& path, const RunFolder& folder) {
+/// What the notes say of the triangles.
+struct TriangleSums {
+    ImpulseSizes sizes;         ///< where their impulses came from
+    std::optional<double> end;  ///< s, of sums that end before the last frame
+};
+
+TriangleSums write_triangles(const std::filesystem::path& path, const RunFolder& folder) {
     CsvFile table(path, TriangleRows::header());
-    ImpulseSizes sizes;
+    TriangleSums sums;
     for (const std::filesystem::path& file : folder.colliders) {
         const std::string name = file.filename().string();
         const ColliderInfo* const info = folder.info.find(name);
@@ -253,10 +258,11 @@ ImpulseSizes write_triangles(const std::filesystem::path& path, const RunFolder&
         const VtkPolyData data = read_vtp(file);
         TriangleRows(data, number, info == nullptr ? file.stem().string() : info->name,
                      info == nullptr ? "" : info->type)
-            .write(table, sizes);
+            .write(table, sums.sizes);
+        if (are_behind(folder, data.time)) sums.end = std::min(sums.end.value_or(data.time), data.time);
     }
     table.commit();
-    return sizes;
+    return sums;
 }
 
 std::string table_of_frame(const FrameFile& frame) { return fmt::format("particles_{:06}.csv", frame.step); }
@@ -269,15 +275,23 @@ std::vector<std::string> table_names(const RunFolder& folder) {
     return names;
 }
 
-void add_notes(const RunFolder& folder, const ImpulseSizes& sizes, ExportReport& report) {
-    if (folder.contacts.empty()) {
+void add_notes(const RunFolder& folder, const TriangleSums& sums, ExportReport& report) {
+    const bool has_log = !folder.contacts.empty();
+    if (!has_log) {
         report.notes.emplace_back("the run has no contact log; run the scene with --set output.contacts=true for one");
     }
-    if (sizes.lasting > 0.0) {
+    if (sums.end) {
         report.notes.push_back(fmt::format(
-            "impacts gave {:.3g} % of the impulse on surfaces; hits and {} hold impacts only, contact that lasts is in "
+            "the run was interrupted: hits and impulses of {} end at {:.6g} s, before the last frame; run --resume "
+            "finishes it",
+            kTriangleTable, *sums.end));
+    }
+    if (sums.sizes.lasting > 0.0) {
+        report.notes.push_back(fmt::format(
+            "impacts gave {:.3g} % of the impulse on surfaces; hits {} impacts only, contact that lasts is in "
             "lasting_impulse of {}",
-            100.0 * sizes.share_of_impacts(), kContactTable, kTriangleTable));
+            100.0 * sums.sizes.share_of_impacts(), has_log ? fmt::format("and {} hold", kContactTable) : "hold",
+            kTriangleTable));
     }
     if (std::any_of(folder.info.colliders.begin(), folder.info.colliders.end(),
                     [](const auto& c) { return c.moves; })) {
@@ -305,9 +319,9 @@ ExportReport export_csv(const RunFolder& folder, const std::filesystem::path& ta
         for (const FrameFile& log : folder.contacts) contacts.add(log);
         contacts.commit();
     }
-    const ImpulseSizes sizes =
-        folder.colliders.empty() ? ImpulseSizes{} : write_triangles(output.file(kTriangleTable), folder);
-    add_notes(folder, sizes, report);
+    const TriangleSums sums =
+        folder.colliders.empty() ? TriangleSums{} : write_triangles(output.file(kTriangleTable), folder);
+    add_notes(folder, sums, report);
     if (has_springs) report.notes.emplace_back("springs and cloth are left out");
     return report;
 }

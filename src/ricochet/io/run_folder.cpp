@@ -339,7 +339,8 @@ void require_own_files(const std::filesystem::path& path, const RunFolder& folde
 RunFolder open_run_folder(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_directory(path, error)) {
-        throw InputError(fmt::format("{}: no such folder; give the --output folder of a ricochet run", path.string()));
+        const char* const fault = std::filesystem::exists(path, error) ? "is a file" : "no such folder";
+        throw InputError(fmt::format("{}: {}; give the --output folder of a ricochet run", path.string(), fault));
     }
     RunFolder folder;
     std::map<std::size_t, std::filesystem::path> colliders;
@@ -372,6 +373,14 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
     for (const auto& [index, file] : colliders) folder.colliders.push_back(file);
     require_own_files(path, folder);
     return folder;
+}
+
+bool are_behind(const RunFolder& folder, double time) {
+    if (folder.frames.empty() || folder.frames.back().step == 0) return false;
+    // The last step of a run may be cut short.
+    const auto steps = static_cast<double>(folder.frames.back().step - 1);
+    constexpr double kRounding = 1e-9;
+    return time < (1.0 - kRounding) * steps * folder.info.time_step;
 }
 
 }  // namespace ricochet

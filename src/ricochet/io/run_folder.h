@@ -144,4 +144,7 @@ void require_own_file(const std::filesystem::path& file);
 /// such folder, when it holds no frame, and when one of its files leads out of it (require_own_file()).
 [[nodiscard]] RunFolder open_run_folder(const std::filesystem::path& path);
 
+/// Returns true if a collider's totals, which hold until `time` (s), are older than the last frame: the run was killed.
+[[nodiscard]] bool are_behind(const RunFolder& folder, double time);
+
 }  // namespace ricochet

@@ -132,6 +132,32 @@ bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t
            pierces(mesh, mesh.triangles[second], mesh.triangles[first]);
 }
 
+/// Returns true if the first triangle comes out of the second one's plane at a place from which it leads into a shell:
+/// halfway from there to a corner, and on both sides of the triangle, which a shell that only touches does not hold.
+bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
+    constexpr double kBeside = 1e-6;  // part of the edge's length
+    const auto& [a, b, c] = mesh.triangles[second];
+    const Vec3& origin = mesh.vertices[a];
+    const Vec3 normal = cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin);
+    const auto& [i, j, k] = mesh.triangles[first];
+    const Vec3 own = cross(mesh.vertices[j] - mesh.vertices[i], mesh.vertices[k] - mesh.vertices[i]);
+    const double size = length(own);
+    if (!(size > 0.0)) return false;
+    for (const auto& [from, to] : {std::pair(i, j), std::pair(j, k), std::pair(k, i)}) {
+        const Vec3& p = mesh.vertices[from];
+        const Vec3& q = mesh.vertices[to];
+        const double before = dot(normal, p - origin);
+        const double after = dot(normal, q - origin);
+        if (!(before * after < 0.0)) continue;
+        const Vec3 met = p + (before / (before - after)) * (q - p);
+        const Vec3 beside = (kBeside * length(q - p) / size) * own;
+        for (const Vec3& place : {0.5 * (p + met), 0.5 * (met + q)}) {
+            if (shell.contains(place + beside) && shell.contains(place - beside)) return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges) {
@@ -189,7 +215,9 @@ bool shells_overlap(const TriangleMesh& mesh) {
             if (interiors.size() == kMostInteriors && interiors.count(shell) == 0) continue;
             const auto found = interiors.try_emplace(
                 shell, std::make_shared<const TriangleMesh>(shell_alone(joined, shell_of, shell)));
-            if (found.first->second.contains(centroid(joined, triangle))) return true;
+            const MeshInterior& interior = found.first->second;
+            if (interior.contains(centroid(joined, triangle)) || leads_into(interior, joined, triangle, other))
+                return true;
         }
     }
     return false;

@@ -89,6 +89,16 @@ TriangleMesh merged_within(const TriangleMesh& mesh, double tolerance) {
         VertexGrid grid(tolerance, merged.vertices);
         rename(merged, mesh.vertices, grid);
     }
+    const auto has_three = [](const Triangle& t) { return t[0] != t[1] && t[1] != t[2] && t[2] != t[0]; };
+    const auto count = [&](const TriangleMesh& some) {
+        return std::count_if(some.triangles.begin(), some.triangles.end(), has_three);
+    };
+    if (const auto before = count(mesh); before > 0 && count(merged) == 0) {
+        throw InputError(
+            fmt::format("merge: {:g} m joins corners of all {} triangles; expected a tolerance far below the length of "
+                        "edges",
+                        tolerance, before));
+    }
     return merged;
 }
 

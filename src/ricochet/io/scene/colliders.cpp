@@ -22,10 +22,11 @@ Fields<MeshShape> mesh_fields() {
         {{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<MeshShape>()},
          placement_fields(&MeshShape::placement),
          {{"group_materials", ValueType::text_table,
-           "Materials of parts of an OBJ or glTF mesh: names that the file gives to its faces, each with one of the "
-           "names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed by its "
-           "`g` name (the whole line, then word by word; of glTF the mesh's), then by its `o` name (the node's). Faces "
-           "without a listed name take the collider's material.",
+           "Materials of parts of an OBJ, glTF or ASCII STL mesh: names that the file gives to its faces, each with "
+           "one "
+           "of the names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed "
+           "by its `g` name (the whole line, then word by word; of glTF the mesh's, of ASCII STL the solid's), then by "
+           "its `o` name (the node's). Faces without a listed name take the collider's material.",
            Without{"the collider's material everywhere"}},
           {"deformation", ValueType::object,
            "Its vertices move: `file` says the faces only. Only with the response \"exact\", and without `frame` and "
@@ -164,7 +165,7 @@ private:
         if (groups.format_has_groups()) {
             return "the mesh has no groups (no material, group or object with a name), leave this key out";
         }
-        return fmt::format("the mesh is a file of the format {}, which has no groups; expected an OBJ or glTF file",
+        return fmt::format("the mesh is a file of the format {}, which has no groups; expected OBJ, glTF or ASCII STL",
                            groups.format);
     }
 

@@ -131,7 +131,9 @@ void print_looks(const RunPictures& pictures) {
     }
     if (const auto end = pictures.totals_end()) {
         cli::print(
-            "note: the run was interrupted: the colliders' colours show it up to {:.6g} s; run --resume finishes it\n",
+            "note: the run was interrupted: the colliders' colours show it up to {:.6g} s; go on with run --resume if "
+            "it "
+            "has a checkpoint, else run it again\n",
             *end);
     }
     if (pictures.lacks_shutter()) {

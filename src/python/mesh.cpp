@@ -37,6 +37,15 @@ TriangleMesh mesh_of(const py::handle& vertices, const py::handle& faces) {
 }
 
 AffineMap map_of(const py::object& transform) {
+    const auto is_matrix = [&] {
+        try {
+            const py::tuple shape = py::module_::import("numpy").attr("shape")(transform);
+            return shape.equal(py::make_tuple(4, 4));
+        } catch (const py::error_already_set&) {
+            return false;  // rows of several lengths
+        }
+    };
+    if (!is_matrix()) throw InputError("transform: expected a matrix of shape (4, 4)");
     const Doubles m = numbers(transform, "transform", 4);
     const std::span<const double> rows = values(m);
     if (rows.size() != 16 || rows[12] != 0.0 || rows[13] != 0.0 || rows[14] != 0.0 || rows[15] != 1.0) {

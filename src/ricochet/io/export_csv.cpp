@@ -282,8 +282,8 @@ void add_notes(const RunFolder& folder, const TriangleSums& sums, ExportReport& 
     }
     if (sums.end) {
         report.notes.push_back(fmt::format(
-            "the run was interrupted: hits and impulses of {} end at {:.6g} s, before the last frame; run --resume "
-            "finishes it",
+            "the run was interrupted: hits and impulses of {} end at {:.6g} s, before the last frame; go on with "
+            "run --resume if it has a checkpoint, else run it again",
             kTriangleTable, *sums.end));
     }
     if (sums.sizes.lasting > 0.0) {

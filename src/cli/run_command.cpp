@@ -247,6 +247,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
         list_kept_files(arguments.output, checkpoint);
         prepared.folder->remove_after(simulation.step_index());
         prepared.folder->remove_checkpoint_parts(names_of(checkpoint.parts));
+        cli::warn_of_ended_log(arguments, simulation);
     }
     prepared.plan.earlier_seconds = checkpoint.wall_seconds;
     return checkpoint;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "cli/arguments.h"
+#include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/io/run_folder.h"
 
@@ -73,6 +74,14 @@ void require_end_ahead(const RunArguments& arguments, const Simulation& simulati
         "{}: the run has made {} steps of {:.6g} s, which is beyond its end at {:.6g} s; "
         "--resume --extend T goes on to a later time T, in s",
         arguments.output, simulation.step_index(), simulation.options().time_step, simulation.options().duration));
+}
+
+void warn_of_ended_log(const RunArguments& arguments, const Simulation& simulation) {
+    if (simulation.options().record_contacts || open_run_folder(arguments.output).contacts.empty()) return;
+    print(
+        stderr,
+        "ricochet: warning: {}: the run has a contact log, which ends at {:.6g} s because output.contacts is off now\n",
+        arguments.output, simulation.time());
 }
 
 }  // namespace ricochet::cli

@@ -23,4 +23,7 @@ void check_extension(const RunArguments& arguments);
 /// Throws InputError where the run has gone beyond the end that is asked for. A killed run may be at its end.
 void require_end_ahead(const RunArguments& arguments, const Simulation& simulation);
 
+/// Warns where a run goes on without the contact log that it has had.
+void warn_of_ended_log(const RunArguments& arguments, const Simulation& simulation);
+
 }  // namespace ricochet::cli

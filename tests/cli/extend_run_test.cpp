@@ -148,6 +148,15 @@ TEST_F(ExtendedRun, TellsWhereItIsAtItsEndAlready) {
     refused({"--resume", "--extend", "0.5", "--set", "simulation.seed=4"}, "is not the one that was interrupted");
 }
 
+TEST_F(ExtendedRun, TellsWhereItsContactLogEnds) {
+    const std::string scene = scene_of(0.01, 0.3, kRain, 7);
+    ASSERT_EQ(run(scene, "a").exit_code, 0);
+    const ProgramResult result = run(scene, "a", {"--resume", "--extend", "0.5", "--set", "output.contacts=false"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_NE(result.errors.find("the run has a contact log, which ends at 0.28 s"), std::string::npos)
+        << result.errors;
+}
+
 TEST_F(ExtendedRun, BeginsAnewWithoutResume) {
     const std::string scene = scene_of(0.01, 0.3, kRain, 7);
     ASSERT_EQ(run(scene, "a").exit_code, 0);

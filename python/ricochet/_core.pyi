@@ -25,7 +25,7 @@ class Mesh:
     def read(
         file: Union[str, "os.PathLike[str]"],
         up: Optional[str] = ...,
-        scale: float = ...,
+        scale: npt.ArrayLike = ...,
         merge: Optional[float] = ...,
     ) -> Mesh: ...
     @property
@@ -44,6 +44,10 @@ class Mesh:
     def groups(self) -> Optional[npt.NDArray[np.str_]]: ...
     @groups.setter
     def groups(self, names: Optional[npt.ArrayLike]) -> None: ...
+    @property
+    def objects(self) -> Optional[npt.NDArray[np.str_]]: ...
+    @objects.setter
+    def objects(self, names: Optional[npt.ArrayLike]) -> None: ...
     @property
     def materials(self) -> Optional[npt.NDArray[np.str_]]: ...
     @materials.setter

@@ -128,6 +128,34 @@ def _nodes_on_edge(sides: int, count: int) -> Optional[int]:
     return None
 
 
+# A mesh keeps its names here, in its dictionary, and the names of the lists that a file has filled.
+_OF_FILE = "_names_of_file"
+
+
+def _set_names(mesh: Mesh, count: int, kind: str, names: Any) -> None:
+    """Sets the names of one kind for all triangles, as the user gives them."""
+    array = _names(names, count, kind)
+    mesh.__dict__[kind] = array
+    mesh.__dict__[_OF_FILE] = mesh.__dict__.get(_OF_FILE, frozenset()) - {kind}
+
+
+def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str], objects: List[str]) -> None:
+    """Gives each triangle the names of the combination with its number. Names of a file are taken as they are."""
+    taken = set()
+    for kind, names in (("materials", materials), ("groups", groups), ("objects", objects)):
+        if any(names):
+            array = np.array(names)[numbers]
+            array.flags.writeable = False
+            mesh.__dict__[kind] = array
+            taken.add(kind)
+    mesh.__dict__[_OF_FILE] = frozenset(taken)
+
+
+def _is_writable(name: str) -> bool:
+    """Whether a line of an OBJ file can hold a name."""
+    return name == " ".join(name.split()) and name.isprintable() and "#" not in name and not name.endswith("\\")
+
+
 def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
     """Returns names of triangles as a read-only array of texts. They must be such that a line of an OBJ file can hold
     them."""
@@ -143,7 +171,7 @@ def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
     if array.dtype.kind != "U":
         raise InputError(f"{kind}: found {array.dtype}, expected texts or whole numbers")
     for name in np.unique(array).tolist():
-        if name != " ".join(name.split()) or not name.isprintable() or "#" in name or name.endswith("\\"):
+        if not _is_writable(name):
             raise InputError(
                 f"{kind}: found {name[:80]!r}, expected printable text in one line, with single spaces inside it alone, and "
                 "without # and a \\ at its end"

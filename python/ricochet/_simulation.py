@@ -8,7 +8,7 @@ import math
 import os
 import tempfile
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Callable, List, Optional, Tuple, Union
 
@@ -17,7 +17,7 @@ import numpy as np
 from . import _core
 from ._core import InputError, Mesh
 from ._forces import CompiledForce
-from ._mesh import as_mesh
+from ._mesh import _OF_FILE, _is_writable, as_mesh
 from ._results import ForceInput
 
 Force = Union[CompiledForce, Callable[[ForceInput], Any]]
@@ -89,7 +89,7 @@ class Simulation(_core.Simulation):
         else:
             with tempfile.TemporaryDirectory(prefix="ricochet-") as folder:
                 for number, mesh in enumerate(meshes):
-                    _write(mesh, Path(folder) / f"{number}{_ending(mesh)}")
+                    _write(mesh, Path(folder) / f"{number}.obj")
                 super().__init__(text.replace(_MESHES, folder), file, changes, contacts, verify, forces)
         self._made_from = (text, file, meshes, changes, contacts, verify, forces)
 
@@ -237,16 +237,16 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
         # A mesh answers with the vertices that it has now.
         mesh = as_mesh(value)
         meshes.append(_copy_of(mesh) if mesh is value else mesh)
-        return f"{_MESHES}/{len(meshes) - 1}{_ending(mesh)}"
+        return f"{_MESHES}/{len(meshes) - 1}.obj"
     if isinstance(value, float) and not math.isfinite(value):
         raise InputError(f"scene: found {value}, expected finite numbers")
     return value
 
 
 def _with_own_materials(plain: Any, collider: Any) -> Any:
-    """Adds the materials that a collider's mesh names to its `group_materials`, which may say otherwise."""
+    """Adds the materials that the user has given a collider's mesh to its `group_materials`, which may say otherwise."""
     mesh = collider.get("file")
-    if not isinstance(mesh, Mesh) or mesh.materials is None:
+    if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
         return plain
     own = {name: name for name in np.unique(mesh.materials).tolist() if name}
     return {**plain, "group_materials": {**own, **plain.get("group_materials", {})}}
@@ -254,41 +254,33 @@ def _with_own_materials(plain: Any, collider: Any) -> Any:
 
 def _copy_of(mesh: Mesh) -> Mesh:
     copy = Mesh(mesh.vertices, mesh.faces)
-    copy.groups, copy.materials = mesh.groups, mesh.materials
+    copy.__dict__.update(mesh.__dict__)
     return copy
 
 
-def _ending(mesh: Mesh) -> str:
-    """Returns the ending of the file that a mesh is written to: of OBJ for names of triangles."""
-    return ".off" if mesh.groups is None and mesh.materials is None else ".obj"
+def _statements(mesh: Mesh) -> Iterator[List[str]]:
+    """Yields for each triangle the statements of an OBJ file that give it its names. A name that no line can hold counts
+    as none."""
+    columns = []
+    for statement, names in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
+        if names is not None:
+            columns.append((statement, [name if _is_writable(name) else "" for name in names.tolist()]))
+    last = [""] * len(columns)
+    for number in range(len(mesh)):
+        changed = []
+        for column, (statement, names) in enumerate(columns):
+            if names[number] != last[column]:
+                last[column] = names[number]
+                changed.append(f"{statement} {names[number]}\n")
+        yield changed
 
 
 def _write(mesh: Mesh, file: Path) -> None:
-    """Writes a mesh with all digits of every double."""
-    if file.suffix == ".obj":
-        _write_obj(mesh, file)
-        return
-    with open(file, "w", encoding="ascii") as stream:
-        stream.write(f"OFF\n{len(mesh.vertices)} {len(mesh)} 0\n")
-        stream.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
-        stream.writelines(f"3 {a} {b} {c}\n" for a, b, c in mesh.faces.tolist())
-
-
-def _write_obj(mesh: Mesh, file: Path) -> None:
-    """Writes a mesh with the names of its triangles, in their order."""
-    nothing = np.zeros(len(mesh), dtype=str)
-    groups = (nothing if mesh.groups is None else mesh.groups).tolist()
-    materials = (nothing if mesh.materials is None else mesh.materials).tolist()
-    group = material = ""
+    """Writes a mesh as an OBJ file with all digits of every double and the names of its triangles, in their order."""
     with open(file, "w", encoding="utf-8") as stream:
         stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
-        for number, (a, b, c) in enumerate(mesh.faces.tolist()):
-            if groups[number] != group:
-                group = groups[number]
-                stream.write(f"g {group}\n")
-            if materials[number] != material:
-                material = materials[number]
-                stream.write(f"usemtl {material}\n")
+        for (a, b, c), statements in zip(mesh.faces.tolist(), _statements(mesh)):
+            stream.writelines(statements)
             stream.write(f"f {a + 1} {b + 1} {c + 1}\n")
 
 

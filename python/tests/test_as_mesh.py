@@ -1,8 +1,10 @@
 """Meshes of other packages, names of triangles, and how arguments of questions are read."""
 
 import pickle
+import tempfile
 import types
 import unittest
+from pathlib import Path
 
 import numpy as np
 import ricochet
@@ -195,6 +197,37 @@ class Names(unittest.TestCase):
         self.assertEqual(simulation.statistics["contacts"] > 0, True)
         with self.assertRaises(ValueError):
             mesh.materials[0] = "hard"
+
+    PARTS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no slab\ng left side\nusemtl soft\nf 1 2 3\ng right\nusemtl a#b\nf 1 3 4\n"
+
+    def test_of_a_file_are_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "parts.obj"
+            file.write_text(self.PARTS)
+            mesh = ricochet.Mesh.read(file, scale=2)
+            bare = Path(folder) / "bare.off"
+            bare.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+            self.assertIsNone(ricochet.Mesh.read(bare).groups)
+        np.testing.assert_array_equal(mesh.objects, ["slab", "slab"])
+        np.testing.assert_array_equal(mesh.groups, ["left side", "right"])
+        np.testing.assert_array_equal(mesh.materials, ["soft", "a#b"])
+        simulation = ricochet.Simulation(self.scene(mesh))  # "a#b" is no material, and nothing asks for it
+        np.testing.assert_array_equal(simulation.collider_mesh("plate").faces, mesh.faces)
+
+    def test_of_a_file_mean_in_a_scene_as_much_as_the_file(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "plate.obj"
+            file.write_text(
+                "v -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nv 1 -1 0\nv 1 1 0\n"
+                "usemtl hard\ng west\nf 1 2 3 4\nusemtl other\ng east\nf 2 5 6 3\n"
+            )
+            mesh = ricochet.Mesh.read(file)
+            for named in ({}, {"hard": "hard"}, {"east": "hard"}, {"other": "hard", "west": "hard"}):
+                of_file = self.rebounds(self.scene(str(file), group_materials=named))
+                self.assertEqual(self.rebounds(self.scene(mesh, group_materials=named)), of_file)
+                self.assertEqual(any(of_file), bool(named))
+        mesh.materials = ["hard", "hard", "soft", "soft"]
+        self.assertEqual(self.rebounds(self.scene(mesh)), [True, False])
 
     def test_that_no_file_could_hold_are_refused(self):
         mesh = self.plate()

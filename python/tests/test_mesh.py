@@ -68,7 +68,13 @@ class Mesh(unittest.TestCase):
             self.assertTrue(merged.is_closed)
             self.assertEqual(len(merged.vertices), 4)
             self.assertAlmostEqual(merged.volume, 0.001, places=12)
-            for wrong in ({"up": "x"}, {"scale": 0}, {"scale": float("nan")}, {"merge": -1.0}, {"merge": 1e-20}):
+            mirrored = ricochet.Mesh.read(file, scale=[-0.001, 0.002, 0.001], merge=1e-5)
+            np.testing.assert_allclose(mirrored.bounds, [[-0.1, 0, 0], [0, 0.4, 0.3]])
+            self.assertAlmostEqual(mirrored.volume, 0.002, places=12)  # still wound outward
+            for scale in (0, float("nan"), [1, 2], [1, 0, 1], "mm", None, [[1, 2], [3]]):
+                with self.assertRaisesRegex(ricochet.InputError, "scale: found .*expected a finite number other than 0"):
+                    ricochet.Mesh.read(file, scale=scale)
+            for wrong in ({"up": "x"}, {"merge": -1.0}, {"merge": 1e-20}):
                 with self.assertRaises(ricochet.InputError):
                     ricochet.Mesh.read(file, **wrong)
 

@@ -59,13 +59,14 @@ std::string at(const Vec3& p, const Fit& fit) {
 Vec3 above_mesh(const Fit& fit, double height) { return {fit.center.x, fit.center.y, fit.top + height * fit.length}; }
 
 struct Part {
-    std::string title;      // what happens, one line of comment
-    std::string picture{};  // options for `ricochet render`
-    std::string emitters;   // the list's inside
-    std::string surface;    // the mesh's material
-    double duration;        // s
-    double height;          // above the mesh that the picture and the bounds hold, parts of its diagonal
-    bool has_box = false;   // around the mesh
+    std::string title;       // what happens, one line of comment
+    std::string picture{};   // members of the scene's `picture`
+    std::string contacts{};  // members of the scene's `particle_contacts`
+    std::string emitters;    // the list's inside
+    std::string surface;     // the mesh's material
+    double duration;         // s
+    double height;           // above the mesh that the picture and the bounds hold, parts of its diagonal
+    bool has_box = false;    // around the mesh
     bool has_gravity = true;
 };
 
@@ -82,7 +83,7 @@ constexpr const char* kFade =
 Part rain(const Fit& fit) {
     const std::string size = about(0.006 * fit.length);
     return {.title = "Rain: drops fall on the mesh, splash where they hit, and fade.",
-            .picture = "--draw soft",
+            .picture = R"("particles": "soft")",
             .emitters = fmt::format(
                 R"(    // Drops are born on a disk above the mesh. "rate" says how many a second.
     {{"name": "cloud", "type": "disk", "center": {}, "normal": [0, 0, -1], "radius": {}, "rate": {},
@@ -127,7 +128,7 @@ Part debris(const Fit& fit) {
         height += 0.1;
     }
     return {.title = "Debris: gravel, stones and boulders fall on the mesh, roll off it, and most come to rest.",
-            .picture = "",
+            .contacts = R"("restitution": 0.3, "friction": 0.4)",
             .emitters = emitters,
             .surface = R"({"restitution": 0.3, "friction": 0.4, "rolling_friction": 0.08})",
             .duration = 6.0 * fit.fall,
@@ -141,7 +142,7 @@ Part sparks(const Fit& fit) {
     const Vec3 aim = Vec3{fit.center.x, fit.center.y, fit.center.z + 0.2 * fit.size.z} - place;
     const std::string size = about(0.003 * fit.length);
     return {.title = "Sparks: a grinding wheel's spray hits the mesh, bounces off and cools from white to red.",
-            .picture = "--light night --draw glow",
+            .picture = R"("particles": "glow", "light": "night")",
             .emitters = fmt::format(
                 R"(    // A nozzle beside the mesh, aimed at it. "cone" is the half angle of the spray in degrees.
     {{"name": "wheel", "type": "point", "center": {}, "direction": {}, "cone": 24, "rate": {}, "speed": [{}, {}],
@@ -160,7 +161,7 @@ Part fountain(const Fit& fit) {
     const double speed = 1.45 * fit.length / fit.fall;
     const double time = speed / kGravity;
     return {.title = "Fountain: a jet rises from above the mesh, falls back on it and runs off.",
-            .picture = "--draw soft",
+            .picture = R"("particles": "soft")",
             .emitters = fmt::format(
                 R"(    // The jet: a narrow cone that stands on its tip just above the mesh.
     {{"name": "jet", "type": "cone", "apex": {}, "axis": [0, 0, 1], "angle": 8, "height": {}, "rate": {},
@@ -280,18 +281,26 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
     const Part part = part_of(kind, fit, mesh.closed);
     const double step = part.duration / 300.0;
     const Vec3 margin = Vec3{4.0, 4.0, 4.0} * fit.length;
+    const std::string picture = part.picture.empty() ? "" : fmt::format("\n  \"picture\": {{{}}},", part.picture);
+    const std::string contacts =
+        part.contacts.empty()
+            ? ""
+            : fmt::format(
+                  "\n  // What the spheres do to each other. Without this line they pass through each other.\n"
+                  "  \"particle_contacts\": {{{}}},",
+                  part.contacts);
     return fmt::format(
         R"(// {}
 //
 //     ricochet run SCENE --output DIR
-//     ricochet render DIR --output picture.png{}{}    (film.mp4 for a film)
+//     ricochet render DIR --output picture.png    (film.mp4 for a film)
 //
 // Metres, seconds and kilograms; z points up. docs/scene-format.md tells every key.
 {{
   "ricochet": 1,
   // 300 steps, of which every second one is a frame. A film lasts as long as the run, or by render's --speed.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
-  "forces": [{}],
+  "forces": [{}],{}
   "materials": {{
     // "restitution": speed of the rebound over speed of the approach, 0 to 1.
     "surface": {}{}
@@ -304,15 +313,14 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
   ],
   // Who leaves this box is removed.
   "bounds": {{"lower": {}, "upper": {}}},
-  "output": {{"format": "vtp", "every": 2}},
+  "output": {{"format": "vtp", "every": 2}},{}
   "camera": {}
 }}
 )",
-        part.title, part.picture.empty() ? "" : " ", part.picture, fmt::format("{:.3g}", step),
-        fmt::format("{:.6g}", 300.0 * std::stod(fmt::format("{:.3g}", step))),
-        part.has_gravity ? R"({"type": "gravity", "acceleration": [0, 0, -9.81]})" : "", part.surface,
+        part.title, fmt::format("{:.3g}", step), fmt::format("{:.6g}", 300.0 * std::stod(fmt::format("{:.3g}", step))),
+        part.has_gravity ? R"({"type": "gravity", "acceleration": [0, 0, -9.81]})" : "", contacts, part.surface,
         part.has_gravity ? fmt::format(",\n    \"ground\": {}", part.surface) : "", colliders_text(mesh, fit, part),
-        part.emitters, at(mesh.bounds.lower - margin, fit), at(mesh.bounds.upper + margin, fit),
+        part.emitters, at(mesh.bounds.lower - margin, fit), at(mesh.bounds.upper + margin, fit), picture,
         camera_text(fit, part));
 }
 

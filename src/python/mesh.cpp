@@ -60,7 +60,7 @@ AffineMap map_of(const py::object& transform) {
 /// Keeps names of triangles, one each, or none, in the object's dictionary. Throws InputError for others.
 void set_names(const py::object& mesh, const char* kind, const py::object& names) {
     const auto count = py::cast<const MeshQueries&>(mesh).mesh().triangles.size();
-    mesh.attr("__dict__")[kind] = py::module_::import("ricochet._mesh").attr("_names")(names, count, kind);
+    py::module_::import("ricochet._mesh").attr("_set_names")(mesh, count, kind, names);
 }
 
 py::object names_of(const py::object& mesh, const char* kind) {
@@ -258,26 +258,87 @@ py::array bounds_of(const MeshQueries& mesh) {
     return given(std::vector<Vec3>{box.lower, box.upper});
 }
 
-/// As a scene reads it: first the axis that points up, then the unit.
-MeshQueries read(const std::filesystem::path& file, const std::optional<std::string>& up, double scale,
-                 const std::optional<double>& merge) {
-    if (up && *up != "y" && *up != "z") {
-        throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
+/// Returns the factors of a scale along x, y and z, as scenes take it: one number or three, negative ones mirror.
+Vec3 factors_of(const py::object& scale) {
+    constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
+    std::optional<Vec3> factors;
+    try {
+        const Doubles numbers = py::cast<Doubles>(py::module_::import("numpy").attr("ravel")(scale));
+        const std::span<const double> list = values(numbers);
+        if (list.size() == 1) factors = Vec3{list[0], list[0], list[0]};
+        if (list.size() == 3) factors = Vec3{list[0], list[1], list[2]};
+    } catch (const py::error_already_set&) {
+        factors.reset();  // no numbers
+    } catch (const py::cast_error&) {
+        factors.reset();
     }
-    if (!(scale > 0.0) || !std::isfinite(scale)) {
-        throw InputError(fmt::format("scale: found {}, expected a finite number above 0, such as 0.001 for mm", scale));
-    }
-    const Unlocked unlocked;
-    ImportedMesh imported = read_mesh(file.string());
+    const bool is_good = factors && is_finite(*factors) && factors->x != 0.0 && factors->y != 0.0 && factors->z != 0.0;
+    if (!is_good) throw InputError(fmt::format("scale: found {}, {}", std::string(py::str(scale)), kExpected));
+    return *factors;
+}
+
+/// Turns the up axis first and scales then, as scenes do.
+void place(ImportedMesh& imported, const std::optional<std::string>& up, const Vec3& scale) {
     const bool turns_up = up == "y" && !imported.y_up;
     const bool turns_back = up == "z" && imported.y_up;
     for (Vec3& vertex : imported.mesh.vertices) {
         if (turns_up) vertex = y_up_as_z_up(vertex);
         if (turns_back) vertex = z_up_as_y_up(vertex);
-        if (scale != 1.0) vertex = scale * vertex;
+        vertex = {scale.x * vertex.x, scale.y * vertex.y, scale.z * vertex.z};
     }
-    if (merge) return MeshQueries(merged_within(imported.mesh, *merge));
-    return MeshQueries(std::move(imported.mesh));
+    const bool mirrors = (scale.x < 0.0) != ((scale.y < 0.0) != (scale.z < 0.0));
+    for (Triangle& triangle : imported.mesh.triangles) {
+        if (mirrors) std::swap(triangle[1], triangle[2]);
+    }
+}
+
+/// Returns for each triangle the number of its names' combination in PolygonMesh::groups; empty without names.
+std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
+    std::vector<std::uint32_t> numbers;
+    if (imported.polygons.face_groups.empty()) return numbers;
+    numbers.reserve(imported.triangle_face.size());
+    for (const std::uint32_t face : imported.triangle_face) numbers.push_back(imported.polygons.face_groups[face]);
+    return numbers;
+}
+
+/// Gives a mesh the names that its file gives to its faces.
+void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector<std::uint32_t>&& numbers) {
+    if (numbers.empty()) return;
+    const auto text = [&](std::uint32_t name) {
+        const std::string& bytes = polygons.group_names[name];
+        return py::reinterpret_steal<py::object>(
+            PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "surrogateescape"));
+    };
+    py::list materials;
+    py::list groups;
+    py::list objects;
+    for (const FaceGroup& names : polygons.groups) {
+        materials.append(text(names.material));
+        groups.append(text(names.group));
+        objects.append(text(names.object));
+    }
+    py::module_::import("ricochet._mesh")
+        .attr("_take_names")(mesh, given(std::move(numbers)), materials, groups, objects);
+}
+
+py::object read(const std::filesystem::path& file, const std::optional<std::string>& up, const py::object& scale,
+                const std::optional<double>& merge) {
+    if (up && *up != "y" && *up != "z") {
+        throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
+    }
+    const Vec3 factors = factors_of(scale);
+    ImportedMesh imported;
+    std::optional<MeshQueries> queries;
+    {
+        const Unlocked unlocked;
+        imported = read_mesh(file.string());
+        place(imported, up, factors);
+        if (merge) imported.mesh = merged_within(imported.mesh, *merge);
+        queries.emplace(std::move(imported.mesh));
+    }
+    const py::object mesh = py::cast(std::move(*queries));
+    take_names(mesh, imported.polygons, group_numbers(imported));
+    return mesh;
 }
 
 constexpr const char* kMeshText = R"(A mesh of triangles, and exact questions about it.
@@ -361,12 +422,13 @@ void bind_mesh(py::module_& module) {
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))
-        .def_static(
-            "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
-            "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
-            "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres. merge: joins "
-            "vertices within that distance, m (0: equal positions); no vertex moves farther. Names that the file gives "
-            "to faces are not taken: a collider that names the file itself has them.")
+        .def_static("read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
+                    "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
+                    "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres, or a factor "
+                    "for each "
+                    "axis; negative factors mirror. merge: joins vertices within that distance, m (0: equal "
+                    "positions); no vertex "
+                    "moves farther. The names that the file gives to faces are in `materials`, `groups` and `objects`.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
         .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")
@@ -390,9 +452,13 @@ void bind_mesh(py::module_& module) {
     bind_names(type, "groups",
                "The group of each triangle, as an OBJ file's `g`, or None. Set it to names or numbers, one "
                "each: a collider's `group_materials` gives them materials.");
-    bind_names(type, "materials",
-               "The material of each triangle, or None. Set it to names or numbers, one each: in a scene "
-               "they are names of its `materials`, unless the collider's `group_materials` lists them.");
+    bind_names(type, "objects",
+               "The object of each triangle, as an OBJ file's `o`, or None. The same as for `groups`.");
+    bind_names(
+        type, "materials",
+        "The material of each triangle, as an OBJ file's `usemtl`, or None. Set it to names or numbers, one each: in "
+        "a scene they are then names of its `materials`, unless the collider's `group_materials` lists them. Names "
+        "that read() has taken from a file mean nothing until `group_materials` lists them.");
     module.def("_triangulate", &triangulated, arg("points"), arg("offsets"), arg("corners"));
     bind_rays(type);
     bind_points(type);

@@ -373,18 +373,31 @@ TEST_F(CheckWarnings, DoubtsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
     TriangleMesh hopper = funnel_mesh(205.0, 20.0);
     for (Vec3& vertex : hopper.vertices) vertex.z *= 300.0;
     (void)folder().write("millimetres.obj", obj_of(hopper));
-    const auto with_scale = [&](const std::string& scale) {
+    const auto with_scale = [&](const std::string& scale, const std::string& height) {
         return warnings(collider(R"("type": "mesh", "file": "millimetres.obj")" + scale) +
-                        emitter(R"("type": "point", "center": [0, 0, 900])"));
+                        emitter(R"("type": "point", "center": [0, 0, )" + height + "]"));
     };
-    const std::string text = with_scale("");
+    const std::string text = with_scale("", "900");
     EXPECT_NE(text.find("colliders[0].file: the mesh is 410 m large if its numbers are metres, 0.41 m if they are "
                         "millimetres; "),
               std::string::npos)
         << text;
     EXPECT_NE(text.find("\"scale\": 0.001 for millimetres, or \"scale\": 1"), std::string::npos) << text;
-    EXPECT_EQ(with_scale(R"(, "scale": 1)"), "");
-    EXPECT_EQ(with_scale(R"(, "scale": 0.001)"), "");
+    EXPECT_EQ(with_scale(R"(, "scale": 1)", "900"), "");
+    EXPECT_EQ(with_scale(R"(, "scale": 0.001)", "0.9"), "");
+}
+
+TEST_F(CheckWarnings, DoubtsStartsThatOnlyAWrongUnitPutsSoFarFromTheColliders) {
+    const std::string funnel = collider(R"("type": "mesh", "file": "funnel.obj")");  // 3 m along its diagonal
+    const std::string wide =
+        warnings(funnel + emitter(R"("type": "disk", "center": [0, 0, 380], "normal": [0, 0, -1], "radius": 120)"));
+    EXPECT_NE(
+        wide.find("emitters[0] 'e': particles begin up to 379 m away from the colliders, which measure 3 m together: "
+                  "lengths are in metres"),
+        std::string::npos)
+        << wide;
+    EXPECT_EQ(warnings(funnel + emitter(R"("type": "point", "center": [0, 0, 290])")), "");
+    EXPECT_EQ(warnings(plane() + emitter(R"("type": "point", "center": [0, 0, 3800])")), "");
 }
 
 }  // namespace

@@ -50,6 +50,20 @@ TEST(NewCommand, WritesOfEveryTemplateASceneThatRunsForClosedAndOpenMeshes) {
     }
 }
 
+TEST(NewCommand, ScenesSayHowTheyAreDrawnAndWhatSpheresDoToEachOther) {
+    const test::TemporaryFolder folder;
+    const std::string mesh = folder.write("open.obj", kOpen).string();
+    const auto scene_of = [&](const std::string& kind) {
+        const std::string scene = folder.path(kind + ".json").string();
+        EXPECT_EQ(test::run_ricochet({"new", mesh, "--output", scene, "--template", kind}).exit_code, 0);
+        return text_of(scene);
+    };
+    EXPECT_NE(scene_of("debris").find("\"particle_contacts\": {"), std::string::npos);
+    EXPECT_NE(scene_of("sparks").find(R"("picture": {"particles": "glow", "light": "night"})"), std::string::npos);
+    EXPECT_NE(scene_of("rain").find(R"("picture": {"particles": "soft"})"), std::string::npos);
+    EXPECT_EQ(scene_of("gas").find("\"picture\""), std::string::npos);
+}
+
 // Every corner of the box is in a picture of 16 to 9.
 TEST(NewCommand, TheCameraOfTheGasAroundAnOpenMeshSeesAllOfItsBox) {
     const test::TemporaryFolder folder;

@@ -1,12 +1,15 @@
 #include "ricochet/geometry/mesh/mesh_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
+#include "ricochet/geometry/mesh/shells.h"
 #include "support/shared_meshes.h"
+#include "support/simple_meshes.h"
 
 namespace ricochet {
 namespace {
@@ -116,6 +119,31 @@ TEST(MeshReport, SaysThatOneFaceIsTurnedAround) {
     EXPECT_EQ(report.topology.inconsistent_edges, 3U);
     EXPECT_FALSE(report.wound_inward);
     EXPECT_TRUE(warns_of(report, "inconsistent winding along 3 edges"));
+}
+
+TEST(MeshReport, WarnsOfNestedShellsThatAreWoundTheSameWay) {
+    const TriangleMesh outer = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    const TriangleMesh inner = testing::box_mesh({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75});
+    const TriangleMesh beside = testing::box_mesh({2, 0, 0}, {3, 1, 1});
+    EXPECT_EQ(count_shells_nested_alike(outer), 0U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(outer, beside)), 0U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(outer, testing::flipped(inner))), 0U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::flipped(outer), inner)), 0U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(outer, inner)), 1U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::flipped(inner), testing::flipped(outer))), 1U);
+    const TriangleMesh core = testing::box_mesh({0.4, 0.4, 0.4}, {0.6, 0.6, 0.6});
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::merged(outer, testing::flipped(inner)), core)), 0U);
+    EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::merged(outer, inner), core)), 2U);
+
+    std::string text;
+    const TriangleMesh both = testing::merged(outer, inner);
+    for (const Vec3& v : both.vertices) text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+    for (const Triangle& t : both.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    const MeshReport report = report_on(read_mesh("both.obj", text));
+    EXPECT_EQ(report.shells_nested_alike, 1U);
+    EXPECT_DOUBLE_EQ(report.volume.value_or(0.0), 1.125);
+    ASSERT_EQ(report.warnings.size(), 1U);
+    EXPECT_EQ(report.warnings[0].find("1 shell lies within another that is wound the same way"), 0U);
 }
 
 TEST(MeshReport, CountsDegenerateTrianglesExactly) {

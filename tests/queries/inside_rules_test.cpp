@@ -6,7 +6,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh/closed_surface.h"
+#include "ricochet/geometry/mesh/shells.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

@@ -14,9 +14,9 @@
 
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
+#include "ricochet/geometry/mesh/shells.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -33,9 +33,6 @@ constexpr double kMouth = 0.25;
 
 /// Part of a mesh's size up to which an opening's width makes it a seam between parts, which nothing is poured through.
 constexpr double kCrack = 1e-3;
-
-/// Units in the last place of the coordinates that a radius should measure: contact keeps 16 of them.
-constexpr double kLeastRadiusUlps = 1e3;
 
 /// Part of the edges' mean length that kCandidateSlack may measure. Beyond it a contact looks at more triangles than
 /// can be hit: at a tenth it costs 1.6 times as much, at a fifth 2.8 times.
@@ -143,15 +140,20 @@ public:
         if (auto line = long_step_warning(simulation_.options(), extent(), fall_)) lines_.push_back(std::move(*line));
         std::ranges::move(pair_method_warnings(simulation_, fall_), std::back_inserter(lines_));
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
+        const Box3 near = surfaces();
         for (const Starts& starts : starts_) {
             review_positions(starts);
-            review_radius(starts);
+            for (auto line : {small_radius_warning(starts.where, starts.particles),
+                              far_starts_warning(starts.where, starts.particles, near)}) {
+                if (line) lines_.push_back(std::move(*line));
+            }
         }
         return std::move(lines_);
     }
 
 private:
     [[nodiscard]] Box3 extent() const;
+    [[nodiscard]] Box3 surfaces() const;
     void review_surfaces();
     void review_area(const TriangleMesh& mesh, const std::string& where);
     void review_shells(const TriangleMesh& mesh, const std::string& where);
@@ -162,7 +164,6 @@ private:
     void review_leaks(const Starts& starts, const OpenMesh& open);
     void review_fit(const Starts& starts, const OpenMesh& open);
     void review_positions(const Starts& starts);
-    void review_radius(const Starts& starts);
     [[nodiscard]] bool falls_to(const Particle& particle, const OpenMesh& open) const;
 
     const Simulation& simulation_;
@@ -172,20 +173,28 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// Of all starts and colliders, of planes their points.
-Box3 SceneReview::extent() const {
+/// Returns the box of all colliders but planes, as they stand in their frames.
+Box3 SceneReview::surfaces() const {
     Box3 box;
+    for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
+        if (std::holds_alternative<PlaneShape>(simulation_.colliders()[i].shape)) continue;
+        const TriangleMesh mesh = *simulation_.collider_mesh(i);
+        for (const Vec3& vertex : mesh.vertices) box.include(vertex);
+    }
+    return box;
+}
+
+/// Returns the box of all starts and colliders. A plane counts by its point.
+Box3 SceneReview::extent() const {
+    Box3 box = surfaces();
     for (const Starts& starts : starts_) {
         for (const Particle& particle : starts.particles) {
             if (is_finite(particle.position)) box.include(particle.position);
         }
     }
-    for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
-        const auto* const plane = std::get_if<PlaneShape>(&simulation_.colliders()[i].shape);
+    for (const ColliderDescription& collider : simulation_.colliders()) {
+        const auto* const plane = std::get_if<PlaneShape>(&collider.shape);
         if (plane) box.include(plane->point);
-        if (plane) continue;
-        const TriangleMesh mesh = *simulation_.collider_mesh(i);
-        for (const Vec3& vertex : mesh.vertices) box.include(vertex);
     }
     return box;
 }
@@ -367,19 +376,6 @@ void SceneReview::review_positions(const Starts& starts) {
         fmt::format("{}: {} of {} positions that were tried overlap a surface: births there are refused; "
                     "make the spheres smaller or move the emitter off",
                     starts.where, starts.overlapping, kDrawnStarts));
-}
-
-void SceneReview::review_radius(const Starts& starts) {
-    for (const Particle& particle : starts.particles) {
-        const double largest = max_abs(particle.position);
-        if (!(particle.radius > 0.0) || !std::isfinite(largest)) continue;
-        if (particle.radius >= kLeastRadiusUlps * ulp(largest)) continue;
-        lines_.push_back(
-            fmt::format("{}: a radius of {:.3g} m at coordinates of {:.3g} m is less than {:g} units in "
-                        "their last place: move the scene to the origin, or use points",
-                        starts.where, particle.radius, largest, kLeastRadiusUlps));
-        return;
-    }
 }
 
 }  // namespace

@@ -37,6 +37,15 @@ namespace ricochet {
 
 // Parts of these reviews.
 
+/// Warns of a sphere that is too small for the precision of its coordinates.
+[[nodiscard]] std::optional<std::string> small_radius_warning(const std::string& where,
+                                                              std::span<const Particle> starts);
+
+/// Warns of starts at a distance from the colliders that only a wrong unit explains. surfaces: the box of all colliders
+/// but planes, in m.
+[[nodiscard]] std::optional<std::string> far_starts_warning(const std::string& where, std::span<const Particle> starts,
+                                                            const Box3& surfaces);
+
 /// Starts of an emitter that are looked at.
 inline constexpr std::size_t kDrawnStarts = 256;
 

@@ -1,18 +1,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "ricochet/core/random.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/io/scene_warnings.h"
 
 namespace ricochet {
 namespace {
+
+/// Units in the last place of the coordinates that a radius should measure: contact keeps 16 of them.
+constexpr double kLeastRadiusUlps = 1e3;
+
+/// Largest plausible distance between starts and colliders, in diagonals of the colliders' box. Rain on one house of a
+/// landscape stays far below.
+constexpr double kFarStarts = 100.0;
 
 /// Axis and distance, m, by which a point lies outside a box.
 struct Beyond {
@@ -83,6 +93,33 @@ std::vector<Particle> drawn_starts(const EmitterDescription& emitter, std::size_
         if (emitter.frames) particle = launched_from(*emitter.frames, emitter.frame, particle);
     }
     return starts;
+}
+
+std::optional<std::string> small_radius_warning(const std::string& where, std::span<const Particle> starts) {
+    for (const Particle& particle : starts) {
+        const double largest = max_abs(particle.position);
+        if (!(particle.radius > 0.0) || !std::isfinite(largest)) continue;
+        if (particle.radius >= kLeastRadiusUlps * ulp(largest)) continue;
+        return fmt::format(
+            "{}: a radius of {:.3g} m at coordinates of {:.3g} m is less than {:g} units in their last "
+            "place: move the scene to the origin, or use points",
+            where, particle.radius, largest, kLeastRadiusUlps);
+    }
+    return std::nullopt;
+}
+
+std::optional<std::string> far_starts_warning(const std::string& where, std::span<const Particle> starts,
+                                              const Box3& surfaces) {
+    if (!(surfaces.diagonal() > 0.0)) return std::nullopt;
+    double farthest = 0.0;
+    for (const Particle& particle : starts) {
+        if (is_finite(particle.position)) farthest = std::max(farthest, beyond(surfaces, particle.position).distance);
+    }
+    if (farthest <= kFarStarts * surfaces.diagonal()) return std::nullopt;
+    return fmt::format(
+        "{}: particles begin up to {:.3g} m away from the colliders, which measure {:.3g} m together: "
+        "lengths are in metres; scale the mesh or the emitter if one of them is in another unit",
+        where, farthest, surfaces.diagonal());
 }
 
 std::vector<std::string> bounds_warnings(const SimulationSetup& setup) {

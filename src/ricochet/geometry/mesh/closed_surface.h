@@ -34,12 +34,6 @@ struct ClosedSurface {
 /// numbers; the replaced vertices stay, unused.
 [[nodiscard]] TriangleMesh joined_by_position(const TriangleMesh& mesh);
 
-/// Returns true if two shells of a mesh overlap. Shells are sets of triangles joined by edges, at equal positions.
-/// Shells that only touch, or of which one lies within the other, do not overlap. Exact for shells that cross properly.
-/// Where their triangles only touch, or lie in one plane, places on the first of these triangles decide: centroids, and
-/// places halfway from where an edge comes through the other's plane.
-[[nodiscard]] bool shells_overlap(const TriangleMesh& mesh);
-
 /// Returns the joined mesh without the triangles that closed_surface() leaves out: the boundary of its volume.
 [[nodiscard]] TriangleMesh counted_surface(const TriangleMesh& mesh);
 

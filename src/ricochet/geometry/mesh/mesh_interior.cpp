@@ -133,4 +133,16 @@ bool MeshInterior::contains(const Vec3& point, InsideRule rule) const {
     return rule == InsideRule::parity ? crossings % 2 != 0 : winding != 0;
 }
 
+std::int64_t MeshInterior::winding_without(const Vec3& point, const std::vector<std::uint32_t>& shell_of,
+                                           std::uint32_t shell) const {
+    const std::size_t column = cell_of(point.y, 1) * cells_ + cell_of(point.x, 0);
+    std::int64_t winding = 0;
+    for (std::uint32_t k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
+        if (shell_of[column_triangles_[k]] == shell) continue;
+        const auto& [a, b, c] = mesh_->triangles[column_triangles_[k]];
+        winding += crossing(mesh_->vertices[a], mesh_->vertices[b], mesh_->vertices[c], point);
+    }
+    return winding;
+}
+
 }  // namespace ricochet

@@ -32,6 +32,10 @@ public:
 
     /// Exact; false for a point on the surface itself.
     [[nodiscard]] bool contains(const Vec3& point, InsideRule rule = InsideRule::parity) const;
+    /// Winding number at a finite point within box(), without the triangles of one shell. shell_of: shell of each
+    /// triangle. Exact for the point moved as above.
+    [[nodiscard]] std::int64_t winding_without(const Vec3& point, const std::vector<std::uint32_t>& shell_of,
+                                               std::uint32_t shell) const;
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:

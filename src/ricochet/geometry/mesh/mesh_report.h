@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "ricochet/core/box3.h"
@@ -20,16 +19,17 @@ namespace ricochet {
 /// What `ricochet info` shows.
 struct MeshReport {
     std::string format;
-    std::size_t vertices = 0;              ///< in the file, used or not
-    std::size_t faces = 0;                 ///< as the file lists them
-    std::size_t triangles = 0;             ///< of the collision mesh
-    Box3 bounds;                           ///< of the triangles, m
-    double area = 0.0;                     ///< m^2
-    std::optional<double> volume;          ///< enclosed volume, m^3, not negative; nothing when the surface is open
-    bool wound_inward = false;             ///< closed, and the faces' normals point to the inside
-    TopologyReport topology;               ///< of the collision mesh, equal positions joined
-    std::size_t joined_vertices = 0;       ///< used vertices at the position of an earlier one, joined for the topology
-    std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
+    std::size_t vertices = 0;             ///< in the file, used or not
+    std::size_t faces = 0;                ///< as the file lists them
+    std::size_t triangles = 0;            ///< of the collision mesh
+    Box3 bounds;                          ///< of the triangles, m
+    double area = 0.0;                    ///< m^2
+    std::optional<double> volume;         ///< enclosed volume, m^3, not negative; nothing when the surface is open
+    bool wound_inward = false;            ///< closed, and the faces' normals point to the inside
+    TopologyReport topology;              ///< of the collision mesh, equal positions joined
+    std::size_t joined_vertices = 0;      ///< used vertices at the position of an earlier one, joined for the topology
+    std::size_t shells_nested_alike = 0;  ///< consistent winding only: shells within others that are wound the same way
+    std::size_t duplicate_faces = 0;      ///< faces with the same vertices as an earlier one
     std::size_t degenerate_triangles = 0;  ///< exactly without area
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
@@ -44,24 +44,5 @@ struct MeshReport {
 
 /// Examines a mesh. Time and memory are close to linear in its size.
 [[nodiscard]] MeshReport report_on(const ImportedMesh& imported);
-
-/// How often triangles of a mesh touch or cross each other.
-struct SelfIntersections {
-    std::size_t pairs = 0;
-    bool are_all = true;  ///< false where the search has ended early
-};
-/// Counts pairs of triangles that have a point in common besides the vertices and the edge that both name: they cross,
-/// touch or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on
-/// the number of threads. Time is close to linear in the number of triangles: the search ends early after some hundred
-/// pairs with overlapping boxes for each triangle.
-[[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh);
-[[nodiscard]] inline std::size_t count_self_intersections(const TriangleMesh& mesh) {
-    return find_self_intersections(mesh).pairs;
-}
-
-/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle. The
-/// search ends early after as many pairs with overlapping boxes.
-[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(
-    const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of, std::size_t most);
 
 }  // namespace ricochet

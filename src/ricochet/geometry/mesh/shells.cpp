@@ -1,0 +1,178 @@
+#include "ricochet/geometry/mesh/shells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ricochet/geometry/mesh/closed_surface.h"
+#include "ricochet/geometry/mesh/mesh_interior.h"
+#include "ricochet/geometry/mesh/mesh_topology.h"
+#include "ricochet/geometry/mesh/self_intersections.h"
+#include "ricochet/geometry/predicates/predicates.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
+
+/// Returns the smallest triangle of its shell for each triangle.
+std::vector<std::uint32_t> shells_of(const TriangleMesh& joined) {
+    std::vector<std::uint32_t> number;
+    const FaceList faces = faces_of(joined, &number);
+    std::vector<std::uint32_t> face_of(faces.corners.size());
+    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
+        std::fill(face_of.begin() + faces.face_offsets[f], face_of.begin() + faces.face_offsets[f + 1], f);
+    }
+    DisjointSets shells(joined.triangles.size());
+    EdgeTable(faces, joined.vertices.size()).for_each_edge([&](std::span<const std::uint32_t> uses) {
+        for (const std::uint32_t use : uses.subspan(1)) shells.join(number[face_of[uses[0]]], number[face_of[use]]);
+    });
+    std::vector<std::uint32_t> shell_of(joined.triangles.size());
+    for (std::uint32_t t = 0; t < shell_of.size(); ++t) shell_of[t] = shells.find(t);
+    return shell_of;
+}
+
+TriangleMesh shell_alone(const TriangleMesh& mesh, const std::vector<std::uint32_t>& shell_of, std::uint32_t shell) {
+    TriangleMesh alone;
+    std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnknown);
+    for (std::size_t t = 0; t < shell_of.size(); ++t) {
+        if (shell_of[t] != shell) continue;
+        Triangle triangle = mesh.triangles[t];
+        for (std::uint32_t& v : triangle) {
+            if (renamed[v] == kUnknown) {
+                renamed[v] = static_cast<std::uint32_t>(alone.vertices.size());
+                alone.vertices.push_back(mesh.vertices[v]);
+            }
+            v = renamed[v];
+        }
+        alone.triangles.push_back(triangle);
+    }
+    return alone;
+}
+
+Vec3 centroid(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+}
+
+/// Returns true if an edge of the first passes through the inside of the second.
+bool pierces(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
+    const auto at = [&](std::uint32_t v) -> const Vec3& { return mesh.vertices[v]; };
+    const auto& [a, b, c] = second;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& p = at(first[k]);
+        const Vec3& q = at(first[(k + 1) % 3]);
+        if (orient3d(at(a), at(b), at(c), p) * orient3d(at(a), at(b), at(c), q) >= 0) continue;
+        const int side = orient3d(p, q, at(a), at(b));
+        if (side != 0 && side == orient3d(p, q, at(b), at(c)) && side == orient3d(p, q, at(c), at(a))) return true;
+    }
+    return false;
+}
+
+bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
+    return pierces(mesh, mesh.triangles[first], mesh.triangles[second]) ||
+           pierces(mesh, mesh.triangles[second], mesh.triangles[first]);
+}
+
+/// Returns true if the first triangle comes out of the second one's plane at a place from which it leads into a shell:
+/// halfway from there to a corner, and on both sides of the triangle, which a shell that only touches does not hold.
+bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
+    constexpr double kBeside = 1e-6;  // part of the edge's length
+    const auto& [a, b, c] = mesh.triangles[second];
+    const Vec3& origin = mesh.vertices[a];
+    const Vec3 normal = cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin);
+    const auto& [i, j, k] = mesh.triangles[first];
+    const Vec3 own = cross(mesh.vertices[j] - mesh.vertices[i], mesh.vertices[k] - mesh.vertices[i]);
+    const double size = length(own);
+    if (!(size > 0.0)) return false;
+    for (const auto& [from, to] : {std::pair(i, j), std::pair(j, k), std::pair(k, i)}) {
+        const Vec3& p = mesh.vertices[from];
+        const Vec3& q = mesh.vertices[to];
+        const double before = dot(normal, p - origin);
+        const double after = dot(normal, q - origin);
+        if (!(before * after < 0.0)) continue;
+        const Vec3 met = p + (before / (before - after)) * (q - p);
+        const Vec3 beside = (kBeside * length(q - p) / size) * own;
+        for (const Vec3& place : {0.5 * (p + met), 0.5 * (met + q)}) {
+            if (shell.contains(place + beside) && shell.contains(place - beside)) return true;
+        }
+    }
+    return false;
+}
+
+/// Signed volume of one shell, in m^3, and the sum of the magnitudes that it was added up from.
+struct ShellVolume {
+    double sum = 0.0;
+    double magnitude = 0.0;
+
+    /// Returns 1 if the shell is wound outward, -1 if inward, and 0 if rounding decides, as for a flat shell.
+    [[nodiscard]] int orientation() const {
+        constexpr double kRounding = 1e-12;  // far above the sum's rounding error
+        if (!(std::fabs(sum) > kRounding * magnitude)) return 0;
+        return sum > 0.0 ? 1 : -1;
+    }
+};
+
+/// Returns the volume of each shell, at the number of its first triangle.
+std::vector<ShellVolume> shell_volumes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& shell_of) {
+    std::vector<ShellVolume> volumes(mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Vec3& origin = mesh.vertices[mesh.triangles[shell_of[t]][0]];
+        const auto& [a, b, c] = mesh.triangles[t];
+        const double part =
+            dot(mesh.vertices[a] - origin, cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin)) / 6.0;
+        volumes[shell_of[t]].sum += part;
+        volumes[shell_of[t]].magnitude += std::fabs(part);
+    }
+    return volumes;
+}
+
+}  // namespace
+
+std::size_t count_shells_nested_alike(const TriangleMesh& mesh) {
+    const auto counted = std::make_shared<const TriangleMesh>(counted_surface(mesh));
+    const std::vector<std::uint32_t> shell_of = shells_of(*counted);
+    if (std::all_of(shell_of.begin(), shell_of.end(), [](std::uint32_t shell) { return shell == 0; })) return 0;
+    const std::vector<ShellVolume> volumes = shell_volumes(*counted, shell_of);
+    const MeshInterior interior(counted, {});
+    std::size_t count = 0;
+    for (std::uint32_t shell = 0; shell < shell_of.size(); ++shell) {
+        if (shell_of[shell] != shell) continue;
+        const Vec3& vertex = counted->vertices[counted->triangles[shell][0]];
+        count += volumes[shell].orientation() * interior.winding_without(vertex, shell_of, shell) > 0 ? 1 : 0;
+    }
+    return count;
+}
+
+bool shells_overlap(const TriangleMesh& mesh) {
+    const TriangleMesh joined = counted_surface(mesh);
+    const std::vector<std::uint32_t> shell_of = shells_of(joined);
+    if (std::all_of(shell_of.begin(), shell_of.end(), [](std::uint32_t shell) { return shell == 0; })) return false;
+    constexpr std::size_t kMostPairs = 4096;
+    constexpr std::size_t kMostInteriors = 256;
+    const auto pairs = intersections_between(joined, shell_of, kMostPairs);
+    for (const auto& [first, second] : pairs) {
+        if (cross_properly(joined, first, second)) return true;
+    }
+    std::map<std::uint32_t, MeshInterior> interiors;
+    for (const auto& [first, second] : pairs) {
+        for (const auto& [triangle, other] : {std::pair(first, second), std::pair(second, first)}) {
+            const std::uint32_t shell = shell_of[other];
+            if (interiors.size() == kMostInteriors && interiors.count(shell) == 0) continue;
+            const auto found = interiors.try_emplace(
+                shell, std::make_shared<const TriangleMesh>(shell_alone(joined, shell_of, shell)));
+            const MeshInterior& interior = found.first->second;
+            if (interior.contains(centroid(joined, triangle)) || leads_into(interior, joined, triangle, other))
+                return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace ricochet

@@ -16,9 +16,11 @@ option(RICOCHET_ASSIMP "Read FBX, DAE, 3DS and others through Assimp" ${assimp_F
 if(RICOCHET_ASSIMP)
   find_package(assimp CONFIG REQUIRED)
 endif()
+if(RICOCHET_BUILD_APPS OR RICOCHET_BUILD_PYTHON)  # src/view
+  find_package(ZLIB REQUIRED)
+endif()
 if(RICOCHET_BUILD_APPS)
   find_package(CLI11 CONFIG REQUIRED)
-  find_package(ZLIB REQUIRED)
 endif()
 if(RICOCHET_BUILD_TESTS)
   find_package(GTest CONFIG REQUIRED)

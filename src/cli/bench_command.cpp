@@ -12,16 +12,16 @@
 #include <string>
 #include <vector>
 
-#include "bench/case_run.h"
-#include "bench/cases.h"
-#include "bench/load.h"
-#include "bench/measurement.h"
-#include "bench/ratios.h"
-#include "bench/records.h"
 #include "cli/arguments.h"
 #include "cli/bench_files.h"
 #include "cli/interrupts.h"
 #include "cli/terminal.h"
+#include "lab/bench/case_run.h"
+#include "lab/bench/cases.h"
+#include "lab/bench/load.h"
+#include "lab/bench/measurement.h"
+#include "lab/bench/ratios.h"
+#include "lab/bench/records.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"

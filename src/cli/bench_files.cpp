@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
-#include "bench/cases.h"
 #include "cli/interrupts.h"
 #include "cli/terminal.h"
-#include "ricochet/compare/gnuplot.h"
+#include "lab/bench/cases.h"
+#include "lab/compare/gnuplot.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/load.h"
-#include "bench/measurement.h"
-#include "bench/records.h"
+#include "lab/bench/load.h"
+#include "lab/bench/measurement.h"
+#include "lab/bench/records.h"
 
 namespace ricochet::cli {
 

@@ -10,9 +10,9 @@
 
 #include "cli/arguments.h"
 #include "cli/terminal.h"
-#include "ricochet/compare/comparison.h"
-#include "ricochet/compare/comparison_files.h"
-#include "ricochet/compare/gnuplot.h"
+#include "lab/compare/comparison.h"
+#include "lab/compare/comparison_files.h"
+#include "lab/compare/gnuplot.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"

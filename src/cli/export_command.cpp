@@ -13,8 +13,8 @@
 #include "cli/chosen_frames.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
-#include "ricochet/io/run_export.h"
 #include "ricochet/io/scene/diagnostics.h"
+#include "view/export/run_export.h"
 
 namespace ricochet {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "ricochet/core/unfinished_file.h"
-#include "ricochet/render/image.h"
+#include "view/render/image.h"
 
 namespace ricochet::cli {
 

@@ -1,8 +1,8 @@
 // What a page draws the particles of a run as.
 #pragma once
 
-#include "page/page_shapes.h"
 #include "ricochet/io/run_folder.h"
+#include "view/page/page_shapes.h"
 
 namespace ricochet::cli {
 

@@ -12,8 +12,8 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/io/picture_files.h"
 #include "ricochet/io/vtk_reader.h"
-#include "ricochet/render/motion_path.h"
-#include "ricochet/render/streaks.h"
+#include "view/render/motion_path.h"
+#include "view/render/streaks.h"
 
 namespace ricochet::cli {
 namespace {

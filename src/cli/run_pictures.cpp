@@ -14,11 +14,11 @@
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/io/camera_frames.h"
-#include "ricochet/io/frame_reader.h"
-#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
-#include "ricochet/render/black_body.h"
-#include "ricochet/render/sprites.h"
+#include "view/export/frame_reader.h"
+#include "view/export/moving_meshes.h"
+#include "view/render/black_body.h"
+#include "view/render/sprites.h"
 
 namespace ricochet::cli {
 

@@ -11,9 +11,9 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/io/camera_frames.h"
-#include "ricochet/io/frame_reader.h"
-#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
+#include "view/export/frame_reader.h"
+#include "view/export/moving_meshes.h"
 
 namespace ricochet::cli {
 

@@ -19,7 +19,7 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/picture_files.h"
-#include "ricochet/render/turning.h"
+#include "view/render/turning.h"
 
 namespace ricochet::cli {
 namespace {

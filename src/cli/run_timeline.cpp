@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <variant>
 
-#include "ricochet/io/frame_reader.h"
-#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/vtk_reader.h"
+#include "view/export/frame_reader.h"
+#include "view/export/moving_meshes.h"
 
 namespace ricochet::cli {
 namespace {

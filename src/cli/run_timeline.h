@@ -12,7 +12,7 @@
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
-#include "ricochet/render/motion_path.h"
+#include "view/render/motion_path.h"
 
 namespace ricochet::cli {
 

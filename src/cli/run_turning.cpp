@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "ricochet/io/frame_reader.h"
+#include "view/export/frame_reader.h"
 
 namespace ricochet::cli {
 namespace {

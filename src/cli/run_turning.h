@@ -13,7 +13,7 @@
 #include "ricochet/dynamics/emitter.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
-#include "ricochet/render/turning.h"
+#include "view/render/turning.h"
 
 namespace ricochet::cli {
 

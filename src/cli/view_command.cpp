@@ -11,10 +11,10 @@
 #include "cli/page_shapes.h"
 #include "cli/run_scene.h"
 #include "cli/terminal.h"
-#include "page/run_page.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/io/run_folder.h"
+#include "view/page/run_page.h"
 
 namespace ricochet {
 namespace {

@@ -9,7 +9,7 @@
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/queries/mesh_queries.h"
-#include "ricochet/render/preview.h"
+#include "view/render/preview.h"
 
 namespace ricochet::cli {
 

@@ -13,8 +13,8 @@
 #include "python/simulation_handle.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
-#include "ricochet/render/color_map.h"
-#include "ricochet/render/picture.h"
+#include "view/render/color_map.h"
+#include "view/render/picture.h"
 
 namespace ricochet::python {
 namespace {

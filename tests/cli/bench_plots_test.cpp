@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/cases.h"
-#include "ricochet/compare/gnuplot.h"
+#include "lab/bench/cases.h"
+#include "lab/compare/gnuplot.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {

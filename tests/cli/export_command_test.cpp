@@ -10,10 +10,10 @@
 #include "cli/run_program.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/point_cache.h"
-#include "ricochet/io/moving_meshes.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/temporary_folder.h"
+#include "view/export/moving_meshes.h"
 
 namespace ricochet {
 namespace {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk_reader.h"
 #include "support/temporary_folder.h"
+#include "view/export/frame_reader.h"
 
 namespace ricochet {
 namespace {

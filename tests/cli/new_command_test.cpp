@@ -14,8 +14,8 @@
 #include "cli/run_program.h"
 #include "geometry/mesh_files.h"
 #include "ricochet/io/scene.h"
-#include "ricochet/render/camera.h"
 #include "support/temporary_folder.h"
+#include "view/render/camera.h"
 
 namespace ricochet {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "ricochet/render/image.h"
 #include "support/temporary_folder.h"
+#include "view/render/image.h"
 
 namespace ricochet {
 namespace {

@@ -23,16 +23,16 @@
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/point_cache.h"
 #include "ricochet/io/checkpoint.h"
-#include "ricochet/io/frame_reader.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/run_folder.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/context.h"
 #include "ricochet/io/vtk_reader.h"
-#include "ricochet/render/image.h"
 #include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/temporary_folder.h"
+#include "view/export/frame_reader.h"
+#include "view/render/image.h"
 
 namespace ricochet::fuzz {
 namespace {

@@ -27,16 +27,19 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"verify", {"core", "geometry"}},  // and of these only what may_verify() names
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
+        // view: pictures, files of other formats, pages
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
+        {"export", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
+        {"page", {"core", "geometry", "dynamics", "io", "render", "export"}},
+        // lab: measurements
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         {"generators", {"core", "geometry"}},  // the mesh generator's library
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"mpi", {"core"}},
-        {"page", {"core", "geometry", "dynamics", "io", "render"}},
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "render",
-          "compare", "bench", "mpi", "page"}},
+          "export", "page", "compare", "bench", "mpi"}},
     };
     return table;
 }
@@ -70,18 +73,18 @@ struct Door {
 constexpr std::array kDoors = {
     Door{"embree[34]/", "src/ricochet/geometry/acceleration/embree\\.h"},
     Door{"ricochet/geometry/acceleration/embree\\.h",
-         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/ricochet/render/(preview_impl\\.h|drawn_mesh\\.h|"
-         "shape_copies\\.h)|src/bench/native_ray\\.h"},
+         "src/ricochet/geometry/acceleration/triangle_bvh\\.cpp|src/view/render/(preview_impl\\.h|drawn_mesh\\.h|"
+         "shape_copies\\.h)|src/lab/bench/native_ray\\.h"},
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
     Door{"nlohmann/",
-         "src/(ricochet/io|ricochet/compare|bench|page|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
+         "src/(ricochet/io|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
          ".*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // its print() checks formats as fmt does
-    Door{"stb/", "src/ricochet/render/image\\.cpp|tests/render/image_test\\.cpp"},
-    Door{"zlib\\.h", "src/page/packing\\.cpp|tests/page/.*\\.cpp"},
+    Door{"stb/", "src/view/render/image\\.cpp|tests/view/render/image_test\\.cpp"},
+    Door{"zlib\\.h", "src/view/page/packing\\.cpp|tests/view/page/.*\\.cpp"},
     Door{"(mpi|sched)\\.h", "src/mpi/mpi_ranks\\.cpp"},
     Door{"(gtest|gmock)/", "tests/.*"},
     Door{"benchmark/", "bench/.*"},
@@ -101,10 +104,12 @@ bool matches(const std::string& text, const std::string& pattern) {
 std::optional<std::string> layer_of(const std::string& path) {
     if (path == kUmbrella) return std::nullopt;
     if (path.starts_with("src/cli/")) return "cli";
-    if (path.starts_with("src/bench/")) return "bench";
     if (path.starts_with("src/mpi/")) return "mpi";
-    if (path.starts_with("src/page/")) return "page";
     if (path.starts_with("src/python/")) return "python";
+    for (const std::string product : {"src/view/", "src/lab/"}) {
+        if (path.starts_with(product))
+            return path.substr(product.size(), path.find('/', product.size()) - product.size());
+    }
     if (path.starts_with("meshes/generators/")) return "generators";
     if (!path.starts_with(kLibrary)) return std::nullopt;
     const std::string below = path.substr(kLibrary.size());

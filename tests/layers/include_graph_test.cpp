@@ -13,7 +13,8 @@ namespace {
 SourceTree planted(const std::string& path, const std::string& name) {
     SourceTree tree;
     tree.files.push_back({path, {{7, name}}});
-    if (name.starts_with("ricochet/") || name.starts_with("cli/") || name.starts_with("bench/"))
+    if (name.starts_with("ricochet/") || name.starts_with("cli/") || name.starts_with("view/") ||
+        name.starts_with("lab/"))
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
@@ -52,7 +53,7 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/geometry/sweep/path.cpp", "ricochet/dynamics/forces.h"},       // upward
         {"src/ricochet/collision/x.cpp", "ricochet/dynamics/particles.h"},            // siblings
         {"src/ricochet/dynamics/x.h", "ricochet/collision/collider.h"},               // siblings, the other way
-        {"src/ricochet/io/x.cpp", "ricochet/render/image.h"},                         // siblings
+        {"src/ricochet/io/x.cpp", "view/render/image.h"},                             // the engine knows no product
         {"src/ricochet/response/x.cpp", "ricochet/simulation.h"},                     // upward to the library's top
         {"src/ricochet/simulation.cpp", "ricochet/io/scene.h"},                       // upward
         {"src/ricochet/simulation.cpp", "cli/run.h"},                                 // the library knows no tool
@@ -71,12 +72,16 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
         {"src/ricochet/response/exact.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
         {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
-        {"src/ricochet/compare/comparison.cpp", "bench/cases.h"},            // the library knows no benchmark
-        {"src/bench/cases.cpp", "ricochet/io/scene.h"},                      // whose cases are no scene files
-        {"src/bench/cases.cpp", "cli/run.h"},                                // and which knows no tool
-        {"src/bench/cases.cpp", "ricochet/geometry/acceleration/embree.h"},  // only the reference rays open it
-        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                    // in a public header
-        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},              // in a public header, of the right layer
+        {"src/ricochet/simulation.cpp", "view/export/run_export.h"},             // the engine knows no product
+        {"src/ricochet/simulation.cpp", "lab/bench/cases.h"},                    // nor this one
+        {"src/view/render/image.cpp", "lab/compare/plan.h"},                     // products do not know each other
+        {"src/view/render/image.cpp", "ricochet/io/scene.h"},                    // pictures are drawn without files
+        {"src/lab/compare/comparison.cpp", "lab/bench/cases.h"},                 // siblings
+        {"src/lab/bench/cases.cpp", "ricochet/io/scene.h"},                      // whose cases are no scene files
+        {"src/lab/bench/cases.cpp", "cli/run.h"},                                // and which knows no tool
+        {"src/lab/bench/cases.cpp", "ricochet/geometry/acceleration/embree.h"},  // only the reference rays open it
+        {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                        // in a public header
+        {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},  // in a public header, of the right layer
         {"src/ricochet/geometry/acceleration/triangle_bvh.h",
          "ricochet/geometry/acceleration/embree.h"},                     // public includes private
         {"src/ricochet/io/scene.h", "ricochet/io/private/json_node.h"},  // the same, by its folder
@@ -113,10 +118,12 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
         {"src/ricochet/simulation.cpp", "ricochet/verify/verifier.h"},
         {"src/cli/command_line.cpp", "CLI/CLI.hpp"},
         {"src/cli/main.cpp", "cli/run.h"},
-        {"src/cli/main.cpp", "bench/cases.h"},
-        {"src/bench/cases.cpp", "generators/rock.h"},
-        {"src/bench/measurement.cpp", "ricochet/simulation.h"},
-        {"src/bench/native_ray.h", "ricochet/geometry/acceleration/embree.h"},
+        {"src/cli/main.cpp", "lab/bench/cases.h"},
+        {"src/cli/main.cpp", "view/export/run_export.h"},
+        {"src/view/page/run_page.cpp", "view/export/frame_reader.h"},
+        {"src/lab/bench/cases.cpp", "generators/rock.h"},
+        {"src/lab/bench/measurement.cpp", "ricochet/simulation.h"},
+        {"src/lab/bench/native_ray.h", "ricochet/geometry/acceleration/embree.h"},
         {"tests/core/vec3_test.cpp", "support/counts.h"},
         {"tests/core/vec3_test.cpp", "ricochet/simulation.h"},
     };

@@ -1,0 +1,198 @@
+// A run as meshes with point caches.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/mesh_writer.h"
+#include "ricochet/geometry/mesh/point_cache.h"
+#include "view/export/export_colliders.h"
+#include "view/export/export_folder.h"
+#include "view/export/frame_reader.h"
+#include "view/export/run_export.h"
+
+namespace ricochet {
+namespace {
+
+constexpr const char* kObj = ".obj";
+constexpr const char* kPc2 = ".pc2";
+
+/// How far a frame may be from where it should be, over the time between two. Reason: times are sums of time steps,
+/// rounded; the last frame of a run whose steps do not fit its duration is off by far more.
+constexpr double kSameTime = 1e-6;
+
+const std::vector<std::int64_t>& ids_of(const VtkPolyData& frame, const FrameFile& file) {
+    const VtkArray* const array = find_array(frame.point_arrays, "id");
+    const auto* const ids = array == nullptr ? nullptr : std::get_if<std::vector<std::int64_t>>(&array->values);
+    if (ids == nullptr) throw InputError(fmt::format("{}: has no array id", file.path.string()));
+    return *ids;
+}
+
+/// What has to be known of all frames before the first is written.
+struct Survey {
+    std::vector<FrameFile> frames;  ///< evenly spaced in time
+    double start = 0.0;             ///< s
+    double spacing = 0.0;           ///< s
+    std::size_t left_out = 0;       ///< frames between
+    bool same_particles = true;
+    std::string why_not;  ///< the first frame with other particles
+};
+
+// The distance in time that most frames have to the one before.
+double usual_spacing(const std::vector<double>& times) {
+    std::vector<double> gaps;
+    for (std::size_t k = 1; k < times.size(); ++k) gaps.push_back(times[k] - times[k - 1]);
+    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+    std::nth_element(gaps.begin(), middle, gaps.end());
+    return *middle;
+}
+
+// Samples of a cache are evenly spaced: frames between (of an interruption, or the last of a run) are left out.
+void choose_frames(const std::vector<FrameFile>& files, const std::vector<double>& times, Survey& survey) {
+    if (times.size() < 2) {
+        throw InputError(
+            fmt::format("{}: a point cache needs at least 2 frames; expected a run with more, or --format "
+                        "ply or gltf",
+                        files.front().path.parent_path().string()));
+    }
+    survey.start = times.front();
+    survey.spacing = usual_spacing(times);
+    double last = survey.start;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+        const double wanted = survey.start + static_cast<double>(survey.frames.size()) * survey.spacing;
+        if (std::fabs(times[k] - wanted) <= kSameTime * survey.spacing) {
+            survey.frames.push_back(files[k]);
+            last = times[k];
+        } else if (times[k] > wanted) {
+            if (k + 1 == times.size()) break;
+            throw InputError(
+                fmt::format("{}: at {} s, but a frame at {} s is missing: samples of a point cache are "
+                            "evenly spaced, expected all frames, or --format ply",
+                            files[k].path.string(), times[k], wanted));
+        }
+    }
+    survey.left_out = times.size() - survey.frames.size();
+    // Over all of them, so that roundings of single times count nothing.
+    if (survey.frames.size() > 1)
+        survey.spacing = (last - survey.start) / static_cast<double>(survey.frames.size() - 1);
+}
+
+Survey survey_of(const std::vector<FrameFile>& files) {
+    Survey survey;
+    std::vector<double> times;
+    std::vector<std::int64_t> first;
+    for (const FrameFile& file : files) {
+        const VtkPolyData frame = read_frame(file.path);
+        const std::vector<std::int64_t>& ids = ids_of(frame, file);
+        if (times.empty()) first = ids;
+        if (survey.same_particles && (ids != first || ids.empty())) {
+            survey.same_particles = false;
+            survey.why_not = ids.empty() && first.empty()
+                                 ? fmt::format("step {} has none", file.step)
+                                 : fmt::format("step {} has others than step {}", file.step, files.front().step);
+        }
+        times.push_back(frame.time);
+    }
+    choose_frames(files, times, survey);
+    return survey;
+}
+
+/// One thing that moves, with its cache.
+struct Cached {
+    std::string stem;
+    std::optional<std::uint32_t> collider;  ///< its number; nothing: the particles
+    std::size_t points = 0;
+    std::unique_ptr<PointCacheWriter> cache = nullptr;
+};
+
+class Pc2Export {
+public:
+    explicit Pc2Export(const RunFolder& folder) : colliders_(folder), survey_(survey_of(colliders_.frames())) {
+        const std::vector<std::string> both = {kObj, kPc2};
+        particles_stem_ = survey_.same_particles ? names_.take("particles", both) : "";
+        for (const ExportCollider& collider : colliders_.all()) {
+            stems_.push_back(names_.take(collider.name, collider.moves ? both : std::vector<std::string>{kObj}));
+        }
+        if (!colliders_.any_moves() && !survey_.same_particles) {
+            throw InputError(
+                fmt::format("{}: nothing of this run fits a point cache: no collider moves, and the particles change "
+                            "({}); expected --format ply",
+                            folder.frames.front().path.parent_path().string(), survey_.why_not));
+        }
+    }
+
+    ExportReport write(ExportFolder& target, const ExportProgress& progress) {
+        target.begin(names_.files());
+        write_meshes(target);
+        for (Cached& one : cached_) {
+            one.cache =
+                std::make_unique<PointCacheWriter>(target.file(one.stem + kPc2), one.points, survey_.frames.size());
+        }
+        for (std::size_t k = 0; k < survey_.frames.size(); ++k) {
+            add_sample(survey_.frames[k]);
+            progress(static_cast<double>(k + 1) / static_cast<double>(survey_.frames.size()));
+        }
+        for (Cached& one : cached_) one.cache->commit();
+        return {names_.files().size(), survey_.frames.size(), notes()};
+    }
+
+private:
+    // The meshes that the caches move, as they stand in the first sample, and those at rest.
+    void write_meshes(const ExportFolder& target) {
+        if (survey_.same_particles) {
+            const TriangleMesh points{read_frame(survey_.frames.front().path).points, {}};
+            write_mesh(points, target.file(particles_stem_ + kObj));
+            cached_.push_back({particles_stem_, std::nullopt, points.vertices.size()});
+        }
+        for (std::size_t c = 0; c < stems_.size(); ++c) {
+            const ExportCollider& collider = colliders_.all()[c];
+            write_mesh(collider.mesh, target.file(stems_[c] + kObj));
+            if (collider.moves) cached_.push_back({stems_[c], collider.number, collider.mesh.vertices.size()});
+        }
+    }
+
+    void add_sample(const FrameFile& frame) {
+        const std::map<std::uint32_t, TriangleMesh> moving = colliders_.moving(frame);
+        for (const Cached& one : cached_) {
+            one.cache->add(one.collider ? moving.at(*one.collider).vertices : read_frame(frame.path).points);
+        }
+    }
+
+    [[nodiscard]] std::vector<std::string> notes() const {
+        std::vector<std::string> notes;
+        notes.push_back(fmt::format("samples are {:.12g} s apart: \"frame_rate\": {:.12g}, \"start\": {:.12g}",
+                                    survey_.spacing, 1.0 / survey_.spacing, survey_.start));
+        if (survey_.left_out > 0) {
+            notes.push_back(
+                fmt::format("frames that are not evenly spaced in time are left out: {}", survey_.left_out));
+        }
+        if (!survey_.same_particles) {
+            notes.push_back(
+                fmt::format("the particles do not fit a point cache, whose points are always the same ({}): "
+                            "--format ply has them",
+                            survey_.why_not));
+        }
+        return notes;
+    }
+
+    ExportColliders colliders_;
+    Survey survey_;
+    ExportNames names_;
+    std::string particles_stem_;
+    std::vector<std::string> stems_;  // of the colliders
+    std::vector<Cached> cached_;
+};
+
+}  // namespace
+
+ExportReport export_pc2(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress) {
+    ExportFolder output(target);  // first: a folder that cannot be written is told before the work
+    return Pc2Export(folder).write(output, progress);
+}
+
+}  // namespace ricochet

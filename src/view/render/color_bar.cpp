@@ -1,0 +1,129 @@
+#include "view/render/color_bar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "view/render/lettering.h"
+
+namespace ricochet {
+namespace {
+
+constexpr int kDotsWide = 110;  // a bar at least, in dots of its letters
+constexpr int kDotsHigh = 8;
+constexpr int kMargin = 6;                      // dots around
+constexpr int kLineHeight = kLetterHeight + 3;  // dots
+
+int dot_of(int picture_width, int picture_height) {
+    return std::max(1, std::min(picture_height / 360, picture_width / 480));
+}
+
+/// The texts of a bar, in lines that fit the picture.
+struct BarTexts {
+    std::vector<std::string> title;
+    std::vector<std::string> note;
+
+    BarTexts(const ColorBar& bar, int picture_width, int dot) {
+        const auto letters = static_cast<std::size_t>(std::max(1, (picture_width / dot - 4 * kMargin) / kLetterWidth));
+        title = broken_text(bar.unit.empty() ? bar.name : fmt::format("{} ({})", bar.name, bar.unit), letters);
+        note = broken_text(bar.note, letters);
+    }
+    /// Dots.
+    [[nodiscard]] int width() const {
+        int width = kDotsWide;
+        for (const auto* lines : {&title, &note}) {
+            for (const std::string& line : *lines) width = std::max(width, text_width(line));
+        }
+        return width;
+    }
+    [[nodiscard]] int above() const { return kLineHeight * static_cast<int>(title.size()); }
+    [[nodiscard]] int below() const { return kLineHeight * (1 + static_cast<int>(note.size())); }
+};
+
+void write_numbers(Image& image, const ValueRange& range, const BarPlace& place, int y) {
+    const std::string low = bar_number(range.low);
+    const std::string middle = bar_number(0.5 * (range.low + range.high));
+    const std::string high = bar_number(range.high);
+    write_text(image, place.x, y, place.dot, low);
+    const int widths = text_width(low) + text_width(middle) + text_width(high);
+    if ((widths + 2 * kLetterWidth) * place.dot < place.width) {
+        write_text(image, place.x + (place.width - text_width(middle) * place.dot) / 2, y, place.dot, middle);
+    }
+    write_text(image, place.x + place.width - text_width(high) * place.dot, y, place.dot, high);
+}
+
+void draw_bar(Image& image, const ColorBar& bar, const BarPlace& place) {
+    const int dot = place.dot;
+    const BarTexts texts(bar, image.width, dot);
+    const int top = place.y - texts.above() * dot;
+    shade_rectangle(image, place.x - kMargin * dot / 2, top - kMargin * dot / 2, place.width + kMargin * dot,
+                    place.height + (texts.above() + texts.below() + kMargin) * dot, 0.35);
+    int y = top;
+    for (const std::string& line : texts.title) write_text(image, place.x, y, dot, line), y += kLineHeight * dot;
+    for (int x = 0; x < place.width; ++x) {
+        const Vec3 color = map_color(bar.map, place.width == 1 ? 0.0 : static_cast<double>(x) / (place.width - 1));
+        for (int row = 0; row < place.height; ++row) set_pixel(image, place.x + x, place.y + row, color);
+    }
+    y = place.y + place.height + 3 * dot;
+    write_numbers(image, bar.range, place, y);
+    for (const std::string& line : texts.note) y += kLineHeight * dot, write_text(image, place.x, y, dot, line);
+}
+
+}  // namespace
+
+std::string bar_number(double value) {
+    if (value == 0.0) return "0";  // not -0
+    constexpr std::array<std::pair<double, char>, 3> kSuffixes = {{{1e9, 'G'}, {1e6, 'M'}, {1e3, 'k'}}};
+    for (const auto& [size, suffix] : kSuffixes) {
+        if (std::fabs(value) < size || std::fabs(value) >= 1e12) continue;
+        return fmt::format("{:.3g}{}", value / size, suffix);
+    }
+    return fmt::format("{:.3g}", value);
+}
+
+std::vector<std::string> broken_text(const std::string& text, std::size_t letters) {
+    std::vector<std::string> lines;
+    std::string rest = text;
+    while (rest.size() > letters) {
+        // A space may stand right behind the last letter that fits.
+        const std::size_t space = rest.rfind(' ', letters);
+        const bool at_space = space != std::string::npos && space > 0;
+        lines.push_back(rest.substr(0, at_space ? space : letters));
+        rest.erase(0, at_space ? space + 1 : letters);
+    }
+    if (!rest.empty()) lines.push_back(std::move(rest));
+    return lines;
+}
+
+std::vector<BarPlace> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
+    const int dot = dot_of(picture_width, picture_height);
+    std::vector<BarPlace> places;
+    int x = 2 * kMargin;       // dots
+    int bottom = 2 * kMargin;  // dots, of the row above the picture's edge
+    int tallest = 0;           // dots, of the bars in the row
+    for (const ColorBar& bar : bars) {
+        const BarTexts texts(bar, picture_width, dot);
+        if (x > 2 * kMargin && (x + texts.width() + kMargin) * dot > picture_width) {
+            x = 2 * kMargin;
+            bottom += tallest + 2 * kMargin;
+            tallest = 0;
+        }
+        places.push_back({x * dot, picture_height - (bottom + kDotsHigh + texts.below()) * dot, texts.width() * dot,
+                          kDotsHigh * dot, dot});
+        x += texts.width() + 3 * kMargin;
+        tallest = std::max(tallest, texts.above() + kDotsHigh + texts.below());
+    }
+    return places;
+}
+
+void draw_color_bars(Image& image, const std::vector<ColorBar>& bars) {
+    if (image.width < 200 || image.height < 100) return;
+    const std::vector<BarPlace> places = bar_places(image.width, image.height, bars);
+    for (std::size_t k = 0; k < bars.size(); ++k) draw_bar(image, bars[k], places[k]);
+}
+
+}  // namespace ricochet

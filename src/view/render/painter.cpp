@@ -1,0 +1,233 @@
+#include "view/render/painter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "view/render/tone.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+Painter::Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps)
+    : preview_(preview),
+      camera_(camera),
+      frame_(camera_frame(camera)),
+      options_(options),
+      has_glass_(preview.has_glass()),
+      light_(light_for(options.lighting, camera)),
+      sun_(light_),
+      lamps_(std::move(lamps)),
+      sun_middle_(sun_.direction(0.0, 0.0)),
+      horizon_(options.background ? *options.background : light_.backdrop_colors.horizon),
+      tangent_(half_height(camera)),
+      half_pixel_(tangent_ / options.height),
+      focus_(camera.focus_distance > 0.0 ? camera.focus_distance : length(camera.target - camera.position)),
+      extent_(tangent_ * length(camera.target - camera.position)),
+      tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}
+
+void Painter::pixels(std::span<const PixelPlace> places, std::span<PixelLight> out, const KnownSpheres& known) const {
+    std::array<std::optional<PixelSamples>, kPacketRays> samples;
+    std::vector<PixelSum> sums(places.size(), PixelSum(options_.exposure));
+    std::array<Look, kPacketRays> room;
+    Hits hits;
+    const std::span looks(room.data(), places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        samples[k].emplace(places[k].x, places[k].y);
+        looks[k].samples = &*samples[k];
+    }
+    for (int s = 0; s < options_.samples; ++s) {
+        for (std::size_t k = 0; k < places.size(); ++k) aim(looks[k], places[k], s);
+        trace(looks, known, hits);
+        add_sun_light(looks, known.shadows);
+        add_sky_light(looks, known.shadows);
+        for (std::size_t k = 0; k < places.size(); ++k) add(looks[k], sums[k]);
+    }
+    if (options_.samples < kGlances) add_glances(places, looks, sums, known);
+    for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean();
+}
+
+// Towards a sample of a pixel.
+void Painter::aim(Look& look, const PixelPlace& place, int sample) const {
+    look.sample = sample;
+    const SamplePair at = look.get(SamplePurpose::pixel);
+    const SamplePair lens = camera_.aperture > 0.0 ? look.get(SamplePurpose::lens) : SamplePair{};
+    look.ray = camera_ray(place.x + at.u, place.y + at.v, lens);
+    look.ray.time = look.samples->time(sample);
+}
+
+// For pixels whose samples see different things or may have missed an outline, and some for those beside them, whose
+// samples may have missed what is small.
+std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPlace> places, std::span<const PixelSum> sums,
+                                                  const KnownSpheres& known) const {
+    constexpr int kBeside = 4;
+    constexpr double kHalfDiagonal = 1.42;  // over half a pixel
+    std::array<bool, kPacketRays> outlines{};
+    if (known.listed && !known.listed->empty()) {
+        std::array<PreviewRay, kPacketRays> middles;
+        for (std::size_t k = 0; k < places.size(); ++k) {
+            middles[k] = camera_ray(places[k].x + 0.5, places[k].y + 0.5, {});
+            middles[k].reach = sums[k].farthest();
+        }
+        outlines = outlines_about(std::span(middles.data(), places.size()), *known.listed, kHalfDiagonal * half_pixel_);
+    }
+    std::array<int, kPacketRays> wanted{};
+    for (std::size_t k = 0; k < places.size(); ++k) wanted[k] = sums[k].rays_wanted(outlines[k]);
+    const int beside = std::min(kBeside, *std::max_element(wanted.begin(), wanted.end()));
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        if (!outlines[k]) wanted[k] = std::max(wanted[k], beside);
+    }
+    return wanted;
+}
+
+// More rays from the camera, and to the sun.
+void Painter::add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums,
+                          const KnownSpheres& known) const {
+    std::array<Look, kPacketRays> room;
+    Hits hits;
+    std::array<PixelSum*, kPacketRays> whose{};
+    std::size_t count = 0;
+    const auto look_at_all = [&] {
+        trace(std::span(room.data(), count), known, hits);
+        add_sun_light(std::span(room.data(), count), known.shadows);
+        for (std::size_t j = 0; j < count; ++j) whose[j]->add(glance(room[j]));
+        count = 0;
+    };
+    const std::array<int, kPacketRays> wanted = rays_wanted(places, sums, known);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const int end = std::min(kGlances, options_.samples + wanted[k]);
+        for (int s = options_.samples; s < end; ++s) {
+            room[count].samples = looks[k].samples;
+            aim(room[count], places[k], s);
+            whose[count++] = &sums[k];
+            if (count == kPacketRays) look_at_all();
+        }
+    }
+    if (count > 0) look_at_all();
+}
+
+void Painter::add(const Look& look, PixelSum& sum) const {
+    const bool open = options_.transparent && !look.hit;
+    const Vec3 light = open ? Vec3{} : solid_light(look);
+    const Seen seen = through_glass(look.ray, look.hit ? look.hit->distance : kNothing, light);
+    sum.add(glance(look), light, tone_mapped(options_.exposure * seen.light), open ? seen.cover : 1.0);
+}
+
+Glance Painter::glance(const Look& look) const {
+    Glance out;
+    const bool is_one_of_few = options_.samples < kGlances;
+    if (!look.hit) {
+        out.covers = !options_.transparent;
+        if (out.covers && is_one_of_few) out.own = behind_everything(look.ray.direction);
+        return out;
+    }
+    const PreviewHit& hit = *look.hit;
+    const double pixel_size = 2.0 * tangent_ * hit.distance / options_.height;
+    const double facing = std::max(0.05, std::fabs(dot(hit.face, look.ray.direction)));
+    out.normal = hit.normal;
+    out.albedo = look.color;
+    out.distance = hit.distance;
+    out.surface = look.surface;
+    out.slope = pixel_size / facing;
+    if (!is_one_of_few) return out;
+    const double rise = 0.5 + 0.5 * dot(hit.normal, light_.up);
+    const Vec3 sky = (1.0 - rise) * light_.sky_colors.below + rise * light_.sky_colors.zenith;
+    out.own = faded(hit.emission + times(out.albedo, look.sun), look.left);
+    out.plain = look.left * times(out.albedo, sky);
+    return out;
+}
+
+std::optional<Vec3> Painter::sun_middle() const { return light_.has_sun() ? std::optional(sun_middle_) : std::nullopt; }
+
+void Painter::quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
+                           std::span<const SphereFind> finds, const SunShadows* shadows) const {
+    std::array<PreviewRay, kPacketRays> room;
+    std::array<std::optional<PreviewHit>, kPacketRays> hits;
+    std::array<SunAsk, kPacketRays> asks;
+    const std::span rays(room.data(), places.size());
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        rays[k] = camera_ray(places[k].x + 0.5, places[k].y + 0.5, {});
+        rays[k].time = 1.0;
+    }
+    trace_besides(rays, std::span(hits.data(), places.size()), finds);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        asks[k].hit = hits[k] ? &*hits[k] : nullptr;
+        asks[k].to_sun = sun_middle_;
+    }
+    ask_sun(std::span(asks.data(), places.size()), shadows);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+        const PreviewHit* const hit = asks[k].hit;
+        const bool open = options_.transparent && hit == nullptr;
+        const Vec3 behind = open             ? Vec3{}
+                            : hit == nullptr ? behind_everything(rays[k].direction)
+                                             : quick_light(*hit, asks[k].light);
+        const Seen shown = through_glass(rays[k], hit == nullptr ? kNothing : hit->distance, behind);
+        out[k].light = tone_mapped(options_.exposure * shown.light);
+        out[k].alpha = open ? shown.cover : 1.0;
+    }
+}
+
+// The first thing on each ray, of what is told of spheres and what rays find.
+void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
+                            std::span<const SphereFind> finds) const {
+    if (finds.empty()) {
+        preview_.trace(rays, hits);
+        return;
+    }
+    for (std::size_t k = 0; k < rays.size(); ++k) rays[k].reach = finds[k].distance;
+    preview_.trace(rays, hits, SphereRays::left_out);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+        rays[k].reach = kNothing;
+        const double distance = hits[k] ? hits[k]->distance : kNothing;
+        if (finds[k].distance < distance) hits[k].emplace(sphere_hit(finds[k], rays[k]));
+    }
+}
+
+// From the centre to the point that is hit; what is smaller than numbers tell apart faces the ray.
+PreviewHit Painter::sphere_hit(const SphereFind& find, const PreviewRay& ray) const {
+    const Vec3 outward = ray.origin - preview_.spheres().centers[find.sphere] + find.distance * ray.direction;
+    const double size = length(outward);
+    return preview_.sphere_hit(find.sphere, find.distance, size > 0.0 ? outward / size : -ray.direction, ray);
+}
+
+PreviewRay Painter::camera_ray(double x, double y, const SamplePair& lens) const {
+    const double across = (2.0 * x - options_.width) * half_pixel_;
+    const double along = (options_.height - 2.0 * y) * half_pixel_;
+    const Vec3 ahead = frame_.forward + across * frame_.right + along * frame_.up;
+    if (!(camera_.aperture > 0.0)) return {camera_.position, (1.0 / length(ahead)) * ahead};
+    const DiscPoint at = on_disc(lens);
+    const Vec3 offset = 0.5 * camera_.aperture * (at.x * frame_.right + at.y * frame_.up);
+    return {camera_.position + offset, normalized(focus_ * ahead - offset)};
+}
+
+Vec3 Painter::behind_everything(const Vec3& direction) const {
+    return options_.background ? *options_.background : light_.backdrop(direction);
+}
+
+void Painter::trace(std::span<Look> looks, const KnownSpheres& known, Hits& hits) const {
+    std::array<PreviewRay, kPacketRays> rays;
+    std::array<SphereFind, kPacketRays> finds;
+    for (std::size_t k = 0; k < looks.size(); ++k) rays[k] = looks[k].ray;
+    const std::span asked(rays.data(), looks.size());
+    const std::span found(finds.data(), known.listed ? looks.size() : 0);
+    if (known.listed) meet_spheres(*known.listed, asked, found);
+    trace_besides(asked, std::span(hits.data(), looks.size()), found);
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        looks[k].surface = 0;
+        looks[k].hit = hits[k] ? &*hits[k] : nullptr;
+        if (!hits[k]) continue;
+        const bool is_known = known.listed && finds[k].distance == hits[k]->distance;
+        looks[k].surface = is_known ? finds[k].sphere + 1 : 0;
+        looks[k].color = surface_color(*hits[k]);
+        looks[k].left = hits[k]->kind == PreviewHit::Kind::plane ? nearness(*hits[k]) : 1.0;
+    }
+}
+
+}  // namespace ricochet

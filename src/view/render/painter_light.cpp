@@ -1,0 +1,233 @@
+// The light that surfaces send: of sun, sky and lamps, through glass, and their highlights.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "view/render/painter.h"
+#include "view/render/tone.h"
+
+namespace ricochet {
+namespace {
+
+constexpr double kMirror = 0.3;  // surfaces smoother than this show what is around them
+
+// A point of the lamp's disc that faces a surface, and that lies before it; u and v in 0..1.
+Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
+    const Vec3 way = lamp.position - hit.point;
+    const auto [a, b] = tangent_frame(normalized(way));
+    const DiscPoint at = on_disc({u, v});
+    const Vec3 off = std::min(lamp.radius, 0.5 * length(way)) * (at.x * a + at.y * b);
+    return dot(hit.normal, way + off) > 0.0 ? lamp.position + off : lamp.position - off;
+}
+
+}  // namespace
+
+// The light from behind, tinted and covered by the glass surfaces in front of it. Glass covers more where it is seen at
+// a slant, which draws its outline.
+Painter::Seen Painter::through_glass(PreviewRay ray, double distance, const Vec3& behind) const {
+    constexpr int kMostSurfaces = 8;
+    if (!has_glass_) return {behind, 0.0};
+    Vec3 light;
+    double open = 1.0;
+    for (int k = 0; k < kMostSurfaces; ++k) {
+        const std::optional<PreviewHit> glass = preview_.trace_glass(ray);
+        if (!glass || glass->distance >= distance) break;
+        const double slant = 1.0 - std::fabs(dot(glass->normal, ray.direction));
+        const double cover = 0.04 + 0.6 * slant * slant * slant;
+        const double shade = 0.6 + 0.4 * std::fabs(dot(glass->normal, light_.to_sun));
+        const Vec3 bright = light_.has_sun() ? light_.sun : light_.sky_colors.zenith;
+        light += open * cover * shade * (times(glass->color, bright) + gloss(*glass, ray, true));
+        open *= 1.0 - cover;
+        PreviewHit beyond = *glass;
+        beyond.face = -glass->face;
+        const Vec3 next = off_surface(beyond);
+        distance -= length(next - ray.origin);
+        ray.origin = next;
+    }
+    return {light + open * behind, 1.0 - open};
+}
+
+Vec3 Painter::solid_light(const Look& look) const {
+    if (!look.hit) return behind_everything(look.ray.direction);
+    const PreviewHit& hit = *look.hit;
+    Vec3 light = hit.emission + times(look.color, look.sun + look.sky);
+    if (!lamps_.empty()) light += times(look.color, lamp_light(hit, look.get(SamplePurpose::lamp)));
+    if (hit.roughness < 1.0) light += gloss(hit, look.ray, look.sun != Vec3{});
+    return faded(light, look.left);
+}
+
+// Without rays but the one to the sun.
+Vec3 Painter::quick_light(const PreviewHit& hit, const Vec3& sun) const {
+    constexpr double kOpenSky = 0.7;  // the part of the sky that is seen from a surface among others
+    const Vec3 color = surface_color(hit);
+    const Vec3 light = hit.emission + times(color, sun + kOpenSky * light_.sky(hit.normal));
+    return hit.kind == PreviewHit::Kind::plane ? faded(light, nearness(hit)) : light;
+}
+
+// Light of the sun on surfaces, unless something stands in between. Asks without a hit stay as they are.
+void Painter::ask_sun(std::span<SunAsk> asks, const SunShadows* shadows) const {
+    if (!light_.has_sun()) return;
+    std::array<PreviewRay, kPacketRays> rays;
+    std::array<std::size_t, kPacketRays> whose{};
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < asks.size(); ++k) {
+        if (asks[k].hit == nullptr) continue;
+        const PreviewHit& hit = *asks[k].hit;
+        const double cosine = dot(hit.normal, asks[k].to_sun);
+        if (cosine <= 0.0) continue;
+        const Vec3 start = off_surface(hit) + hit.lift;
+        if (shadows != nullptr && shadows->covers(start, asks[k].to_sun)) continue;
+        asks[k].light = cosine * light_.sun;
+        rays[count] = {start, asks[k].to_sun, hit.time};
+        whose[count++] = k;
+    }
+    const SphereRays by_rays = shadows == nullptr ? SphereRays::met : SphereRays::left_out;
+    const std::array<bool, kPacketRays> dark = preview_.occluded(std::span(rays.data(), count), by_rays);
+    for (std::size_t j = 0; j < count; ++j) {
+        if (dark[j]) asks[whose[j]].light = {};
+    }
+}
+
+Vec3 Painter::sun_light(const PreviewHit& hit, const Vec3& to_sun) const {
+    SunAsk ask{&hit, to_sun};
+    ask_sun(std::span(&ask, 1));
+    return ask.light;
+}
+
+// False where a surface is turned away from all of the sun.
+bool Painter::faces_sun(const PreviewHit& hit) const {
+    return light_.has_sun() && dot(hit.normal, sun_middle_) > -light_.sun_size;
+}
+
+void Painter::add_sun_light(std::span<Look> looks, const SunShadows* shadows) const {
+    if (!light_.has_sun()) return;
+    std::array<SunAsk, kPacketRays> asks;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        asks[k] = {};
+        if (!looks[k].hit || !faces_sun(*looks[k].hit)) continue;
+        const SamplePair at = looks[k].get(SamplePurpose::sun);
+        asks[k] = {looks[k].hit, sun_.direction(at.u, at.v)};
+    }
+    ask_sun(std::span(asks.data(), looks.size()), shadows);
+    for (std::size_t k = 0; k < looks.size(); ++k) looks[k].sun = asks[k].light;
+}
+
+// Light from one direction of the sky, or from the sunlit surface that is seen instead of it.
+void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) const {
+    std::array<std::optional<PreviewHit>, kPacketRays> others;
+    std::array<PreviewRay, kPacketRays> rays;
+    std::array<Look*, kPacketRays> whose;
+    std::array<SunAsk, kPacketRays> asks;
+    std::size_t count = 0;
+    for (Look& look : looks) {
+        if (!look.hit) continue;
+        const SamplePair at = look.get(SamplePurpose::sky);
+        rays[count] = {off_surface(*look.hit) + look.hit->lift, cosine_direction(look.hit->normal, at.u, at.v),
+                       look.hit->time};
+        whose[count++] = &look;
+    }
+    // What lamps stand for is left out: its light is theirs.
+    preview_.trace(std::span(rays.data(), count), std::span(others.data(), count), SphereRays::met, GlowRays::left_out);
+    for (std::size_t k = 0; k < count; ++k) {
+        asks[k] = {};
+        if (!others[k]) {
+            whose[k]->sky = light_.sky(rays[k].direction);
+        } else if (faces_sun(*others[k])) {
+            const SamplePair sun_at = whose[k]->get(SamplePurpose::far_sun);
+            asks[k] = {&*others[k], sun_.direction(sun_at.u, sun_at.v)};
+        }
+    }
+    ask_sun(std::span(asks.data(), count), shadows);
+    constexpr Vec3 kFarSky{0.22, 0.25, 0.30};  // stands for all further bounces
+    for (std::size_t k = 0; k < count; ++k) {
+        if (!others[k]) continue;
+        whose[k]->sky = others[k]->emission + times(others[k]->color, asks[k].light + light_.sky_brightness * kFarSky);
+    }
+}
+
+// Light of one lamp, chosen by what each would give if nothing stood in between, for all of them.
+Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
+    const auto given = [&](const Lamp& lamp) {
+        const Vec3 way = lamp.position - hit.point;
+        const double distance = std::max(length(way), lamp.radius);
+        return std::max(0.0, dot(hit.normal, way)) / (distance * distance * distance);
+    };
+    double total = 0.0;
+    for (const Lamp& lamp : lamps_) total += given(lamp) * luminance(lamp.intensity);
+    if (!(total > 0.0)) return {};
+    double left = at.u * total;
+    double within = 0.0;  // the lamp's part, 0..1: what is left of the number that chose it
+    const Lamp* chosen = nullptr;
+    for (const Lamp& lamp : lamps_) {
+        const double part = given(lamp) * luminance(lamp.intensity);
+        if (!(part > 0.0)) continue;
+        chosen = &lamp;
+        within = std::min(left / part, 1.0);
+        left -= part;
+        if (left < 0.0) break;
+    }
+    const Vec3 start = off_surface(hit) + hit.lift;
+    const Vec3 way = point_of(*chosen, hit, within, at.v) - start;
+    if (preview_.occluded({start, normalized(way), hit.time, length(way)})) return {};
+    return chosen->intensity * (total / luminance(chosen->intensity));
+}
+
+// A highlight of the sky and its brightest part; on smooth surfaces of what is around.
+Vec3 Painter::gloss(const PreviewHit& hit, const PreviewRay& ray, bool in_sun) const {
+    const double facing = -dot(hit.normal, ray.direction);
+    const Vec3 mirrored = ray.direction + 2.0 * facing * hit.normal;
+    const double grazing = 1.0 - std::clamp(facing, 0.0, 1.0);
+    const double smooth = 1.0 - hit.roughness;
+    const double grazing2 = grazing * grazing;
+    const double fresnel =
+        0.04 + 0.5 * grazing2 * grazing2 * grazing * std::min(1.0, smooth / (1.0 - kSphereRoughness));
+    // The lobe of a rough surface: Beckmann's width as the power of a cosine (B. Walter et al., EGSR 2007).
+    const double width = std::max(0.02, hit.roughness * hit.roughness);
+    const double power = std::max(1.0, 2.0 / (width * width) - 2.0);
+    Vec3 around = 0.5 * light_.sky(mirrored);
+    if (hit.roughness < kMirror) {
+        if (const auto other = preview_.trace({off_surface(hit) + hit.lift, mirrored, hit.time})) {
+            around = other->emission +
+                     times(other->color, sun_light(*other, sun_.direction(0.5, 0.5)) + light_.sky(other->normal));
+            return fresnel * around;
+        }
+        around = behind_everything(mirrored);
+    }
+    if (in_sun) {
+        constexpr double kDark = 30.0;  // peak^power is below exp(-kDark), which nobody sees
+        const double peak = std::max(0.0, dot(mirrored, light_.to_sun));
+        const double shine = power * (1.0 - peak) < kDark ? std::pow(peak, power) : 0.0;
+        around += 4.0 * shine * std::clamp(std::sqrt(power / 60.0), 0.1, 8.0) * light_.sun;
+    }
+    return fresnel * around;
+}
+
+// Starting points of further rays stand off the surface by what single precision cannot tell apart.
+Vec3 Painter::off_surface(const PreviewHit& hit) const {
+    constexpr double kSinglePrecision = 2e-6;
+    const double scale = std::max(max_abs(hit.point - preview_.origin()), hit.distance);
+    return hit.point + kSinglePrecision * scale * hit.face;
+}
+
+// Planes carry, unless they are plain, a faint chequer that gives the eye a scale.
+Vec3 Painter::surface_color(const PreviewHit& hit) const {
+    if (hit.kind != PreviewHit::Kind::plane || hit.is_plain) return hit.color;
+    const auto [u, v] = tangent_frame(hit.normal);
+    const double cells = std::floor(dot(hit.point, u) / tile_) + std::floor(dot(hit.point, v) / tile_);
+    const bool odd = cells - 2.0 * std::floor(0.5 * cells) > 0.5;
+    return odd ? hit.color : hit.color * (1.0 - 0.10 * std::exp(-hit.distance / (12.0 * extent_)));
+}
+
+// Planes go on for ever; far away they turn into what is behind everything on the horizon.
+Vec3 Painter::faded(const Vec3& light, double left) const { return left * light + (1.0 - left) * horizon_; }
+
+// What is left of a plane's own look.
+double Painter::nearness(const PreviewHit& hit) const {
+    const double reach = hit.distance / (14.0 * extent_);
+    return std::exp(-reach * reach);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,281 @@
+#include "view/render/picture.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/loop_stop.h"
+#include "ricochet/core/parallel.h"
+#include "view/render/filter.h"
+#include "view/render/lamps.h"
+#include "view/render/painter.h"
+#include "view/render/sphere_view.h"
+#include "view/render/sun_shadows.h"
+#include "view/render/tone.h"
+
+namespace ricochet {
+namespace {
+
+// Pixels that are worked on together.
+constexpr int kTileWidth = 4;
+constexpr int kTileHeight = 2;
+static_assert(kTileWidth * kTileHeight == kPacketRays);
+
+Float3 single(const Vec3& v) { return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}; }
+
+std::size_t pixel_count(const PictureOptions& options) {
+    return static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
+}
+
+// A picture whose samples are taken, and the alpha of its pixels where it has one.
+struct Sampled {
+    NoisyPicture picture;
+    std::vector<float> alpha;
+
+    void store(const PixelPlace& place, const PixelLight& pixel) {
+        const std::size_t index = static_cast<std::size_t>(place.y) * static_cast<std::size_t>(picture.width) +
+                                  static_cast<std::size_t>(place.x);
+        picture.light[index] = single(pixel.light);
+        if (!alpha.empty()) alpha[index] = static_cast<float>(pixel.alpha);
+        if (picture.features.empty()) return;
+        picture.variance[index] = static_cast<float>(pixel.variance);
+        picture.features[index] = {single(pixel.normal), single(pixel.albedo), static_cast<float>(pixel.distance),
+                                   static_cast<float>(pixel.slope)};
+    }
+};
+
+// Of what glows.
+std::vector<Lamp> lamps_in(std::span<const Sprites> layers, const Preview& preview) {
+    constexpr std::size_t kMostLamps = 48;
+    const auto glowing = std::find_if(layers.begin(), layers.end(), [](const Sprites& layer) { return layer.glow; });
+    return lamps_of(glowing == layers.end() ? Sprites{} : *glowing, preview.glowing_lines(), kMostLamps);
+}
+
+// All layers: what covers as one, and what only adds light, which no cover bounds. Empty where nothing is drawn.
+struct LaidOver {
+    SpriteLayer cover;
+    std::vector<Vec3> glow;
+};
+LaidOver laid_over_each_other(std::span<const Sprites> layers, const Preview& preview, const Camera& camera,
+                              const PictureOptions& options) {
+    LaidOver all;
+    for (const Sprites& sprites : layers) {
+        if (sprites.empty()) continue;
+        SpriteLayer next = draw_sprites(sprites, preview, camera, options.width, options.height);
+        for (std::size_t i = 0; i < all.glow.size(); ++i) {
+            all.glow[i] = next.transmittance[i] * all.glow[i] + (sprites.glow ? next.light[i] : Vec3{});
+        }
+        SpriteLayer& cover = all.cover;
+        if (sprites.glow) {
+            if (all.glow.empty()) all.glow = std::move(next.light);
+        } else if (cover.light.empty()) {
+            cover = std::move(next);
+        } else {
+            for (std::size_t i = 0; i < cover.light.size(); ++i) {
+                cover.light[i] = next.light[i] + next.transmittance[i] * cover.light[i];
+                cover.transmittance[i] *= next.transmittance[i];
+            }
+        }
+    }
+    return all;
+}
+
+// Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and keeps what it gives.
+template <class Paint>
+void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
+    std::array<PixelPlace, kPacketRays> places;
+    std::array<PixelLight, kPacketRays> lights;
+    const int width = out.picture.width;
+    for (int top = begin; top < end; top += kTileHeight) {
+        for (int left = 0; left < width; left += kTileWidth) {
+            poll_loop_stop();
+            std::size_t count = 0;
+            for (int y = top; y < std::min(top + kTileHeight, end); ++y) {
+                for (int x = left; x < std::min(left + kTileWidth, width); ++x) places[count++] = {x, y};
+            }
+            paint(std::span<const PixelPlace>(places.data(), count), std::span(lights.data(), count));
+            for (std::size_t k = 0; k < count; ++k) out.store(places[k], lights[k]);
+        }
+    }
+}
+
+// A draft's spheres and their shadows, found without rays where that pays.
+class DraftSpheres {
+public:
+    DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
+        : width_(options.width), view_(preview.spheres(), camera, options.width, options.height) {
+        pays_ = view_.pays() && !view_.empty();
+        const auto sun = painter.sun_middle();
+        if (sun && pays_) shadows_.emplace(preview.spheres(), *sun);
+        if (shadows_ && !shadows_->pays()) shadows_.reset();
+        if (!pays_ || (sun && !shadows_)) preview.prepare_sphere_rays();
+    }
+
+    // The rows [begin, end) of one band of the view.
+    void paint(const Painter& painter, int begin, int end, Sampled& out) const {
+        std::vector<SphereFind> finds;
+        if (pays_) {
+            finds.resize(static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(width_));
+            view_.find(begin / SphereView::band_rows(), finds);
+        }
+        std::array<SphereFind, kPacketRays> here;
+        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
+            for (std::size_t k = 0; k < places.size() && !finds.empty(); ++k) {
+                here[k] = finds[static_cast<std::size_t>(places[k].y - begin) * static_cast<std::size_t>(width_) +
+                                static_cast<std::size_t>(places[k].x)];
+            }
+            const std::span<const SphereFind> seen(here.data(), finds.empty() ? 0 : places.size());
+            painter.quick_pixels(places, lights, seen, shadows_ ? &*shadows_ : nullptr);
+        });
+    }
+
+private:
+    int width_;
+    SphereView view_;
+    bool pays_ = false;
+    std::optional<SunShadows> shadows_;
+};
+
+// What is known of spheres at rest without rays, where that is faster: those that rays from the camera may meet, tile
+// by tile, if the lens has no width, and their shadows.
+class TiledSpheres {
+public:
+    TiledSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter) {
+        if (preview.spheres().centers.empty() || preview.spheres_move()) return;
+        if (!(camera.aperture > 0.0)) {
+            view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
+            if (!view_->pays()) view_.reset();
+        }
+        // The grid takes up to 400 bytes for each sphere; rays to a wide sun come through too many of its cells.
+        constexpr std::size_t kMostSpheres = 500000;
+        constexpr double kWidestSun = 0.1;
+        if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;
+        if (const auto sun = painter.sun_middle()) {
+            shadows_.emplace(preview.spheres(), *sun);
+            if (!shadows_->pays(painter.sun_slope())) shadows_.reset();
+        }
+    }
+
+    // The rows [begin, end) of one row of tiles.
+    void paint(const Painter& painter, int begin, int end, Sampled& out) const {
+        constexpr std::size_t kMost = 256;  // spheres of a tile; for more, rays are faster
+        SphereTiles tiles;
+        if (view_) tiles = view_->tiles(begin, end, kTileWidth);
+        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
+            KnownSpheres known{{}, shadows_ ? &*shadows_ : nullptr};
+            if (view_) known.listed = tiles.of(static_cast<std::size_t>(places[0].x / kTileWidth));
+            if (known.listed && known.listed->size() > kMost) known.listed.reset();
+            painter.pixels(places, lights, known);
+        });
+    }
+
+private:
+    std::optional<SphereView> view_;
+    std::optional<SunShadows> shadows_;
+};
+
+Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps) {
+    const Painter painter(preview, camera, options, std::move(lamps));
+    std::optional<DraftSpheres> draft;
+    std::optional<TiledSpheres> tiled;
+    if (options.quick) {
+        draft.emplace(preview, camera, options, painter);
+    } else {
+        tiled.emplace(preview, camera, options, painter);
+    }
+    const std::size_t pixels = pixel_count(options);
+    // A draft is not filtered, and needs the light alone.
+    const std::size_t filtered = options.quick ? 0 : pixels;
+    Sampled out{{options.width, options.height, std::vector<Float3>(pixels), std::vector<float>(filtered),
+                 std::vector<PixelFeatures>(filtered)},
+                std::vector<float>(options.transparent ? pixels : 0)};
+    const auto rows = static_cast<std::size_t>(options.height);
+    std::atomic<std::size_t> rows_done{0};
+    const int block = options.quick ? SphereView::band_rows() : kTileHeight;
+    parallel_for_blocks(rows, static_cast<std::size_t>(block), [&](std::size_t, std::size_t begin, std::size_t end) {
+        const auto [top, bottom] = std::pair(static_cast<int>(begin), static_cast<int>(end));
+        if (draft) {
+            draft->paint(painter, top, bottom, out);
+        } else {
+            tiled->paint(painter, top, bottom, out);
+        }
+        for (std::size_t row = begin; row < end && options.progress; ++row) {
+            options.progress(static_cast<double>(++rows_done) / static_cast<double>(rows));
+        }
+    });
+    return out;
+}
+
+// A pixel of the picture as shown, with the layers over it. The curve of the tones is for what covers as if it covered
+// all, so that what covers half is half of that; it would make thin cover too bright.
+void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& light, double& alpha) {
+    if (!layers.cover.light.empty()) {
+        const double open = layers.cover.transmittance[i];
+        if (open < 1.0) {
+            const Vec3 shown = tone_mapped(exposure / (1.0 - open) * layers.cover.light[i]);
+            light = open * light + (1.0 - open) * shown;
+            alpha = 1.0 - open * (1.0 - alpha);
+        }
+    }
+    if (!layers.glow.empty()) {
+        const Vec3 shown = tone_mapped(exposure * layers.glow[i]);
+        light += shown;
+        alpha = std::max(alpha, std::min(1.0, luminance(shown)));
+    }
+}
+
+// Bytes of a pixel whose light is that of its covered part alone: PNG wants colours that are not multiplied by alpha.
+void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
+    if (!image.alpha.empty()) {
+        if (alpha > 0.0) light = light / alpha;
+        image.alpha[index] = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(alpha, 0.0, 1.0)));
+    }
+    std::uint8_t* pixel = &image.rgb[3 * index];
+    pixel[0] = display_channel(light.x);
+    pixel[1] = display_channel(light.y);
+    pixel[2] = display_channel(light.z);
+}
+
+}  // namespace
+
+Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
+                     std::span<const Sprites> layers) {
+    const bool are_drawn =
+        std::any_of(layers.begin(), layers.end(), [](const Sprites& layer) { return !layer.empty(); });
+    if (!options.quick || are_drawn) preview.prepare_sphere_rays();
+    const LaidOver over = laid_over_each_other(layers, preview, camera, options);
+    Sampled all = sampled(preview, camera, options, options.quick ? std::vector<Lamp>{} : lamps_in(layers, preview));
+    if (options.filter && !options.quick) filter_noise(all.picture);
+    const std::size_t pixels = pixel_count(options);
+    Image image{options.width, options.height, {}, {}};
+    image.rgb.resize(3 * pixels);
+    if (options.transparent) image.alpha.resize(pixels);
+    parallel_for_blocks(pixels, 4096, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Float3& shown = all.picture.light[i];
+            Vec3 light{shown.x, shown.y, shown.z};
+            double alpha = options.transparent ? all.alpha[i] : 1.0;
+            lay_over(over, i, options.exposure, light, alpha);
+            store_pixel(image, i, light, alpha);
+        }
+    });
+    return image;
+}
+
+double picture_bytes(int width, int height, bool has_sprites) {
+    // The picture, the copy from which PNG is packed, and what it is packed into, which grows by doubling.
+    constexpr double kPixel = 5.0 * 4.0;
+    constexpr double kFiltered = 2.0 * (sizeof(Float3) + sizeof(float)) + sizeof(PixelFeatures) + sizeof(float);
+    constexpr double kSprites = sizeof(Vec3) + sizeof(double);
+    return static_cast<double>(width) * static_cast<double>(height) *
+           (kPixel + kFiltered + (has_sprites ? kSprites : 0.0));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,131 @@
+#include "view/render/pixel_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "view/render/tone.h"
+
+namespace ricochet {
+namespace {
+
+// The differences between a pixel's samples, of the root of what is shown, as the eye and the picture's bytes have it.
+constexpr double kEven = 0.06;            // below which a pixel needs no more rays
+constexpr double kRaysByContrast = 20.0;  // for a difference of 1
+constexpr int kRaysUnseen = 4;            // where samples may have missed an outline
+
+Vec3 rooted(const Vec3& shown) { return {std::sqrt(shown.x), std::sqrt(shown.y), std::sqrt(shown.z)}; }
+
+double part(double some, double all) { return all > 0.0 ? std::max(0.0, some) / all : 1.0; }
+
+}  // namespace
+
+void PixelSum::add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover) {
+    if (samples_ < kGlances) {
+        kept_[static_cast<std::size_t>(samples_)] = {glance.own, glance.plain, shown};
+        light_ += light - glance.own;
+        plain_ += glance.plain;
+    }
+    if (samples_ == 0) surface_ = glance.surface;
+    surfaces_differ_ = surfaces_differ_ || glance.surface != surface_;
+    farthest_ = std::max(farthest_, glance.distance > 0.0 ? glance.distance : std::numeric_limits<double>::infinity());
+    ++samples_;
+    sum_.light += shown;
+    const double bright = luminance(shown);
+    sum_of_squares_ += bright * bright;
+    cover_ += cover;
+    seen_by_samples_ += glance.covers ? 1.0 : 0.0;
+    add_features(glance);
+}
+
+void PixelSum::add(const Glance& glance) {
+    kept_[static_cast<std::size_t>(rays_)] = {glance.own, glance.plain, {}};
+    add_features(glance);
+}
+
+void PixelSum::add_features(const Glance& glance) {
+    ++rays_;
+    sum_.normal += glance.normal;
+    sum_.albedo += glance.albedo;
+    sum_.distance += glance.distance;
+    sum_.slope += glance.slope;
+    seen_ += glance.covers ? 1.0 : 0.0;
+}
+
+// How much of its plain light the pixel has.
+Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
+
+// What a sample would show if its surface were lit as the mean of the pixel is.
+Vec3 PixelSum::expected(const Sample& sample, const Vec3& lit) const {
+    return tone_mapped(exposure_ * (sample.own + times(lit, sample.plain)));
+}
+
+// Of what the samples would show.
+double PixelSum::contrast() const {
+    const Vec3 all = lit();
+    Vec3 lower = rooted(expected(kept_[0], all));
+    Vec3 upper = lower;
+    for (int k = 1; k < samples_; ++k) {
+        const Vec3 next = rooted(expected(kept_[static_cast<std::size_t>(k)], all));
+        lower = min(lower, next);
+        upper = max(upper, next);
+    }
+    return max_abs(upper - lower);
+}
+
+int PixelSum::rays_wanted(bool has_outline) const {
+    if (samples_ >= kGlances) return 0;
+    const int most = kGlances - samples_;
+    const double differences = contrast();
+    const bool is_even = differences < kEven;
+    if (has_outline && surfaces_differ_) return is_even ? 0 : most;
+    const int by_contrast = is_even ? 0 : static_cast<int>(kRaysByContrast * differences);
+    return std::min(most, std::max(by_contrast, has_outline ? kRaysUnseen : 0));
+}
+
+PixelLight PixelSum::mean() const {
+    PixelLight mean = sum_;
+    mean.light = sum_.light / samples_;
+    mean.normal = sum_.normal / rays_;
+    mean.albedo = sum_.albedo / rays_;
+    mean.distance = sum_.distance / rays_;
+    mean.slope = sum_.slope / rays_;
+    mean.alpha = cover_ / samples_;
+    const double bright = luminance(mean.light);
+    // Of one sample nothing is known: it may be off by as much as it is.
+    const double spread = samples_ == 1 ? bright * bright : sum_of_squares_ / samples_ - bright * bright;
+    mean.variance = std::max(0.0, spread) / std::max(1, samples_ - 1);
+    if (rays_ > samples_) correct(mean);
+    return mean;
+}
+
+// From the mean of the samples to that of all rays.
+void PixelSum::correct(PixelLight& mean) const {
+    const Vec3 all = lit();
+    Vec3 few, many;
+    double left = 0.0;  // sums of squares: of what is not expected, and of what is
+    double square = 0.0;
+    double rest = 0.0;
+    for (int k = 0; k < rays_; ++k) {
+        const Sample& sample = kept_[static_cast<std::size_t>(k)];
+        const Vec3 here = expected(sample, all);
+        many += here;
+        square += luminance(here) * luminance(here);
+        if (k >= samples_) continue;
+        few += here;
+        const double off = luminance(sample.shown - here);
+        rest += off;
+        left += off * off;
+    }
+    const Vec3 light = mean.light + many / rays_ - few / samples_;
+    mean.light = {std::max(0.0, light.x), std::max(0.0, light.y), std::max(0.0, light.z)};
+    mean.alpha = std::clamp(mean.alpha + seen_ / rays_ - seen_by_samples_ / samples_, 0.0, 1.0);
+    const double bright = luminance(many / rays_);
+    const double of_rest = left / samples_ - (rest / samples_) * (rest / samples_);
+    // Rays of a net miss the mean by about their spread over their number to the power 3/4 (edges).
+    const double of_rays = std::max(0.0, square / rays_ - bright * bright) / std::pow(rays_, 1.5);
+    if (samples_ > 1) mean.variance = std::max(0.0, of_rest) / (samples_ - 1) + of_rays;
+}
+
+}  // namespace ricochet

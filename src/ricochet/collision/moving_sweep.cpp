@@ -9,6 +9,7 @@
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
 
 namespace ricochet {
 namespace {
@@ -35,13 +36,6 @@ Path straight_path(const Vec3& from, const Vec3& to, double duration) {
     return path;
 }
 
-Box3 box_of(const Path& path) {
-    Box3 box{min(path.c[0], path.end), max(path.c[0], path.end)};
-    if (path.degree == 1) return box;
-    for (const Vec3& point : path.control_points()) box.include(point);
-    return box;
-}
-
 /// Bounds of the derivatives of a path.
 DerivativeBounds bounds_of(const Path& path) {
     const double t = path.duration;
@@ -58,7 +52,7 @@ DerivativeBounds bounds_of(const Path& path) {
 }  // namespace
 
 Box3 reach_of(const Path& path, double radius) {
-    const Box3 box = box_of(path);
+    const Box3 box = box_of(path, path.duration);
     return grown(box, radius + kCandidateSlack * (std::max(max_abs(box.lower), max_abs(box.upper)) + radius));
 }
 

@@ -50,7 +50,6 @@ public:
     void field(double opening, std::span<Vec3> field, TreeWork* work = nullptr) const;
     /// f.
     void potential(double opening, std::span<double> potential) const;
-    [[nodiscard]] std::size_t group_count() const { return nodes_.size(); }
 
 private:
     struct Node {

@@ -1,3 +1,4 @@
+#include "ricochet/core/bisection.h"
 #include "ricochet/dynamics/springs.h"
 
 #include <fmt/format.h>
@@ -23,14 +24,11 @@ double asinh_of(double t) {
 
 /// The x > 0 with sinh(x) / x = ratio > 1, by bisection: the function grows from 1.
 double solve_sinh_ratio(double ratio) {
-    double low = 0.0;
     double high = 1.0;
     while (sinh_of(high) < ratio * high) high *= 2.0;
-    for (int i = 0; i < 100; ++i) {
-        const double middle = 0.5 * (low + high);
-        (sinh_of(middle) < ratio * middle ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
+    constexpr int kHalvings = 100;
+    const Bracket found = bisect(0.0, high, kHalvings, [&](double x) { return sinh_of(x) < ratio * x; });
+    return 0.5 * (found.low + found.high);
 }
 
 }  // namespace

@@ -43,7 +43,6 @@ public:
     [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
         return !degenerate_.empty() && degenerate_[triangle] != 0;
     }
-    [[nodiscard]] bool has_degenerate() const { return !degenerate_.empty(); }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const Box3& box() const { return box_; }
     /// For spheres up to that radius, m; there is one for each power of two.

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/queries/mesh_index.h"
 
@@ -59,24 +60,6 @@ bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
 
 // All places: triangles that share what the ray passes through are joined.
 
-/// Candidates that are one place, by the smallest of their numbers.
-class Joined {
-public:
-    explicit Joined(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    [[nodiscard]] std::uint32_t root(std::uint32_t k) const {
-        while (parent_[k] != k) k = parent_[k];
-        return k;
-    }
-    void join(std::uint32_t x, std::uint32_t y) {
-        x = root(x);
-        y = root(y);
-        parent_[std::max(x, y)] = std::min(x, y);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
-
 /// A part of a triangle that the ray passes through, and whose it is.
 struct Passed {
     FeatureKey key;
@@ -102,8 +85,8 @@ std::vector<Passed> features_passed(const std::vector<Candidate>& candidates) {
     return passed;
 }
 
-Joined join(const std::vector<Candidate>& candidates) {
-    Joined joined(candidates.size());
+DisjointSets join(const std::vector<Candidate>& candidates) {
+    DisjointSets joined(candidates.size());
     const std::vector<Passed> passed = features_passed(candidates);
     for (std::size_t i = 1; i < passed.size(); ++i) {
         if (FeatureKey::order(passed[i - 1].key, passed[i].key) == 0) {
@@ -134,12 +117,12 @@ int moved_crossing(const Ray& ray, const MetTriangle& met) {
 void write_places(const RayQuestion& question, const MeshIndex& mesh, const std::vector<Candidate>& candidates,
                   std::vector<RayPlace>& places) {
     constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-    const Joined joined = join(candidates);
+    DisjointSets joined = join(candidates);
     std::vector<std::size_t> place_of(candidates.size(), kNone);
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
         const auto& [triangle, met] = candidates[k];
         if (mesh.is_degenerate(triangle)) continue;  // it has only joined others
-        std::size_t& number = place_of[joined.root(k)];
+        std::size_t& number = place_of[joined.find(k)];
         if (number == kNone) {
             number = places.size();
             places.push_back({met.meeting.t, triangle, 0, true});

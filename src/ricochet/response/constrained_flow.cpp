@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flight.h"
@@ -84,18 +85,6 @@ private:
     std::uint64_t particle_;
 };
 
-/// The end of [0, duration] up to which something holds that holds at first: to the last bit.
-template <class Holds>
-double last_time(double duration, const Holds& holds) {
-    double held = 0.0;
-    double free = duration;
-    for (int k = 0; k < kReleaseHalvings; ++k) {
-        const double middle = 0.5 * (held + free);
-        (holds(middle) ? held : free) = middle;
-    }
-    return free;
-}
-
 /// Of the next chord along a curved surface, rad, after so many in the step. Spheres that roll round many edges in one
 /// step would spend their budget with the finest ones: 500 of 0.01 rad are 5 rad, and these 50.
 double chord_angle(int chords) {
@@ -154,7 +143,7 @@ bool ConstrainedFlow::leads_in(double time) const {
 
 double ConstrainedFlow::time_to_release(double remaining) const {
     if (flow_.is_steady() || leads_in(state_.time + remaining)) return remaining;
-    return last_time(remaining, [&](double s) { return leads_in(state_.time + s); });
+    return bisect(0.0, remaining, kReleaseHalvings, [&](double s) { return leads_in(state_.time + s); }).high;
 }
 
 Path ConstrainedFlow::next_path(double duration, double reach) {
@@ -249,11 +238,12 @@ ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const
     const auto let_go = let_go_by(part.path.end, state_.time + part.path.duration);
     if (!let_go) return part;
     part.ended_by = *let_go;
-    const double until = last_time(part.path.duration, [&](double s) {
-        const std::optional<std::size_t> by = s > 0.0 ? let_go_by(arc(s).end, state_.time + s) : std::nullopt;
-        if (by) part.ended_by = *by;
-        return !by;
-    });
+    const double until = bisect(0.0, part.path.duration, kReleaseHalvings, [&](double s) {
+                             const std::optional<std::size_t> by =
+                                 s > 0.0 ? let_go_by(arc(s).end, state_.time + s) : std::nullopt;
+                             if (by) part.ended_by = *by;
+                             return !by;
+                         }).high;
     part.path = arc(until);
     return part;
 }
@@ -321,7 +311,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
     };
     Part part{path, 0};
     if (!holds(path.duration)) {
-        const double until = last_time(path.duration, holds);
+        const double until = bisect(0.0, path.duration, kReleaseHalvings, holds).high;
         part.ended_by = weakest(flow_at(until));
         Surfaces surfaces;
         const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);

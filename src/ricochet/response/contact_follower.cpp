@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/along_surfaces.h"
@@ -29,21 +30,6 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
-/// Times, s, before and from which something is so, found by halving; it is at `high`.
-struct Change {
-    double before = 0.0;
-    double from = 0.0;
-};
-template <class IsSo>
-Change first_change(double high, int halvings, const IsSo& is_so) {
-    double low = 0.0;
-    for (int k = 0; k < halvings; ++k) {
-        const double middle = 0.5 * (low + high);
-        (is_so(middle) ? high : low) = middle;
-    }
-    return {low, high};
-}
-
 /// How long an arc lasts, s, and how it ends.
 struct ArcEnd {
     double time = 0.0;
@@ -54,14 +40,14 @@ ArcEnd end_of(const ContactArc& arc) {
     using Hold = ContactArc::Hold;
     constexpr int kHalvings = 40;
     const auto hold_at = [&](double time) { return arc.hold_on(arc.at(time), time); };
-    const auto changes = [&](double time) { return hold_at(time) != Hold::as_before; };
+    const auto is_as_before = [&](double time) { return hold_at(time) == Hold::as_before; };
     const double longest = arc.longest();
-    if (!changes(longest)) return {longest};
-    const Change change = first_change(longest, kHalvings, changes);
-    const ContactArc::State from = arc.at(change.from);
-    if (arc.jumps(arc.at(change.before), from)) return {change.before, false, true};
-    const Hold hold = arc.hold_on(from, change.from);
-    return {hold == Hold::turned ? change.before : change.from, hold == Hold::none};
+    if (is_as_before(longest)) return {longest};
+    const Bracket change = bisect(0.0, longest, kHalvings, is_as_before);
+    const ContactArc::State from = arc.at(change.high);
+    if (arc.jumps(arc.at(change.low), from)) return {change.low, false, true};
+    const Hold hold = arc.hold_on(from, change.high);
+    return {hold == Hold::turned ? change.low : change.high, hold == Hold::none};
 }
 
 }  // namespace
@@ -289,10 +275,10 @@ void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way
 double ContactFollower::time_on_pieces(const Path& path) const {
     constexpr int kLooks = 4;
     constexpr int kHalvings = 32;
-    const auto has_passed = [&](double time) { return held_.touches_next_part(path.position(time)); };
+    const auto is_on_part = [&](double time) { return !held_.touches_next_part(path.position(time)); };
     for (int k = 1; k <= kLooks; ++k) {
         const double time = k < kLooks ? (static_cast<double>(k) / kLooks) * path.duration : path.duration;
-        if (has_passed(time)) return first_change(time, kHalvings, has_passed).from;
+        if (!is_on_part(time)) return bisect(0.0, time, kHalvings, is_on_part).high;
     }
     return path.duration;
 }

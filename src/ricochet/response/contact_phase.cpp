@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_motion.h"
@@ -326,12 +327,9 @@ double ContactPhase::time_at_rest() {
         if (!rests_on(high)) break;
         low = high;
     }
-    for (int k = 0; k < kHalvings && low < high; ++k) {
-        const double middle = 0.5 * (low + high);
-        (rests_on(middle) ? low : high) = middle;
-    }
+    const Bracket rest = bisect(low, high, kHalvings, [&](double time) { return rests_on(time); });
     static_cast<void>(rests_on(0.0));  // loads the manifold as it is now
-    return low < left ? high : left;
+    return rest.low < left ? rest.high : left;
 }
 
 /// True where it would rest at a time, s from now.

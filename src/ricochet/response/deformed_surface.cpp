@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/sweep/closest_point.h"
 
@@ -255,12 +256,7 @@ double time_over(const DeformingColliders& deforming, const DeformedContact& con
     const double most = beyond_all(0.0) + kOverRim * deforming.offset_of(contact.surface.surface);
     const auto is_over = [&](double at) { return beyond_all(at) <= most; };
     if (is_over(duration)) return duration;
-    double on = 0.0;
-    double off = duration;
-    for (int k = 0; k < kRimHalvings; ++k) {
-        const double middle = 0.5 * (on + off);
-        (is_over(middle) ? on : off) = middle;
-    }
+    const double off = bisect(0.0, duration, kRimHalvings, is_over).high;
     // What is shorter than the clock can tell does not lead off it.
     return std::min(off + std::max(kPastRim * duration, kSimultaneousUlps * ulp(begin)), duration);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/impact_answer.h"
@@ -293,13 +294,9 @@ double restitution_of_damping(double ratio) {
 double damping_ratio(double restitution) {
     if (restitution >= 1.0) return 0.0;
     const double wanted = std::max(restitution, kMinPenaltyRestitution);
-    double low = 0.0;
-    double high = kLargestRatio;
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (low + high);
-        (restitution_of_damping(middle) > wanted ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
+    const Bracket found =
+        bisect(0.0, kLargestRatio, kHalvings, [&](double ratio) { return restitution_of_damping(ratio) > wanted; });
+    return 0.5 * (found.low + found.high);
 }
 
 double contact_stiffness(const ResponseSettings& settings, double mass) {

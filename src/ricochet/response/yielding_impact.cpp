@@ -1,5 +1,6 @@
 #include "ricochet/response/yielding_impact.h"
 
+#include "ricochet/core/bisection.h"
 #include "ricochet/core/symmetric_matrix.h"
 #include "ricochet/core/tolerances.h"
 
@@ -116,14 +117,8 @@ private:
             const Vec3 by = impulse_with(given, friction * along);
             return dot(by, normal_) > 0.0 && !gains(by) && is_allowed(by);
         };
-        double low = 0.0;
-        double high = most;
-        if (is_sound(high)) low = high;
-        for (int k = 0; k < kHalvings && low < high; ++k) {
-            const double middle = 0.5 * (low + high);
-            (is_sound(middle) ? low : high) = middle;
-        }
-        return impulse_with(given, low * along);
+        const double friction = is_sound(most) ? most : bisect(0.0, most, kHalvings, is_sound).low;
+        return impulse_with(given, friction * along);
     }
 
     /// True if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.

@@ -33,10 +33,11 @@ inline constexpr std::size_t blocks_of(std::size_t particles) {
     return (particles + kParticleBlock - 1) / kParticleBlock;
 }
 
-/// Numbers of entries in the particles' arrays: [begin, end).
+/// Entries [begin, end) of the particles' arrays that are moved together: a spawn generation of a step.
 struct ParticleRange {
     std::size_t begin = 0;
     std::size_t end = 0;
+    bool are_children = false;  ///< true if particles have spawned them in this step
 
     [[nodiscard]] std::size_t size() const { return end - begin; }
     [[nodiscard]] bool empty() const { return begin == end; }

@@ -72,7 +72,7 @@ struct Simulation::Impl {
     void emit_particles(const TimeSpan& step);
     void move_batch(const ParticleRange& batch, const TimeSpan& step);
     [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
-    [[nodiscard]] TimeSpan plan_coupled_motion(const TimeSpan& rest);
+    [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest);
     [[nodiscard]] double plan_on_first_rank(const TimeSpan& rest);
     [[nodiscard]] double plan_coupled(const TimeSpan& rest);
     [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
@@ -208,13 +208,12 @@ struct Simulation::Impl {
     std::unique_ptr<CloudMotion> clouds;  ///< null where no particles go with others
     std::unique_ptr<PairMotion> pairs;    ///< null where spheres do not meet each other
     Retirement retirement;
-    ReturnPoint return_point;         ///< for steps that are stopped
-    ContactCallback callback;         ///< of on_contact(); may be empty
-    bool inside_step = false;         ///< a step has begun and not ended, perhaps by an error
-    bool is_stepping = false;         ///< it runs
-    bool is_moving_children = false;  ///< those that were born in the step
-    bool is_reporting = false;        ///< the callback runs
-    bool has_new_callback = false;    ///< on_contact() was called by the callback
+    ReturnPoint return_point;       ///< for steps that are stopped
+    ContactCallback callback;       ///< of on_contact(); may be empty
+    bool inside_step = false;       ///< a step has begun and not ended, perhaps by an error
+    bool is_stepping = false;       ///< it runs
+    bool is_reporting = false;      ///< the callback runs
+    bool has_new_callback = false;  ///< on_contact() was called by the callback
 };
 
 }  // namespace ricochet

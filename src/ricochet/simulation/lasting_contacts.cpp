@@ -50,9 +50,10 @@ bool LastingContacts::is_sound(std::uint64_t next_id) const {
 
 void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
+    are_children_ = range.are_children;
     wakings_ = 0;
     traces_.is_asleep.assign(range.size(), 0);
-    if (range.begin != 0 || piles_.empty()) return;
+    if (are_children_ || piles_.empty()) return;
     std::vector<std::uint64_t> gone;
     std::vector<std::uint64_t> carried;
     for (const std::uint64_t particle : piles_.particles()) {
@@ -172,7 +173,7 @@ bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, doub
 }
 
 bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& step) {
-    if (piles_.empty() || first_ != 0) return false;
+    if (piles_.empty() || are_children_) return false;
     std::vector<std::uint64_t> hit;
     double largest = 1.0;  // times the radius of one that is hit
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
@@ -193,7 +194,7 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
 std::vector<std::uint64_t> LastingContacts::those_pushed(std::span<const PairImpactRecord> impacts,
                                                          const DenseTrace& trace, const TimeSpan& step) const {
     std::vector<std::uint64_t> pushed;
-    if (piles_.empty() || first_ != 0) return pushed;
+    if (piles_.empty() || are_children_) return pushed;
     for (const PairImpactRecord& impact : impacts) {
         if (piles_.has(impact.first) == piles_.has(impact.second)) continue;
         if (impact.approach > parts_.response.rules().settings.resting_speed)
@@ -245,7 +246,7 @@ bool LastingContacts::is_beside_movers(const Vec3& center, double radius) const 
 
 void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
                               DenseTrace& trace) const {
-    if (first_ != 0 || !parts_.response.rules().forces.is_steady()) return;
+    if (are_children_ || !parts_.response.rules().forces.is_steady()) return;
     const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const NetworkMember& member) {
         return is_beside_movers(member.moving->state.position, member.radius);
     });
@@ -291,8 +292,8 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
 
 void LastingContacts::end(std::span<const DenseTrace* const> traces, std::span<const PairImpactRecord> impacts,
                           const TimeSpan& step) {
-    if (first_ == 0) loads_.pass_on(piles_, pushes_on_sleepers(traces, impacts), step);
-    if (first_ != 0) {
+    if (!are_children_) loads_.pass_on(piles_, pushes_on_sleepers(traces, impacts), step);
+    if (are_children_) {
         std::vector<NetworkMemory::Entry> pressed;
         for (const DenseTrace* const trace : traces) {
             pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
@@ -354,7 +355,7 @@ void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, co
 
 /// Among colliders that move the verifier follows everybody's time.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
-    if (piles_.empty() || first_ != 0 || parts_.response.rules().bodies == nullptr) return;
+    if (piles_.empty() || are_children_ || parts_.response.rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
         if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);

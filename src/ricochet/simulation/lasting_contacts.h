@@ -103,7 +103,8 @@ private:
     [[nodiscard]] double relative_gap(const NetworkKey& key) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;  // of the range: numbers count from it
+    std::size_t first_ = 0;      // of the range: numbers count from it
+    bool are_children_ = false;  // the range holds particles that were spawned in this step
     PairTraces traces_;
     NetworkMemory memory_;
     SleepingPiles piles_;

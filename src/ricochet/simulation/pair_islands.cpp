@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "ricochet/core/parallel.h"
@@ -41,8 +40,7 @@ void PairIslands::work_off(const ParticleRange& range, const TimeSpan& step) {
 }
 
 void PairIslands::find_islands(const ParticleRange& range) {
-    parents_.resize(range.size());
-    std::iota(parents_.begin(), parents_.end(), 0U);
+    sets_.reset(range.size());
     std::vector<std::uint32_t> involved;
     for (std::size_t n = 0; n < plans_.pairs().size(); ++n) {
         if (!plans_.may_meet(n)) continue;
@@ -58,17 +56,11 @@ void PairIslands::find_islands(const ParticleRange& range) {
     islands_ = islands_of(involved);
 }
 
-std::uint32_t PairIslands::root_of(std::uint32_t k) {
-    while (parents_[k] != k) k = parents_[k] = parents_[parents_[k]];
-    return k;
-}
-
 /// False where they are of one island already.
 bool PairIslands::join(std::uint32_t a, std::uint32_t b) {
-    a = root_of(a);
-    b = root_of(b);
-    if (a == b) return false;
-    parents_[std::max(a, b)] = std::min(a, b);
+    a = sets_.find(a);
+    b = sets_.find(b);
+    if (!sets_.join(a, b)) return false;
     joined_.push_back(a);
     joined_.push_back(b);
     return true;
@@ -76,13 +68,13 @@ bool PairIslands::join(std::uint32_t a, std::uint32_t b) {
 
 /// Islands in the order of their lowest particles, which lead them.
 std::vector<PairIslands::Island> PairIslands::islands_of(const std::vector<std::uint32_t>& involved) {
-    is_involved_.assign(parents_.size(), 0);
+    is_involved_.assign(sets_.size(), 0);
     for (const std::uint32_t k : involved) is_involved_[k] = 1;
-    island_of_.resize(parents_.size());
+    island_of_.resize(sets_.size());
     std::vector<Island> islands;
     for (std::uint32_t k = 0; k < is_involved_.size(); ++k) {
         if (is_involved_[k] == 0) continue;
-        const std::uint32_t root = root_of(k);
+        const std::uint32_t root = sets_.find(k);
         if (root == k) {
             island_of_[k] = islands.size();
             islands.emplace_back();
@@ -244,11 +236,11 @@ bool PairIslands::join_those_met() {
 
 /// All of the islands that are joined, whoever leads them: numbers must not decide what lies on them.
 std::vector<std::uint32_t> PairIslands::members_joined() {
-    std::vector<std::uint8_t> is_joined(parents_.size(), 0);
-    for (const std::uint32_t k : joined_) is_joined[root_of(k)] = 1;
+    std::vector<std::uint8_t> is_joined(sets_.size(), 0);
+    for (const std::uint32_t k : joined_) is_joined[sets_.find(k)] = 1;
     std::vector<std::uint32_t> members = joined_;
     for (const Island& island : islands_) {
-        if (is_joined[root_of(island.particles.front())] != 0)
+        if (is_joined[sets_.find(island.particles.front())] != 0)
             members.insert(members.end(), island.particles.begin(), island.particles.end());
     }
     std::sort(members.begin(), members.end());
@@ -269,7 +261,7 @@ void PairIslands::rebuild(const TimeSpan& step) {
         if (before != islands_.end() && before->particles == island.particles) island = std::move(*before++);
     }
     islands_ = std::move(next);
-    if (round_++ == 0) has_run_anew_.assign(parents_.size(), 0);
+    if (round_++ == 0) has_run_anew_.assign(sets_.size(), 0);
     run(step);
     for (const Island& island : islands_) {
         if (island.round != round_) continue;

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/response/pair_island.h"
 #include "ricochet/simulation/dense_islands.h"
@@ -49,7 +50,6 @@ private:
     };
 
     void find_islands(const ParticleRange& range);
-    [[nodiscard]] std::uint32_t root_of(std::uint32_t k);
     bool join(std::uint32_t a, std::uint32_t b);
     [[nodiscard]] std::vector<Island> islands_of(const std::vector<std::uint32_t>& involved);
     void run(const TimeSpan& step);
@@ -68,7 +68,7 @@ private:
     DenseIslands dense_;
     std::size_t first_ = 0;  // of the range: numbers count from it
     std::vector<Island> islands_;
-    std::vector<std::uint32_t> parents_;  // of each particle of the range: union-find, the lowest number leads
+    DisjointSets sets_;  // particles of the range; the lowest number of an island represents it
     std::vector<std::uint8_t> is_involved_;
     std::vector<std::size_t> island_of_;  // by the particle that leads it
     std::size_t round_ = 0;               // of joining islands

@@ -66,7 +66,7 @@ std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& st
     }
     if (counts.children > 0 && coupled.is_active()) coupled.bind(particles());
     if (check) check->add_spawned(store.size());
-    return counts.children > 0 ? std::optional(ParticleRange{first, store.size()}) : std::nullopt;
+    return counts.children > 0 ? std::optional(ParticleRange{first, store.size(), true}) : std::nullopt;
 }
 
 /// A child belongs to the sides that its parent belongs to, on whichever it begins.

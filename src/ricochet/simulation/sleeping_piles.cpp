@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/core/algorithms.h"
+#include "ricochet/core/disjoint_sets.h"
 
 namespace ricochet {
 namespace {
@@ -91,25 +92,19 @@ void SleepingPiles::add(const std::vector<std::uint64_t>& particles, const std::
 
 /// By trees of sleepers, whose roots have the lowest numbers of piles.
 void SleepingPiles::join(const std::vector<NetworkKey>& touching) {
-    std::vector<std::size_t> parents(sleepers_.size());
-    for (std::size_t i = 0; i < parents.size(); ++i) {
+    const auto slot_of = [&](const Sleeper* sleeper) { return static_cast<std::uint32_t>(sleeper - sleepers_.data()); };
+    DisjointSets sets(sleepers_.size());
+    for (std::uint32_t i = 0; i < sets.size(); ++i) {
         const Sleeper* const first = find(sleepers_[i].pile);
-        parents[i] = first != nullptr ? static_cast<std::size_t>(first - sleepers_.data()) : i;
+        if (first != nullptr) sets.join(i, slot_of(first));
     }
-    const auto root_of = [&](std::size_t i) {
-        while (parents[i] != i) i = parents[i] = parents[parents[i]];
-        return i;
-    };
     for (const NetworkKey& pair : touching) {
         const Sleeper* const a = pair.is_wall() ? nullptr : find(pair.particle);
         const Sleeper* const b = pair.is_wall() ? nullptr : find(pair.other);
-        if (a == nullptr || b == nullptr) continue;
-        const std::size_t first = root_of(static_cast<std::size_t>(a - sleepers_.data()));
-        const std::size_t second = root_of(static_cast<std::size_t>(b - sleepers_.data()));
-        parents[std::max(first, second)] = std::min(first, second);
+        if (a != nullptr && b != nullptr) sets.join(slot_of(a), slot_of(b));
     }
     // Ascending, so that a root has been given its number before those below it.
-    for (std::size_t i = 0; i < parents.size(); ++i) sleepers_[i].pile = sleepers_[root_of(i)].pile;
+    for (std::uint32_t i = 0; i < sets.size(); ++i) sleepers_[i].pile = sleepers_[sets.find(i)].pile;
 }
 
 /// What is at the edge of sleep, how strongly sleepers are pressed, and by whom.

@@ -91,11 +91,9 @@ void Simulation::Impl::step() {
     balance_ranks();
     emit_particles(step);
     std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
-    is_moving_children = false;
     do {
         move_batch(*batch, step);
         batch = spawn_children(step);
-        is_moving_children = true;
     } while (batch);
     retire_particles(step.end);
     check_spheres(step.begin, step.end);
@@ -129,7 +127,7 @@ TimeSpan Simulation::Impl::begin_step() {
 // stays in the order of time.
 void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& step) {
     recorder.begin_batch();
-    if ((driven.is_active() || coupled.is_active()) && batch.begin == 0) mover.begin_step();
+    if ((driven.is_active() || coupled.is_active()) && !batch.are_children) mover.begin_step();
     if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
     if (heat) heat->before_move(particles(), batch, step);
     if (clouds) clouds->before_move(batch);
@@ -140,7 +138,7 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         std::vector<BlockRecord> blocks;
         wake_sleepers(part);
         move_part(batch, part, blocks);
-        if (coupled.is_active() && batch.begin == 0) {
+        if (coupled.is_active() && !batch.are_children) {
             const CoupledMotion::Correction correction = coupled.correct_velocities(store.particles());
             mover.take_up(correction.owed, part, blocks);
             if (correction.runaway) {
@@ -152,19 +150,19 @@ void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& st
         for (const BlockRecord& block : blocks) gains.insert(gains.end(), block.heat.begin(), block.heat.end());
         now = part.end;
     }
-    if (coupled.is_active() && batch.begin == 0) coupled.settle(particles());
+    if (coupled.is_active() && !batch.are_children) coupled.settle(particles());
     if (heat) heat->after_move(store.particles(), batch, step, std::move(gains));
     recorder.end_batch(batch.size());
 }
 
 TimeSpan Simulation::Impl::plan_part(const ParticleRange& batch, const TimeSpan& rest) {
-    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(rest);
+    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(batch, rest);
 }
 
 // Children are moved through the parts of the step that have been, with the bodies where they were.
 TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest) {
     TimeSpan part = rest;
-    if (batch.begin == 0) {
+    if (!batch.are_children) {
         part.end = driven.next_part_end(part.begin, part.end);
         driven.plan(part.begin, part.end, oldest_position());
         if (bodies) part.end = settle_driven_motion(batch, part);
@@ -207,7 +205,7 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
     std::vector<ColliderLoad> with_yielding = loads;
     for (ColliderLoad& load : with_yielding) load.work += driven.yielded(load);
     recorder.add_loads(with_yielding, *colliders);
-    if (batch.begin == 0) {
+    if (!batch.are_children) {
         driven.follow(loads);
         ++recorder.statistics().body_parts;
     } else {
@@ -216,8 +214,8 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 }
 
 // Children join the coupled motion with the next step.
-TimeSpan Simulation::Impl::plan_coupled_motion(const TimeSpan& rest) {
-    if (is_moving_children) return rest;
+TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
+    if (batch.are_children) return rest;
     const double whole = rest.end - rest.begin;
     const double planned = share.keeps_together() ? plan_on_first_rank(rest) : plan_coupled(rest);
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};

@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
 
 namespace ricochet {

@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 
 namespace ricochet {

@@ -192,10 +192,6 @@ std::size_t ply_size(PlyType type) {
     return kSizes[static_cast<std::size_t>(type)];
 }
 
-bool PlyElement::has_lists() const {
-    return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.is_list; });
-}
-
 std::size_t PlyElement::smallest_size() const {
     std::size_t size = 0;
     for (const PlyProperty& p : properties) size += ply_size(p.is_list ? p.count_type : p.type);

@@ -31,7 +31,6 @@ struct PlyElement {
     std::vector<PlyProperty> properties;
     std::size_t line = 0;  ///< where the header declares it
 
-    [[nodiscard]] bool has_lists() const;
     /// Bytes of one element in a binary file if all its lists are empty.
     [[nodiscard]] std::size_t smallest_size() const;
     /// Index of a property; nothing if there is none of that name.

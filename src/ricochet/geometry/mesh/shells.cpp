@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"

@@ -20,14 +20,13 @@ public:
 
     /// Of a row: a number below the number of states that stands for its impact.
     [[nodiscard]] std::uint32_t of(const NetworkRow& row) const { return of_body(is_fixed(row.a) ? row.b : row.a); }
-    [[nodiscard]] std::uint32_t of_body(std::uint32_t body) const { return parents_[body]; }
-    [[nodiscard]] std::size_t size() const { return parents_.size(); }
+    [[nodiscard]] std::uint32_t of_body(std::uint32_t body) const { return leaders_[body]; }
+    [[nodiscard]] std::size_t size() const { return leaders_.size(); }
 
 private:
     [[nodiscard]] bool is_fixed(std::uint32_t body) const { return fixed_[body] != 0; }
-    [[nodiscard]] std::uint32_t root_of(std::uint32_t body);
 
-    std::vector<std::uint32_t> parents_;
+    std::vector<std::uint32_t> leaders_;
     std::vector<std::uint8_t> fixed_;
 };
 

@@ -4,8 +4,8 @@
 /// single direction separates the bodies for long (moving_triangle.h).
 ///
 /// Method: over an interval of time, three quantities are polynomials:
-/// - the height above the triangle's plane,
-/// - the distance from the line of an edge, with the side of that edge,
+/// - the height above the triangle's plane.
+/// - the distance from the line of an edge, with the side of that edge.
 /// - the distance from a corner, with the sides of both its edges.
 ///
 /// A polynomial with Bernstein coefficients of one sign has no root in the interval (G. Farin, "Curves and Surfaces for

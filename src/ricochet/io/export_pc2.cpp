@@ -39,7 +39,7 @@ struct Survey {
     std::vector<FrameFile> frames;  ///< evenly spaced in time
     double start = 0.0;             ///< time of the first frame, in s
     double spacing = 0.0;           ///< time between frames, in s
-    std::size_t left_out = 0;       ///< number of frames between the even times
+    std::size_t left_out = 0;       ///< number of frames at other times
     bool same_particles = true;
     std::string why_not;  ///< description of the first frame with other particles
 };
@@ -53,8 +53,8 @@ double usual_spacing(const std::vector<double>& times) {
     return *middle;
 }
 
-// Selects evenly spaced frames, as the samples of a cache must be. Other frames, such as the last one of an
-// interrupted run, are left out.
+// Selects evenly spaced frames, as the samples of a cache must be. Frames at other times, written at an interruption or
+// at the end of a run, are left out.
 void choose_frames(const std::vector<FrameFile>& files, const std::vector<double>& times, Survey& survey) {
     if (times.size() < 2) {
         throw InputError(

@@ -90,7 +90,7 @@ inline constexpr FileSeries kMovingSeries{&moving_file_name, kMovingSeriesFile};
 /// the marker.
 [[nodiscard]] bool is_run_file(std::string_view name);
 
-/// Exclusive output folder of one run.
+/// Output folder of one run, locked against other runs.
 /// The folder must be new, empty, or carry the marker of an earlier run. Only files of that run are removed
 /// (is_run_file()). The folder is locked for the lifetime of this object; the lock ends with the process in any case.
 class OutputDirectory {

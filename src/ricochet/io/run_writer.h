@@ -52,8 +52,8 @@ public:
     RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
               const std::optional<Checkpoint>& resumed = std::nullopt,
               WriterThread::Mode mode = WriterThread::Mode::background);
-    /// Excludes particles from write_frame(), because PieceWriter writes them in pieces. Call list() for their
-    /// indices.
+    /// Excludes particles from write_frame(), because PieceWriter writes them in pieces. Call list() to write the index
+    /// of such a frame.
     void leave_particles_out() { writes_particles_ = false; }
     /// Writes the index of a frame whose pieces are all on disk.
     void list(const PieceIndex& index);

@@ -320,7 +320,7 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
         if (!open.box.contains(position)) continue;
         inside += std::fabs(winding_number(open.mesh, position)) > 0.5 ? 1 : 0;
     }
-    if (2 * inside < looked_at) return;  // a closed mesh would contain most starts
+    if (2 * inside < looked_at) return;  // most starts are outside, so the mesh is not meant as a container
     lines_.push_back(
         fmt::format("{}: {} of {} begin inside {}, which is open: {} {}, the largest {:.3g} m across, let "
                     "them out; close the mesh (`ricochet info` tells more) if that is not meant",

@@ -48,8 +48,7 @@ std::optional<std::string> long_step_warning(const SimulationOptions& options, c
     if (options.flow || !(size > 0.0) || !(way > size)) return std::nullopt;
     return fmt::format(
         "simulation.time_step: in one step of {:.3g} s, a free fall from rest covers {:.3g} m, and the whole scene is "
-        "{:.3g} m: times are in s, lengths in m; use a step of {:.1g} s or less, in which it covers a hundredth of "
-        "that",
+        "{:.3g} m: times are in s, lengths in m; use a step of {:.1g} s or less, in which it covers a hundredth of it",
         step, way, size, 0.1 * std::sqrt(2.0 * size / length(fall)));
 }
 

@@ -1,5 +1,5 @@
-/// \file The broad phase finds the triangles that a path may come near. Embree proposes them; the narrow phase tests
-/// them.
+/// \file
+/// The broad phase finds the triangles that a path may come near. Embree proposes them; the narrow phase tests them.
 #pragma once
 
 #include "ricochet/collision/narrow_phase.h"

@@ -1,4 +1,5 @@
-/// \file Displacement that gives a particle a clearance from the surfaces near it.
+/// \file
+/// Displacement that gives a particle a clearance from the surfaces near it.
 #pragma once
 
 #include <optional>

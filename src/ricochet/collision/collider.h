@@ -1,4 +1,5 @@
-/// \file Descriptions of colliders, as a scene gives them.
+/// \file
+/// Descriptions of colliders, as a scene gives them.
 #pragma once
 
 #include <array>

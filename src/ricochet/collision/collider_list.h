@@ -1,4 +1,5 @@
-/// \file All colliders of a scene, in all frames, with one order of their surfaces.
+/// \file
+/// All colliders of a scene, in all frames, with one order of their surfaces.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
-/// \file The colliders of a scene that share one frame, in the coordinates of that frame. They are at rest in the world
-/// or move together. One total order numbers the surfaces of the colliders of all frames.
+/// \file
+/// The colliders of a scene that share one frame, in the coordinates of that frame. They are at rest in the world or
+/// move together. One total order numbers the surfaces of the colliders of all frames.
 #pragma once
 
 #include <cstdint>

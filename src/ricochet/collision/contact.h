@@ -1,4 +1,5 @@
-/// \file Results of contact queries: the first contact of a path, and the triangles that come near it next.
+/// \file
+/// Results of contact queries: the first contact of a path, and the triangles that come near it next.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
-/// \file Finds the first contact of a path with the world: planes and shapes, then triangles by broad and narrow phase.
-/// The same query finds how long the path remains free beyond its end. It also certifies segments beside the path.
+/// \file
+/// Finds the first contact of a path with the world: planes and shapes, then triangles by broad and narrow phase. The
+/// same query finds how long the path remains free beyond its end. It also certifies segments beside the path.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,6 @@
-/// \file Memory of one thread that contact queries reuse, so that the loop over particles allocates nothing. The file
-/// also defines the distances and normals of surfaces.
+/// \file
+/// Memory of one thread that contact queries reuse, so that the loop over particles allocates nothing. The file also
+/// defines the distances and normals of surfaces.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-/// \file Look-ahead: how long a particle may continue along its path before any surface comes near, and the triangles
-/// that then come near.
+/// \file
+/// Look-ahead: how long a particle may continue along its path before any surface comes near, and the triangles that
+/// then come near.
 ///
 /// The results affect speed only. A particle whose path is certainly free needs no query. Its state after the step is
 /// the end of the path, with or without a query.

@@ -1,4 +1,5 @@
-/// \file The narrow phase tests one path exactly against planes, shapes and triangles, one after the other.
+/// \file
+/// The narrow phase tests one path exactly against planes, shapes and triangles, one after the other.
 #pragma once
 
 #include <cstdint>

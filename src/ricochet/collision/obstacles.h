@@ -1,4 +1,5 @@
-/// \file Discrete collision test between two positions, for methods that only check the end of a step.
+/// \file
+/// Discrete collision test between two positions, for methods that only check the end of a step.
 #pragma once
 
 #include <vector>

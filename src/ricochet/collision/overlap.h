@@ -1,4 +1,5 @@
-/// \file Tests whether a sphere at rest overlaps a surface, for particles that are born.
+/// \file
+/// Tests whether a sphere at rest overlaps a surface, for particles that are born.
 #pragma once
 
 #include <optional>

@@ -1,7 +1,8 @@
-/// \file Safe position of a particle after an impact: a representable point just before the surface. It is reached
-/// along certified segments, none of which intersects any surface. Every segment is checked exactly against the
-/// surfaces near the path. Particles only ever move along such segments, so it is a theorem about the chain of stored
-/// positions that no particle passes through a surface.
+/// \file
+/// Safe position of a particle after an impact: a representable point just before the surface. It is reached along
+/// certified segments, none of which intersects any surface. Every segment is checked exactly against the surfaces near
+/// the path. Particles only ever move along such segments, so it is a theorem about the chain of stored positions that
+/// no particle passes through a surface.
 #pragma once
 
 #include <optional>

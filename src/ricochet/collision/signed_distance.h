@@ -1,4 +1,5 @@
-/// \file Signed distances of points from the colliders of a scene: the side, the distance and the closest point.
+/// \file
+/// Signed distances of points from the colliders of a scene: the side, the distance and the closest point.
 ///
 /// Planes, balls and cylinders use their formulas. Meshes use the nearest triangle, whose side is decided by
 /// pseudonormals (geometry/mesh/pseudonormals.h). The side is correct for meshes that bound a solid and are wound

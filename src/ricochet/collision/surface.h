@@ -1,4 +1,5 @@
-/// \file Numbers and names of surfaces, and points on them.
+/// \file
+/// Numbers and names of surfaces, and points on them.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-/// \file Positions on the path of a particle: as stored, in world coordinates, and in the coordinates of a frame.
+/// \file
+/// Positions on the path of a particle: as stored, in world coordinates, and in the coordinates of a frame.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The settings, the bar of colours, and the card of a particle.
+// The settings, the colour bars, and the card of a particle.
 import {map_gradient, number_text} from './colors.js';
 
 function make(tag, properties = {}, ...children) {
@@ -7,7 +7,7 @@ function make(tag, properties = {}, ...children) {
   return element;
 }
 
-// A setting: its label and what sets it.
+// Returns a setting: a label and its control.
 function row(label, control, help = '') {
   control.setAttribute('aria-label', label);
   return make('label', {className: 'row', title: help}, make('span', {textContent: label}), control);
@@ -25,7 +25,7 @@ function slider(min, max, step, value, on_input) {
   return input;
 }
 
-// A map's colours and the values along it.
+// Returns a colour bar of a map with values along it.
 function bar(name, gradient, texts) {
   const colors = make('div', {className: 'bar'});
   colors.style.background = gradient;
@@ -118,7 +118,7 @@ export class Panel {
         make('button', {textContent: 'Dark, light', title: 'd', onclick: () => app.change_theme()})));
   }
 
-  // Sets all controls as the look is.
+  // Sets all controls to the current settings.
   show() {
     const {look, run} = this.app;
     this.attribute.value = String(look.attribute);
@@ -131,7 +131,7 @@ export class Panel {
     this.show_legend(run.description);
   }
 
-  // A bar for the particles' colours, and one for the colliders'.
+  // Shows a bar for the particles' colours, and one for the colliders' colours.
   show_legend({maps}) {
     const {look, bodies} = this.app;
     const legend = document.getElementById('legend');
@@ -159,7 +159,7 @@ export class Panel {
     this.trail_note.textContent = every > 1 ? `trails of 1 particle in ${every}` : '';
   }
 
-  // The card of a particle; null: none.
+  // Shows the card of a particle, or hides it if id is null.
   show_particle(id, row, frame) {
     const card = document.getElementById('picked');
     card.hidden = id === null;

@@ -31,9 +31,9 @@ namespace {
 
 using cli::InterruptGuard;
 
-constexpr int kSlower = 1;  // exit code when a ratio has fallen
+constexpr int kSlower = 1;  // exit code if a ratio has fallen
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct BenchArguments {
     std::string suite = "quick";
     std::string json;
@@ -45,7 +45,7 @@ struct BenchArguments {
     std::string repeats = "5";
 };
 
-// What has been measured; of the two lists one is used.
+// Measured results. Only one of the two lists is used.
 struct Measured {
     std::vector<bench::Row> rows;
     std::vector<bench::LoadRow> files;
@@ -73,19 +73,19 @@ struct Measured {
     }
 };
 
-// Where the program is, on a line of the terminal.
+// Progress of the benchmark, on one line of the terminal.
 class BenchProgress {
 public:
     BenchProgress(std::string suite, std::size_t cases, std::uint32_t repeats)
         : suite_(std::move(suite)), cases_(cases), repeats_(repeats) {}
 
-    // A case begins, or a group of cases that takes turns.
+    // Starts a case, or a group of cases that are measured alternately.
     void begin(std::size_t first, std::size_t count) {
         which_ = count == 1 ? fmt::format("case {} of {}", first + 1, cases_)
                             : fmt::format("cases {} to {} of {}", first + 1, first + count, cases_);
     }
 
-    // Every change of work is shown, steps not more often than can be read. False when a signal has come in.
+    // Shows progress. Every change of work is shown, but steps only at a readable rate. Returns false after a signal.
     bool operator()(const bench::Progress& progress) {
         const bool needs_query = line_.due();
         if (needs_query || progress.doing != doing_) line_.show(text_of(progress));
@@ -111,7 +111,7 @@ private:
     std::string doing_;
 };
 
-// Adds rows until all are there or a signal comes in.
+// Measures until all rows are complete or a signal arrives.
 void measure_files(const bench::MeasurementPlan& plan, Measured& measured) {
     const std::vector<bench::LoadCase>& cases = bench::load_cases();
     BenchProgress progress(std::string(bench::kLoadSuite), cases.size(), plan.repeats);
@@ -153,8 +153,8 @@ bench::MeasurementPlan plan_of(const BenchArguments& arguments) {
     return plan;
 }
 
-// Everything that results are compared with or go to, opened before hours of work, so that what is missing is told at
-// once.
+// Inputs to compare with and targets of results. They are opened before hours of work, so that a missing file is
+// reported at once.
 class Outlets {
 public:
     explicit Outlets(const BenchArguments& arguments)
@@ -181,7 +181,7 @@ public:
         if (results_) write_results(measured);
     }
 
-    // Returns the exit code.
+    // Prints the comparison and returns the exit code.
     [[nodiscard]] int compare(const Measured& measured) const {
         if (!before_) return 0;
         const auto changes = bench::compare_ratios(*before_, ratios_of(measured), tolerance_);

@@ -71,7 +71,7 @@ std::string start(std::string_view suite, std::size_t styles, std::string_view t
                        title);
 }
 
-/// A block of lines: what is in the first column, then the values of the series.
+/// Returns a data block: the first column, then the values of the series.
 template <class AnyRow>
 std::string block(std::span<const AnyRow> rows, const std::function<std::string(const AnyRow&)>& first,
                   const std::vector<Series<AnyRow>>& series) {
@@ -88,7 +88,7 @@ struct Axes {
     const char* title;
     const char* x;
     const char* y;
-    const char* scales;  // gnuplot's commands for both axes
+    const char* scales;  // gnuplot commands for both axes
 };
 
 std::string lines(std::string_view suite, std::span<const Row> rows, const Axes& axes,
@@ -105,7 +105,7 @@ std::string lines(std::string_view suite, std::span<const Row> rows, const Axes&
     return text + "\nset output\n";
 }
 
-/// One tick on the axis for every row, with its name.
+/// Returns the commands for an axis with one named tick per row.
 template <class AnyRow>
 std::string name_axis(std::span<const AnyRow> rows) {
     std::string tics;
@@ -116,12 +116,12 @@ std::string name_axis(std::span<const AnyRow> rows) {
     return fmt::format("set xtics ({}) rotate by -30 noenhanced\nset xrange [-0.6:{:.4g}]\n", tics, end);
 }
 
-/// Bars side by side, each with its value above it, and optionally a line at 1.
+/// Returns a plot of bars side by side, each labelled with its value, and optionally a line at 1.
 template <class AnyRow>
 std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::string_view title, std::string_view y,
                  const std::vector<Series<AnyRow>>& series, bool with_one) {
     const double count = static_cast<double>(series.size());
-    const double width = 1.0 / (count + 1.0);  // between two groups as much room as a bar takes
+    const double width = 1.0 / (count + 1.0);  // the gap between two groups is one bar wide
     std::string text = start(suite, series.size(), title);
     text += fmt::format(
         "set ylabel '{}'\nset style fill solid 0.85 noborder\nset grid noxtics\nset boxwidth {:.4g}\n"
@@ -142,7 +142,7 @@ std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::stri
     return text + "\nset output\n";
 }
 
-/// The rows with the most threads.
+/// Returns the rows with the most threads.
 template <class AnyRow>
 std::vector<AnyRow> with_most_threads(std::span<const AnyRow> rows) {
     int most = 0;
@@ -172,7 +172,8 @@ std::string count_plot(std::span<const Row> rows) {
          {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
 }
 
-/// Doublings of the threads as far apart as those of the speed, marked where there are measurements.
+/// Returns the axes of a speedup plot. Both are logarithmic with equal doublings, with ticks at the measured thread
+/// counts.
 std::string threads_axis(std::span<const Row> rows) {
     constexpr double kMargin = 1.1;
     std::set<int> counts;
@@ -183,7 +184,7 @@ std::string threads_axis(std::span<const Row> rows) {
         fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
 }
 
-/// A curve for every case, and its bare rays dashed.
+/// Returns a plot with one curve per case, and its bare rays dashed.
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {

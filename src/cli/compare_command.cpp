@@ -21,7 +21,7 @@
 namespace ricochet {
 namespace {
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct CompareArguments {
     cli::SceneArguments scene;
     ComparisonRequest request;
@@ -36,7 +36,7 @@ std::string progress_text(const ComparisonProgress& progress) {
                        progress.response, progress.time_step, kind, progress.step, progress.steps);
 }
 
-// Finds out whether every row can run before anything in the output folder is changed.
+// Checks that every row can run, before anything in the output folder changes.
 void check_rows(const cli::SceneArguments& arguments, const ComparisonPlan& plan) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {
@@ -77,7 +77,7 @@ void write_numbers(const std::filesystem::path& folder, const Comparison& compar
     write_file(folder / kComparisonScriptFile, comparison_script(comparison));
 }
 
-// Returns why there are no pictures; empty when there are.
+// Draws the pictures. Returns the reason for a failure, or an empty text.
 std::string draw(const std::filesystem::path& folder) {
     const std::vector<std::string> pictures(kComparisonPictures.begin(), kComparisonPictures.end());
     return draw_with_gnuplot(folder, kComparisonScriptFile, pictures);

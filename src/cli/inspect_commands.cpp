@@ -1,4 +1,4 @@
-// The commands that run nothing: info, check and schema.
+// Commands without a simulation: info, check and schema.
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -127,7 +127,7 @@ std::string counted(std::size_t count, std::string_view singular) {
     return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
 }
 
-// A name as a scene file writes it, in the characters that a terminal shows as they are.
+// Returns a name as written in a scene file, in characters that a terminal displays unchanged.
 std::string as_in_scene(const std::string& name) {
     constexpr std::size_t kLongest = 200;
     try {
@@ -161,7 +161,7 @@ void run_info(const InfoOptions& options) {
                                   "scene (0.001 for millimetres)");
     }
     if (options.json) {
-        // File names are bytes; JSON wants UTF-8.
+        // File names are bytes, but JSON needs UTF-8.
         fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }

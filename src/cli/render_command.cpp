@@ -26,7 +26,7 @@ using namespace cli;
 
 [[noreturn]] void refuse(const std::string& message) { throw InputError(message); }
 
-// Shows how far the pictures are.
+// Progress of the pictures.
 class Watch {
 public:
     Watch(std::size_t pictures, const RenderArguments& arguments)
@@ -54,7 +54,7 @@ Image labelled(RunPictures& pictures, double time, const PictureOptions& options
     return image;
 }
 
-// The times of a film's pictures: film time is simulation time over --speed.
+// Returns the times of a film's pictures. Film time is simulation time divided by --speed.
 std::vector<double> film_times(RunTimeline& timeline, const RenderArguments& arguments) {
     constexpr double kMostPictures = 1e6;
     const double step = film_speed(arguments) / film_rate(arguments);
@@ -96,7 +96,7 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
     }
 }
 
-// What lies between frames, and what is known of it.
+// Describes the interpolation between frames.
 std::string film_report(RunPictures& pictures, const RenderArguments& arguments) {
     const double step = film_speed(arguments) / film_rate(arguments);
     const double spacing = pictures.timeline().spacing();
@@ -164,7 +164,7 @@ void render(const RenderArguments& arguments) {
         refuse(fmt::format("--output {}: expected a name that ends in .png or .mp4", arguments.output));
     }
     check_numbers(arguments);
-    (void)parse_progress(arguments.progress);  // wrong words are told before the work
+    (void)parse_progress(arguments.progress);  // invalid words are reported before the work
     const PictureSize size = parse_picture_size(arguments.size);
     const bool film = extension == ".mp4";
     check_film_options(arguments, film);

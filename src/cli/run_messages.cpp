@@ -12,12 +12,12 @@
 namespace ricochet::cli {
 namespace {
 
-// Nothing where no time has passed.
+// Formats a rate, or "-" if no time has passed.
 std::string rate_text(std::uint64_t count, double seconds) {
     return seconds > 0.0 ? short_number(static_cast<double>(count) / seconds) : "-";
 }
 
-/// Impulses that impacts gave are told apart where contact that lasts gave at least this part of all.
+/// Smallest share of lasting contact in the impulse for which impulses from impacts are reported separately.
 constexpr double kNotableShare = 0.01;
 
 void print_impulse_share(const ImpulseSizes& sizes) {
@@ -28,7 +28,7 @@ void print_impulse_share(const ImpulseSizes& sizes) {
         100.0 * sizes.share_of_impacts());
 }
 
-/// The groups of a collider with the most hits, on one line.
+/// Prints the groups of a collider with the most hits on one line.
 void print_groups(const ColliderSummary& collider) {
     constexpr std::size_t kMostGroups = 8;
     if (collider.groups.empty()) return;
@@ -44,7 +44,7 @@ void print_groups(const ColliderSummary& collider) {
     print("  hits on {} by group: {}\n", printable(collider.name, 60), line);
 }
 
-/// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
+/// Overlap relative to the smaller radius. Solved dense contact leaves smaller overlaps.
 constexpr double kLargeOverlap = 0.05;
 
 void print_notes(const SimulationStatistics& statistics) {

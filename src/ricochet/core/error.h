@@ -33,12 +33,12 @@ namespace detail {
 [[noreturn]] void refuse_length(std::size_t found, std::size_t expected, const char* what);
 }  // namespace detail
 
-/// Throws InputError "what: found 7, expected a number below 3" unless index < size.
+/// Throws InputError "NAME: found 7, expected a number below 3" unless index < size.
 inline void require_index(std::size_t index, std::size_t size, const char* what) {
     if (index >= size) detail::refuse_index(index, size, what);
 }
 
-/// Throws InputError "what: found 7 entries, expected 3" unless the lengths are equal.
+/// Throws InputError "NAME: found 7 entries, expected 3" unless the lengths are equal.
 inline void require_same_length(std::size_t found, std::size_t expected, const char* what) {
     if (found != expected) detail::refuse_length(found, expected, what);
 }

@@ -118,10 +118,10 @@ double memory_of_machine(const MemoryFiles& files) {
 MemoryLimit memory_limit(const MemoryFiles& files) {
     const auto [all, data] = pages_in_use(files);
     const std::array limits{
-        MemoryLimit{memory_of_machine(files), "what the machine has free"},
+        MemoryLimit{memory_of_machine(files), "the free memory of the machine"},
         MemoryLimit{limit_of_groups(files), "the limit of its control group"},
-        MemoryLimit{limit_of_resource(RLIMIT_AS, all), "what `ulimit -v` leaves"},
-        MemoryLimit{limit_of_resource(RLIMIT_DATA, data), "what `ulimit -d` leaves"},
+        MemoryLimit{limit_of_resource(RLIMIT_AS, all), "the rest of `ulimit -v`"},
+        MemoryLimit{limit_of_resource(RLIMIT_DATA, data), "the rest of `ulimit -d`"},
     };
     return *std::min_element(limits.begin(), limits.end(),
                              [](const MemoryLimit& a, const MemoryLimit& b) { return a.bytes < b.bytes; });

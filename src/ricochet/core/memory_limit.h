@@ -40,7 +40,7 @@ struct MemoryFiles {
 /// Returns the sentence for a request above the limit: "asks for about 36 GB of memory, expected at most 8 GB (...)".
 [[nodiscard]] std::string too_much_memory(double bytes, const MemoryLimit& limit);
 
-/// Throws InputError "what: asks for ..." if the number of bytes exceeds memory_limit().
+/// Throws InputError "NAME: asks for ..." if the number of bytes exceeds memory_limit().
 void require_memory(double bytes, std::string_view what);
 
 }  // namespace ricochet

@@ -115,7 +115,7 @@ private:
         std::size_t count = 0;
     };
 
-    [[noreturn]] static void complain() { throw RunError("what the ranks have sent does not fit together"); }
+    [[noreturn]] static void complain() { throw RunError("the ranks have sent lists that do not fit together"); }
 
     template <class T>
     static void read(Source& source, T& value) {

@@ -33,7 +33,8 @@ struct MovingPose {
 };
 
 /// Upper bounds of the motion of a frame over an interval of time. They limit the magnitudes of the first to fourth
-/// derivatives of its origin, in m/s^n, and of its rotation matrix (operator norm), in 1/s^n. Entry 0 is 0 and 1.
+/// derivatives of two quantities: its origin, in m/s^n, and its rotation matrix (operator norm), in 1/s^n. Entry 0 is 0
+/// and 1.
 struct MotionBounds {
     DerivativeBounds origin{};
     DerivativeBounds rotation{1.0, 0.0, 0.0, 0.0, 0.0};

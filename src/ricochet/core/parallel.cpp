@@ -141,8 +141,8 @@ double ordered_sum(std::size_t count, std::size_t block_size,
     return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// With the thread sanitizer the sort is serial: the sanitizer does not see how the packaged library synchronises the
-// threads of its sort, and no code of this library runs inside the sort to report it.
+// With the thread sanitizer the sort is serial. The sanitizer does not see how the packaged library synchronises the
+// threads of its sort. No code of this library runs inside the sort to report it.
 void parallel_sort(std::vector<std::uint64_t>& values) {
 #if defined(RICOCHET_THREAD_SANITIZER)
     std::sort(values.begin(), values.end());

@@ -1,5 +1,5 @@
 /// \file
-/// Exponential, logarithm, power and sine with the same bits on every system, unlike those of the C library. They use
+/// Exponential, logarithm, power and sine with the same bits on every system, unlike the C library. They use
 /// only additions, multiplications, divisions and exact scalings; errors are a few ulp.
 #pragma once
 

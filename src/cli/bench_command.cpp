@@ -49,7 +49,7 @@ struct BenchArguments {
 struct Measured {
     std::vector<bench::Row> rows;
     std::vector<bench::LoadRow> files;
-    // Once there are rows, a signal must not take them away.
+    // A signal must not lose finished rows, so the guard exists as soon as there are rows.
     std::optional<InterruptGuard> guard;
 
     void add(std::span<const bench::Row> more) {

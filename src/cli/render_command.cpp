@@ -149,7 +149,8 @@ void print_looks(const RunPictures& pictures) {
     }
 }
 
-// A film shows all frames unless it is told one. A picture without a frame shows the moment that the scene names.
+// Returns the frames to draw. A film shows all frames unless one is specified. A picture without --frame shows the
+// time that the scene specifies.
 std::vector<FrameFile> frames_of(const RunFolder& folder, const std::string& asked, bool film) {
     if (film && (asked.empty() || asked == "last")) return folder.frames;
     const auto& own = folder.info.picture;

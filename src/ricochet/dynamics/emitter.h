@@ -207,7 +207,7 @@ struct ReferenceCamera {
 
 /// Mean and spread of an attribute, for each component.
 struct AttributeSpread {
-    std::string name;  ///< name of one of the scene's attributes, including those of appearance
+    std::string name;  ///< name of one of the scene's attributes, appearance included
     Vec3 mean;         ///< a scalar attribute uses x
     Vec3 spread;       ///< each component >= 0
 };

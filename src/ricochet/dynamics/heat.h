@@ -14,7 +14,7 @@ inline constexpr std::string_view kTemperatureAttribute = "temperature";
 
 /// Heat exchange of a sphere with the medium, with the coefficient h in W/(m^2 K). The coefficient is given, or follows
 /// from the correlation of Ranz and Marshall: h = Nu conductivity / (2 r) with Nu = 2 + 0.6 Re^(1/2) Pr^(1/3) and Re =
-/// density w 2 r / viscosity at the speed w relative to the flow. The defaults are those of air at 20 degrees C.
+/// density w 2 r / viscosity at the speed w relative to the flow. The defaults are the values of air at 20 degrees C.
 /// Source: W. E. Ranz, W. R. Marshall, "Evaporation from drops", Chemical Engineering Progress 48, 1952.
 struct Convection {
     std::optional<double> coefficient = std::nullopt;  ///< in W/(m^2 K), >= 0; the members below are then unused

@@ -12,11 +12,11 @@
 
 namespace ricochet {
 
-/// Points with weights (masses or charges) that all act on each other. With the softening length e, the field g and
-/// potential f at point i are
+/// Points with weights (masses or charges) that all act on each other. The softening length is e. The field g and
+/// potential f at point i are:
 ///
-///     g_i = sum over j of w_j (x_j - x_i) / (|x_j - x_i|^2 + e^2)^(3/2)
-///     f_i = sum over j of w_j / (|x_j - x_i|^2 + e^2)^(1/2)
+///     g_i = sum over j of w_j (x_j - x_i) / (|x_j - x_i|^2 + e^2)^(3/2);
+///     f_i = sum over j of w_j / (|x_j - x_i|^2 + e^2)^(1/2).
 ///
 /// The sums exclude j = i, and coincident points if e = 0. Lists have the same length.
 struct Sources {

@@ -58,11 +58,11 @@ public:
     }
 
     /// Adds the field of a group by expanding the softened potential to second order in the points' distances from the
-    /// centre. With d = x - centre, u = |d|^2 + e^2, weight W and moments D and M, the potential is
+    /// centre. With d = x - centre, u = |d|^2 + e^2, weight W and moments D and M, the potential is:
     ///
-    ///     f = W u^(-1/2) + D.d u^(-3/2) + (3 d.M d u^(-5/2) - tr M u^(-3/2)) / 2,
+    ///     f = W u^(-1/2) + D.d u^(-3/2) + (3 d.M d u^(-5/2) - tr M u^(-3/2)) / 2.
     ///
-    /// and the field is its gradient with respect to x.
+    /// The field is its gradient with respect to x.
     void add_group(const GroupMoments& group, double softening) {
         const SymmetricMatrix& m = group.second;
         const double trace = m.trace();

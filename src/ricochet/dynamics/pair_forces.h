@@ -53,11 +53,11 @@ struct CohesionSettings {
     double damping = 0.0;    ///< along the line of the centres, within the range, in N s/m, >= 0
 };
 /// Returns a cohesion force with the gap g between the surfaces of two particles. They attract each other by k g (1 - g
-/// / R)^2 for 0 < g < R (at most 4/27 k R, at R/3) and repel each other by -k g in overlap. Damping is c times the
-/// speed along the line, also weakened by (1 - g / R)^2.
+/// / R)^2 for 0 < g < R. The maximum is 4/27 k R, at R/3. In overlap they repel each other by -k g. Damping is c times
+/// the speed along the line, also weakened by (1 - g / R)^2.
 ///
-/// The potential is k g^2 / 2 in overlap and k R^2 (s^2/2 - 2 s^3/3 + s^4/4) with s = g / R in the gap, less its value
-/// beyond the range. Force and potential are thus continuous.
+/// The potential is k g^2 / 2 in overlap. In the gap it is k R^2 (s^2/2 - 2 s^3/3 + s^4/4) with s = g / R. Both are
+/// measured from the value beyond the range, so that force and potential are continuous.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_cohesion(const CohesionSettings& settings);
 
 }  // namespace ricochet

@@ -77,8 +77,8 @@ struct SystemStep {
 /// `first_try` seconds. It halves them until no member's error exceeds the tolerance, or half of them is below
 /// `shortest` seconds (0: kShortestSubstep of the duration). Error control is over the whole system.
 ///
-/// The methods are those of begin_flight(), with the same bits if members do not act on each other. The exception is
-/// ballistic, which becomes velocity_verlet, because spring forces kept constant over a step gain energy.
+/// The methods are the same as in begin_flight(), with the same bits if members do not act on each other. The exception
+/// is ballistic, which becomes velocity_verlet, because spring forces kept constant over a step gain energy.
 ///
 /// implicit_euler solves v1 = v0 + h a(x0 + h v1, v1, t + h) for all members together by Newton's method with sparse
 /// factorizations. Dampers resist (l1 - l0) / h, the mean rate of the length over the step. Without forces that vary,

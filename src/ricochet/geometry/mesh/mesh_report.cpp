@@ -24,7 +24,7 @@ std::size_t count_degenerate(const TriangleMesh& mesh) {
     return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), without_area));
 }
 
-// "1 edge is", "2 edges are".
+// Formats a count with its noun: "1 edge is", "2 edges are".
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }

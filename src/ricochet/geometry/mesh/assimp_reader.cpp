@@ -1,4 +1,4 @@
-// The only file that uses Assimp. Its results are checked like those of the other readers. The time and memory that
+// The only file that uses Assimp. Its results are checked like the results of other readers. The time and memory that
 // Assimp itself uses are not bounded.
 #include <assimp/config.h>
 #include <assimp/scene.h>

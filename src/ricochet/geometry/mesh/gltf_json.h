@@ -39,8 +39,8 @@ struct GltfMember {
     GltfValue value;
 };
 
-/// Parses the JSON of a glTF file. Throws InputError if the text is not JSON or not an object, if a key appears twice,
-/// or if more than 4 million values would be stored.
+/// Parses the JSON of a glTF file. Throws InputError if the text is not JSON or not an object, or if a key appears
+/// twice. Throws also if more than 4 million values would be stored.
 [[nodiscard]] GltfValue parse_gltf_json(const MeshSource& source, std::string_view text);
 
 class GltfPlace;

@@ -244,7 +244,7 @@ private:
             notes.emplace_back("animations are not played: everything stands as the nodes of the file say");
         }
         if (const std::size_t scenes = document_.items("scenes").size(); scenes > 1) {
-            notes.push_back(fmt::format("one of {} scenes is read: that which the file shows", scenes));
+            notes.push_back(fmt::format("one of {} scenes is read: the one that the file shows", scenes));
         }
         return notes;
     }

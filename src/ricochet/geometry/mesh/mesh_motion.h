@@ -17,7 +17,7 @@
 
 namespace ricochet {
 
-/// What holds before the first and after the last key.
+/// The motion before the first and after the last key.
 enum class MeshEnds : std::uint8_t {
     hold,    ///< the mesh rests at the first or the last positions
     repeat,  ///< the keys repeat; the last positions equal the first ones
@@ -47,10 +47,10 @@ class MeshMotion {
 public:
     /// Takes the times of the keys, in s, which ascend by more than rounding, and the positions of all vertices at each
     /// key, in m. Throws InputError in these cases:
-    /// - fewer than two keys,
-    /// - numbers that are not finite or beyond 1e75,
-    /// - a number of vertices that differs from the first key,
-    /// - repeating keys whose last positions differ from the first.
+    /// - Fewer than two keys.
+    /// - Numbers that are not finite or beyond 1e75.
+    /// - A number of vertices that differs from the first key.
+    /// - Repeating keys whose last positions differ from the first.
     MeshMotion(std::vector<double> times, std::vector<std::vector<Vec3>> positions, MeshEnds ends = MeshEnds::hold);
 
     [[nodiscard]] std::size_t vertex_count() const { return positions_.front().size(); }

@@ -74,12 +74,12 @@ enum class MeshContent : std::uint8_t {
 /// the extension does. Coordinates smaller than 2^-287 m become zero, so that products stay in range.
 /// Throws InputError "path:line: what is wrong" for text, "path: byte N: what is wrong" for binary data, and "path:
 /// what is wrong" for the file as a whole. Reasons:
-/// - not a regular file, or an unknown format,
-/// - a statement that cannot be parsed,
-/// - counts that disagree with the data,
-/// - numbers that are not finite or larger than 1e75,
-/// - indices out of range,
-/// - no faces.
+/// - Not a regular file, or an unknown format.
+/// - A statement that cannot be parsed.
+/// - Counts that disagree with the data.
+/// - Numbers that are not finite or larger than 1e75.
+/// - Indices out of range.
+/// - No faces.
 [[nodiscard]] ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content = MeshContent::everything);
 
 /// Reads a file that is already in memory. The name is used in messages, and its extension as in the function above. A
@@ -103,8 +103,8 @@ inline constexpr std::string_view kMeshFormats = "OBJ, PLY, STL, OFF or glTF";
 [[nodiscard]] inline Vec3 y_up_as_z_up(const Vec3& p) { return {p.x, 0.0 - p.z, p.y}; }
 [[nodiscard]] inline Vec3 z_up_as_y_up(const Vec3& p) { return {p.x, p.z, 0.0 - p.y}; }
 
-/// Returns the format for the file name's extension (.obj, .ply, .stl, .off, .gltf, .glb, .fbx, .dae, .3ds, .3mf, .ac,
-/// .ase, .b3d, .lwo, .x, .x3d in any case). Returns nullopt for any other name.
+/// Returns the format for the file name's extension, or nullopt for any other name. Upper and lower case are equal.
+/// Extensions: .obj, .ply, .stl, .off, .gltf, .glb, .fbx, .dae, .3ds, .3mf, .ac, .ase, .b3d, .lwo, .x, .x3d.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_of(const std::filesystem::path& path);
 
 }  // namespace ricochet

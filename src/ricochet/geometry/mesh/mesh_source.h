@@ -183,9 +183,10 @@ private:
 /// Returns true if the text's first word is the keyword OFF with any of its prefixes.
 [[nodiscard]] bool looks_like_off(const MeshSource& source);
 
-/// Reads the elements vertex (x, y, z of any type), face (list vertex_indices or vertex_index) and tristrips (list
-/// vertex_indices, in which -1 starts a new strip). All other elements are skipped. In an ASCII file every element has
-/// its own line. Triangles of a strip that repeat a vertex only change its direction and are not faces.
+/// Reads the elements vertex, face and tristrips, and skips all others. A vertex has x, y and z of any type. A face has
+/// a list vertex_indices or vertex_index. A strip has a list vertex_indices, in which -1 starts a new strip. In an
+/// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change its direction and
+/// are not faces.
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 
 /// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The header's

@@ -3,11 +3,11 @@
 /// mesh, without its faces, for a series of frames.
 ///
 /// The format is little-endian:
-/// - the 12 bytes "POINTCACHE2" and a zero,
-/// - version (1) and number of points, as 32-bit integers,
-/// - first frame and frames between two samples, as floats,
-/// - number of samples, as a 32-bit integer,
-/// - x, y and z of every point of every sample, as floats.
+/// - The 12 bytes "POINTCACHE2" and a zero.
+/// - Version (1) and number of points, as 32-bit integers.
+/// - First frame and frames between two samples, as floats.
+/// - Number of samples, as a 32-bit integer.
+/// - X, y and z of every point of every sample, as floats.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,11 @@ struct PointCache {
 
 /// Reads a whole file that is in memory. Memory is bounded by a small multiple of the file's size. Throws InputError
 /// "name: what is wrong" in these cases:
-/// - another signature or version,
-/// - counts that disagree with the file's size,
-/// - no points, or fewer than two samples,
-/// - frames that do not ascend,
-/// - numbers that are not finite.
+/// - Another signature or version.
+/// - Counts that disagree with the file's size.
+/// - No points, or fewer than two samples.
+/// - Frames that do not ascend.
+/// - Numbers that are not finite.
 [[nodiscard]] PointCache read_point_cache(const std::filesystem::path& name, std::string_view bytes);
 
 /// Writes a cache sample by sample, with frames numbered from 0. The file appears under its name when it is complete.

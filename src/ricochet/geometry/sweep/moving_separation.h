@@ -4,9 +4,9 @@
 /// single direction separates the bodies for long (moving_triangle.h).
 ///
 /// Method: over an interval of time, three quantities are polynomials:
-/// - the height above the triangle's plane.
-/// - the distance from the line of an edge, with the side of that edge.
-/// - the distance from a corner, with the sides of both its edges.
+/// - The height above the triangle's plane.
+/// - The distance from the line of an edge, with the side of that edge.
+/// - The distance from a corner, with the sides of both its edges.
 ///
 /// A polynomial with Bernstein coefficients of one sign has no root in the interval (G. Farin, "Curves and Surfaces for
 /// CAGD", 5th ed., chapter 5). The signs are certain, because doubles with an error bound come first, then

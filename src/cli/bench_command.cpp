@@ -229,32 +229,35 @@ int run_bench(const BenchArguments& arguments) {
 }
 
 void add_options(cli::Command command, BenchArguments& a) {
-    command.add_option("--suite", a.suite, fmt::format("Which cases: {}", fmt::join(bench::suite_names(), ", ")))
+    command.add_option("--suite", a.suite, fmt::format("Suite of cases: {}", fmt::join(bench::suite_names(), ", ")))
         .type_name("NAME")
         .show_default();
-    command.add_option("--json", a.json, "File for the numbers").type_name("FILE");
+    command.add_option("--json", a.json, "JSON file for the results").type_name("FILE");
     command.add_option("--results", a.results, "Folder of results: DIR/MACHINE/SUITE gets a table and a picture")
         .type_name("DIR");
     const cli::Option compare =
-        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen").type_name("FILE");
-    command.add_option("--tolerance", a.tolerance, "Part of a ratio by which it may fall")
+        command.add_option("--compare", a.compare, "File of ratios to compare with; exit code 1 if a ratio has fallen")
+            .type_name("FILE");
+    command.add_option("--tolerance", a.tolerance, "Allowed relative fall of a ratio")
         .type_name("X")
         .show_default()
         .needs(compare);
-    command.add_option("--write-ratios", a.write_ratios, "File for the ratios, for --compare").type_name("FILE");
+    command.add_option("--write-ratios", a.write_ratios, "Write the ratios to this file, for --compare")
+        .type_name("FILE");
     command
         .add_option("--threads", a.threads,
-                    "Numbers of worker threads with commas, each measured (default: all processors; for the suite "
+                    "Comma-separated numbers of worker threads, each measured (default: all processors; for the suite "
                     "threads 1, 2, 4 and so on)")
         .type_name("LIST");
-    command.add_option("--repeats", a.repeats, "Timed runs, of which the median counts").type_name("N").show_default();
+    command.add_option("--repeats", a.repeats, "Number of timed runs; the median counts").type_name("N").show_default();
 }
 
 }  // namespace
 
 void add_bench_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<BenchArguments>();
-    cli::Command command = program.add_command("bench", "What collisions cost, beside bare rays on the same segments");
+    cli::Command command =
+        program.add_command("bench", "Measure the cost of collisions against bare rays on the same segments");
     add_options(command, *arguments);
     command.on_call([arguments, &exit_code] { exit_code = run_bench(*arguments); });
 }

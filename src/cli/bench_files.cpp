@@ -31,7 +31,7 @@ BenchResults::BenchResults(const std::filesystem::path& folder, bench::Environme
     std::filesystem::create_directories(folder_, error);
     if (!error && ::access(folder_.c_str(), W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
     if (error) {
-        throw InputError(fmt::format("--results {}: {} is no folder that can be written to ({}); name another one",
+        throw InputError(fmt::format("--results {}: {} is not a writable folder ({}); choose another one",
                                      folder.string(), folder_.string(), error.message()));
     }
 }
@@ -154,7 +154,7 @@ std::vector<AnyRow> with_most_threads(std::span<const AnyRow> rows) {
 }
 
 std::string size_plot(std::span<const Row> rows) {
-    const Axes axes{"What a particle-step costs on meshes of growing size", "triangles", "ns",
+    const Axes axes{"Cost of a particle-step on meshes of growing size", "triangles", "ns",
                     "set logscale x\nset format x '10^{%L}'\nset yrange [0:*]\n"};
     return lines("size", rows, axes, [](const Row& row) { return static_cast<double>(row.triangles); },
                  {{"ricochet: a step of a particle",
@@ -210,7 +210,7 @@ std::string threads_plot(std::span<const Row> rows) {
 
 std::string ratios_plot(std::string_view suite, std::span<const Row> rows) {
     return bars<Row>(
-        suite, rows, fmt::format("Suite {}: rates over those of Embree by itself", suite), "ratio",
+        suite, rows, fmt::format("Suite {}: rates relative to plain Embree", suite), "ratio",
         {{"particle-steps / bare rays", [](const Row& row) { return row.ratio_raw; }},
          {"particle-steps / sorted packets of rays", [](const Row& row) { return row.ratio_raw_sorted; }},
          {"impacts / native bounces", [](const Row& row) { return or_nothing(row.ratio_native_bounces); }}},
@@ -225,20 +225,20 @@ std::string plot_script(std::string_view suite, std::span<const Row> all_rows) {
     if (suite == "size") return size_plot(rows);
     if (suite == "count") return count_plot(rows);
     if (suite == "radius") {
-        return bars<Row>(suite, rows, "What spheres cost", "cost of a particle-step over that of points",
+        return bars<Row>(suite, rows, "Cost of spheres", "cost of a particle-step over that of points",
                          {{"cost over points", [](const Row& row) { return or_nothing(row.ratio_points); }}}, true);
     }
     if (suite == "response") {
-        return bars<Row>(suite, rows, "What the responses cost", "cost of a particle-step over the exact response",
+        return bars<Row>(suite, rows, "Cost of the responses", "cost of a particle-step over the exact response",
                          {{"cost over exact", [](const Row& row) { return or_nothing(row.ratio_exact); }}}, true);
     }
     if (suite == "moving") {
-        return bars<Row>(suite, rows, "What colliders that move cost", "cost of a particle-step over that at rest",
+        return bars<Row>(suite, rows, "Cost of moving colliders", "cost of a particle-step over that at rest",
                          {{"cost over rest", [](const Row& row) { return or_nothing(row.ratio_rest); }}}, true);
     }
     if (suite == "pairs") {
         return bars<Row>(
-            suite, rows, "What spheres that meet cost", "seconds for a simulated second",
+            suite, rows, "Cost of spheres in contact", "seconds for a simulated second",
             {{"s / simulated s", [](const Row& row) { return or_nothing(row.seconds_a_simulated_second); }}}, true);
     }
     return ratios_plot(suite, rows);

@@ -229,7 +229,7 @@ void run_check(const cli::SceneArguments& arguments) {
 
 void add_check_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<cli::SceneArguments>();
-    cli::Command command = program.add_command("check", "Everything that is wrong with a scene, without running it");
+    cli::Command command = program.add_command("check", "Check a scene for errors without running it");
     cli::add_scene_arguments(command, *arguments);
     command.on_call([arguments, &exit_code] {
         run_check(*arguments);
@@ -239,7 +239,7 @@ void add_check_command(cli::Command program, int& exit_code) {
 
 void add_schema_command(cli::Command program, int& exit_code) {
     const auto markdown = std::make_shared<bool>(false);
-    cli::Command command = program.add_command("schema", "Prints the JSON Schema of scene files");
+    cli::Command command = program.add_command("schema", "Print the JSON Schema of scene files");
     command.add_flag("--markdown", *markdown, "Print the reference page instead");
     command.on_call([markdown, &exit_code] {
         fmt::print("{}", *markdown ? scene_reference() : scene_schema());

@@ -85,7 +85,7 @@ std::vector<std::string> without_help_command(std::vector<std::string> words) {
 }
 
 int parse_and_run(const std::vector<std::string>& arguments) {
-    cli::CommandLine line("Particles against triangle meshes, exactly", "ricochet");
+    cli::CommandLine line("Exact collisions of particles with triangle meshes", "ricochet");
     line.add_version(version_text);
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(line.program(), exit_code);

@@ -151,11 +151,11 @@ void make_scene(const NewArguments& arguments) {
                arguments.mesh, size.x, size.y, size.z, up);
     if (kind == cli::SceneTemplate::gas && !mesh.closed) {
         cli::print("  the gas is around the mesh, in a box, not in it: {}\n",
-                   is_to_be_filled ? "where edges belong to three faces or more, or almost nothing is enclosed, the "
-                                     "mesh has no inside that could be filled"
+                   is_to_be_filled ? "the mesh has no interior to fill, because it encloses almost nothing or some "
+                                     "edges have three faces or more"
                                    : "the mesh is not closed, `ricochet info` tells why");
     }
-    cli::print("  where the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
+    cli::print("  if the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
     cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);
 }
 
@@ -163,10 +163,10 @@ void make_scene(const NewArguments& arguments) {
 
 void add_new_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<NewArguments>();
-    cli::Command command = program.add_command("new", "Write a scene that is fitted to a mesh, to begin with");
+    cli::Command command = program.add_command("new", "Write a first scene, fitted to a mesh");
     command.add_option("mesh", arguments->mesh, "OBJ, PLY, STL, OFF or glTF file").required();
     command.add_option("--output", arguments->output, "Scene file to write").type_name("FILE.json").required();
-    command.add_option("--template", arguments->kind, "What happens in it")
+    command.add_option("--template", arguments->kind, "Kind of scene")
         .type_name("rain|debris|sparks|gas|fountain")
         .show_default();
     command.add_option("--up", arguments->up, "Axis of the mesh file that points up (default: y of glTF, else z)")

@@ -131,19 +131,17 @@ void print_looks(const RunPictures& pictures) {
     }
     if (const auto end = pictures.totals_end()) {
         cli::print(
-            "note: the run was interrupted: the colliders' colours show it up to {:.6g} s; go on with run --resume if "
-            "it "
-            "has a checkpoint, else run it again\n",
+            "note: the run was interrupted: the colliders' colours end at {:.6g} s; continue with run --resume if it "
+            "has a checkpoint, otherwise run it again\n",
             *end);
     }
     if (pictures.lacks_shutter()) {
         cli::print(
-            "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "
-            "shows the ways of 0.02 s\n");
+            "note: streaks need an open shutter, so spheres are drawn; --shutter 0.02 shows the paths of 0.02 s\n");
     }
     if (const std::string& name = pictures.hiding_collider(); !name.empty()) {
         cli::print(
-            "note: most particles are inside \"{0}\", of which the camera sees the outside; --glass {0}, or "
+            "note: most particles are inside \"{0}\", which hides them from the camera; --glass {0}, or "
             "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
             name);
     }

@@ -174,17 +174,16 @@ void add_options(cli::Command command, RunArguments& a) {
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
         .type_name("FILE.csv");
     command.add_option("--threads", a.threads, "Worker threads of a process (default: all processors)").type_name("N");
-    command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
+    command.add_option("--response", a.response, "Collision response, instead of the scene's")
         .type_name("exact|rollback|project|penalty");
     cli::add_progress_options(command, a.progress, a.quiet);
-    command.add_flag(
-        "--verify", a.verify,
-        "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
-        "with 1");
+    command.add_flag("--verify", a.verify,
+                     "Also check every segment, side, distance and energy by independent code; violations are listed "
+                     "and the exit code is 1");
     command.add_flag("--resume", a.resume,
-                     "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
+                     "Continue an interrupted run of the same scene in DIR from its last checkpoint");
     command
-        .add_option("--extend", a.extend, "With --resume: go on to this time, s, with an interrupted or a finished run")
+        .add_option("--extend", a.extend, "With --resume: continue an interrupted or a finished run to this time, in s")
         .type_name("T");
 }
 

@@ -85,7 +85,7 @@ Part rain(const Fit& fit) {
     return {.title = "Rain: drops fall on the mesh, splash where they hit, and fade.",
             .picture = R"("particles": "soft")",
             .emitters = fmt::format(
-                R"(    // Drops are born on a disk above the mesh. "rate" says how many a second.
+                R"(    // Drops start on a disk above the mesh. "rate" is their number per second.
     {{"name": "cloud", "type": "disk", "center": {}, "normal": [0, 0, -1], "radius": {}, "rate": {},
      "speed": [{}, {}], "lifetime": [{}, {}], "mass": 1e-4, "particle_size": {}, "color": [0.1, 0.32, 0.75],
      "opacity": 0.9, {}}},
@@ -194,7 +194,7 @@ Part gas(const Fit& fit, bool closed) {
             common;
     } else {
         emitters = fmt::format(
-            R"(    // The mesh has no inside that would hold a gas: one streams around it, in the box.
+            R"(    // The mesh has no closed interior, so the gas fills a box around it.
     {{"name": "gas", "type": "sphere", "center": {}, "radius": {}, {})",
             at(above_mesh(fit, 0.12), fit), about(0.08 * fit.length), common);
     }
@@ -287,7 +287,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
         part.contacts.empty()
             ? ""
             : fmt::format(
-                  "\n  // What the spheres do to each other. Without this line they pass through each other.\n"
+                  "\n  // Contact between the spheres. Without this line they pass through each other.\n"
                   "  \"particle_contacts\": {{{}}},",
                   part.contacts);
     return fmt::format(
@@ -296,14 +296,14 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
 //     ricochet run SCENE --output DIR
 //     ricochet render DIR --output picture.png    (film.mp4 for a film)
 //
-// Metres, seconds and kilograms; z points up. docs/scene-format.md tells every key.
+// Metres, seconds and kilograms; z points up. docs/scene-format.md describes every key.
 {{
   "ricochet": 1,
-  // 300 steps, of which every second one is a frame. A film lasts as long as the run, or by render's --speed.
+  // 300 steps; every second one is a frame. A film lasts as long as the run, unless render --speed changes that.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
   "forces": [{}],{}
   "materials": {{
-    // "restitution": speed of the rebound over speed of the approach, 0 to 1.
+    // "restitution": rebound speed divided by approach speed, 0 to 1.
     "surface": {}{}
   }},
   "colliders": [
@@ -312,7 +312,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
   "emitters": [
 {}
   ],
-  // Who leaves this box is removed.
+  // Particles that leave this box are removed.
   "bounds": {{"lower": {}, "upper": {}}},
   "output": {{"format": "vtp", "every": 2}},{}
   "camera": {}

@@ -43,7 +43,7 @@ public:
 
     /// Returns null for one process.
     [[nodiscard]] const std::shared_ptr<Ranks>& ranks() const { return ranks_; }
-    /// This process writes files and reports.
+    /// Returns true if this process writes files and reports.
     [[nodiscard]] bool talks() const { return !ranks_ || ranks_->rank() == 0; }
     /// Returns the number of threads for this process, or 0 for the whole machine. `wanted` is 0 by default. Local.
     [[nodiscard]] int threads_for(int wanted) const;

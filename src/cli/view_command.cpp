@@ -131,12 +131,15 @@ void add_options(cli::Command command, ViewArguments& a) {
         .add_option("--output", a.output,
                     "The page (default: the folder's or the scene's name with .html, beside the folder or here)")
         .type_name("FILE.html");
-    command.add_option("--budget", a.budget, "Most megabytes of the page: fewer bits, frames, particles until it fits")
+    command
+        .add_option("--budget", a.budget,
+                    "Size limit of the page; bits, frames and particles are reduced until it fits")
         .type_name("MB")
         .show_default();
     command.add_option("--color-by", a.color_by,
-                       "Attribute that colours the particles at first (default: their own color, or speed)");
-    command.add_option("--color-map", a.color_map, "viridis, plasma or turbo at first").show_default();
+                       "Attribute that initially colours the particles (default: their own color, or speed)");
+    command.add_option("--color-map", a.color_map, "Initial colour map: viridis, plasma, inferno, magma or turbo")
+        .show_default();
     command.add_option("--set", a.scene.overrides, "Replace a value of the scene (repeatable)")
         .type_name("PATH=VALUE")
         .one_value_each();

@@ -67,12 +67,12 @@ export class Panel {
     this.place.append(
         row('colour by', this.attribute), row('colours', this.map), range,
         row('size', slider(-1, 1, 0.02, 0, (power) => app.change({enlarge: 10 ** power})),
-            'Particles drawn smaller or larger than they are'),
+            'Draws particles smaller or larger than they are'),
         row('draw', choice(['spheres', 'soft', 'glow'].map((name) => [name, name]), app.look.drawing,
-                           (drawing) => app.change({drawing})), 'Spheres, soft discs, or light that adds up'),
+                           (drawing) => app.change({drawing})), 'Spheres, soft discs, or additive light'),
         row('trails', make('span', {className: 'two'}, this.trails,
             slider(2, 60, 1, app.look.trail_length, (frames) => app.change({trail_length: frames, trails: true}))),
-            'The ways of the last frames'));
+            'Paths over the last frames'));
     this.trail_note = make('div', {hidden: true});
     this.place.append(this.trail_note);
   }
@@ -91,7 +91,7 @@ export class Panel {
     const maps = [['', 'plain'], ['hits', 'hits'], ['impulse', 'impulse']]
         .filter(([name]) => name === '' || app.bodies.some((body) => name in body.part));
     this.body_map = choice(maps, app.look.body_map, (name) => app.change({body_map: name}));
-    this.place.append(row('colour by', this.body_map, 'What hit each triangle over the whole run'));
+    this.place.append(row('colour by', this.body_map, 'Totals of each triangle over the whole run'));
     const list = make('div', {className: 'bodies'});
     for (const body of app.bodies) {
       const shown = make('input', {type: 'checkbox', checked: body.object.visible, onchange: () => {
@@ -105,7 +105,7 @@ export class Panel {
       shown.setAttribute('aria-label', `show ${body.part.name}`);
       list.append(make('div', {className: 'body'},
           make('label', {title: body.part.name}, shown, make('span', {textContent: body.part.name})),
-          make('label', {className: 'see', title: 'see through it'}, glass, 'glass')));
+          make('label', {className: 'see', title: 'make it transparent'}, glass, 'glass')));
     }
     this.place.append(list);
   }

@@ -25,8 +25,8 @@ public:
     /// Makes an empty field, whose lower_bound() is 0 everywhere.
     DistanceField() = default;
     /// Builds the field with all threads, from triangles with finite corners inside the box. It has about two cells per
-    /// triangle, at least 2^15 for small meshes and at most kMaxCells, of one byte each. Large triangles that overlap
-    /// get fewer cells.
+    /// triangle, at least 2^15 for small meshes and at most kMaxCells, of one byte each. The grid is coarser if
+    /// large triangles overlap.
     DistanceField(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box);
 
     /// Returns a distance in m such that no triangle is nearer to p. It is 0 near triangles. p must be finite.

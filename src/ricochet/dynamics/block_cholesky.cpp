@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Largest fraction of zeros in a front. Consecutive columns are eliminated together up to this limit, because larger
-/// dense matrices are worth some zeros.
+/// Largest fraction of zeros in a front. Consecutive columns are eliminated together up to this limit: larger dense
+/// matrices are faster and outweigh the work on some zeros.
 constexpr double kMostZeros = 0.2;
 
 using Pair = BlockCholesky::Pair;

@@ -12,9 +12,8 @@ namespace {
 /// Stefan-Boltzmann constant, in W/(m^2 K^4) (exact by the SI of 2019).
 constexpr double kStefanBoltzmann = 5.670374419e-8;
 
-/// Largest start temperature relative to the limit after cooling. Even the hottest body is below (3 b t)^(-1/3) above
-/// the ambient temperature after a time t. A start temperature beyond this multiple of that limit does not change the
-/// result in any digit.
+/// Start temperatures above ambient are clamped to this multiple of (3 b t)^(-1/3). Even the hottest body is less than
+/// (3 b t)^(-1/3) above the ambient temperature after a time t, so the clamp does not change the result in any digit.
 constexpr double kForgotten = 1e6;
 
 /// Largest error of a step of the logarithm of T - Ta. A larger one would show in the sum over the steps of a run. A

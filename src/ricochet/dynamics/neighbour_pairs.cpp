@@ -17,7 +17,8 @@ constexpr std::size_t kFew = 8;
 constexpr std::size_t kFewLeft = 32;
 
 /// Enlargement of a kept box on each side, relative to its size. In a settling pile whose spheres move by 1e-3 of their
-/// size per step, a twentieth of them leaves it in ten steps. Twice the value adds a tenth to the pairs to test.
+/// size per step, a twentieth of the spheres leave their kept boxes in ten steps. Twice the enlargement adds a tenth to
+/// the pairs to test.
 constexpr double kLarger = 0.02;
 
 /// Smallest number of boxes for which the cache pays off.

@@ -98,8 +98,8 @@ struct SystemStep {
                                               const ImplicitOptions& options = {});
 
 /// Returns the flight of member i in this step along the method's path: lines for the Euler methods, the cubic Hermite
-/// polynomial for the others. velocity_verlet also uses the cubic because, unlike its parabola, it is the same read
-/// backwards in time; otherwise bounces would cost energy. A bounce leaves the plan: see coupled_member.h.
+/// polynomial for the others. velocity_verlet also uses the cubic. Unlike its parabola, the cubic is the same curve if
+/// time is reversed; otherwise bounces would cost energy. A bounce leaves the plan: see coupled_member.h.
 [[nodiscard]] Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step,
                                     std::size_t i);
 

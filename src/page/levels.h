@@ -31,7 +31,7 @@ struct PositionGrid {
 
     [[nodiscard]] LevelScale axis(int axis) const { return {lower[axis], step, largest, false}; }
 };
-/// Returns the largest displacement by rounding to a grid of the given step: half the diagonal of a cell. Units: m.
+/// Returns the largest displacement by rounding to a grid of the given step, in m. It is half the diagonal of a cell.
 [[nodiscard]] inline double rounding_distance(double step) { return 0.5 * std::sqrt(3.0) * step; }
 /// Returns the grid with 2^bits levels along the longest edge of the box.
 [[nodiscard]] PositionGrid position_grid(const Box3& box, int bits);

@@ -49,9 +49,7 @@ std::vector<Vec3> points_to_show(const ViewSubject& subject) {
 }
 
 // Returns the smallest distance at which all points lie between two planes of slope `tangent` through the eye. The
-// condition is
-// x - shift
-// <= tangent * (z + distance) for some shift across the view.
+// condition is |x - shift| <= tangent * (z + distance) for some shift across the view.
 double fitting_distance(const std::vector<Vec3>& points, const Vec3& across, const Vec3& forward, double tangent) {
     double low = -std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();

@@ -2,7 +2,7 @@
 /// Sum of the samples of a pixel. If the samples are few, extra camera rays that trace only the sun add information.
 /// They measure how much of the pixel each surface covers and how much of it is in sunlight. Their mean expected light
 /// replaces the samples' mean expected light. The samples supply the difference between actual and expected light (a
-/// control variate). The picture converges to the same limit.
+/// control variate). The limit for many samples is the same.
 #pragma once
 
 #include <array>

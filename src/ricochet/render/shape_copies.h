@@ -22,7 +22,7 @@ struct CopyHit {
     float v = 0.0F;
 };
 
-/// Copies of shapes. The object must not move while Embree uses its geometry.
+/// Copies of shapes. The object must keep its address while Embree uses its geometry.
 class ShapeCopies {
 public:
     /// Sets the shapes. All points of a shape must be at most 1 away from its origin.

@@ -122,8 +122,7 @@ void SphereView::find(int band, std::span<SphereFind> finds) const {
 }
 
 // A ray of direction d = forward + x right + y up, not normalized, hits the sphere at
-// d
-// ^2 t^2 - 2 (d . away) t + power = 0.
+// |d|^2 t^2 - 2 (d . away) t + power = 0.
 void SphereView::cover_row(const Spot& spot, std::uint32_t sphere, int row, std::span<SphereFind> finds) const {
     const double slope = up_[static_cast<std::size_t>(row)];
     const double row_middle = spot.ahead + slope * spot.up;

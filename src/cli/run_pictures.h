@@ -216,7 +216,7 @@ private:
     [[nodiscard]] bool hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const;
 
     // Drawing of particles, in run_particles.cpp.
-    // Particles with the same drawing, by their indices in the frame.
+    /// Particles with the same drawing, by their indices in the frame.
     struct Group {
         const Drawing* drawing;
         std::vector<std::size_t> shown;

@@ -133,7 +133,7 @@ std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
         const Vec3 place = c.box.lower + c.pitch * step;
         if (insides == nullptr || insides->contains_ball(place, 0.5 * c.pitch)) places.push_back(place);
     }
-    if (places.size() < c.particles) throw InputError("a benchmark case has more particles than its lattice has room");
+    if (places.size() < c.particles) throw InputError("a benchmark case has more particles than lattice positions");
     return places;
 }
 

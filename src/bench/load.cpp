@@ -176,7 +176,7 @@ std::shared_ptr<const TriangleMesh> LoadMeasurer::time_reading() {
     ImportedMesh imported;
     reads_.push_back(time_of([&] { imported = read_mesh(file_); }));
     if (imported.mesh.triangles.size() != triangles_) {
-        throw RunError(fmt::format("{} of suite load: the file brings back {} triangles of {}", case_.name,
+        throw RunError(fmt::format("{} of suite load: the file was read with {} triangles instead of {}", case_.name,
                                    imported.mesh.triangles.size(), triangles_));
     }
     return std::make_shared<const TriangleMesh>(std::move(imported.mesh));

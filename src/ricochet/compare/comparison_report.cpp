@@ -44,10 +44,10 @@ std::string settings_of(const ResponseChoice& response, const SimulationOptions&
             return fmt::format("offset {:.3g} m", options.project.offset);
         case ResponseKind::penalty:
             return fmt::format(
-                "{}, {} sub-steps a step, friction speed {:.3g} m/s",
+                "{}, {} substeps per step, friction speed {:.3g} m/s",
                 options.penalty.stiffness
                     ? fmt::format("stiffness {:.3g} N/m", *options.penalty.stiffness)
-                    : fmt::format("stiffness for contacts of {:.3g} sub-steps", options.penalty.contact_steps),
+                    : fmt::format("stiffness for contacts of {:.3g} substeps", options.penalty.contact_steps),
                 options.penalty.substeps, options.penalty.friction_speed);
         case ResponseKind::exact:
             break;

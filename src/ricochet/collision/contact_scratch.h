@@ -45,8 +45,8 @@ private:
     std::array<TrianglePlane, kSlots> plane_;
 };
 
-/// Distances and normals of surfaces. The functions are those of CollisionWorld, but faster for triangles that were
-/// used last. One object is for one particle in one thread. World and cache must outlive it.
+/// Distances and normals of surfaces. It has functions of CollisionWorld, which are faster here for recently used
+/// triangles. One object is for one particle in one thread. World and cache must outlive it.
 class SurfaceGeometry {
 public:
     /// `least_offset` is the smallest contact offset, in m. It is used in moving frames, whose coordinates are rounded

@@ -87,7 +87,7 @@ class Forces(unittest.TestCase):
                 oscillators(forces=[writes]).step()
 
     def test_ballistic_says_that_it_moves_as_velocity_verlet(self):
-        with self.assertWarnsRegex(UserWarning, "ballistic moves all particles as velocity_verlet"):
+        with self.assertWarnsRegex(UserWarning, "ballistic moves all particles like velocity_verlet"):
             silent = oscillators(None, forces=[pull])
         self.assertIn("velocity_verlet", silent.warnings[0])
         with warnings.catch_warnings():

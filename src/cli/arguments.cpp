@@ -102,7 +102,7 @@ std::uint32_t parse_repeats(const std::string& text) {
 
 void add_scene_arguments(cli::Command command, SceneArguments& arguments) {
     command.add_option("scene", arguments.file, "Scene file (docs/scene-format.md)").required();
-    // One value each, so that the scene file can follow it.
+    // Each occurrence takes one value, so that the scene file can follow it.
     command
         .add_option("--set", arguments.overrides,
                     "Change one value, for example simulation.time_step=0.01 or colliders[0].scale=2; may be repeated")

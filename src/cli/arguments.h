@@ -1,4 +1,4 @@
-// Arguments that several commands share, and values of options that are more than one number.
+// Arguments that several commands share, and parsers for option values.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,34 @@
 
 namespace ricochet::cli {
 
-/// The number that the text is, where it is nothing else and finite.
+/// Returns the number that the text consists of, or nothing if the text is not one finite number.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);
 
-/// The numbers of a comma-separated list. Throws InputError, naming the option, when one is no finite number.
+/// Returns the numbers of a comma-separated list. Throws InputError with the option's name if one is not a finite
+/// number.
 [[nodiscard]] std::vector<double> parse_number_list(const std::string& option, const std::string& text);
 
 struct PictureSize {
     int width = 0;
     int height = 0;
 };
-/// WIDTHxHEIGHT, each 1..16384. Throws InputError.
+/// Parses WIDTHxHEIGHT, each 1..16384. Throws InputError.
 [[nodiscard]] PictureSize parse_picture_size(const std::string& text);
 
-/// A number of worker threads, 1..1024; 0 (all) for an empty text. Throws InputError.
+/// Parses a number of worker threads, 1..1024. Returns 0 (all) for an empty text. Throws InputError.
 [[nodiscard]] int parse_thread_count(const std::string& text);
 
-/// Numbers of worker threads with commas between them, 1..1024 each; {0} (all) for an empty text. Throws InputError.
+/// Parses comma-separated numbers of worker threads, 1..1024 each. Returns {0} (all) for an empty text. Throws
+/// InputError.
 [[nodiscard]] std::vector<int> parse_thread_counts(const std::string& text);
 
-/// A part of something that may be lost, 0 <= x < 1. Throws InputError.
+/// Parses an allowed loss, as a fraction 0 <= x < 1. Throws InputError.
 [[nodiscard]] double parse_tolerance(const std::string& text);
 
-/// How often something is timed, 1..1000. Throws InputError.
+/// Parses the number of timed repetitions, 1..1000. Throws InputError.
 [[nodiscard]] std::uint32_t parse_repeats(const std::string& text);
 
-// The arguments of every command that takes a scene.
+// Arguments of every command that takes a scene.
 
 struct SceneArguments {
     std::string file;

@@ -31,9 +31,9 @@ namespace {
 
 using cli::InterruptGuard;
 
-constexpr int kSlower = 1;  // exit code when a ratio has fallen
+constexpr int kSlower = 1;  // exit code if a ratio has fallen
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct BenchArguments {
     std::string suite = "quick";
     std::string json;
@@ -45,11 +45,11 @@ struct BenchArguments {
     std::string repeats = "5";
 };
 
-// What has been measured; of the two lists one is used.
+// Measured results. Only one of the two lists is used.
 struct Measured {
     std::vector<bench::Row> rows;
     std::vector<bench::LoadRow> files;
-    // Once there are rows, a signal must not take them away.
+    // A signal must not lose finished rows, so the guard exists as soon as there are rows.
     std::optional<InterruptGuard> guard;
 
     void add(std::span<const bench::Row> more) {
@@ -73,19 +73,19 @@ struct Measured {
     }
 };
 
-// Where the program is, on a line of the terminal.
+// Progress of the benchmark, on one line of the terminal.
 class BenchProgress {
 public:
     BenchProgress(std::string suite, std::size_t cases, std::uint32_t repeats)
         : suite_(std::move(suite)), cases_(cases), repeats_(repeats) {}
 
-    // A case begins, or a group of cases that takes turns.
+    // Starts a case, or a group of cases that are measured alternately.
     void begin(std::size_t first, std::size_t count) {
         which_ = count == 1 ? fmt::format("case {} of {}", first + 1, cases_)
                             : fmt::format("cases {} to {} of {}", first + 1, first + count, cases_);
     }
 
-    // Every change of work is shown, steps not more often than can be read. False when a signal has come in.
+    // Shows progress. Every change of work is shown, but steps only at a readable rate. Returns false after a signal.
     bool operator()(const bench::Progress& progress) {
         const bool needs_query = line_.due();
         if (needs_query || progress.doing != doing_) line_.show(text_of(progress));
@@ -111,7 +111,7 @@ private:
     std::string doing_;
 };
 
-// Adds rows until all are there or a signal comes in.
+// Measures until all rows are complete or a signal arrives.
 void measure_files(const bench::MeasurementPlan& plan, Measured& measured) {
     const std::vector<bench::LoadCase>& cases = bench::load_cases();
     BenchProgress progress(std::string(bench::kLoadSuite), cases.size(), plan.repeats);
@@ -153,8 +153,8 @@ bench::MeasurementPlan plan_of(const BenchArguments& arguments) {
     return plan;
 }
 
-// Everything that results are compared with or go to, opened before hours of work, so that what is missing is told at
-// once.
+// Inputs to compare with and targets of results. They are opened before hours of work, so that a missing file is
+// reported at once.
 class Outlets {
 public:
     explicit Outlets(const BenchArguments& arguments)
@@ -181,7 +181,7 @@ public:
         if (results_) write_results(measured);
     }
 
-    // Returns the exit code.
+    // Prints the comparison and returns the exit code.
     [[nodiscard]] int compare(const Measured& measured) const {
         if (!before_) return 0;
         const auto changes = bench::compare_ratios(*before_, ratios_of(measured), tolerance_);
@@ -229,32 +229,35 @@ int run_bench(const BenchArguments& arguments) {
 }
 
 void add_options(cli::Command command, BenchArguments& a) {
-    command.add_option("--suite", a.suite, fmt::format("Which cases: {}", fmt::join(bench::suite_names(), ", ")))
+    command.add_option("--suite", a.suite, fmt::format("Suite of cases: {}", fmt::join(bench::suite_names(), ", ")))
         .type_name("NAME")
         .show_default();
-    command.add_option("--json", a.json, "File for the numbers").type_name("FILE");
+    command.add_option("--json", a.json, "JSON file for the results").type_name("FILE");
     command.add_option("--results", a.results, "Folder of results: DIR/MACHINE/SUITE gets a table and a picture")
         .type_name("DIR");
     const cli::Option compare =
-        command.add_option("--compare", a.compare, "File of ratios; exit code 1 when one has fallen").type_name("FILE");
-    command.add_option("--tolerance", a.tolerance, "Part of a ratio by which it may fall")
+        command.add_option("--compare", a.compare, "File of ratios to compare with; exit code 1 if a ratio has fallen")
+            .type_name("FILE");
+    command.add_option("--tolerance", a.tolerance, "Allowed relative fall of a ratio")
         .type_name("X")
         .show_default()
         .needs(compare);
-    command.add_option("--write-ratios", a.write_ratios, "File for the ratios, for --compare").type_name("FILE");
+    command.add_option("--write-ratios", a.write_ratios, "Write the ratios to this file, for --compare")
+        .type_name("FILE");
     command
         .add_option("--threads", a.threads,
-                    "Numbers of worker threads with commas, each measured (default: all processors; for the suite "
+                    "Comma-separated numbers of worker threads, each measured (default: all processors; for the suite "
                     "threads 1, 2, 4 and so on)")
         .type_name("LIST");
-    command.add_option("--repeats", a.repeats, "Timed runs, of which the median counts").type_name("N").show_default();
+    command.add_option("--repeats", a.repeats, "Number of timed runs; the median counts").type_name("N").show_default();
 }
 
 }  // namespace
 
 void add_bench_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<BenchArguments>();
-    cli::Command command = program.add_command("bench", "What collisions cost, beside bare rays on the same segments");
+    cli::Command command =
+        program.add_command("bench", "Measure the cost of collisions against bare rays on the same segments");
     add_options(command, *arguments);
     command.on_call([arguments, &exit_code] { exit_code = run_bench(*arguments); });
 }

@@ -31,7 +31,7 @@ BenchResults::BenchResults(const std::filesystem::path& folder, bench::Environme
     std::filesystem::create_directories(folder_, error);
     if (!error && ::access(folder_.c_str(), W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
     if (error) {
-        throw InputError(fmt::format("--results {}: {} is no folder that can be written to ({}); name another one",
+        throw InputError(fmt::format("--results {}: {} is not a writable folder ({}); choose another one",
                                      folder.string(), folder_.string(), error.message()));
     }
 }
@@ -71,7 +71,7 @@ std::string start(std::string_view suite, std::size_t styles, std::string_view t
                        title);
 }
 
-/// A block of lines: what is in the first column, then the values of the series.
+/// Returns a data block: the first column, then the values of the series.
 template <class AnyRow>
 std::string block(std::span<const AnyRow> rows, const std::function<std::string(const AnyRow&)>& first,
                   const std::vector<Series<AnyRow>>& series) {
@@ -88,7 +88,7 @@ struct Axes {
     const char* title;
     const char* x;
     const char* y;
-    const char* scales;  // gnuplot's commands for both axes
+    const char* scales;  // gnuplot commands for both axes
 };
 
 std::string lines(std::string_view suite, std::span<const Row> rows, const Axes& axes,
@@ -105,7 +105,7 @@ std::string lines(std::string_view suite, std::span<const Row> rows, const Axes&
     return text + "\nset output\n";
 }
 
-/// One tick on the axis for every row, with its name.
+/// Returns the commands for an axis with one named tick per row.
 template <class AnyRow>
 std::string name_axis(std::span<const AnyRow> rows) {
     std::string tics;
@@ -116,12 +116,12 @@ std::string name_axis(std::span<const AnyRow> rows) {
     return fmt::format("set xtics ({}) rotate by -30 noenhanced\nset xrange [-0.6:{:.4g}]\n", tics, end);
 }
 
-/// Bars side by side, each with its value above it, and optionally a line at 1.
+/// Returns a plot of bars side by side, each labelled with its value, and optionally a line at 1.
 template <class AnyRow>
 std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::string_view title, std::string_view y,
                  const std::vector<Series<AnyRow>>& series, bool with_one) {
     const double count = static_cast<double>(series.size());
-    const double width = 1.0 / (count + 1.0);  // between two groups as much room as a bar takes
+    const double width = 1.0 / (count + 1.0);  // the gap between two groups is one bar wide
     std::string text = start(suite, series.size(), title);
     text += fmt::format(
         "set ylabel '{}'\nset style fill solid 0.85 noborder\nset grid noxtics\nset boxwidth {:.4g}\n"
@@ -142,7 +142,7 @@ std::string bars(std::string_view suite, std::span<const AnyRow> rows, std::stri
     return text + "\nset output\n";
 }
 
-/// The rows with the most threads.
+/// Returns the rows with the most threads.
 template <class AnyRow>
 std::vector<AnyRow> with_most_threads(std::span<const AnyRow> rows) {
     int most = 0;
@@ -154,7 +154,7 @@ std::vector<AnyRow> with_most_threads(std::span<const AnyRow> rows) {
 }
 
 std::string size_plot(std::span<const Row> rows) {
-    const Axes axes{"What a particle-step costs on meshes of growing size", "triangles", "ns",
+    const Axes axes{"Cost of a particle-step on meshes of growing size", "triangles", "ns",
                     "set logscale x\nset format x '10^{%L}'\nset yrange [0:*]\n"};
     return lines("size", rows, axes, [](const Row& row) { return static_cast<double>(row.triangles); },
                  {{"ricochet: a step of a particle",
@@ -172,7 +172,8 @@ std::string count_plot(std::span<const Row> rows) {
          {"bare rays", [](const Row& row) { return row.raw_rays_per_second / kMillion; }}});
 }
 
-/// Doublings of the threads as far apart as those of the speed, marked where there are measurements.
+/// Returns the axes of a speedup plot. Both are logarithmic with equal doublings, with ticks at the measured thread
+/// counts.
 std::string threads_axis(std::span<const Row> rows) {
     constexpr double kMargin = 1.1;
     std::set<int> counts;
@@ -183,7 +184,7 @@ std::string threads_axis(std::span<const Row> rows) {
         fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
 }
 
-/// A curve for every case, and its bare rays dashed.
+/// Returns a plot with one curve per case, and its bare rays dashed.
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {
@@ -209,7 +210,7 @@ std::string threads_plot(std::span<const Row> rows) {
 
 std::string ratios_plot(std::string_view suite, std::span<const Row> rows) {
     return bars<Row>(
-        suite, rows, fmt::format("Suite {}: rates over those of Embree by itself", suite), "ratio",
+        suite, rows, fmt::format("Suite {}: rates relative to plain Embree", suite), "ratio",
         {{"particle-steps / bare rays", [](const Row& row) { return row.ratio_raw; }},
          {"particle-steps / sorted packets of rays", [](const Row& row) { return row.ratio_raw_sorted; }},
          {"impacts / native bounces", [](const Row& row) { return or_nothing(row.ratio_native_bounces); }}},
@@ -224,20 +225,20 @@ std::string plot_script(std::string_view suite, std::span<const Row> all_rows) {
     if (suite == "size") return size_plot(rows);
     if (suite == "count") return count_plot(rows);
     if (suite == "radius") {
-        return bars<Row>(suite, rows, "What spheres cost", "cost of a particle-step over that of points",
+        return bars<Row>(suite, rows, "Cost of spheres", "cost of a particle-step over that of points",
                          {{"cost over points", [](const Row& row) { return or_nothing(row.ratio_points); }}}, true);
     }
     if (suite == "response") {
-        return bars<Row>(suite, rows, "What the responses cost", "cost of a particle-step over the exact response",
+        return bars<Row>(suite, rows, "Cost of the responses", "cost of a particle-step over the exact response",
                          {{"cost over exact", [](const Row& row) { return or_nothing(row.ratio_exact); }}}, true);
     }
     if (suite == "moving") {
-        return bars<Row>(suite, rows, "What colliders that move cost", "cost of a particle-step over that at rest",
+        return bars<Row>(suite, rows, "Cost of moving colliders", "cost of a particle-step over that at rest",
                          {{"cost over rest", [](const Row& row) { return or_nothing(row.ratio_rest); }}}, true);
     }
     if (suite == "pairs") {
         return bars<Row>(
-            suite, rows, "What spheres that meet cost", "seconds for a simulated second",
+            suite, rows, "Cost of spheres in contact", "seconds for a simulated second",
             {{"s / simulated s", [](const Row& row) { return or_nothing(row.seconds_a_simulated_second); }}}, true);
     }
     return ratios_plot(suite, rows);

@@ -1,4 +1,4 @@
-// A folder of benchmark results (one folder a machine, one table and one picture a suite), and its plots.
+// Folder of benchmark results, with one folder per machine and one table and one picture per suite, and its plots.
 #pragma once
 
 #include <filesystem>
@@ -13,15 +13,15 @@
 
 namespace ricochet::cli {
 
-/// Where the results of one machine go.
+/// Folder for the results of one machine.
 class BenchResults {
 public:
-    /// Makes DIR/MACHINE and checks whether it can be written to. Throws InputError when something else than a folder
-    /// stands there or the folder cannot be made.
+    /// Creates DIR/MACHINE and checks whether it is writable. Throws InputError if the path is not a folder or the
+    /// folder cannot be created.
     BenchResults(const std::filesystem::path& folder, bench::Environment environment);
 
-    /// Writes SUITE.csv and SUITE.gp and draws SUITE.png, over those of an earlier run. Returns why there is no
-    /// picture: empty, or one line. Throws RunError when a file cannot be written.
+    /// Writes SUITE.csv and SUITE.gp and draws SUITE.png. Existing files are replaced. Returns an empty text, or the
+    /// reason why there is no picture in one line. Throws RunError if a file cannot be written.
     [[nodiscard]] std::string write(const std::string& suite, std::vector<bench::Record> records,
                                     const std::string& plot_script) const;
 
@@ -32,15 +32,19 @@ private:
     bench::Environment environment_;
 };
 
-// Pictures of the benchmark's numbers.
+// Plots of the benchmark results.
 
-/// A gnuplot script, with the numbers in it, that draws SUITE.png in the folder it is run in: for `size` the cost over
-/// the number of triangles, for `count` rates over the number of particles, for `threads` the speedup, for `radius` and
-/// `response` the costs side by side, for the others the ratios. Of the other suites' rows those with the most threads
-/// are drawn. At least one row.
+/// Returns a gnuplot script, including the numbers, that draws SUITE.png in its working folder. There must be at least
+/// one row. The suites draw:
+/// - `size`: the cost over the number of triangles.
+/// - `count`: rates over the number of particles.
+/// - `threads`: the speedup.
+/// - `radius` and `response`: the costs side by side.
+/// - Other suites: the ratios.
+/// All suites except `threads` draw only the rows with the most threads.
 [[nodiscard]] std::string plot_script(std::string_view suite, std::span<const bench::Row> rows);
 
-/// The same for files: how fast they are read and built.
+/// Returns a gnuplot script for mesh files: the speed of reading and building.
 [[nodiscard]] std::string plot_script(std::span<const bench::LoadRow> rows);
 
 }  // namespace ricochet::cli

@@ -1,4 +1,4 @@
-// Frames of a run as `--frame` names them.
+// Selection of a run's frames by the option `--frame`.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace ricochet::cli {
 
-/// The frames that a step number or `last` stands for, or `all` of them where that is allowed. Throws InputError.
+/// Returns the frames for a step number, `last`, or `all` if that is allowed. Throws InputError.
 [[nodiscard]] std::vector<FrameFile> chosen_frames(const RunFolder& folder, const std::string& frame, bool takes_all);
 
-/// The frame nearest to a time, s; the run says its time step.
+/// Returns the frame nearest to a time, in s. The run's info supplies the time step.
 [[nodiscard]] FrameFile nearest_frame(const RunFolder& folder, double time);
 
 }  // namespace ricochet::cli

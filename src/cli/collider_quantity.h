@@ -1,4 +1,4 @@
-// What colours a collider's triangles: what particles have done to them in the run.
+// Colours of a collider's triangles from the effects of particles in the run.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace ricochet::cli {
 
-/// A quantity of triangles, by itself, or over their area, the run's time, or both.
+/// A quantity of triangles, plain, per area, per time, or both.
 struct ColliderQuantity {
     enum class Kind { hits, impulse, energy } kind = Kind::hits;
     bool per_area = false;
@@ -22,32 +22,34 @@ struct ColliderQuantity {
 
     [[nodiscard]] std::string name() const;
     [[nodiscard]] std::string unit() const;
-    /// What pictures leave out by it: impacts alone are hits, and have a known energy. Empty where nothing is.
+    /// Returns a note about the omission of lasting contact: hits and energies count impacts only. It is empty if
+    /// nothing is omitted.
     [[nodiscard]] std::string note(const ImpulseSizes& sizes) const;
 };
 
-/// hits, impulse or energy, with /area, /time or both behind it; nothing for other texts.
+/// Parses hits, impulse or energy with an optional /area, /time or both. Returns nothing for other texts.
 [[nodiscard]] std::optional<ColliderQuantity> collider_quantity_from(const std::string& text);
 
-/// Energy that impacts gave to each triangle, J, by collider and triangle: what they took from the motion of the
-/// particles' centres. Planes, spheres and cylinders have the triangle -1. From the contact log.
+/// Energy that impacts transferred to each triangle, in J, by collider and triangle. It is the loss of kinetic energy
+/// of the particles' centres, from the contact log. Planes, spheres and cylinders have the triangle -1.
 using TriangleEnergies = std::map<std::pair<std::uint32_t, std::int64_t>, double>;
-/// Throws InputError where the run has no contact log.
+/// Sums the energies of the contact log. Throws InputError if the run has no contact log.
 [[nodiscard]] TriangleEnergies triangle_energies(const RunFolder& folder);
 
-/// The quantity of every triangle of a collider's file. info: the collider's, whose number in the run is `index`;
-/// seconds: of the run. Balls and cylinders are single surfaces: their triangles all carry the whole surface's.
+/// Returns the quantity of every triangle of a collider's file. `info` describes the collider with the number `index`
+/// in the run. `seconds` is the duration of the run. Balls and cylinders are single surfaces: all their triangles have
+/// the value of the whole surface.
 [[nodiscard]] std::vector<double> quantity_values(const ColliderQuantity& quantity, const VtkPolyData& collider,
                                                   const ColliderInfo& info, std::uint32_t index,
                                                   const TriangleEnergies& energies, double seconds);
 
-/// Adds the impulses on a collider, by where they came from.
+/// Adds the impulses on a collider, separated into impacts and lasting contact.
 void add_impulse_sizes(const VtkPolyData& collider, const ColliderInfo& info, ImpulseSizes& sizes);
 
-/// Areas of the triangles of a collider's file, m^2; of a single surface the whole area for each.
+/// Returns the areas of a collider's triangles, in m^2. Triangles of a single surface all get the whole area.
 [[nodiscard]] std::vector<double> triangle_areas(const VtkPolyData& collider, const ColliderInfo& info);
 
-/// The value below which 99 hundredths of the area lie whose value is above 0; 1 where there is none.
+/// Returns the value below which 99 % of the area with positive values lies. Returns 1 if there is none.
 [[nodiscard]] double upper_value(std::vector<std::pair<double, double>> values_and_areas);
 
 }  // namespace ricochet::cli

@@ -77,7 +77,7 @@ bool Command::is_called() const { return app_->parsed(); }
 
 namespace {
 
-/// Names of options that a word may stand for: by spelling, or by the letter that they begin with.
+/// Returns the option names that a word can stand for, by similar spelling or by the first letter.
 std::vector<std::string_view> meant_options(std::string_view word, const std::vector<std::string_view>& known) {
     std::string_view name = word.substr(0, word.find('='));
     name.remove_prefix(std::min(name.find_first_not_of('-'), name.size()));
@@ -88,7 +88,7 @@ std::vector<std::string_view> meant_options(std::string_view word, const std::ve
     return meant;
 }
 
-/// Returns a message on the first word that looks like an option of the command and is none, or nothing.
+/// Returns a message about the first word that looks like an option but is unknown, or nothing.
 std::optional<std::string> unknown_option(const CLI::App& command) {
     std::vector<std::string> names;
     for (const CLI::Option* option : command.get_options()) {
@@ -102,7 +102,7 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
     return std::nullopt;
 }
 
-/// The same for the program and the command that was called.
+/// Returns such a message for the called command or the program.
 std::optional<std::string> unknown_option_of_any(const CLI::App& program) {
     for (const CLI::App* command : program.get_subcommands()) {
         if (auto message = unknown_option(*command)) return message;
@@ -136,13 +136,13 @@ std::vector<std::string> CommandLine::commands() const {
 void CommandLine::add_footer(const std::string& text) { app_->footer(text); }
 
 std::optional<int> CommandLine::parse(std::vector<std::string> words, const std::string& hint) {
-    std::reverse(words.begin(), words.end());  // as CLI11 wants them
+    std::reverse(words.begin(), words.end());  // CLI11 expects them in reverse order
     try {
         app_->parse(words);
     } catch (const CLI::Success& help_or_version) {
         return app_->exit(help_or_version);
     } catch (const CLI::ParseError& error) {
-        // A misspelt option is missing under its right name, too: the spelling is the cause.
+        // A misspelt required option is also missing under its right name. The misspelling is the cause.
         throw InputError(fmt::format("{} ({})", unknown_option_of_any(*app_).value_or(error.what()), hint));
     }
     return std::nullopt;

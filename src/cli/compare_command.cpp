@@ -21,7 +21,7 @@
 namespace ricochet {
 namespace {
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct CompareArguments {
     cli::SceneArguments scene;
     ComparisonRequest request;
@@ -36,7 +36,7 @@ std::string progress_text(const ComparisonProgress& progress) {
                        progress.response, progress.time_step, kind, progress.step, progress.steps);
 }
 
-// Finds out whether every row can run before anything in the output folder is changed.
+// Checks that every row can run, before anything in the output folder changes.
 void check_rows(const cli::SceneArguments& arguments, const ComparisonPlan& plan) {
     SceneDescription scene = read_scene(arguments.file, arguments.overrides);
     try {
@@ -77,7 +77,7 @@ void write_numbers(const std::filesystem::path& folder, const Comparison& compar
     write_file(folder / kComparisonScriptFile, comparison_script(comparison));
 }
 
-// Returns why there are no pictures; empty when there are.
+// Draws the pictures. Returns the reason for a failure, or an empty text.
 std::string draw(const std::filesystem::path& folder) {
     const std::vector<std::string> pictures(kComparisonPictures.begin(), kComparisonPictures.end());
     return draw_with_gnuplot(folder, kComparisonScriptFile, pictures);
@@ -133,15 +133,15 @@ void add_options(cli::Command command, CompareArguments& a) {
         .required();
     command
         .add_option("--responses", a.request.responses,
-                    "Names with commas: exact, rollback, rollback:global, project, penalty (default: the four)")
+                    "Comma-separated names: exact, rollback, rollback:global, project, penalty (default: the four)")
         .type_name("LIST");
     command
         .add_option("--time-steps", a.request.time_steps,
-                    "Seconds with commas (default: the scene's step times 2, 1, 1/2 and 1/4)")
+                    "Comma-separated seconds (default: the scene's step times 2, 1, 1/2 and 1/4)")
         .type_name("LIST");
     command
         .add_option("--reference-step", a.request.reference_step,
-                    "Time step of the exact run that all are measured against (default: half of the smallest)")
+                    "Time step of the exact reference run, in s (default: half of the smallest)")
         .type_name("S");
     command.add_option("--repeats", a.request.repeats, "Timed runs of each row (default: 3)").type_name("N");
     command.add_option("--threads", a.threads, "Worker threads (default: all processors)").type_name("N");
@@ -153,7 +153,7 @@ void add_options(cli::Command command, CompareArguments& a) {
 void add_compare_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<CompareArguments>();
     cli::Command command =
-        program.add_command("compare", "One scene with several answers to collisions: cost and errors");
+        program.add_command("compare", "Compare the cost and errors of several responses on one scene");
     add_options(command, *arguments);
     command.on_call([arguments, &exit_code] {
         run_compare(*arguments);

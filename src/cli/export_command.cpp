@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kFormats = {"ply", "pc2", "gltf", "csv"};
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct ExportArguments {
     std::string folder;
     std::string format;

@@ -27,10 +27,10 @@ namespace {
 
 std::vector<std::string> ffmpeg_arguments(const std::filesystem::path& output, int width, int height, int rate) {
     return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-            // in: raw pictures on standard input
+            // input: raw pictures on standard input
             "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", width, height),
             "-framerate", std::to_string(rate), "-i", "pipe:0",
-            // out: what every player understands
+            // output: a format that every player supports
             "-c:v", "libx264", "-preset", "medium", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags", "+faststart",
             "-f", "mp4", "file:" + output.string()};
 }
@@ -41,8 +41,8 @@ std::uint64_t big_endian(const unsigned char* bytes, std::size_t count) {
     return value;
 }
 
-/// Returns true when the boxes of an MP4 file fill it exactly and one of them is the index (`moov`): ISO/IEC 14496-12,
-/// section 4.2. Some releases of ffmpeg end with exit code 0 when the disk has not taken the film.
+/// Returns true if the boxes of an MP4 file fill it exactly and one of them is the index (`moov`): ISO/IEC 14496-12,
+/// section 4.2. Some releases of ffmpeg end with exit code 0 although the disk rejected the film.
 bool is_whole_film(const std::filesystem::path& file) {
     std::error_code error;
     const std::uint64_t size = std::filesystem::file_size(file, error);
@@ -75,7 +75,7 @@ std::filesystem::path temporary_name(std::filesystem::path target) {
 
 Film::Film(std::filesystem::path target, int width, int height, int frames_per_second)
     : target_(std::move(target)), temporary_(temporary_name(target_)), unfinished_(temporary_) {
-    (void)std::signal(SIGPIPE, SIG_IGN);  // a dead ffmpeg shows in write()
+    (void)std::signal(SIGPIPE, SIG_IGN);  // write() reports a dead ffmpeg
     messages_ = std::tmpfile();
     if (messages_ == nullptr) throw RunError(fmt::format("no temporary file for ffmpeg ({})", std::strerror(errno)));
     start(width, height, frames_per_second);
@@ -96,7 +96,8 @@ void Film::start(int width, int height, int frames_per_second) {
     posix_spawn_file_actions_adddup2(&actions, ::fileno(messages_), STDERR_FILENO);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // Ctrl-C is for us; we end ffmpeg
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);  // Ctrl-C must reach only this process, which ends
+                                                                   // ffmpeg
     const int error = ::posix_spawnp(&process_, "ffmpeg", &actions, &attributes, pointers.data(), environ);
     posix_spawnattr_destroy(&attributes);
     posix_spawn_file_actions_destroy(&actions);

@@ -1,4 +1,4 @@
-// A film from pictures, through the ffmpeg program.
+// A film from pictures, encoded by the ffmpeg program.
 #pragma once
 
 #include <cstdio>
@@ -9,20 +9,20 @@
 
 namespace ricochet::cli {
 
-/// Feeds pictures to ffmpeg, which writes an H.264 film. The film appears under its name when finish() has been called;
-/// without it nothing is left behind.
+/// Pipes pictures to ffmpeg, which writes an H.264 film. The film appears under its name after finish(). Without
+/// finish(), no file remains.
 class Film {
 public:
-    /// What ffmpeg holds of pictures that it compares, bytes a pixel; measured.
+    /// Memory of ffmpeg for the pictures that it compares, in bytes per pixel; measured.
     static constexpr double kBytesPerPixel = 200.0;
 
-    /// Throws RunError when ffmpeg is not installed. width and height must be even.
+    /// Throws RunError if ffmpeg is not installed. width and height must be even.
     Film(std::filesystem::path target, int width, int height, int frames_per_second);
     ~Film();
     Film(const Film&) = delete;
     Film& operator=(const Film&) = delete;
 
-    /// Throws RunError with ffmpeg's own words when it has given up.
+    /// Throws RunError with ffmpeg's message if ffmpeg has failed.
     void add(const Image& image);
     void finish();
 
@@ -34,7 +34,7 @@ private:
     std::filesystem::path target_;
     std::filesystem::path temporary_;
     UnfinishedFile unfinished_;
-    std::FILE* messages_ = nullptr;  // what ffmpeg says on stderr
+    std::FILE* messages_ = nullptr;  // ffmpeg's standard error
     int pipe_ = -1;
     int process_ = -1;
 };

@@ -1,4 +1,4 @@
-// The commands that run nothing: info, check and schema.
+// Commands without a simulation: info, check and schema.
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -127,7 +127,7 @@ std::string counted(std::size_t count, std::string_view singular) {
     return fmt::format("{} {}{}", count, singular, count == 1 ? "" : "s");
 }
 
-// A name as a scene file writes it, in the characters that a terminal shows as they are.
+// Returns a name as written in a scene file, in characters that a terminal displays unchanged.
 std::string as_in_scene(const std::string& name) {
     constexpr std::size_t kLongest = 200;
     try {
@@ -161,7 +161,7 @@ void run_info(const InfoOptions& options) {
                                   "scene (0.001 for millimetres)");
     }
     if (options.json) {
-        // File names are bytes; JSON wants UTF-8.
+        // File names are bytes, but JSON needs UTF-8.
         fmt::print("{}\n", json_of(report, options.mesh).dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }
@@ -229,7 +229,7 @@ void run_check(const cli::SceneArguments& arguments) {
 
 void add_check_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<cli::SceneArguments>();
-    cli::Command command = program.add_command("check", "Everything that is wrong with a scene, without running it");
+    cli::Command command = program.add_command("check", "Check a scene for errors without running it");
     cli::add_scene_arguments(command, *arguments);
     command.on_call([arguments, &exit_code] {
         run_check(*arguments);
@@ -239,7 +239,7 @@ void add_check_command(cli::Command program, int& exit_code) {
 
 void add_schema_command(cli::Command program, int& exit_code) {
     const auto markdown = std::make_shared<bool>(false);
-    cli::Command command = program.add_command("schema", "Prints the JSON Schema of scene files");
+    cli::Command command = program.add_command("schema", "Print the JSON Schema of scene files");
     command.add_flag("--markdown", *markdown, "Print the reference page instead");
     command.on_call([markdown, &exit_code] {
         fmt::print("{}", *markdown ? scene_reference() : scene_schema());

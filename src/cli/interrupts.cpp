@@ -13,9 +13,9 @@ namespace ricochet::cli {
 namespace {
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
-constexpr int kOpen = -1;  // no guard lives: there is nothing to lose
+constexpr int kOpen = -1;  // no guard exists, so that nothing can be lost
 
-// The signal that was noted, 0 where one would be, or kOpen. Handlers read it on any thread.
+// The recorded signal, 0 while a guard waits for one, or kOpen. Handlers on any thread read it.
 std::atomic<int> noted = kOpen;
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may use nothing else");
 
@@ -35,16 +35,16 @@ bool is_ignored(int signal) {
 }  // namespace
 
 void end_at_interrupts() {
-    (void)std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any more shows in write()
+    (void)std::signal(SIGXFSZ, SIG_IGN);  // write() reports a file that reaches its size limit
     struct sigaction action {};
     action.sa_handler = handle;
-    // System calls go on after a signal that is only noted.
+    // System calls resume after a recorded signal.
     action.sa_flags = SA_RESTART;
-    // No second handler may begin on the thread that removes the files.
+    // No second handler may start on the thread that removes the files.
     for (const int signal : kSignals) (void)::sigaddset(&action.sa_mask, signal);
     for (const int signal : kSignals) {
-        // A script that runs the tool in the background has SIGINT ignored for it, and means it to end by it all the
-        // same.
+        // SIGINT is ignored for a background process of a script. The handler is installed anyway, because the script
+        // still uses SIGINT to end it.
         if (signal == SIGHUP && is_ignored(signal)) continue;
         (void)::sigaction(signal, &action, nullptr);
     }

@@ -1,19 +1,18 @@
-// Ctrl-C, kill and a terminal that goes away (SIGINT, SIGTERM, SIGHUP): when they end the process at once, and when
-// they ask the work to end properly.
+// Handling of SIGINT, SIGTERM and SIGHUP: immediate end of the process, or orderly end of the work.
 #pragma once
 
 namespace ricochet::cli {
 
-/// Exit code of what a signal has ended, less the signal's number.
+/// Exit code of a process ended by a signal, minus the signal's number.
 inline constexpr int kSignalled = 128;
 
-/// From now on these signals end the process at once with the exit code kSignalled + signal, whatever it is busy with;
-/// temporary files are removed and programs that write such are killed. SIGHUP stays ignored where it is, as under
-/// nohup. To be called once, before there are threads.
+/// Installs handlers that end the process at once with the exit code kSignalled + signal. They remove temporary files
+/// and kill programs that write such files. An ignored SIGHUP stays ignored, as under nohup. Must be called once,
+/// before any thread starts.
 void end_at_interrupts();
 
-/// For work that has something to lose: the first of these signals, which comes in while it lives, is only noted; the
-/// second one, of whatever kind, ends the process at once. One at a time.
+/// Protection for work that must not be lost. The first signal during its lifetime is only recorded. The second one,
+/// of any kind, ends the process at once. Only one guard can exist at a time.
 class InterruptGuard {
 public:
     InterruptGuard();
@@ -21,7 +20,7 @@ public:
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-    /// The signal that came in while the guard lived; 0 when none did.
+    /// Returns the signal that arrived during the guard's lifetime, or 0.
     [[nodiscard]] static int signal();
 };
 

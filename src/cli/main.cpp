@@ -1,6 +1,7 @@
-// The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code when it ran.
-// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh, 128 + signal. Errors are one line on
-// stderr.
+// The command line: `ricochet COMMAND ...`. Every command adds itself to the parser and sets the exit code after it
+// ran.
+// Exit codes: 0 done, 1 failed while running, 2 wrong arguments, scene or mesh, 128 + signal. Every error is one line
+// on stderr.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,10 +38,9 @@ constexpr int kWrongInput = 2;
 constexpr const char* kOutOfMemory =
     "out of memory: the work needs more than the machine, its control group or ulimit gives; make it smaller";
 
-/// Adds one subcommand; its callback sets exit_code and throws InputError or RunError.
+/// Function that adds one subcommand. The subcommand's callback sets exit_code and throws InputError or RunError.
 using AddCommand = void (*)(cli::Command program, int& exit_code);
 
-// One line a command.
 const std::vector<AddCommand>& commands() {
     static const std::vector<AddCommand> list = {
         add_bench_command, add_check_command,  add_compare_command, add_export_command, add_info_command,
@@ -63,7 +63,7 @@ int report_error(std::string message, int exit_code) {
 
 constexpr const char* kHelp = "help";
 
-// Throws InputError unless the first word is a command, or an option.
+// Throws InputError unless the first word is a command or an option.
 void check_command(const cli::CommandLine& line, const std::vector<std::string>& words) {
     const std::string word = words.empty() ? "" : words.front();
     std::vector<std::string> known = line.commands();
@@ -75,7 +75,7 @@ void check_command(const cli::CommandLine& line, const std::vector<std::string>&
     throw InputError(fmt::format("unknown command \"{}\"; {}", word, help));
 }
 
-// Returns `run --help` for `help run`, and `--help` for `help`.
+// Replaces `help run` by `run --help`, and `help` by `--help`.
 std::vector<std::string> without_help_command(std::vector<std::string> words) {
     while (!words.empty() && words.front() == kHelp) {
         words.erase(words.begin());
@@ -85,7 +85,7 @@ std::vector<std::string> without_help_command(std::vector<std::string> words) {
 }
 
 int parse_and_run(const std::vector<std::string>& arguments) {
-    cli::CommandLine line("Particles against triangle meshes, exactly", "ricochet");
+    cli::CommandLine line("Exact collisions of particles with triangle meshes", "ricochet");
     line.add_version(version_text);
     int exit_code = kDone;
     for (const AddCommand add : commands()) add(line.program(), exit_code);
@@ -95,7 +95,7 @@ int parse_and_run(const std::vector<std::string>& arguments) {
     try {
         if (const auto printed = line.parse(words, "ricochet --help lists commands and options")) return *printed;
     } catch (...) {
-        // Of processes that share a run one tells what is wrong.
+        // Only one of the processes that share a run reports the error.
         if (words.empty() || words.front() != "run") throw;
         if (const auto failed = cli::fail_together(std::current_exception())) return *failed;
         throw;
@@ -115,7 +115,7 @@ int run(int argc, char** argv) {
         return report_error(error.what(), kWrongInput);
     } catch (const std::bad_alloc&) {
         return report_error(kOutOfMemory, kFailed);
-    } catch (const std::length_error&) {  // of a container: more than there are addresses
+    } catch (const std::length_error&) {  // from a container: the size exceeds the address space
         return report_error(kOutOfMemory, kFailed);
     } catch (const std::exception& error) {
         return report_error(error.what(), kFailed);
@@ -130,8 +130,8 @@ const std::terminate_handler terminate_otherwise = std::get_terminate();
     throw std::bad_alloc();
 }
 
-// Where no error can pass (destructors of JSON documents, iterators of folders) the want of memory ends the program.
-// That is one line too.
+// Ends the program if an allocation fails in code that cannot throw (destructors of JSON documents, iterators of
+// folders). The error is reported in one line too.
 [[noreturn]] void terminate() {
     if (memory_has_run_out) {
         (void)std::fputs("ricochet: ", stderr);

@@ -29,8 +29,8 @@ struct NewArguments {
     std::string mesh;
     std::string output;
     std::string kind = "rain";
-    std::string up;    ///< empty: as the format says
-    std::string unit;  ///< of the mesh file; empty: metres, which nobody has said
+    std::string up;    ///< empty: default of the format
+    std::string unit;  ///< unit of the mesh file; empty: metres, as an unconfirmed assumption
     bool force = false;
 };
 
@@ -40,7 +40,7 @@ cli::SceneTemplate wanted_template(const NewArguments& arguments) {
         fmt::format("--template: found \"{}\", expected rain, debris, sparks, gas or fountain", arguments.kind));
 }
 
-// The box of what a quarter turn about x makes of it.
+// Returns the box after a quarter turn about x.
 Box3 turned(const Box3& box, Vec3 (*turn)(const Vec3&)) {
     Box3 result;
     for (const Vec3& corner : {box.lower, box.upper}) result.include(turn(corner));
@@ -61,7 +61,7 @@ constexpr std::array<Unit, 9> kUnits = {{{"um", 1e-6},
                                          {"ft", 0.3048},
                                          {"yd", 0.9144}}};
 
-// Metres in a unit.
+// Returns the length of a unit in metres.
 double metres_in(const std::string& unit) {
     std::vector<std::string_view> names;
     for (const auto& [name, metres] : kUnits) {
@@ -81,7 +81,7 @@ void warn_of_size(const NewArguments& arguments, const Box3& bounds, const std::
                          : "; give --unit mm (or cm, in, ...), or --unit m to keep the size");
 }
 
-// As the scene names it: from its own folder, so that both can be moved together.
+// Returns the mesh path relative to the scene's folder, so that both can be moved together.
 std::string file_from(const fs::path& scene, const fs::path& mesh) {
     const fs::path folder = fs::weakly_canonical(scene.parent_path().empty() ? fs::path(".") : scene.parent_path());
     return fs::proximate(fs::weakly_canonical(mesh), folder).generic_string();
@@ -107,7 +107,7 @@ cli::FittedMesh fitted_mesh(const NewArguments& arguments) {
     return mesh;
 }
 
-// A scene that is written is one that runs.
+// Checks that the written scene can run.
 void check_scene(const NewArguments& arguments, const std::string& text) {
     try {
         const Simulation simulation(parse_scene(text, arguments.output).setup);
@@ -151,11 +151,11 @@ void make_scene(const NewArguments& arguments) {
                arguments.mesh, size.x, size.y, size.z, up);
     if (kind == cli::SceneTemplate::gas && !mesh.closed) {
         cli::print("  the gas is around the mesh, in a box, not in it: {}\n",
-                   is_to_be_filled ? "where edges belong to three faces or more, or almost nothing is enclosed, the "
-                                     "mesh has no inside that could be filled"
+                   is_to_be_filled ? "the mesh has no interior to fill, because it encloses almost nothing or some "
+                                     "edges have three faces or more"
                                    : "the mesh is not closed, `ricochet info` tells why");
     }
-    cli::print("  where the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
+    cli::print("  if the mesh lies on its side: --up {} --force\n", up == "z" ? "y" : "z");
     cli::print("  next: ricochet run {} --output {}\n", arguments.output, folder == target ? folder + "_run" : folder);
 }
 
@@ -163,10 +163,10 @@ void make_scene(const NewArguments& arguments) {
 
 void add_new_command(cli::Command program, int& exit_code) {
     const auto arguments = std::make_shared<NewArguments>();
-    cli::Command command = program.add_command("new", "Write a scene that is fitted to a mesh, to begin with");
+    cli::Command command = program.add_command("new", "Write a first scene, fitted to a mesh");
     command.add_option("mesh", arguments->mesh, "OBJ, PLY, STL, OFF or glTF file").required();
     command.add_option("--output", arguments->output, "Scene file to write").type_name("FILE.json").required();
-    command.add_option("--template", arguments->kind, "What happens in it")
+    command.add_option("--template", arguments->kind, "Kind of scene")
         .type_name("rain|debris|sparks|gas|fountain")
         .show_default();
     command.add_option("--up", arguments->up, "Axis of the mesh file that points up (default: y of glTF, else z)")

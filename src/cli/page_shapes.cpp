@@ -16,7 +16,7 @@
 namespace ricochet::cli {
 namespace {
 
-/// Triangles of a mesh that a page repeats for each particle; more would make it slow.
+/// Limit for the triangles of a mesh that a page draws for each particle. More would make the page slow.
 constexpr std::size_t kMostPageTriangles = 20'000;
 
 }  // namespace

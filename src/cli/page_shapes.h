@@ -1,4 +1,4 @@
-// What a page draws the particles of a run as.
+// Meshes for the particles of a page.
 #pragma once
 
 #include "ricochet/io/run_folder.h"
@@ -6,8 +6,8 @@
 
 namespace ricochet::cli {
 
-/// The meshes of the run's picture and of its emitters' drawings, turned as `ricochet render` turns them. Throws
-/// InputError where one is missing.
+/// Returns the meshes of the run's picture and of its emitters' drawings, rotated as in `ricochet render`. Throws
+/// InputError if a mesh is missing.
 [[nodiscard]] PageShapes page_shapes(const RunFolder& folder);
 
 }  // namespace ricochet::cli

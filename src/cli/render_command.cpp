@@ -26,7 +26,7 @@ using namespace cli;
 
 [[noreturn]] void refuse(const std::string& message) { throw InputError(message); }
 
-// Shows how far the pictures are.
+// Progress of the pictures.
 class Watch {
 public:
     Watch(std::size_t pictures, const RenderArguments& arguments)
@@ -54,7 +54,7 @@ Image labelled(RunPictures& pictures, double time, const PictureOptions& options
     return image;
 }
 
-// The times of a film's pictures: film time is simulation time over --speed.
+// Returns the times of a film's pictures. Film time is simulation time divided by --speed.
 std::vector<double> film_times(RunTimeline& timeline, const RenderArguments& arguments) {
     constexpr double kMostPictures = 1e6;
     const double step = film_speed(arguments) / film_rate(arguments);
@@ -96,7 +96,7 @@ void write_pictures(RunPictures& pictures, const std::vector<FrameFile>& frames,
     }
 }
 
-// What lies between frames, and what is known of it.
+// Describes the interpolation between frames.
 std::string film_report(RunPictures& pictures, const RenderArguments& arguments) {
     const double step = film_speed(arguments) / film_rate(arguments);
     const double spacing = pictures.timeline().spacing();
@@ -131,25 +131,24 @@ void print_looks(const RunPictures& pictures) {
     }
     if (const auto end = pictures.totals_end()) {
         cli::print(
-            "note: the run was interrupted: the colliders' colours show it up to {:.6g} s; go on with run --resume if "
-            "it "
-            "has a checkpoint, else run it again\n",
+            "note: the run was interrupted: the colliders' colours end at {:.6g} s; continue with run --resume if it "
+            "has a checkpoint, otherwise run it again\n",
             *end);
     }
     if (pictures.lacks_shutter()) {
         cli::print(
-            "note: streaks are as long as the shutter is open, which it is not: they are spheres; --shutter 0.02 "
-            "shows the ways of 0.02 s\n");
+            "note: streaks need an open shutter, so spheres are drawn; --shutter 0.02 shows the paths of 0.02 s\n");
     }
     if (const std::string& name = pictures.hiding_collider(); !name.empty()) {
         cli::print(
-            "note: most particles are inside \"{0}\", of which the camera sees the outside; --glass {0}, or "
+            "note: most particles are inside \"{0}\", which hides them from the camera; --glass {0}, or "
             "\"looks\": {{\"glass\": true}} in the scene, shows them\n",
             name);
     }
 }
 
-// A film shows all frames unless it is told one. A picture without a frame shows the moment that the scene names.
+// Returns the frames to draw. A film shows all frames unless one is specified. A picture without --frame shows the
+// time that the scene specifies.
 std::vector<FrameFile> frames_of(const RunFolder& folder, const std::string& asked, bool film) {
     if (film && (asked.empty() || asked == "last")) return folder.frames;
     const auto& own = folder.info.picture;
@@ -164,7 +163,7 @@ void render(const RenderArguments& arguments) {
         refuse(fmt::format("--output {}: expected a name that ends in .png or .mp4", arguments.output));
     }
     check_numbers(arguments);
-    (void)parse_progress(arguments.progress);  // wrong words are told before the work
+    (void)parse_progress(arguments.progress);  // invalid words are reported before the work
     const PictureSize size = parse_picture_size(arguments.size);
     const bool film = extension == ".mp4";
     check_film_options(arguments, film);

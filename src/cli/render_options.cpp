@@ -44,8 +44,8 @@ std::optional<Lens> parse_lens(const std::string& text) {
     const std::vector<double> v = parse_number_list("--lens", text);
     if (v.empty() || v.size() > 2 || v[0] < 0.0 || (v.size() == 2 && !(v[1] > 0.0))) {
         refuse(
-            fmt::format("--lens {}: expected diameter[,distance] in m (0 for a sharp picture; what is sharp "
-                        "otherwise, by default the target)",
+            fmt::format("--lens {}: expected diameter[,distance] in m (diameter 0: everything is in focus; default "
+                        "distance: the target)",
                         text));
     }
     return Lens{v[0], v.size() == 2 ? v[1] : 0.0};
@@ -76,7 +76,8 @@ ParticleDrawing parse_drawing(const std::string& text) {
     refuse(fmt::format("--draw {}: expected auto, spheres, streaks, soft, glow, sprites or meshes", text));
 }
 
-// A file says what it is for; other drawings beside it would not use it.
+// Sets the file of a sprite or mesh, and the matching drawing. Throws InputError if another drawing was chosen,
+// because it would not use the file.
 void choose_file(const char* option, const std::string& file, ParticleDrawing drawing, std::filesystem::path& target,
                  PictureStyle& style) {
     if (file.empty()) return;
@@ -191,18 +192,19 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_option("--size", a.size, "WIDTHxHEIGHT in pixels").show_default();
     command.add_option("--camera", a.camera, "px,py,pz,tx,ty,tz[,fov]: position, target, vertical degrees");
     command.add_option("--up", a.up, "Axis that points up: x, y or z (default: against gravity)");
-    command.add_option("--lens", a.lens, "diameter[,distance] of a lens in m, and of what it shows sharply");
+    command.add_option("--lens", a.lens, "diameter[,distance] of a lens and of its plane of focus, in m");
     command.add_option("--color-by", a.color_by,
                        "Array of the frames that colours the particles (default: their own color, or speed)");
     command
         .add_option("--draw", a.drawing,
-                    "Particles as spheres, streaks along their way, soft discs by opacity, glow that adds up, sprites, "
-                    "or meshes (auto: soft with an opacity)")
+                    "Particles as spheres, streaks along their path, soft discs by opacity, additive glow, sprites or "
+                    "meshes (auto: soft if they have an opacity)")
         .show_default();
-    command.add_option("--sprite", a.sprite, "PNG file that particles are drawn with, facing the camera");
-    command.add_option("--black-body", a.black_body,
-                       "K: particles shine by their array temperature, at this one as a white surface in the sun");
-    command.add_option("--mesh", a.mesh, "Mesh file that particles are drawn as copies of, turned by their spin");
+    command.add_option("--sprite", a.sprite, "PNG file to draw particles with, facing the camera");
+    command.add_option(
+        "--black-body", a.black_body,
+        "Makes particles glow by their array temperature; value: K of a particle as bright as a sunlit white surface");
+    command.add_option("--mesh", a.mesh, "Mesh file to draw particles with, rotated by their spin");
     command.add_option("--light", a.light, "day, noon, overcast, night or studio (default: the scene's, or day)");
     command.add_flag("--night", a.night, "The same as --light night");
     command.add_option("--background", a.background, "sky, transparent (.png), or red,green,blue from 0 to 1");
@@ -211,21 +213,22 @@ void add_render_options(cli::Command command, RenderArguments& a) {
     command.add_option("--range", a.range, "low,high of the colours (default: from the frames)");
     command
         .add_option("--collider-color", a.collider_color,
-                    "plain, or by triangle hits, impulse or energy, with /area, /time or both behind it")
+                    "plain, or hits, impulse or energy of each triangle, followed by /area, /time, both or nothing")
         .show_default();
-    command.add_option("--collider-range", a.collider_range, "low,high of these colours (default: from the run)");
-    command.add_flag("--color-bar", a.color_bar, "Show what the colours mean, with unit and range");
+    command.add_option("--collider-range", a.collider_range,
+                       "low,high of the collider colours (default: from the run)");
+    command.add_flag("--color-bar", a.color_bar, "Draw colour bars with unit and range");
     command.add_option("--hide", a.hidden, "Leave out the collider of this name (repeatable)").one_value_each();
     command.add_option("--glass", a.glass, "See through the collider of this name (repeatable)").one_value_each();
     command.add_option("--particle-radius", a.particle_radius,
                        "Radius drawn, m (default: the scene's; 0: the particles' own)");
-    command.add_option("--samples", a.samples, "Rays a pixel (default: 16)");
+    command.add_option("--samples", a.samples, "Rays per pixel (default: 16)");
     command.add_flag("--preview", a.preview,
-                     "Draft: one ray a pixel, hard shadows, no light between surfaces, no blur");
-    command.add_flag("--no-filter", a.no_filter, "Leave the noise of few samples in");
+                     "Draft: one ray per pixel, hard shadows, no light between surfaces, no blur");
+    command.add_flag("--no-filter", a.no_filter, "Do not remove the noise of few samples");
     command.add_option("--exposure", a.exposure, "Brightness factor").show_default();
-    command.add_option("--shutter", a.shutter, "Seconds of the run that a picture shows: what moves blurs");
-    command.add_option("--fps", a.frames_per_second, "Pictures a second of a film (default: 30)");
+    command.add_option("--shutter", a.shutter, "Exposure time in seconds of the run; moving objects blur");
+    command.add_option("--fps", a.frames_per_second, "Pictures per second of a film (default: 30)");
     command.add_option("--speed", a.speed, "Seconds of the run in a second of a film (default: 1)");
     command.add_option("--threads", a.threads, "Worker threads (default: all)");
     add_progress_options(command, a.progress, a.quiet);

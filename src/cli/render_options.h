@@ -1,4 +1,4 @@
-// The options of `ricochet render`: as they stand on the command line, and what they mean.
+// Options of `ricochet render`: raw values and their meaning.
 #pragma once
 
 #include <limits>
@@ -11,11 +11,11 @@
 
 namespace ricochet::cli {
 
-/// The arguments as they stand on the command line.
+/// Raw arguments of the command line.
 struct RenderArguments {
     std::string folder;
     std::string output;
-    std::string frame;  // empty: the scene's, or the last; of a film all
+    std::string frame;  // empty: the scene's, or the last; for a film, all
     std::string size = "1280x720";
     std::string camera;
     std::string up;
@@ -24,7 +24,7 @@ struct RenderArguments {
     std::string drawing = "auto";
     std::string sprite;
     std::string mesh;
-    double black_body = 0.0;  // 0: the scene's
+    double black_body = 0.0;  // 0: the scene's value
     std::string color_map = "plasma";
     std::string range;
     std::string collider_color = "plain";
@@ -32,13 +32,13 @@ struct RenderArguments {
     bool color_bar = false;
     std::vector<std::string> hidden;
     std::vector<std::string> glass;
-    std::optional<double> particle_radius;  // the scene's
-    std::optional<int> samples;             // 16
+    std::optional<double> particle_radius;  // default: the scene's value
+    std::optional<int> samples;             // default: 16
     bool preview = false;
-    std::optional<int> frames_per_second;  // 30
+    std::optional<int> frames_per_second;  // default: 30
     double exposure = 1.0;
-    std::optional<double> speed;                             // 1
-    double shutter = std::numeric_limits<double>::lowest();  // that: the scene's
+    std::optional<double> speed;                             // default: 1
+    double shutter = std::numeric_limits<double>::lowest();  // lowest value: the scene's shutter
     std::string light;
     bool night = false;
     std::string background;
@@ -51,10 +51,10 @@ struct RenderArguments {
 
 void add_render_options(cli::Command command, RenderArguments& arguments);
 
-/// How the run is shown. Throws InputError on arguments that make no sense, as the others do.
+/// Returns the style of the pictures. Throws InputError on invalid arguments, as do the functions below.
 [[nodiscard]] PictureStyle picture_style(const RenderArguments& arguments);
 void check_numbers(const RenderArguments& arguments);
-/// What has a meaning for films alone is refused for pictures.
+/// Rejects film options for pictures.
 void check_film_options(const RenderArguments& arguments, bool film);
 [[nodiscard]] int rays_a_pixel(const RenderArguments& arguments);
 [[nodiscard]] int film_rate(const RenderArguments& arguments);

@@ -1,4 +1,4 @@
-// What the colours of a run's pictures mean: quantities of colliders, and the bars that explain them.
+// Colours in a run's pictures: quantities of colliders, and the bars that explain them.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -12,7 +12,7 @@
 namespace ricochet::cli {
 namespace {
 
-// Of arrays that every frame has; those of the user's own are known to the user.
+// Returns the unit of a built-in array. Units of user-defined arrays are unknown.
 std::string unit_of(const std::string& array) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kUnits = {{{"speed", "m/s"},
                                                                                       {"velocity", "m/s"},
@@ -31,7 +31,7 @@ std::string unit_of(const std::string& array) {
 
 }  // namespace
 
-// One range for all of them.
+// Colours all colliders with one common range.
 void RunPictures::color_colliders(const RunFolder& folder) {
     const ColliderQuantity& quantity = *style_.collider_quantity;
     TriangleEnergies energies;

@@ -52,7 +52,7 @@ Simulation make_simulation(SimulationSetup setup, const std::string& file) {
     }
 }
 
-// Warnings by the setup alone, before the simulation takes it over.
+// Returns warnings about the setup, before the simulation takes ownership of it.
 std::vector<std::string> setup_warnings(const SceneDescription& scene) {
     try {
         return bounds_warnings(scene.setup);
@@ -61,7 +61,7 @@ std::vector<std::string> setup_warnings(const SceneDescription& scene) {
     }
 }
 
-// Finds out before the work, not after it, whether the file can be written.
+// Checks before the work that the file can be written.
 void check_writable(const std::string& file) {
     if (!file.empty()) const AtomicFile probe(file);
 }
@@ -72,7 +72,7 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
            std::filesystem::equivalent(a, b, ignored);
 }
 
-// The final state must not replace what the run reads, nor what it writes.
+// Checks that the final state replaces neither an input nor an output file of the run.
 void check_target(const std::string& target, const SceneDescription& scene, const std::string& folder) {
     if (target.empty()) return;
     const auto refuse = [&](const char* what) {
@@ -89,23 +89,23 @@ void check_target(const std::string& target, const SceneDescription& scene, cons
     if (is_own && is_same_file(parent, folder)) refuse("is a file of the run");
 }
 
-// What a run needs to know while it goes on.
+// Parameters of a run in progress.
 struct RunPlan {
     OutputOptions output;
     std::uint64_t fingerprint = 0;
-    double earlier_seconds = 0.0;  // wall time before it was resumed
+    double earlier_seconds = 0.0;  // wall time before the run was resumed
     Clock::time_point start = Clock::now();
     const cli::SharedRun* run = nullptr;
 
     [[nodiscard]] double seconds() const { return earlier_seconds + seconds_since(start); }
-    // Of the time so far; the clock need not have moved.
+    // Returns a share of the elapsed time, or 0 if the clock has not moved.
     [[nodiscard]] double share(double part) const { return seconds() > 0.0 ? part / seconds() : 0.0; }
 };
 
-// Lets a step that runs when a signal comes end by itself for a while; then the step is given up.
+// Grace period for a step in progress when a signal arrives. After it, the step is abandoned.
 class PatienceWithStep {
 public:
-    // From any thread.
+    // Returns true while the step may continue. Safe from any thread.
     [[nodiscard]] bool goes_on() {
         if (InterruptGuard::signal() == 0) return true;
         const Clock::rep now = Clock::now().time_since_epoch().count();
@@ -116,12 +116,12 @@ public:
 
 private:
     static constexpr std::chrono::milliseconds kPatience{250};
-    std::atomic<Clock::rep> first_asked_ = 0;  // when the signal was seen
+    std::atomic<Clock::rep> first_asked_ = 0;  // time at which the signal was seen
 };
 
-// Steps to the end, to the end of the step in which a signal came (to its begin where it takes long), or to the one
-// that diverges: then it says why. Only when a step has been made there is something that a signal must not take away:
-// the guard lives from then on.
+// Steps until the end, a signal or divergence. After a signal, the state is that of the end of the step, or of its
+// start if the step takes long. Returns the reason of a divergence. The guard exists only after the first step,
+// because a signal can lose nothing before.
 std::optional<std::string> step_and_write(Simulation& simulation, cli::RunOutput& output, const RunPlan& plan,
                                           cli::RunProgress& progress, std::optional<InterruptGuard>& guard) {
     output.write_frame(simulation);
@@ -174,27 +174,26 @@ void add_options(cli::Command command, RunArguments& a) {
         .add_option("--output-state", a.output_state, "Also write the final state as text, with 17 significant digits")
         .type_name("FILE.csv");
     command.add_option("--threads", a.threads, "Worker threads of a process (default: all processors)").type_name("N");
-    command.add_option("--response", a.response, "How impacts are answered, instead of what the scene says")
+    command.add_option("--response", a.response, "Collision response, instead of the scene's")
         .type_name("exact|rollback|project|penalty");
     cli::add_progress_options(command, a.progress, a.quiet);
-    command.add_flag(
-        "--verify", a.verify,
-        "Also check every segment, side, distance and energy by independent code; what is wrong is listed and ends "
-        "with 1");
+    command.add_flag("--verify", a.verify,
+                     "Also check every segment, side, distance and energy by independent code; violations are listed "
+                     "and the exit code is 1");
     command.add_flag("--resume", a.resume,
-                     "Go on with an interrupted run of the same scene in DIR, from its last checkpoint");
+                     "Continue an interrupted run of the same scene in DIR from its last checkpoint");
     command
-        .add_option("--extend", a.extend, "With --resume: go on to this time, s, with an interrupted or a finished run")
+        .add_option("--extend", a.extend, "With --resume: continue an interrupted or a finished run to this time, in s")
         .type_name("T");
 }
 
-// Everything that a run is made of. Where ranks share it, the first one alone has a writer, and the folder unless all
-// write into it.
+// All parts of a run. If ranks share it, only the first rank has a writer. Only the first rank has the folder, unless
+// all write into it.
 struct PreparedRun {
-    SceneDescription scene{};  // its setup is in the simulation
+    SceneDescription scene{};  // its setup moves into the simulation
     RunInfo info{};
     RunPlan plan{};
-    Box3 region{};  // of the particles
+    Box3 region{};  // region of the particles
     cli::Progress progress = cli::Progress::automatic;
     std::optional<ThreadLimit> limit{};
     std::optional<Simulation> simulation{};
@@ -203,7 +202,7 @@ struct PreparedRun {
     cli::RunOutput out{};
 };
 
-// What can be said before a file of the folder is touched.
+// Does all checks that do not need a file of the folder.
 void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     cli::check_extension(arguments);
     prepared.progress = cli::parse_progress(arguments.progress);
@@ -219,7 +218,8 @@ void prepare(const RunArguments& arguments, const cli::SharedRun& run, PreparedR
     scene.setup.ranks = run.ranks();
     run.require_shareable(scene);
     prepared.simulation.emplace(make_simulation(std::move(scene.setup), scene.file));
-    // Before a checkpoint is read: planes are drawn in the same size whether the run was interrupted or not.
+    // The region is computed before a checkpoint is read, so that planes have the same size in interrupted and
+    // uninterrupted runs.
     if (arguments.resume) prepared.region.include(collider_region(*prepared.simulation));
     std::vector<std::string> warnings = prepared.simulation->warnings();
     std::ranges::copy(outside, std::back_inserter(warnings));
@@ -236,7 +236,7 @@ void open_folder(const RunArguments& arguments, PreparedRun& prepared) {
     check_writable(arguments.output_state);
 }
 
-// Puts the simulation where the run in the folder has stopped.
+// Restores the state at which the run in the folder has stopped.
 std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& prepared) {
     if (!arguments.resume) return std::nullopt;
     Simulation& simulation = *prepared.simulation;
@@ -253,7 +253,7 @@ std::optional<Checkpoint> resume(const RunArguments& arguments, PreparedRun& pre
     return checkpoint;
 }
 
-// What must be the same on all ranks before one of them touches a file.
+// Returns values that must be equal on all ranks before one of them touches a file.
 std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const PreparedRun& prepared) {
     StateHash names;
     for (const std::string& name : {arguments.output, arguments.output_state}) {
@@ -271,7 +271,8 @@ std::vector<std::uint64_t> what_is_asked(const RunArguments& arguments, const Pr
             names.value()};
 }
 
-// Once the folder is this run's: no other one changes its checkpoint. Returns what must be the same on all ranks.
+// Opens the outputs after the folder is reserved, so that no other run changes its checkpoint. Returns values that
+// must be equal on all ranks.
 std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& prepared) {
     const std::optional<Checkpoint> resumed = resume(arguments, prepared);
     const Simulation& simulation = *prepared.simulation;
@@ -294,7 +295,7 @@ std::vector<std::uint64_t> begin(const RunArguments& arguments, PreparedRun& pre
             std::bit_cast<std::uint64_t>(resumed ? resumed->output_seconds : 0.0)};
 }
 
-// The others come in once the first one is done with what was there.
+// Opens the folder on the other ranks after the first one has finished with the existing files.
 std::optional<int> share_folder(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (!run.ranks() || !prepared.plan.output.pieces) return std::nullopt;
     if (const auto failed = run.together([&] {
@@ -307,7 +308,7 @@ std::optional<int> share_folder(const RunArguments& arguments, const cli::Shared
     });
 }
 
-// All of it; the exit code where another process could not do its part.
+// Runs all preparations. Returns the exit code if another process failed.
 std::optional<int> prepare_together(const RunArguments& arguments, const cli::SharedRun& run, PreparedRun& prepared) {
     if (const auto failed = run.together([&] { prepare(arguments, run, prepared); })) return failed;
     if (const auto failed = run.require_alike(what_is_asked(arguments, prepared))) return failed;
@@ -325,7 +326,7 @@ std::optional<int> prepare_together(const RunArguments& arguments, const cli::Sh
     return std::nullopt;
 }
 
-// The last files, of the whole run.
+// Writes the last files of the whole run.
 RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, const cli::RunResources& of_others,
                          const std::optional<std::string>& diverged) {
     Simulation& simulation = *prepared.simulation;
@@ -349,13 +350,12 @@ RunSummary write_the_end(const RunArguments& arguments, PreparedRun& prepared, c
     summary.wall_seconds = prepared.plan.seconds();
     summary.interrupted = is_interrupted;
     writer.write_summary(summary);
-    // Only now: until all is on disk the run can go on from there.
+    // The checkpoint is removed only now, because the run can resume from it until everything is on disk.
     if (!diverged && !is_interrupted) writer.keep_checkpoint_for_extension();
     return summary;
 }
 
-// Says how the run has ended, where this process talks, and returns the exit code. Throws RunError where it has
-// diverged.
+// Reports the end of the run, if this process prints, and returns the exit code. Throws RunError if the run diverged.
 int report(const RunArguments& arguments, const Simulation& simulation, const std::optional<RunSummary>& summary,
            const std::optional<std::string>& diverged, int signal) {
     if (summary && !arguments.quiet) cli::print_report(*summary, arguments.output);
@@ -380,7 +380,7 @@ int cli::run_scene(const RunArguments& arguments) {
     }
     if (!diverged) prepared.out.write_frame(simulation);
     prepared.out.complete_frame();
-    // What it takes to go on where a signal has ended the run.
+    // An interrupted run needs a checkpoint to resume.
     if (!diverged && !simulation.finished()) prepared.out.write_checkpoint(simulation, prepared.plan.seconds());
     const RunResources of_others = run.resources_of_others();
     std::optional<RunSummary> summary;

@@ -13,7 +13,7 @@ namespace ricochet::cli {
 
 namespace {
 
-// Returns whether the last step is exactly as long as the others, so that the end of the run is a step of longer runs.
+// Returns true if the last step has full length, so that longer runs have the same step.
 bool has_whole_last_step(const Simulation& simulation) {
     const SimulationOptions& options = simulation.options();
     return options.duration == static_cast<double>(simulation.step_count()) * options.time_step;

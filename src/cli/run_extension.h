@@ -1,5 +1,5 @@
 /// \file
-/// Where a run of a folder goes on: an interrupted one from its checkpoint, a finished one to a later time.
+/// Continuation of a run in a folder: an interrupted run from its checkpoint, or a finished run to a later time.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,18 @@ namespace ricochet::cli {
 /// Throws InputError unless --extend is a time and the run is resumed.
 void check_extension(const RunArguments& arguments);
 
-/// Returns the last step with a frame from which a longer run of the same scene can go on. every: steps between frames.
+/// Returns the last step with a frame from which a longer run of the same scene can resume. `every` is the number of
+/// steps between frames.
 [[nodiscard]] std::uint64_t last_step_to_extend(const Simulation& simulation, std::uint64_t every);
 
-/// Returns the file that the run in the folder goes on from. simulation: of the scene, before its first step. Throws
-/// InputError where the run is finished, unless it is extended by a step at least.
+/// Returns the file from which the run in the folder resumes. `simulation` must be at its first step. Throws
+/// InputError if the run is finished, unless it is extended by at least one step.
 [[nodiscard]] std::filesystem::path resumed_file(const RunArguments& arguments, const Simulation& simulation);
 
-/// Throws InputError where the run has gone beyond the end that is asked for. A killed run may be at its end.
+/// Throws InputError if the run is already beyond the requested end. A killed run can be exactly at its end.
 void require_end_ahead(const RunArguments& arguments, const Simulation& simulation);
 
-/// Warns where a run goes on without the contact log that it has had.
+/// Warns if a resumed run stops writing its contact log.
 void warn_of_ended_log(const RunArguments& arguments, const Simulation& simulation);
 
 }  // namespace ricochet::cli

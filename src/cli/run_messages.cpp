@@ -12,23 +12,24 @@
 namespace ricochet::cli {
 namespace {
 
-// Nothing where no time has passed.
+// Formats a rate, or "-" if no time has passed.
 std::string rate_text(std::uint64_t count, double seconds) {
     return seconds > 0.0 ? short_number(static_cast<double>(count) / seconds) : "-";
 }
 
-/// Impulses that impacts gave are told apart where contact that lasts gave at least this part of all.
+/// Smallest share of lasting contact in the impulse for which impulses from impacts are reported separately.
 constexpr double kNotableShare = 0.01;
 
 void print_impulse_share(const ImpulseSizes& sizes) {
     if (!sizes.any() || 1.0 - sizes.share_of_impacts() < kNotableShare) return;
     print(
-        "  note: impacts gave {:.3g} % of the impulse on surfaces; hits and the contact log hold no contact that lasts "
+        "  note: impacts gave {:.3g} % of the impulse on surfaces; hits and the contact log do not include lasting "
+        "contact "
         "(impact_share, lasting_impulse)\n",
         100.0 * sizes.share_of_impacts());
 }
 
-/// The groups of a collider with the most hits, on one line.
+/// Prints the groups of a collider with the most hits on one line.
 void print_groups(const ColliderSummary& collider) {
     constexpr std::size_t kMostGroups = 8;
     if (collider.groups.empty()) return;
@@ -44,7 +45,7 @@ void print_groups(const ColliderSummary& collider) {
     print("  hits on {} by group: {}\n", printable(collider.name, 60), line);
 }
 
-/// Of the smaller radius: spheres overlap by more than what dense contact leaves where it is solved.
+/// Overlap relative to the smaller radius. Solved dense contact leaves smaller overlaps.
 constexpr double kLargeOverlap = 0.05;
 
 void print_notes(const SimulationStatistics& statistics) {
@@ -61,8 +62,7 @@ void print_notes(const SimulationStatistics& statistics) {
          "(coarse_steps)");
     warn(statistics.budget_exhausted,
          "times that a particle spent its bounces or its adaptive sub-steps of a step (budget_exhausted)");
-    warn(statistics.squeezed,
-         "times that surfaces that close left a particle no room, so that it waits for some (squeezed)");
+    warn(statistics.squeezed, "times that closing surfaces left a particle no space, so that it waits (squeezed)");
     warn(statistics.started_inside - statistics.started_in_overlap,
          "points born exactly on a surface (started_inside)");
     warn(statistics.started_in_overlap, "spheres born in overlap with a surface (started_in_overlap)");
@@ -103,12 +103,13 @@ void print_losses(const std::string& scene, const SimulationStatistics& statisti
     };
     warn(statistics.frozen, "particles stopped because their state was not finite or absurdly large (frozen)");
     warn(statistics.lost_impulses,
-         "impulses that are not in the totals of the collider files, since they have 6.7e7 N s and more along an axis, "
-         "beyond what a total can hold; the motion itself is right (lost_impulses)");
+         "impulses of 6.7e7 N s or more along an axis, too large for the totals of the collider files; the motion is "
+         "correct (lost_impulses)");
     if (statistics.overlap_largest > kLargeOverlap && statistics.born_in_overlap == 0) {
         print(stderr,
-              "ricochet: warning: {}: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): make "
-              "simulation.time_step smaller, radii and masses more alike, or room where surfaces press on them\n",
+              "ricochet: warning: {}: spheres overlap by up to {:.2g} of the smaller radius (overlap_largest): reduce "
+              "simulation.time_step, make radii and masses more similar, or leave more space between surfaces that "
+              "press on them\n",
               scene, statistics.overlap_largest);
     }
 }
@@ -125,7 +126,7 @@ void print_report(const RunSummary& summary, const std::string& output) {
           rate_text(statistics.particle_steps, summary.wall_seconds), statistics.contacts,
           statistics.bounces_per_step_max);
     if (summary.spheres_meet) {
-        print("  {} {} of spheres on each other, besides those that are planned together\n", statistics.pair_impacts,
+        print("  {} {} between spheres, besides those in islands that are solved together\n", statistics.pair_impacts,
               statistics.pair_impacts == 1 ? "impact" : "impacts");
     }
     for (const ColliderSummary& collider : summary.colliders) print_groups(collider);

@@ -1,5 +1,5 @@
 /// \file
-/// What a run says: while it goes on, and at its end.
+/// Messages of a run: progress and final report.
 #pragma once
 
 #include <chrono>
@@ -12,21 +12,23 @@
 
 namespace ricochet::cli {
 
-/// s since then; not below 0: a clock may be put back under a run that goes on for days.
+/// Returns the seconds since a time. The result is not negative, even if the clock was set back during a run of
+/// several days.
 [[nodiscard]] double seconds_since(std::chrono::steady_clock::time_point start);
 
-/// How far all processes of a run have come together.
+/// Progress of all processes of a run together.
 struct RunCounts {
     std::uint64_t particles = 0;
-    std::uint64_t particle_steps = 0;  ///< since its first step
+    std::uint64_t particle_steps = 0;  ///< since the first step of the run
 };
 
-/// The progress line of a run. Steps cost more as particles are born, so the time left is told from the latest steps.
+/// The progress line of a run. Steps get slower as particles are emitted, so the remaining time is estimated from the
+/// latest steps.
 class RunProgress {
 public:
     RunProgress(bool quiet, Progress progress) : line_(quiet, progress) {}
 
-    /// output_share: of the run's time so far.
+    /// Updates the line. `output_share` is the share of output in the elapsed time.
     void show(const Simulation& simulation, const RunCounts& counts, double output_share);
 
 private:
@@ -39,11 +41,11 @@ private:
     double seconds_per_step_ = 0.0;
 };
 
-/// What has come out, on standard output. output: the run's folder.
+/// Prints the final report on standard output. `output` is the run's folder.
 void print_report(const RunSummary& summary, const std::string& output);
-/// What makes results wrong or files incomplete, as warnings: also where nothing else is told.
+/// Prints warnings about wrong results and incomplete files. They appear even with --quiet.
 void print_losses(const std::string& scene, const SimulationStatistics& statistics);
-/// Lists what a verified run found wrong. Returns whether there was anything.
+/// Prints the findings of a verified run. Returns true if there are any.
 bool print_violations(const Simulation& simulation);
 
 }  // namespace ricochet::cli

@@ -8,7 +8,7 @@
 namespace ricochet::cli {
 namespace {
 
-/// Adds its lifetime to what the writer, if there is one, has spent.
+/// Adds its lifetime to the output time of the writer, if there is one.
 class Spending {
 public:
     explicit Spending(RunWriter* writer) : writer_(writer) {}
@@ -29,7 +29,8 @@ void RunOutput::add_step(Simulation& simulation) {
     simulation.show_whole(Shown::contacts, [&] { parts_.writer->add_step(simulation); });
 }
 
-// Pieces are written while the simulation goes on: what lists those of a frame comes with the next one.
+// Writes a frame. Pieces are written in the background, so the list of a frame's pieces is written with the next
+// frame.
 void RunOutput::write_frame(Simulation& simulation) {
     if (last_frame_ == simulation.step_index()) return;
     last_frame_ = simulation.step_index();
@@ -63,7 +64,7 @@ void RunOutput::write_checkpoint(Simulation& simulation, double seconds) {
     }
     simulation.show_whole(in_parts ? Shown::all_but_particles : Shown::all, [&] {
         parts_.writer->write_checkpoint(simulation, parts_.fingerprint, seconds, parts);
-        // Only now: until then the older one is the good one.
+        // The older parts are removed only now, because the older checkpoint was valid until here.
         parts_.folder->remove_checkpoint_parts(names_of(parts));
     });
 }

@@ -1,5 +1,5 @@
 /// \file
-/// What a run writes while it goes on, also where several processes share it.
+/// Output of a run in progress, also for several processes that share it.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,32 @@
 
 namespace ricochet::cli {
 
-/// All processes of a run make the same calls.
+/// Output of a run. All processes of a run make the same calls.
 class RunOutput {
 public:
     RunOutput() = default;
-    /// writer: of the first process; nothing on the others. folder: of all processes where there are pieces, else of
-    /// the first. resumed: the run goes on from there.
+    /// Parts of the output. The writer exists only on the first process. The folder exists on all processes if there
+    /// are pieces, otherwise only on the first. resumed_step is set if the run is resumed.
     struct Parts {
         std::shared_ptr<Ranks> ranks{};  ///< null for one process
         OutputDirectory* folder = nullptr;
         RunWriter* writer = nullptr;
         std::unique_ptr<PieceWriter> pieces{};  ///< with output.pieces
         std::optional<std::uint64_t> resumed_step{};
-        std::uint64_t fingerprint = 0;  ///< of the scene
+        std::uint64_t fingerprint = 0;  ///< fingerprint of the scene
     };
     explicit RunOutput(Parts parts) : parts_(std::move(parts)), last_frame_(parts_.resumed_step) {}
 
-    /// Logs the step's contacts.
+    /// Logs the contacts of the step.
     void add_step(Simulation& simulation);
-    /// Writes the present state as a frame, where it is none yet.
+    /// Writes the current state as a frame, unless it has been written.
     void write_frame(Simulation& simulation);
-    /// All pieces of the last frame are on disk, and listed.
+    /// Waits until all pieces of the last frame are on disk, and lists them.
     void complete_frame();
-    /// Writes a checkpoint of the present state, which is a frame already. seconds: spent so far.
+    /// Writes a checkpoint of the current state, which must already be a frame. `seconds` is the elapsed wall time.
     void write_checkpoint(Simulation& simulation, double seconds);
-    /// s that this process has spent on output or waiting for it; 0 where it is not the first.
+    /// Returns the time that this process has spent on output or waiting for it, in s. It is 0 on all but the first
+    /// process.
     [[nodiscard]] double seconds() const { return parts_.writer == nullptr ? 0.0 : parts_.writer->output_seconds(); }
 
 private:

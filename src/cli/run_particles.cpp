@@ -1,4 +1,4 @@
-// How the particles of a run's pictures are drawn: springs, and groups of particles that are drawn alike.
+// Drawing of a run's particles: springs, and groups of particles with the same drawing.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +20,8 @@ namespace {
 
 constexpr Vec3 kRopeColor{0.55, 0.40, 0.20};
 constexpr Vec3 kClothColor{0.42, 0.075, 0.06};
-constexpr double kThreadRadius = 0.5;  // of a spring between points, over that of a point
-constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is shown, not only threads
+constexpr double kThreadRadius = 0.5;  // radius of a spring between points, relative to the radius of a point
+constexpr double kBead = 1.5;          // a particle thicker than its threads by this factor is drawn too
 
 template <class Value>
 void append(std::vector<Value>& all, std::vector<Value>&& more) {
@@ -41,7 +41,8 @@ std::vector<double> radii_of(const VtkPolyData& frame) {
     return own == nullptr ? std::vector<double>(frame.points.size(), 0.0) : scalar_values(*own);
 }
 
-// Steps of ways: bends of gravity need few; the corner of an impact is cut by at most a step.
+// Returns the number of steps of paths. Curvature by gravity needs few steps. The corner of an impact is cut off by at
+// most one step.
 std::size_t way_steps(const ShutterPaths& paths) {
     const bool bends = std::any_of(paths.nodes.begin(), paths.nodes.end(), [](const auto& nodes) {
         return std::any_of(nodes.begin(), nodes.end(),
@@ -52,7 +53,7 @@ std::size_t way_steps(const ShutterPaths& paths) {
 
 }  // namespace
 
-/// Particles by what they are drawn as; left_out: those that something else shows.
+/// Groups particles by their drawing. `left_out` marks particles that springs already show.
 std::vector<RunPictures::Group> RunPictures::groups_of(const VtkPolyData& frame,
                                                        const std::vector<bool>& left_out) const {
     std::vector<Group> groups;
@@ -68,11 +69,11 @@ std::vector<RunPictures::Group> RunPictures::groups_of(const VtkPolyData& frame,
     return groups;
 }
 
-/// Threads and cloth. Returns which particles they show: those at the ends of springs that are not thicker.
+/// Adds threads and cloth. Returns which particles they show: the ends of springs that are not thicker.
 std::vector<bool> RunPictures::add_springs(const VtkPolyData& frame, const std::vector<double>& radii,
                                            PreviewMoving& moving) const {
     const std::vector<double> own_radii = radii_of(frame);
-    std::vector<double> thread(frame.points.size(), 0.0);  // thickest one at the particle
+    std::vector<double> thread(frame.points.size(), 0.0);  // radius of the thickest thread at the particle
     moving.lines.points = frame.points;
     for (const auto& [a, b] : frame.lines) {
         const bool have_size = own_radii[a] > 0.0 && own_radii[b] > 0.0;
@@ -109,7 +110,7 @@ PreviewSpheres RunPictures::spheres_of(const Group& group, const VtkPolyData& fr
     return spheres;
 }
 
-/// Moves balls that are larger than their particles off the walls.
+/// Moves drawn balls off the walls if they are larger than their particles.
 void RunPictures::keep_off_walls(const Moment& moment, const Group& group, PreviewSpheres& spheres) {
     const std::vector<double> own = chosen_of(radii_of(moment.frame), group.shown);
     const bool any_larger = !std::equal(own.begin(), own.end(), spheres.radii.begin(),
@@ -124,7 +125,7 @@ void RunPictures::keep_off_walls(const Moment& moment, const Group& group, Previ
     walls.clear({spheres.centers, spheres.radii, own});
 }
 
-/// Where spheres are on their ways while the shutter is open.
+/// Sets the paths of spheres while the shutter is open.
 void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const {
     const ShutterPaths& paths = moment.paths;
     const std::size_t steps = way_steps(paths);
@@ -139,7 +140,7 @@ void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>&
     }
 }
 
-/// Spheres as threads along their ways.
+/// Adds spheres as threads along their paths.
 void RunPictures::add_streaks(const ShutterPaths& paths, const std::vector<std::size_t>& shown,
                               const PreviewSpheres& spheres, PreviewMoving& moving) {
     for (std::size_t k = 0; k < shown.size(); ++k) {
@@ -167,14 +168,15 @@ void RunPictures::add_solid(const Moment& moment, const Group& group, PreviewSph
     append(moving.spheres.emissions, std::move(spheres.emissions));
 }
 
-/// Images have a layer for each drawing; all soft discs are one layer, and all that glow, which comes last.
+/// Adds sprites. Images have one layer per drawing. All soft discs share one layer, and all glowing discs share
+/// another, which comes last.
 void RunPictures::add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const {
     const ParticleDrawing kind = group.drawing->kind;
     const VtkArray* const own = find_array(frame.point_arrays, kOpacityAttribute);
     const std::vector<double> opacities =
         own == nullptr ? std::vector<double>(frame.points.size(), 1.0) : scalar_values(*own);
     std::vector<Vec3> colors = sprite_colors(frame, kind);
-    // Without a colour of their own they have those of their image alone.
+    // Images of particles without their own colours are not tinted.
     if (kind == ParticleDrawing::sprites && !own_colors_ && !colors_are_told_) {
         std::fill(colors.begin(), colors.end(), Vec3{1, 1, 1});
     }
@@ -199,7 +201,7 @@ void RunPictures::add_flat(const VtkPolyData& frame, const Group& group, std::ve
     append(same->opacities, std::move(sprites.opacities));
 }
 
-/// Of all particles; empty where none is a copy of a mesh.
+/// Returns the rotations of all particles, or an empty list if no particle is a copy of a mesh.
 std::vector<Turn> RunPictures::turns_in(const VtkPolyData& frame) {
     if (shapes_.empty()) return {};
     std::vector<const Drawing*> drawing_of(frame.points.size(), &drawings_[0]);

@@ -26,7 +26,7 @@ namespace {
 
 constexpr const char* kSpeed = "speed";
 
-// Muted earth and stone, so that the particles' colours stand out.
+// Muted earth and stone colours, so that the particles stand out.
 constexpr std::array<Vec3, 6> kColliderColors = {{{0.20, 0.18, 0.155},
                                                   {0.21, 0.23, 0.265},
                                                   {0.28, 0.23, 0.16},
@@ -44,7 +44,7 @@ std::string known_arrays(const VtkPolyData& frame) {
 
 Vec3 vec3_of(const std::vector<double>& values) { return {values.at(0), values.at(1), values.at(2)}; }
 
-// Colliders of one material share a colour.
+// Returns the index of a collider's colour. Colliders of one material share a colour.
 std::size_t color_index(const RunInfo& info, const std::filesystem::path& file) {
     const ColliderInfo* const collider = info.find(file.filename().string());
     return collider == nullptr ? 0 : collider->material % kColliderColors.size();
@@ -130,7 +130,7 @@ void RunPictures::survey(const std::vector<FrameFile>& chosen) {
     if (!style_.range && style_.color_by == kSpeed) range_.low = 0.0;
 }
 
-// Settles what was left to the frames, and notes whether any particle has a size of its own.
+// Chooses automatic settings from a frame, and records whether any particle has a size of its own.
 void RunPictures::choose_looks(const VtkPolyData& frame) {
     const bool has_colors = find_array(frame.point_arrays, kColorAttribute) != nullptr;
     if (style_.color_by.empty()) {
@@ -152,7 +152,7 @@ void RunPictures::choose_looks(const VtkPolyData& frame) {
     has_sizes_ = has_sizes_ || std::any_of(values.begin(), values.end(), [](double size) { return size > 0.0; });
 }
 
-// What the command line says comes before what the scene says.
+// Returns the appearance of a collider. The command line overrides the scene.
 RunPictures::Looks RunPictures::looks_of(const RunInfo& info, const std::filesystem::path& file) const {
     const std::string name = collider_name(info, file);
     ColliderLooks own;
@@ -195,7 +195,7 @@ void RunPictures::load_colliders(const RunFolder& folder) {
     if (style_.collider_quantity) color_colliders(folder);
 }
 
-// The picture is to show where they come.
+// Includes the positions of moving colliders in the view.
 void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
     if (moving_looks_.empty()) return;
     for (const FrameFile& file : spread_sample(chosen)) {
@@ -208,7 +208,7 @@ void RunPictures::survey_moving(const std::vector<FrameFile>& chosen) {
     }
 }
 
-// One mesh a collider, with the vertices of all of them.
+// Adds one mesh per moving collider.
 void RunPictures::add_moving(std::map<std::uint32_t, TriangleMesh> meshes, PreviewMoving& moving) const {
     for (auto& [collider, mesh] : meshes) {
         const auto looks = moving_looks_.find(collider);
@@ -231,7 +231,7 @@ std::vector<double> RunPictures::shown_values(const VtkPolyData& frame) const {
     return scalar_values(*array);
 }
 
-// Points have no size: they get one that can be seen, the smaller the more there are.
+// Returns a visible radius for points, which have no size. It decreases with their number.
 double RunPictures::visible_radius() const {
     const double view =
         std::tan(0.5 * camera_.fov_degrees * std::numbers::pi / 180.0) * length(camera_.target - camera_.position);
@@ -277,7 +277,7 @@ std::vector<Vec3> RunPictures::emissions(const VtkPolyData& frame) const {
     return lights;
 }
 
-// Discs and images have one colour for their own light and that which falls on them.
+// Returns the colours of discs and images. They combine emitted and reflected light in one colour.
 std::vector<Vec3> RunPictures::sprite_colors(const VtkPolyData& frame, ParticleDrawing kind) const {
     if (emissions_.empty()) return colors(frame);
     if (kind == ParticleDrawing::glow) return emissions_;

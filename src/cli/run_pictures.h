@@ -1,4 +1,4 @@
-// Pictures and films of a run: its folder on one side, the renderer on the other.
+// Pictures and films of a run: connects its folder to the renderer.
 #pragma once
 
 #include <algorithm>
@@ -35,68 +35,69 @@
 namespace ricochet::cli {
 
 inline constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
-inline constexpr double kParticleAlbedo = 0.8;  ///< of the colour map's colours, so that sunlit ones do not burn out
+inline constexpr double kParticleAlbedo = 0.8;  ///< factor on the colours of the colour map, so that sunlit colours do
+                                                ///< not saturate
 
-/// Most places that a sphere has while the shutter is open.
+/// Largest number of positions of a sphere while the shutter is open.
 inline constexpr std::size_t kMostWaySteps = 65;
-/// The same where none of them hits anything.
+/// Number of positions if no sphere hits anything.
 inline constexpr std::size_t kFewWaySteps = 9;
 
-/// Array by which particles shine, K.
+/// Array of the temperatures in K that make particles glow.
 inline constexpr const char* kTemperature = "temperature";
 
-/// What particles are drawn as.
+/// Drawing of particles.
 enum class ParticleDrawing {
-    automatic,  ///< soft where the frames have an opacity, spheres otherwise
+    automatic,  ///< soft if the frames have an opacity, otherwise spheres
     spheres,
-    streaks,  ///< threads along the way that they went while the shutter was open
-    soft,     ///< discs that cover what is behind by their opacity
-    glow,     ///< discs of light that adds up
+    streaks,  ///< threads along the path while the shutter is open
+    soft,     ///< discs that cover the background by their opacity
+    glow,     ///< discs of additive light
     sprites,  ///< an image that faces the camera
     meshes,   ///< copies of a mesh
 };
 
-/// auto, spheres, streaks, soft, glow, sprites or meshes.
+/// Parses auto, spheres, streaks, soft, glow, sprites or meshes.
 [[nodiscard]] std::optional<ParticleDrawing> drawing_from_name(std::string_view name);
 
-/// A few of a run's frames, spread over all of it.
+/// Returns a few of a run's frames, distributed over the whole run.
 [[nodiscard]] std::vector<FrameFile> spread_sample(const std::vector<FrameFile>& frames);
-/// Of a collider by its file in the run's folder.
+/// Returns the name of a collider from its file in the run's folder.
 [[nodiscard]] std::string collider_name(const RunInfo& info, const std::filesystem::path& file);
 
-/// The opening of a camera's lens.
+/// Opening and focus of a camera's lens.
 struct Lens {
-    double aperture = 0.0;        ///< m; 0: everything is sharp
-    double focus_distance = 0.0;  ///< m; 0: at the target
+    double aperture = 0.0;        ///< diameter, in m; 0: everything is in focus
+    double focus_distance = 0.0;  ///< distance of the plane of focus, in m; 0: at the target
 };
 
-/// What is behind everything: the sky of the light unless there is a colour.
+/// Background of a picture. Without a colour, it is the sky of the lighting.
 struct Background {
     std::optional<Vec3> color;  ///< linear light
     bool transparent = false;
 };
 
-/// A level ground that the run did not have.
+/// A level ground that is not part of the run.
 struct Ground {
     enum class Kind { none, automatic, at_height } kind = Kind::none;
-    double height = 0.0;  ///< m along the upward axis
+    double height = 0.0;  ///< along the upward axis, in m
 };
 
-/// How sprites and meshes are turned, and how spheres and meshes change their shape.
+/// Rotation of sprites and meshes, and stretch of spheres and meshes.
 struct ParticleShape {
     enum class Facing { upright, random, velocity } facing = Facing::upright;
-    MeanSpread turning;  ///< rad/s
+    MeanSpread turning;  ///< rate of rotation, in rad/s
     std::optional<StretchDescription> stretch;
 };
 
-/// What particles are drawn as, with all that this needs: those of an emitter, or all.
+/// Drawing of particles with all its data, for one emitter or for all.
 struct Drawing {
     ParticleDrawing kind = ParticleDrawing::automatic;
     ParticleShape shape;
-    std::uint32_t mesh = 0;  ///< number of the mesh that they are copies of, from 1 on; 0: a ball
+    std::uint32_t mesh = 0;  ///< number of the mesh, counted from 1; 0: a ball
     std::shared_ptr<const SpriteImage> sprite;
 
-    /// True for discs or images.
+    /// Returns true for discs and images.
     [[nodiscard]] bool is_flat() const {
         return kind == ParticleDrawing::soft || kind == ParticleDrawing::glow || kind == ParticleDrawing::sprites;
     }
@@ -105,87 +106,90 @@ struct Drawing {
     }
 };
 
-/// How a run is shown.
+/// Style of a run's pictures.
 struct PictureStyle {
-    /// Array of the frames; speed is the length of velocity. Empty: the particles' own colours, or speed without.
+    /// Array of the frames that colours the particles; speed is the length of velocity. Empty: the particles' own
+    /// colours, or speed if they have none.
     std::string color_by;
     ParticleDrawing drawing = ParticleDrawing::automatic;
     std::optional<ValueRange> range;
     ColorMap map = ColorMap::plasma;
-    /// m; nothing: the scene's. 0: the frames' own, or one that can be seen for points.
+    /// Drawn radius in m; nothing: from the scene. 0: from the frames, or a visible radius for points.
     std::optional<double> particle_radius;
-    std::optional<ColliderQuantity> collider_quantity;  ///< that colours the colliders
+    std::optional<ColliderQuantity> collider_quantity;  ///< quantity that colours the colliders
     std::optional<ValueRange> collider_range;
-    std::vector<std::string> hidden;  ///< colliders that are left out, by name
-    std::vector<std::string> glass;   ///< colliders that are seen through, by name
+    std::vector<std::string> hidden;  ///< names of omitted colliders
+    std::vector<std::string> glass;   ///< names of transparent colliders
     std::optional<Camera> camera;
     std::optional<Vec3> up;
     std::optional<Lens> lens;
-    // What is not set here is as the run's own picture settings say.
+    // Settings that are not set here come from the run's own picture settings.
     std::optional<Lighting> light;
     std::optional<Background> background;
     std::optional<Ground> ground;
-    std::optional<double> shutter;     ///< s
-    std::optional<double> black_body;  ///< K, at which particles shine as a white surface in the sun
-    std::filesystem::path sprite;      ///< PNG file of sprites; empty: the run's own
-    std::filesystem::path mesh;        ///< file of the mesh that particles are copies of; empty: the run's own
+    std::optional<double> shutter;     ///< in s
+    std::optional<double> black_body;  ///< temperature in K at which particles are as bright as a white surface in the
+                                       ///< sun
+    std::filesystem::path sprite;      ///< PNG file of sprites; empty: from the run
+    std::filesystem::path mesh;        ///< mesh file for particles; empty: from the run
 };
 
-/// A mesh that particles are copies of: the middle of its box in the origin, its farthest vertex 1 away. Throws
-/// InputError where the file has none.
+/// Returns a mesh for particles. The middle of its bounding box is the origin, and its farthest vertex is at distance
+/// 1. Throws InputError if the file has no extent.
 [[nodiscard]] TriangleMesh shape_from(const std::filesystem::path& file);
 
-/// Makes pictures of chosen frames with one camera, one range of colours and one set of colliders.
+/// Renders chosen frames with one camera, one colour range and one set of colliders.
 class RunPictures {
 public:
-    /// Reads the colliders and checks the chosen frames. Throws InputError on files that are not a run's, and on
-    /// names that the run does not have.
+    /// Reads the colliders and checks the chosen frames. Throws InputError for invalid files and for names that the
+    /// run does not have.
     RunPictures(const RunFolder& folder, const std::vector<FrameFile>& chosen, PictureStyle style, double aspect);
 
-    /// The run at a time between its first and its last frame.
+    /// Renders the run at a time between its first and its last frame.
     [[nodiscard]] Image picture(double time, const PictureOptions& options);
-    /// The frames and what lies between them.
+    /// Returns the frames with interpolation between them.
     [[nodiscard]] RunTimeline& timeline() { return timeline_; }
     [[nodiscard]] double shutter() const { return style_.shutter.value_or(0.0); }
-    /// Light and background.
+    /// Sets lighting and background.
     void set_scenery(PictureOptions& options) const;
     [[nodiscard]] const ValueRange& range() const { return range_; }
-    /// What the colours mean: of the particles, and of the colliders where a quantity colours them.
+    /// Returns the bars that explain the colours of the particles and of the colliders.
     [[nodiscard]] std::vector<ColorBar> color_bars() const;
-    /// What the colours of the colliders leave out; empty where that is nothing.
+    /// Returns a note about the impulses that the collider colours omit, or an empty text.
     [[nodiscard]] std::string collider_note() const {
         return style_.collider_quantity ? style_.collider_quantity->note(impulse_sizes_) : std::string();
     }
-    /// s, at which the totals that colour the colliders end, if that is before the last frame: the run was killed.
+    /// Returns the end of the collider totals in s, if it is before the last frame because the run was killed.
     [[nodiscard]] std::optional<double> totals_end() const { return totals_end_; }
-    /// Array that colours the particles.
+    /// Returns the array that colours the particles.
     [[nodiscard]] const std::string& color_by() const { return style_.color_by; }
-    /// True when the frames themselves say the colours.
+    /// Returns true if the frames contain the colours.
     [[nodiscard]] bool shows_own_colors() const { return own_colors_; }
     [[nodiscard]] const Camera& camera() const { return camera_; }
-    /// True when streaks are asked for and spheres drawn.
+    /// Returns true if streaks are requested, but spheres are drawn because the shutter is closed.
     [[nodiscard]] bool lacks_shutter() const {
         return !(shutter() > 0.0) && std::any_of(drawings_.begin(), drawings_.end(),
                                                  [](const Drawing& d) { return d.kind == ParticleDrawing::streaks; });
     }
-    /// True when particles are discs or images, some of them at least.
+    /// Returns true if at least some particles are discs or images.
     [[nodiscard]] bool draws_sprites() const {
         return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& d) { return d.is_flat(); });
     }
-    /// True when sprites have the colours of their image alone.
+    /// Returns true if sprites have only the colours of their image.
     [[nodiscard]] bool shows_image_colors() const { return plain_image_; }
-    /// True when particles have no colour but that of their heat.
+    /// Returns true if particles have only the colour of their heat.
     [[nodiscard]] bool shows_heat_alone() const { return embers_; }
-    /// The collider in which most particles are and that hides them from the camera outside; empty where there is none.
+    /// Returns the name of a collider that contains most particles and hides them from the outside camera, or an empty
+    /// text.
     [[nodiscard]] const std::string& hiding_collider() const { return hiding_; }
 
 private:
-    /// How a collider is shown.
+    /// Appearance of a collider.
     struct Looks {
         Vec3 color;
         bool glass = false;
         bool hidden = false;
-        bool has_color = false;  // of its own, from the scene
+        bool has_color = false;  // its own colour from the scene
         double roughness = 1.0;
         bool pattern = true;
     };
@@ -211,8 +215,8 @@ private:
     void find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen);
     [[nodiscard]] bool hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const;
 
-    // How particles are drawn, run_particles.cpp.
-    /// Particles that are drawn alike, by their numbers in the frame.
+    // Drawing of particles, in run_particles.cpp.
+    /// Particles with the same drawing, by their indices in the frame.
     struct Group {
         const Drawing* drawing;
         std::vector<std::size_t> shown;
@@ -230,7 +234,7 @@ private:
                             const PreviewSpheres& spheres, PreviewMoving& moving);
     void add_flat(const VtkPolyData& frame, const Group& group, std::vector<Sprites>& layers) const;
 
-    // What particles are drawn as, run_shapes.cpp.
+    // Shapes of particles, in run_shapes.cpp.
     void choose_shape(const RunFolder& folder);
     void add_drawing(const RunFolder& folder, const ParticleDrawingDescription& own);
     void load_drawing(Drawing& drawing, const std::filesystem::path& sprite, const std::filesystem::path& mesh);
@@ -248,30 +252,31 @@ private:
     RunTimeline timeline_;
     ViewSubject subject_;
     std::size_t most_particles_ = 0;
-    bool own_colors_ = false;       // colours are those of the frames
-    bool colors_are_told_ = false;  // by the command line
-    bool has_sizes_ = false;        // some particle has a size to be drawn with
+    bool own_colors_ = false;       // colours come from the frames
+    bool colors_are_told_ = false;  // colours come from the command line
+    bool has_sizes_ = false;        // some particles have a size for drawing
     ValueRange range_;
     Camera camera_;
     std::vector<PreviewMesh> meshes_;
-    std::vector<std::filesystem::path> mesh_files_;  // of each of the meshes
+    std::vector<std::filesystem::path> mesh_files_;  // one per mesh
     ValueRange collider_range_;
-    ImpulseSizes impulse_sizes_;                   // on the colliders that a quantity colours
-    std::optional<double> totals_end_;             // s
-    std::map<std::uint32_t, Looks> moving_looks_;  // of colliders that move, by their number
+    ImpulseSizes impulse_sizes_;                   // on the colliders coloured by a quantity
+    std::optional<double> totals_end_;             // in s
+    std::map<std::uint32_t, Looks> moving_looks_;  // of moving colliders, by their number
     std::map<std::uint32_t, std::filesystem::path> moving_files_;
-    std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // of their triangles, where a quantity colours them
+    std::map<std::uint32_t, std::vector<Vec3>> moving_colors_;  // colours of their triangles, if a quantity colours
+                                                                // them
     std::vector<PreviewPlane> planes_;
-    bool is_told_ = false;              // what particles are drawn as, by the command line
-    std::vector<Drawing> drawings_;     // the first: of those whose emitter says nothing
-    std::vector<TriangleMesh> shapes_;  // meshes that particles are copies of, fitted into the ball of radius 1
-    std::vector<Turn> turns_;           // of the particles of the frame that is drawn, where they spin
+    bool is_told_ = false;              // the drawing comes from the command line
+    std::vector<Drawing> drawings_;     // the first one is for particles whose emitter has no drawing
+    std::vector<TriangleMesh> shapes_;  // meshes for particles, fitted into the ball of radius 1
+    std::vector<Turn> turns_;           // rotations of the particles of the current frame, if they spin
     bool plain_image_ = false;
     bool embers_ = false;
-    std::vector<Vec3> emissions_;  // of the particles of the frame that is drawn; empty: none
+    std::vector<Vec3> emissions_;  // of the particles of the current frame; empty: no emission
     RunTurning turning_;
     std::string hiding_;
-    std::optional<WallClearance> walls_;  // at rest, once some ball is larger than its particle
+    std::optional<WallClearance> walls_;  // walls at rest, created when the first ball is larger than its particle
     std::optional<Preview> preview_;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// A run of a scene, as `ricochet run` makes it and other commands that need one.
+/// A run of a scene, for `ricochet run` and other commands that need a run.
 #pragma once
 
 #include <string>
@@ -8,23 +8,23 @@
 
 namespace ricochet::cli {
 
-/// The arguments of a run as they stand on the command line.
+/// Raw arguments of a run on the command line.
 struct RunArguments {
     SceneArguments scene;
-    std::string output;        ///< folder
-    std::string output_state;  ///< file; empty: none
+    std::string output;        ///< output folder
+    std::string output_state;  ///< file; empty: not written
     std::string threads;
     std::string response;
     std::string progress = "auto";  ///< auto, always or never
     bool quiet = false;
     bool resume = false;
-    std::string extend;  ///< s, the time to which a run goes on; empty: as the scene says
+    std::string extend;  ///< new end time of the run, in s; empty: from the scene
     bool verify = false;
-    bool shared = false;  ///< with the processes that mpirun has started beside this one, if it has
+    bool shared = false;  ///< joins the processes that mpirun started, if any
 };
 
-/// Runs the scene, writes its folder and reports. Returns the exit code: 0, 1 after violations, 128 + signal. Throws
-/// InputError and RunError.
+/// Runs the scene, writes its folder and prints a report. Returns the exit code: 0, 1 after violations, 128 + signal.
+/// Throws InputError and RunError.
 [[nodiscard]] int run_scene(const RunArguments& arguments);
 
 }  // namespace ricochet::cli

@@ -1,4 +1,4 @@
-// Where pictures of a run are taken from, and what is around.
+// Camera and surroundings of a run's pictures.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace ricochet::cli {
 
-// What the command line leaves open is as the scene says.
+// Takes settings from the scene unless the command line sets them.
 void RunPictures::choose_scenery(const RunInfo& info) {
     if (!info.picture) return;
     const PictureDescription& own = *info.picture;
@@ -77,7 +77,7 @@ Vec3 RunPictures::camera_place_in(const VtkPolyData& frame) const {
     return place && !style_.camera ? place->position : camera_.position;
 }
 
-/// The meshes that are shown and stand still, and the planes.
+/// Returns the visible meshes at rest, and the planes.
 WallClearance RunPictures::walls_at_rest() const {
     WallClearance walls(planes_);
     for (const std::filesystem::path& file : mesh_files_) {
@@ -87,9 +87,9 @@ WallClearance RunPictures::walls_at_rest() const {
     return walls;
 }
 
-// True for a mesh around most of the probes, but not around the eye.
+// Returns true if a mesh encloses most of the probes, but not the eye.
 bool RunPictures::hides(const TriangleMesh& mesh, const std::vector<Vec3>& probes, const Vec3& eye) const {
-    constexpr double kInside = 0.5;  // of the winding number, which is 1 inside a closed mesh
+    constexpr double kInside = 0.5;  // threshold of the winding number, which is 1 inside a closed mesh
     const Box3 box = bounds(mesh);
     const auto in_box = std::count_if(probes.begin(), probes.end(), [&](const Vec3& p) { return box.contains(p); });
     if (2 * static_cast<std::size_t>(in_box) <= probes.size()) return false;
@@ -101,7 +101,7 @@ bool RunPictures::hides(const TriangleMesh& mesh, const std::vector<Vec3>& probe
     return 2 * std::accumulate(is_inside.begin(), is_inside.end(), std::size_t{0}) > probes.size();
 }
 
-// Of the last chosen frame that has particles.
+// Finds a collider that hides the particles of the last chosen frame with particles.
 void RunPictures::find_hiding(const RunFolder& folder, const std::vector<FrameFile>& chosen) {
     constexpr std::size_t kProbes = 32;
     const std::vector<FrameFile> sample = spread_sample(chosen);

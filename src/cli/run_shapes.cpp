@@ -1,4 +1,4 @@
-// What the particles of a run's pictures are: images, copies of a mesh, balls that stretch.
+// Shapes of a run's particles: images, copies of a mesh, balls that stretch.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ TriangleMesh shape_from(const std::filesystem::path& file) {
     return mesh;
 }
 
-// What the command line says is for all particles.
+// Chooses the drawings. A drawing on the command line applies to all particles.
 void RunPictures::choose_shape(const RunFolder& folder) {
     const std::filesystem::path own = folder.frames.front().path.parent_path();
     Drawing common{style_.drawing, {}, 0, nullptr};
@@ -78,7 +78,7 @@ void RunPictures::choose_shape(const RunFolder& folder) {
     if (!shapes_.empty()) turning_ = RunTurning(folder.frames);
 }
 
-// Of the particles of some emitters.
+// Adds the drawing of the particles of some emitters.
 void RunPictures::add_drawing(const RunFolder& folder, const ParticleDrawingDescription& own) {
     const std::filesystem::path files = folder.frames.front().path.parent_path();
     const auto& picture = folder.info.picture;
@@ -110,7 +110,7 @@ bool RunPictures::draws_copies() const {
     return std::any_of(drawings_.begin(), drawings_.end(), [](const Drawing& drawing) { return drawing.is_copy(); });
 }
 
-// Large ones reach further than their middles.
+// Adds the extent of large particles to the view.
 void RunPictures::widen_subject(const VtkPolyData& frame) {
     const bool has_images = std::any_of(drawings_.begin(), drawings_.end(),
                                         [](const Drawing& drawing) { return drawing.sprite != nullptr; });
@@ -129,8 +129,8 @@ void RunPictures::widen_subject(const VtkPolyData& frame) {
 
 void RunPictures::require_room_for_copies() const {
     if (!draws_copies()) return;
-    constexpr double kCopy = 600.0;      // with its entries in the lists of a picture and in Embree's hierarchy
-    constexpr double kWayPoint = 300.0;  // twice as a point, and in the hierarchy
+    constexpr double kCopy = 600.0;      // including its entries in the lists of a picture and in Embree's hierarchy
+    constexpr double kWayPoint = 300.0;  // two copies of the point, and its entry in the hierarchy
     constexpr double kTriangle = 400.0;
     const double ways = shutter() > 0.0 ? kWayPoint * (timeline_.knows_impacts() ? kMostWaySteps : kFewWaySteps) : 0.0;
     double triangles = 0.0;
@@ -147,8 +147,8 @@ std::vector<AffineMap> RunPictures::turns_of(const Group& group) const {
     return maps;
 }
 
-// Along the velocity longer; near an impact flatter along its normal instead, and nearer to the surface by what the
-// flattening would leave between them.
+// Stretches copies along the velocity. Near an impact, they are flattened along its normal instead. The flattened
+// copies move towards the surface to close the gap.
 void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, const std::vector<double>& radii,
                                  PreviewCopies& copies) {
     const StretchDescription& stretch = *group.drawing->shape.stretch;
@@ -182,7 +182,7 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, c
     }
 }
 
-// Spheres become copies, beside those that are there.
+// Adds the spheres of a group as copies.
 void RunPictures::add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all) {
     PreviewCopies copies;
     copies.places = turns_of(group);

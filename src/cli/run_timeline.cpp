@@ -14,7 +14,7 @@
 namespace ricochet::cli {
 namespace {
 
-constexpr double kSameTime = 1e-9;  // of the distance of two frames
+constexpr double kSameTime = 1e-9;  // relative to the spacing of two frames
 
 template <class Value>
 const std::vector<Value>& values_of(const VtkPolyData& data, const char* name) {
@@ -33,7 +33,8 @@ Whole mixed(Whole a, Whole /*b*/, double /*t*/) {
 
 constexpr std::size_t kNowhere = std::numeric_limits<std::size_t>::max();
 
-// Spheres that meet have the velocities of one of them in the log: what it was turned by stands for the speed.
+// Adds the nearest impacts of a contact log. For two spheres, the log has only the velocities of one of them. Its
+// change of velocity is used as the speed.
 void add_near_impacts(const VtkPolyData& log, double time, double reach,
                       const std::unordered_map<std::int64_t, std::size_t>& rows, std::vector<NearImpact>& nearest) {
     const auto& particles = values_of<std::int64_t>(log, "particle");
@@ -63,7 +64,8 @@ void add_near_impacts(const VtkPolyData& log, double time, double reach,
     }
 }
 
-/// Copied before they are in a variant: where memory runs out in the copy of one, it goes wrong as list_of() says.
+/// Copies arrays. The values are copied before they are moved into a variant, because an allocation failure inside a
+/// variant's copy corrupts it; see list_of().
 std::vector<VtkArray> copies_of(const std::vector<VtkArray>& arrays) {
     std::vector<VtkArray> copies;
     copies.reserve(arrays.size());
@@ -92,7 +94,7 @@ VtkPolyData copy_of(const VtkPolyData& frame) {
 
 }  // namespace
 
-// The particles of a moment: where each stands in the frame before and in the one after, and by its id.
+// The particles at one time: their rows in the previous and in the next frame, and a lookup by id.
 struct RunTimeline::Rows {
     std::vector<std::size_t> before;
     std::vector<std::size_t> after;
@@ -177,7 +179,7 @@ void RunTimeline::add_frame_nodes(std::size_t first, std::size_t last, const Row
 
 void RunTimeline::add_impact_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths) {
     if (first == last) return;
-    // The file with a frame's step holds the rows up to it; large logs have more of them in between.
+    // The file with a frame's step contains the impacts up to it. Large logs have additional files in between.
     const auto begin = contacts_.upper_bound(files_[first].step);
     const auto end = contacts_.upper_bound(files_[last].step);
     for (auto file = begin; file != end; ++file) {
@@ -278,7 +280,7 @@ VtkPolyData RunTimeline::mixed_frame(std::size_t k, double time, const Rows& row
         }
         out.fields.push_back(std::move(mix));
     }
-    // Threads and cloth hold particles that are there in both.
+    // All particles of threads and cloth exist in both frames.
     out.lines = a.lines;
     out.triangles = a.triangles;
     out.has_vertices = a.has_vertices;

@@ -1,5 +1,5 @@
-// A run at any time between its first and its last frame: what lies between frames, from the states at both and the
-// impacts in between.
+// A run at any time between its first and its last frame. States between frames are interpolated from both frames and
+// the impacts in between.
 #pragma once
 
 #include <cstdint>
@@ -16,31 +16,32 @@
 
 namespace ricochet::cli {
 
-/// The ways of particles while the shutter is open.
+/// Paths of particles while the shutter is open.
 struct ShutterPaths {
-    double open = 0.0;                         ///< s
-    double close = 0.0;                        ///< s
-    std::vector<std::vector<PathNode>> nodes;  ///< of each point of the frame; empty without a shutter
-    std::vector<double> born;                  ///< s, of each, where later than `open`; `open` otherwise
+    double open = 0.0;                         ///< in s
+    double close = 0.0;                        ///< in s
+    std::vector<std::vector<PathNode>> nodes;  ///< for each point of the frame; empty without a shutter
+    std::vector<double> born;                  ///< birth time of each particle in s, if later than `open`; otherwise
+                                               ///< `open`
 
     [[nodiscard]] bool empty() const { return nodes.empty(); }
 };
 
-/// A run at a moment.
+/// State of a run at one time.
 struct Moment {
-    VtkPolyData frame;                             ///< the particles then
-    std::map<std::uint32_t, TriangleMesh> moving;  ///< colliders that move, by their numbers
+    VtkPolyData frame;                             ///< particles at that time
+    std::map<std::uint32_t, TriangleMesh> moving;  ///< moving colliders, by their numbers
     ShutterPaths paths;
 };
 
-/// The impact of a particle that is nearest to a moment.
+/// The impact of a particle that is nearest in time.
 struct NearImpact {
-    double away = 0.0;   ///< s from the moment, either way
-    double speed = 0.0;  ///< m/s along the normal, before it; 0: there is none
-    Vec3 normal;         ///< of unit length, away from what was hit
+    double away = 0.0;   ///< time distance, before or after, in s
+    double speed = 0.0;  ///< normal speed before the impact, in m/s; 0: no impact
+    Vec3 normal;         ///< unit normal, away from the surface
 };
 
-/// Reads frames and contact files as they are needed, and keeps those near the last time that was asked for.
+/// Reader of a run. Loads frames and contact files on demand and caches the ones near the last requested time.
 class RunTimeline {
 public:
     explicit RunTimeline(const RunFolder& folder);
@@ -48,31 +49,32 @@ public:
     [[nodiscard]] double time_of(std::size_t frame);
     [[nodiscard]] double first_time() { return time_of(0); }
     [[nodiscard]] double last_time() { return time_of(files_.size() - 1); }
-    /// The time of a step that is one of the frames; what is asked for next is best near it.
+    /// Returns the time of a frame by its step. Subsequent requests near this time are fast.
     [[nodiscard]] double go_to(std::uint64_t step);
-    /// s from the first frame to the second; 0 where there is one frame only.
+    /// Returns the time from the first frame to the second, in s. It is 0 if there is only one frame.
     [[nodiscard]] double spacing() { return files_.size() < 2 ? 0.0 : time_of(1) - time_of(0); }
-    /// The run at a time within it; exactly a frame's own state at its time. shutter: s before it that the paths are
-    /// wanted for; 0: no paths. Throws InputError for files that are not a run's.
+    /// Returns the run at a time. At the time of a frame, it is exactly the frame's state. `shutter` is the duration
+    /// of the paths before that time in s; 0 gives no paths. Throws InputError for invalid files.
     [[nodiscard]] Moment at(double time, double shutter);
-    /// Of each particle of a moment at that time, the impact at most `reach` s away from it.
+    /// Returns the nearest impact of each particle, if it is within `reach` (s) of the time.
     [[nodiscard]] std::vector<NearImpact> impacts_near(const VtkPolyData& frame, double time, double reach);
-    /// True when impacts between frames are known.
+    /// Returns true if the impacts between frames are recorded.
     [[nodiscard]] bool knows_impacts() const { return !contacts_.empty(); }
 
 private:
-    struct Rows;  // of the particles of a moment
+    struct Rows;  // particles at one time
 
     [[nodiscard]] const VtkPolyData& frame(std::size_t k);
     [[nodiscard]] const VtkPolyData& contact_log(std::uint64_t step, const std::filesystem::path& path);
-    // The last frame at or before a time; frames within a billionth of their distance count as at it.
+    // Returns the last frame at or before a time. A time within a billionth of the frame spacing counts as the frame's
+    // time.
     [[nodiscard]] std::size_t index_at(double time);
     [[nodiscard]] bool is_at(std::size_t k, double time);
     [[nodiscard]] Rows rows_at(std::size_t k, bool exact, double time);
     void add_frame_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths);
     void add_impact_nodes(std::size_t first, std::size_t last, const Rows& rows, ShutterPaths& paths);
     void set_births(std::size_t last, const Rows& rows, ShutterPaths& paths);
-    // Particles of which nothing is known at the time or later: they ended before it.
+    // Removes particles without any record at or after the time, because they ended before it.
     static void drop_ended(double time, Rows& rows, ShutterPaths& paths);
     [[nodiscard]] VtkPolyData mixed_frame(std::size_t k, double time, const Rows& rows, const ShutterPaths& paths);
     void add_moving(std::size_t k, bool exact, double time, Moment& moment);

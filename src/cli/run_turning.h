@@ -1,5 +1,4 @@
-// How the particles of a run are turned at any of its times: from a turn of its own each, on by the spins of the
-// frames.
+// Rotation of a run's particles at any time: a random initial rotation, integrated with the spins of the frames.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +16,18 @@
 
 namespace ricochet::cli {
 
-/// Reads the frames up to a time once, as long as times go on. The same turns whatever was asked for before.
+/// Rotations of particles. Frames are read only once if the requested times increase. The results do not depend on
+/// earlier requests.
 class RunTurning {
 public:
     RunTurning() = default;
     explicit RunTurning(std::vector<FrameFile> frames) : files_(std::move(frames)) {}
 
-    /// Of each particle of a moment that has spins: between two frames a spin changes evenly. Throws InputError for
-    /// files that are not a run's.
+    /// Returns the rotation of each particle that has a spin. Between two frames, the spin changes linearly. Throws
+    /// InputError for invalid files.
     [[nodiscard]] std::vector<Turn> turns(const VtkPolyData& moment);
-    /// Of each particle of any moment: those without a spin turn about an axis of their own, at a rate, rad/s, of which
-    /// turning_of(i) says mean and spread.
+    /// Returns the rotation of each particle. Particles without a spin rotate about a random axis. turning_of(i)
+    /// returns the mean and spread of their rate, in rad/s.
     [[nodiscard]] std::vector<Turn> shown_turns(const VtkPolyData& moment,
                                                 const std::function<MeanSpread(std::size_t)>& turning_of);
 
@@ -41,9 +41,9 @@ private:
     [[nodiscard]] Turn turn_at(std::int64_t id, const Vec3& spin, double age, double time) const;
 
     std::vector<FrameFile> files_;
-    std::size_t next_ = 0;               // frame that has not been read
-    std::optional<double> next_time_{};  // of that frame, where it is known
-    double time_ = 0.0;                  // of the last one that has been
+    std::size_t next_ = 0;               // next frame to read
+    std::optional<double> next_time_{};  // time of that frame, if known
+    double time_ = 0.0;                  // time of the last frame read
     std::unordered_map<std::int64_t, Spinning> known_;
 };
 

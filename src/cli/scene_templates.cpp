@@ -16,16 +16,16 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-// Lengths and times that a scene is made of.
+// Lengths and times of a scene.
 struct Fit {
-    Vec3 center;    // of the mesh
-    Vec3 size;      // of the mesh, m
-    double length;  // diagonal of the mesh, m
-    double spread;  // radius about the vertical axis that holds the mesh, m
-    double ground;  // height of the ground, m
-    double top;     // of the mesh, m
-    double fall;    // time to fall by the diagonal, s
-    double grid;    // to which lengths are rounded, m
+    Vec3 center;    // centre of the mesh
+    Vec3 size;      // size of the mesh, in m
+    double length;  // diagonal of the mesh, in m
+    double spread;  // radius of the mesh about the vertical axis, in m
+    double ground;  // height of the ground, in m
+    double top;     // top of the mesh, in m
+    double fall;    // time to fall by the diagonal, in s
+    double grid;    // rounding unit of lengths, in m
 };
 
 Fit fit_to(const Box3& bounds) {
@@ -41,14 +41,14 @@ Fit fit_to(const Box3& bounds) {
     return fit;
 }
 
-// Two digits: sizes, rates and times that a person may want to change.
+// Formats a size, rate or time with two digits, because users may want to change it.
 std::string about(double value) { return fmt::format("{:.2g}", value); }
-// A whole number with two digits that are not 0.
+// Formats an integer with two significant digits.
 std::string whole(double value) {
     const double unit = std::pow(10.0, std::max(0.0, std::floor(std::log10(value)) - 1.0));
     return fmt::format("{:.0f}", std::round(value / unit) * unit);
 }
-// A coordinate, to 1/10000 of the mesh's size.
+// Formats a coordinate, rounded to 1/10000 of the mesh's size.
 std::string at(double value, const Fit& fit) {
     const double rounded = std::round(value / fit.grid) * fit.grid;
     return fmt::format("{:.12g}", rounded == 0.0 ? 0.0 : rounded);
@@ -59,24 +59,24 @@ std::string at(const Vec3& p, const Fit& fit) {
 Vec3 above_mesh(const Fit& fit, double height) { return {fit.center.x, fit.center.y, fit.top + height * fit.length}; }
 
 struct Part {
-    std::string title;       // what happens, one line of comment
+    std::string title;       // description, as one line of comment
     std::string picture{};   // members of the scene's `picture`
     std::string contacts{};  // members of the scene's `particle_contacts`
-    std::string emitters;    // the list's inside
+    std::string emitters;    // contents of the list
     std::string surface;     // the mesh's material
     double duration;         // s
-    double height;           // above the mesh that the picture and the bounds hold, parts of its diagonal
-    bool has_box = false;    // around the mesh
+    double height;           // height above the mesh that the picture and the bounds include, relative to its diagonal
+    bool has_box = false;    // a box around the mesh
     bool has_gravity = true;
 };
 
-// Edges of a box around the mesh.
+// Returns the edge lengths of a box around the mesh.
 Vec3 box_size(const Fit& fit) {
     const double edge = 0.5 * fit.length;
     return fit.size + Vec3{edge, edge, edge};
 }
 
-// Life of spray and sparks that fade.
+// Opacity over the lifetime of spray and sparks, which fade out.
 constexpr const char* kFade =
     R"("over_life": {"opacity": {"keys": [{"time": 0, "value": 1}, {"time": 0.6, "value": 0.8}, {"time": 1, "value": 0}]}})";
 
@@ -85,7 +85,7 @@ Part rain(const Fit& fit) {
     return {.title = "Rain: drops fall on the mesh, splash where they hit, and fade.",
             .picture = R"("particles": "soft")",
             .emitters = fmt::format(
-                R"(    // Drops are born on a disk above the mesh. "rate" says how many a second.
+                R"(    // Drops start on a disk above the mesh. "rate" is their number per second.
     {{"name": "cloud", "type": "disk", "center": {}, "normal": [0, 0, -1], "radius": {}, "rate": {},
      "speed": [{}, {}], "lifetime": [{}, {}], "mass": 1e-4, "particle_size": {}, "color": [0.1, 0.32, 0.75],
      "opacity": 0.9, {}}},
@@ -194,7 +194,7 @@ Part gas(const Fit& fit, bool closed) {
             common;
     } else {
         emitters = fmt::format(
-            R"(    // The mesh has no inside that would hold a gas: one streams around it, in the box.
+            R"(    // The mesh has no closed interior, so the gas fills a box around it.
     {{"name": "gas", "type": "sphere", "center": {}, "radius": {}, {})",
             at(above_mesh(fit, 0.12), fit), about(0.08 * fit.length), common);
     }
@@ -224,7 +224,7 @@ Part part_of(SceneTemplate kind, const Fit& fit, bool closed) {
     return rain(fit);
 }
 
-// What holds the gas would hide it.
+// Makes the container transparent, because it would hide the gas.
 constexpr const char* kGlass = R"(, "looks": {"glass": true})";
 
 std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& part) {
@@ -247,13 +247,14 @@ std::string colliders_text(const FittedMesh& mesh, const Fit& fit, const Part& p
     return text;
 }
 
-// From the front, a little from the right and from above, as far as it takes to see the mesh and what is around it.
+// The camera looks from the front, slightly from the right and above. It is far enough away to see the mesh and its
+// surroundings.
 std::string camera_text(const Fit& fit, const Part& part) {
     constexpr double kFieldOfView = 32.0;
     constexpr double kHalfAngle = 0.5 * kFieldOfView * 3.14159265358979323846 / 180.0;
     const double extra = part.height * fit.length;
     const Vec3 target{fit.center.x, fit.center.y, fit.center.z + 0.35 * extra};
-    // A box has corners: all of the ball around it is to be seen.
+    // The view must contain the circumscribed ball of a box, because of its corners.
     const double reach = part.has_box ? 0.5 * length(box_size(fit)) : (0.5 * fit.length + 0.35 * extra) * 0.95;
     const double distance = reach / std::sin(kHalfAngle);
     const Vec3 direction = normalized(Vec3{0.45, -0.8, 0.38});
@@ -286,7 +287,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
         part.contacts.empty()
             ? ""
             : fmt::format(
-                  "\n  // What the spheres do to each other. Without this line they pass through each other.\n"
+                  "\n  // Contact between the spheres. Without this line they pass through each other.\n"
                   "  \"particle_contacts\": {{{}}},",
                   part.contacts);
     return fmt::format(
@@ -295,14 +296,14 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
 //     ricochet run SCENE --output DIR
 //     ricochet render DIR --output picture.png    (film.mp4 for a film)
 //
-// Metres, seconds and kilograms; z points up. docs/scene-format.md tells every key.
+// Metres, seconds and kilograms; z points up. docs/scene-format.md describes every key.
 {{
   "ricochet": 1,
-  // 300 steps, of which every second one is a frame. A film lasts as long as the run, or by render's --speed.
+  // 300 steps; every second one is a frame. A film lasts as long as the run, unless render --speed changes that.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
   "forces": [{}],{}
   "materials": {{
-    // "restitution": speed of the rebound over speed of the approach, 0 to 1.
+    // "restitution": rebound speed divided by approach speed, 0 to 1.
     "surface": {}{}
   }},
   "colliders": [
@@ -311,7 +312,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
   "emitters": [
 {}
   ],
-  // Who leaves this box is removed.
+  // Particles that leave this box are removed.
   "bounds": {{"lower": {}, "upper": {}}},
   "output": {{"format": "vtp", "every": 2}},{}
   "camera": {}

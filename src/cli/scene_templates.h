@@ -1,5 +1,5 @@
 /// \file
-/// Scenes that `ricochet new` writes: fitted to a mesh, with comments.
+/// Scenes written by `ricochet new`: fitted to a mesh, with comments.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,24 @@
 
 namespace ricochet::cli {
 
-/// What happens in the scene.
+/// Kind of scene.
 enum class SceneTemplate { rain, debris, sparks, gas, fountain };
 
-/// The template of this name; nothing where there is none.
+/// Returns the template with this name, or nothing.
 [[nodiscard]] std::optional<SceneTemplate> template_named(std::string_view name);
 
-/// What a scene is fitted to.
+/// The mesh that a scene is fitted to.
 struct FittedMesh {
-    std::string file;       ///< as the scene names it
-    Box3 bounds;            ///< m, as the mesh stands in the scene; not empty
-    std::string up;         ///< axis of the file that points up, "y" or "z"; empty: as its format says
-    std::string format_up;  ///< and what that says
-    double scale = 0.0;     ///< m a unit of the file; 0 where it is not stated: metres
-    bool closed = false;    ///< its edges say that a gas can be inside
+    std::string file;       ///< path as written in the scene
+    Box3 bounds;            ///< bounding box in the scene, in m; not empty
+    std::string up;         ///< axis of the file that points up, "y" or "z"; empty: default of its format
+    std::string format_up;  ///< default of its format
+    double scale = 0.0;     ///< length of the file's unit, in m; 0: not stated, metres assumed
+    bool closed = false;    ///< true if its topology lets a gas fill it
 };
 
-/// The text of a scene file: the mesh on a ground (a gas has none), emitter, camera; sizes and times from the bounds.
+/// Returns the text of a scene file with the mesh, a ground (except for a gas), emitter and camera. Sizes and times
+/// come from the bounds.
 [[nodiscard]] std::string scene_text(SceneTemplate kind, const FittedMesh& mesh);
 
 }  // namespace ricochet::cli

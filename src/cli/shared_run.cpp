@@ -22,11 +22,11 @@ namespace ricochet::cli {
 namespace {
 
 constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
-/// Those that are noted: SIGHUP, SIGINT and SIGTERM are all below.
+/// Upper bound of the handled signals: SIGHUP, SIGINT and SIGTERM are below it.
 constexpr std::size_t kSignals = 32;
 static_assert(SIGHUP < kSignals && SIGINT < kSignals && SIGTERM < kSignals);
 
-/// As main() would end.
+/// Returns the exit code that main() uses for an error.
 int exit_code_of(const std::exception_ptr& error) {
     try {
         std::rethrow_exception(error);
@@ -37,7 +37,7 @@ int exit_code_of(const std::exception_ptr& error) {
     }
 }
 
-/// Of this machine; `an unknown machine` where it has none.
+/// Returns the name of this machine, or `an unknown machine`.
 std::string machine_name() {
     std::array<char, 256> name{};
     const bool is_known = ::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0';
@@ -50,12 +50,12 @@ RunResources RunResources::of_this_process() {
     rusage usage{};
     const bool is_known = ::getrusage(RUSAGE_SELF, &usage) == 0;
     return {1, static_cast<std::uint64_t>(thread_count()),
-            is_known ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U : 0U};  // Linux counts in kilobytes
+            is_known ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U : 0U};  // Linux reports kilobytes
 }
 
 SharedRun::SharedRun(With with) {
     if (with == With::nobody) return;
-    // Until it has joined: what fails then fails on all of them alike.
+    // Silent until the ranks have joined, because an earlier failure occurs on all of them.
     be_silent(mpi::launch_rank() > 0);
     ranks_ = mpi::join();
     if (ranks_ && ranks_->size() < 2) ranks_.reset(), mpi::agree_to_end();
@@ -71,7 +71,7 @@ int SharedRun::threads_for(int wanted) const {
     return std::max(1, thread_count() / static_cast<int>(neighbours_));
 }
 
-// What one of them holds of its particles does not say of springs whether they are lost.
+// Springs are rejected, because the particles of one process do not determine which springs are lost.
 void SharedRun::require_shareable(const SceneDescription& scene) const {
     if (!ranks_ || !scene.output.pieces || scene.setup.springs.empty()) return;
     throw InputError(fmt::format(
@@ -90,14 +90,14 @@ std::optional<int> SharedRun::together(const std::function<void()>& work) const 
     } catch (...) {
         error = std::current_exception();
     }
-    // The first that failed, and its exit code.
+    // Smallest rank that failed, combined with its exit code.
     const std::uint64_t mine = error ? 256 * ranks_->rank() + static_cast<std::uint64_t>(exit_code_of(error)) : kNobody;
     std::array<std::uint64_t, 1> first{mine};
     ranks_->least(first);
     if (first[0] == kNobody) return std::nullopt;
     std::array<std::uint64_t, 1> failed{error ? 1U : 0U};
     ranks_->sum(failed);
-    if (failed[0] == ranks_->size()) speak_as({});  // it is nobody's own
+    if (failed[0] == ranks_->size()) speak_as({});  // the error is common to all ranks
     end();
     if (error && mine == first[0]) std::rethrow_exception(error);
     return static_cast<int>(first[0] % 256);
@@ -123,7 +123,7 @@ std::optional<int> SharedRun::require_alike(std::span<const std::uint64_t> value
 
 RunCounts SharedRun::after_step(const RunCounts& here) const {
     if (!ranks_) return here;
-    // How many have had which signal, then the counts.
+    // Number of processes per received signal, followed by the counts.
     std::array<std::uint64_t, kSignals + 2> sums{};
     if (const int signal = InterruptGuard::signal(); signal > 0) ++sums.at(static_cast<std::size_t>(signal));
     sums[kSignals] = here.particles;

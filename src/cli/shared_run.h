@@ -1,5 +1,5 @@
 /// \file
-/// A run that several processes may share: who talks, and how all of them end together.
+/// A run shared by several processes: which process prints, and how all of them end together.
 #pragma once
 
 #include <cstddef>
@@ -16,67 +16,68 @@
 
 namespace ricochet::cli {
 
-/// What a run takes.
+/// Resources of a run.
 struct RunResources {
     std::uint64_t processes = 0;
     std::uint64_t threads = 0;
-    std::uint64_t peak_memory_bytes = 0;  ///< largest resident sets so far
+    std::uint64_t peak_memory_bytes = 0;  ///< sum of the peak resident sets
 
     [[nodiscard]] static RunResources of_this_process();
 };
 
-/// The processes of a run; one as a rule. One at a time. All of them make the same calls in the same order, besides
-/// those that ask nobody.
+/// The processes of a run; usually one. Only one object can exist at a time. All processes must make the same calls in
+/// the same order, except calls marked as local.
 class SharedRun {
 public:
     enum class With {
-        nobody,    ///< this process runs its scene by itself
-        launched,  ///< with those that mpirun has started beside it, if it has; only once in a process
+        nobody,    ///< this process runs its scene alone
+        launched,  ///< joins the processes that mpirun started, if any; only once per process
     };
-    /// Joins the others; all but the first are silent from now on. Throws InputError where there are others and the
-    /// program cannot join them.
+    /// Joins the other processes. All but the first one are silent from now on. Throws InputError if there are others
+    /// and the program cannot join them.
     explicit SharedRun(With with);
-    /// Where an error passes by: this process may tell it.
+    /// Ends the silence, so that this process can report an error in flight.
     ~SharedRun();
     SharedRun(const SharedRun&) = delete;
     SharedRun& operator=(const SharedRun&) = delete;
 
-    /// Null for one process.
+    /// Returns null for one process.
     [[nodiscard]] const std::shared_ptr<Ranks>& ranks() const { return ranks_; }
-    /// This process writes files and reports.
+    /// Returns true if this process writes files and reports.
     [[nodiscard]] bool talks() const { return !ranks_ || ranks_->rank() == 0; }
-    /// Threads of this process; 0 for all of the machine. wanted: 0 where nobody has said. Asks nobody.
+    /// Returns the number of threads for this process, or 0 for the whole machine. `wanted` is 0 by default. Local.
     [[nodiscard]] int threads_for(int wanted) const;
 
-    /// Throws InputError for a scene that one process can run, and several cannot. Asks nobody.
+    /// Throws InputError for a scene that only a single process can run. Local.
     void require_shareable(const SceneDescription& scene) const;
 
-    /// Does what may fail on some and succeed on others, and asks nobody. Where it fails on any, all end: the first one
-    /// that failed throws its error, the others return the exit code. Nothing where all can go on.
+    /// Runs local work that can fail on some processes. If it fails on any process, all end. The first failed process
+    /// throws its error, and the others return the exit code. Returns nothing if all can continue.
     [[nodiscard]] std::optional<int> together(const std::function<void()>& work) const;
-    /// The same about numbers that must not differ: those of the scene and of the checkpoint that each has read.
+    /// Checks that numbers are equal on all processes, such as the fingerprints of the scene and of the checkpoint.
+    /// Fails like together().
     [[nodiscard]] std::optional<int> require_alike(std::span<const std::uint64_t> values) const;
 
-    /// To be called after each step: adds up what all have, and asks all for a signal.
+    /// Sums the counts of all processes and exchanges signals. Must be called after each step.
     RunCounts after_step(const RunCounts& here) const;
-    /// The highest signal that had come to any of them then (see InterruptGuard), 0 for none; of one process alone, as
-    /// it is now. Asks nobody.
+    /// Returns the highest signal that any process had received at the last after_step() (see InterruptGuard), or 0.
+    /// For a single process, returns its current signal. Local.
     [[nodiscard]] int signal() const;
 
-    /// What all but this one take.
+    /// Returns the resources of all other processes.
     [[nodiscard]] RunResources resources_of_others() const;
 
-    /// From now on each ends for itself.
+    /// Allows each process to end separately from now on.
     void end() const;
 
 private:
     std::shared_ptr<Ranks> ranks_;
-    std::size_t neighbours_ = 1;  // those that may run on the same processors, with this one
+    std::size_t neighbours_ = 1;  // number of ranks that may run on the same processors, including this one
     mutable int agreed_signal_ = 0;
 };
 
-/// For an error that comes before a run has joined the others, such as an option that nobody knows: joins them and
-/// fails with them, as SharedRun::together() does. Nothing where this process has joined already or is alone.
+/// Handles an error that occurs before a run has joined the other processes, such as an unknown option. Joins them and
+/// fails like SharedRun::together(). Returns nothing if this process has already joined or is alone.
 [[nodiscard]] std::optional<int> fail_together(const std::exception_ptr& error);
 
 }  // namespace ricochet::cli

@@ -133,15 +133,15 @@ const char* text_of(ViolationKind kind) {
         case ViolationKind::gap:
             return "its segments do not join";
         case ViolationKind::wrong_side:
-            return "is on another side than at birth of";
+            return "is on a different side than at birth of";
         case ViolationKind::overlap:
             return "overlaps";
         case ViolationKind::energy:
             return "has gained energy from surfaces";
         case ViolationKind::pair_overlap:
-            return "stands in another sphere";
+            return "overlaps another sphere";
         case ViolationKind::pair_impact:
-            return "its impact on another sphere does not add up";
+            return "its impact on another sphere is inconsistent";
         case ViolationKind::rebound:
             return "an impact has another rebound than the surfaces that it has hit";
     }

@@ -1,4 +1,4 @@
-// What the tool says to a terminal.
+// Terminal output of the tool.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,15 +22,17 @@ namespace ricochet::cli {
 
 // Text on a terminal.
 
-/// Of the processes that share a run one talks: the others are silent until they have an error to tell.
+/// Silences this process. Only one of the processes that share a run prints. The others are silent unless they have an
+/// error to report.
 void be_silent(bool silent);
 [[nodiscard]] bool is_silent();
 
-/// Who an error is of, where not everybody has it: `rank 3 on node17`; empty, as at first, for one process alone.
+/// Sets the name in error messages, for errors of single processes: `rank 3 on node17`. The default is empty, for a
+/// single process.
 void speak_as(std::string name);
 [[nodiscard]] const std::string& speaker();
 
-/// What print() shows of an argument.
+/// Type in which print() formats an argument.
 template <class T>
 using Printed = std::conditional_t<std::is_convertible_v<const T&, std::string_view>, std::string, std::decay_t<T>>;
 
@@ -42,8 +44,9 @@ template <class T>
         return value;
 }
 
-/// Prints as fmt::print() does, with all texts among the arguments as printable() makes them: they may be a stranger's.
-/// What the file does not take is lost; std::ferror() tells. Nothing while be_silent() holds.
+/// Prints like fmt::print(). All texts among the arguments pass through printable(), because they can come from
+/// untrusted files. Output that the file rejects is lost; std::ferror() reports it. Prints nothing while be_silent()
+/// is active.
 template <class... Args>
 void print(std::FILE* file, fmt::format_string<Printed<Args>...> format, const Args&... args) {
     if (is_silent()) return;
@@ -54,42 +57,43 @@ void print(fmt::format_string<Printed<Args>...> format, const Args&... args) {
     cli::print(stdout, format, args...);
 }
 
-/// Opens what the caller has closed of standard input, output and error, so that no file of ours takes their numbers:
-/// a message would be written into it. Reading and writing them fails as before.
+/// Opens closed standard streams. Otherwise a file of ours could get their numbers, and a message would be written
+/// into it. Reading from and writing to them still fails.
 void reserve_standard_streams();
 
 // Tables on standard output.
 
-/// A header and rows of as many cells each: the first column to the left, numbers to the right.
+/// Prints a header and rows with the same number of cells. The first column is left-aligned, numbers are
+/// right-aligned.
 void print_table(std::vector<std::vector<std::string>> table);
 
-// One line on a terminal that is drawn over and over; in a pipe nothing, or a line every ten seconds.
+// A line on a terminal that is redrawn continuously. In a pipe, nothing is shown, or a line every ten seconds.
 
-/// When progress is shown.
+/// Condition for showing progress.
 enum class Progress {
-    automatic,  ///< on a terminal
-    always,     ///< in a pipe too: a line at once, then one every ten seconds
+    automatic,  ///< only on a terminal
+    always,     ///< also in a pipe: a line at once, then every ten seconds
     never,
 };
 
-/// `auto`, `always` or `never`. Throws InputError.
+/// Parses `auto`, `always` or `never`. Throws InputError.
 [[nodiscard]] Progress parse_progress(const std::string& text);
 
-/// Progress on stderr. May be used from several threads.
+/// Progress on stderr. Safe to use from several threads.
 class ProgressLine {
 public:
-    /// quiet: show nothing even on a terminal, unless it is to be shown always.
+    /// With `quiet`, nothing is shown, even on a terminal, unless progress is always shown.
     explicit ProgressLine(bool quiet, Progress progress = Progress::automatic);
     /// Erases the line.
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
     ProgressLine& operator=(const ProgressLine&) = delete;
 
-    /// True when it is time to draw again: ten times a second at most, every ten seconds in a pipe.
+    /// Returns true if it is time to redraw: at most ten times per second, or every ten seconds in a pipe.
     [[nodiscard]] bool due();
     void show(const std::string& text);
     void erase();
-    /// Erases the line that is shown, if any. Safe in a signal handler, before the process ends.
+    /// Erases the shown line, if any. Safe in a signal handler before the process ends.
     static void erase_at_the_end() noexcept;
 
 private:
@@ -100,16 +104,16 @@ private:
     std::mutex mutex_;
 };
 
-/// Seconds as people say them: 4 s, 3 min 05 s, 2 h 10 min.
+/// Formats a duration: 4 s, 3 min 05 s, 2 h 10 min.
 [[nodiscard]] std::string duration_text(double seconds);
-/// A count or rate with k, M or G: 950, 12.3 k, 4.56 M.
+/// Formats a count or rate with k, M or G: 950, 12.3 k, 4.56 M.
 [[nodiscard]] std::string short_number(double value);
 
-/// Most violations that are listed.
+/// Largest number of listed violations.
 inline constexpr std::size_t kMostListedViolations = 20;
 
-/// One line for every violation, up to kMostListedViolations, with particle, position, time, collider and triangle; and
-/// one with the number of those that are not listed. violations: the first of the `count` that there are.
+/// Returns one line per violation with particle, position, time, collider and triangle, up to kMostListedViolations. A
+/// last line has the number of unlisted violations. `violations` are the first of `count` violations.
 [[nodiscard]] std::vector<std::string> violation_lines(std::span<const Violation> violations, std::uint64_t count,
                                                        const std::vector<ColliderDescription>& colliders);
 

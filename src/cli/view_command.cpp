@@ -19,9 +19,9 @@
 namespace ricochet {
 namespace {
 
-// The arguments as they stand on the command line.
+// Raw arguments of the command line.
 struct ViewArguments {
-    cli::SceneArguments scene;  // its file may be a folder
+    cli::SceneArguments scene;  // the file can be a folder
     std::string output;
     std::string run_output;
     std::string color_by;
@@ -36,13 +36,14 @@ bool is_folder(const std::filesystem::path& path) {
     return std::filesystem::is_directory(path, ignored);
 }
 
-// out/debris/ and out/debris are one folder.
+// Removes a trailing slash, so that out/debris/ and out/debris are the same folder.
 std::filesystem::path plain(std::filesystem::path path) {
     path = path.lexically_normal();
     return path.has_filename() ? path : path.parent_path();
 }
 
-// Where the page goes: beside the folder, under its name; of a scene into the folder one works in.
+// Returns the path of the page. For a run it is beside the folder, with the same name. For a scene it is in the
+// working directory.
 std::filesystem::path page_path(const ViewArguments& arguments, bool is_run) {
     if (!arguments.output.empty()) {
         if (std::filesystem::path(arguments.output).extension() == ".html") return arguments.output;
@@ -56,7 +57,8 @@ std::filesystem::path page_path(const ViewArguments& arguments, bool is_run) {
     return folder += ".html";
 }
 
-// The folder of the run to show: that of the arguments, or that of a run made now. Empty where a signal ended it.
+// Returns the folder of the run to show: the given folder, or that of a new run. Returns an empty path if a signal
+// ended the run.
 std::filesystem::path run_folder_of(const ViewArguments& arguments, bool is_run, int& exit_code) {
     if (is_run) {
         if (!arguments.scene.overrides.empty())
@@ -76,7 +78,7 @@ std::filesystem::path run_folder_of(const ViewArguments& arguments, bool is_run,
     return exit_code == 0 ? std::filesystem::path(run.output) : std::filesystem::path();
 }
 
-// Reports of a page that is being made.
+// Returns a callback that shows the progress of the page.
 std::function<void(double)> progress_on(cli::ProgressLine& line, std::mutex& mutex) {
     return [&line, &mutex](double part) {
         const std::lock_guard lock(mutex);
@@ -129,12 +131,15 @@ void add_options(cli::Command command, ViewArguments& a) {
         .add_option("--output", a.output,
                     "The page (default: the folder's or the scene's name with .html, beside the folder or here)")
         .type_name("FILE.html");
-    command.add_option("--budget", a.budget, "Most megabytes of the page: fewer bits, frames, particles until it fits")
+    command
+        .add_option("--budget", a.budget,
+                    "Size limit of the page; bits, frames and particles are reduced until it fits")
         .type_name("MB")
         .show_default();
     command.add_option("--color-by", a.color_by,
-                       "Attribute that colours the particles at first (default: their own color, or speed)");
-    command.add_option("--color-map", a.color_map, "viridis, plasma or turbo at first").show_default();
+                       "Attribute that initially colours the particles (default: their own color, or speed)");
+    command.add_option("--color-map", a.color_map, "Initial colour map: viridis, plasma, inferno, magma or turbo")
+        .show_default();
     command.add_option("--set", a.scene.overrides, "Replace a value of the scene (repeatable)")
         .type_name("PATH=VALUE")
         .one_value_each();

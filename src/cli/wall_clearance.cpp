@@ -10,26 +10,26 @@
 namespace ricochet::cli {
 namespace {
 
-/// Moves of a ball: each takes it off the wall that is nearest then, or halves a move that another wall blocks. Corners
-/// and gaps take some.
+/// Number of moves per ball. Each move takes the ball off the nearest wall, or halves a move that another wall blocks.
+/// Corners and gaps need several moves.
 constexpr int kMoves = 16;
-/// A ball may poke through a wall by this part of its radius, which is less than a pixel.
+/// Allowed penetration of a ball through a wall, relative to its radius. It is less than a pixel.
 constexpr double kPoke = 0.01;
 
 }  // namespace
 
-/// The balls that still poke through walls, where they would stand.
+/// The balls that still penetrate walls, with their candidate positions.
 struct WallClearance::Search {
-    std::vector<std::size_t> ball;      // of the list
-    std::vector<Vec3> start;            // m, where the particle is
-    std::vector<Vec3> before;           // m, before the last move
-    std::vector<Vec3> center;           // m, now
-    std::vector<double> distance;       // m, from there to the nearest wall
-    std::vector<Vec3> nearest;          // m, the wall's point there
-    std::vector<std::uint8_t> blocked;  // a wall is between the particle and that place
-    double largest = 0.0;               // m, of the radii
+    std::vector<std::size_t> ball;      // index in the list
+    std::vector<Vec3> start;            // position of the particle, in m
+    std::vector<Vec3> before;           // position before the last move, in m
+    std::vector<Vec3> center;           // current position, in m
+    std::vector<double> distance;       // distance to the nearest wall, in m
+    std::vector<Vec3> nearest;          // nearest point of the wall, in m
+    std::vector<std::uint8_t> blocked;  // a wall is between the particle and the current position
+    double largest = 0.0;               // largest radius, in m
 
-    /// Keeps some of them.
+    /// Keeps the given balls.
     void keep(const std::vector<std::size_t>& kept) {
         const auto choose = [&kept](auto& list) {
             for (std::size_t k = 0; k < kept.size(); ++k) list[k] = list[kept[k]];
@@ -101,7 +101,7 @@ void WallClearance::clear(const DrawnBalls& balls) const {
     }
     for (const std::size_t i : search.ball) search.start.push_back(balls.centers[i]);
     search.before = search.center = search.start;
-    std::vector<double> room(balls.centers.size(), -1.0);  // m, at the best place so far
+    std::vector<double> room(balls.centers.size(), -1.0);  // clearance at the best position so far, in m
     for (int move = 0; move <= kMoves && !search.ball.empty(); ++move) {
         find_nearest(search);
         find_blocked(search);

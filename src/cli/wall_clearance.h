@@ -1,4 +1,4 @@
-// Keeps balls that are larger than their particles off the walls of a picture.
+// Displacement of drawn balls from the walls of a picture, if they are larger than their particles.
 #pragma once
 
 #include <filesystem>
@@ -13,23 +13,23 @@
 
 namespace ricochet::cli {
 
-/// Drawn balls of one kind. The lists are equally long.
+/// Drawn balls of one kind. The lists have equal lengths.
 struct DrawnBalls {
     std::span<Vec3> centers;           ///< m
-    std::span<double> radii;           ///< m, to be drawn
-    std::span<const double> own = {};  ///< m, of the particles
+    std::span<double> radii;           ///< drawn radii, in m
+    std::span<const double> own = {};  ///< radii of the particles, in m
 };
 
 /// The walls of a picture.
 class WallClearance {
 public:
-    /// planes: infinite ones. Meshes without triangles are left out.
+    /// `planes` are infinite. Meshes without triangles are ignored.
     explicit WallClearance(std::vector<PreviewPlane> planes) : planes_(std::move(planes)) {}
     void add(TriangleMesh mesh);
 
-    /// Moves balls that are larger than their particles off the walls, straight away from these. Each stays on its
-    /// particle's side. A ball that fits nowhere near gets the place with the most room that was found, and becomes
-    /// smaller, but not smaller than its particle.
+    /// Moves balls that are larger than their particles perpendicularly away from the walls. Each ball stays on its
+    /// particle's side. If a ball fits nowhere nearby, it gets the position with the largest clearance that was found.
+    /// It then shrinks, but never below its particle's radius.
     void clear(const DrawnBalls& balls) const;
 
 private:

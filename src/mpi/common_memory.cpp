@@ -38,8 +38,8 @@ bool write_all(int file, std::span<const std::byte> bytes) {
     return true;
 }
 
-/// Bytes in memory that has no name in any folder: it is gone when the last process that maps it is, however that ends.
-/// -1 where there is no room for it.
+/// Returns a file in memory with the bytes, or -1 if there is not enough memory. It has no name in any folder, so it
+/// vanishes with the last process that maps it, even if that process crashes.
 int file_of(std::span<const std::byte> bytes) {
     const int file = ::memfd_create("ricochet", MFD_CLOEXEC);
     if (file < 0 || write_all(file, bytes)) return file;
@@ -47,15 +47,15 @@ int file_of(std::span<const std::byte> bytes) {
     return -1;
 }
 
-/// The file's pages; null where they cannot be had.
+/// Returns the mapped pages of the file, or null if they cannot be mapped.
 void* mapped(int file, std::size_t size) {
     if (file < 0) return nullptr;
     void* const pages = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, file, 0);
     return pages == MAP_FAILED ? nullptr : pages;
 }
 
-/// Two steps, so that all ranks have what they need before one gives up its own. The first rank's file is open until
-/// all have theirs.
+/// Works in two steps, so that every rank has mapped the shared pages before any rank drops its own. The first rank
+/// keeps its file open until all ranks have opened it.
 bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
     const bool is_first = here.is_first();
     const File own(is_first ? file_of(list) : -1);
@@ -63,7 +63,7 @@ bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
     here.tell(told);
     if (told[1] < 0) return false;
     const auto size = static_cast<std::size_t>(told[2]);
-    // As the first one's process sees it: no name is needed.
+    // Opened by the path in the first rank's process, because the file has no name.
     const File other(is_first ? -1
                               : ::open(fmt::format("/proc/{}/fd/{}", told[0], told[1]).c_str(), O_RDONLY | O_CLOEXEC));
     void* const pages = mapped(is_first ? own.number() : other.number(), size);
@@ -75,7 +75,7 @@ bool have_in_common(std::span<const std::byte> list, const Neighbours& here) {
         void* const place = const_cast<std::byte*>(list.data());
         const bool is_there = ::mremap(pages, size, size, MREMAP_MAYMOVE | MREMAP_FIXED, place) != MAP_FAILED;
         if (here.all(is_there)) return true;
-        throw RunError("ranks: memory for the meshes is short");  // what was there may be gone
+        throw RunError("ranks: memory for the meshes is short");  // the old pages may be gone
     }
     if (pages != nullptr) (void)::munmap(pages, size);
     if (!are_alike) throw RunError("ranks: the meshes of processes on this machine differ, expected the same files");

@@ -1,5 +1,5 @@
 /// \file
-/// Pages that the ranks of one machine hold alike become the same memory.
+/// Shares equal pages of the ranks of one machine.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace ricochet::mpi {
 
-/// The ranks of one machine, which all make the same calls.
+/// The ranks of one machine. All of them make the same calls.
 class Neighbours {
 public:
     Neighbours() = default;
@@ -18,9 +18,9 @@ public:
 
     [[nodiscard]] virtual bool is_first() const = 0;
     [[nodiscard]] virtual std::size_t size() const = 0;
-    /// What the first one says, to all.
+    /// Replaces the values of all ranks by the values of the first rank.
     virtual void tell(std::span<std::int64_t> values) const = 0;
-    /// Whether it is so on all of them.
+    /// Returns true if `is_so` is true on all ranks.
     [[nodiscard]] virtual bool all(bool is_so) const = 0;
 };
 

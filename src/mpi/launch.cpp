@@ -10,7 +10,8 @@
 namespace ricochet::mpi {
 namespace {
 
-// Open MPI's mpirun; servers of PMIx and PMI (srun, other mpiruns), which have no number of processes for all.
+// Variables of Open MPI's mpirun and of PMIx and PMI servers (srun, other mpiruns). PMIx has none for the number of
+// processes.
 constexpr std::array kRanks = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
 constexpr std::array kSizes = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"};
 

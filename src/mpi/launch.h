@@ -1,16 +1,16 @@
 /// \file
-/// What mpirun, srun and their like tell the processes that they start, by the environment.
+/// Information in the environment that mpirun, srun and similar launchers give to the processes that they start.
 #pragma once
 
 #include <cstddef>
 
 namespace ricochet::mpi {
 
-/// Whether one of them has started this process: without that, starting MPI costs time for nothing.
+/// Returns true if a launcher has started this process. Otherwise MPI is not started, because that would waste time.
 [[nodiscard]] bool was_launched();
-/// The process's number among those of its launch; 0 where nobody has said.
+/// Returns the number of this process within its launch; 0 if it is unknown.
 [[nodiscard]] std::size_t launch_rank();
-/// How many they are; 1 where nobody has said.
+/// Returns the number of processes of the launch; 1 if it is unknown.
 [[nodiscard]] std::size_t launch_size();
 
 }  // namespace ricochet::mpi

@@ -18,18 +18,19 @@
 namespace ricochet::mpi {
 namespace {
 
-/// Counts of MPI are ints: longer messages go in pieces.
+/// Largest message, in bytes. Counts of MPI are ints, so longer messages are split.
 constexpr std::size_t kPiece = std::size_t{1} << 30U;
 
 bool joined = false;
-bool agreed = false;  // to end
+bool agreed = false;  // to end, see agree_to_end()
 
-/// How long a rank waits for others with a processor of its own; as long as talk takes where all are ready.
+/// Time for which a rank polls without sleeping: about the duration of a message if all ranks are ready.
 constexpr std::chrono::microseconds kSpin{100};
-/// From then on it looks so often, and leaves the processor to those that it waits for.
+/// Interval of later polls. Between them the rank sleeps, so that the ranks it waits for can use the processor.
 constexpr std::chrono::microseconds kPause{50};
 
-/// MPI's own waiting takes all of a processor or, with more ranks than those, loses it to others for whole time slices.
+/// Waits for a request. MPI's own waiting occupies a whole processor. With more ranks than processors it loses whole
+/// time slices to other ranks.
 void wait_for(MPI_Request& request) {
     const auto begin = std::chrono::steady_clock::now();
     for (int is_done = 0;;) {
@@ -39,7 +40,7 @@ void wait_for(MPI_Request& request) {
     }
 }
 
-/// Those of this machine.
+/// Ranks of this machine.
 class MachineRanks final : public Neighbours {
 public:
     MachineRanks() { MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &ranks_); }
@@ -180,7 +181,7 @@ private:
 
 std::shared_ptr<Ranks> join() {
     if (!was_launched()) return nullptr;
-    // It is wait_for() that gives way.
+    // MPI need not yield the processor, because wait_for() does.
     (void)::setenv("OMPI_MCA_mpi_yield_when_idle", "0", 0);
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
@@ -194,7 +195,7 @@ std::shared_ptr<Ranks> join() {
 
 bool has_joined() { return joined; }
 
-// Ranks that mpirun binds to processors of their own share none; those that it does not bind share all of the machine.
+// Ranks that mpirun binds to separate processors share none. Unbound ranks share all processors of the machine.
 std::size_t ranks_on_these_processors() {
     if (!joined) return 1;
     MPI_Comm here = MPI_COMM_NULL;

@@ -1,5 +1,5 @@
 /// \file
-/// The processes that mpirun (or srun) has started together, and how they begin and end. The one door to MPI.
+/// The processes that mpirun (or srun) has started together, from joining to the end. The only interface to MPI.
 #pragma once
 
 #include <cstddef>
@@ -9,21 +9,22 @@
 
 namespace ricochet::mpi {
 
-/// Joins the processes of this one's launch; null where it was started alone. To be called once. Throws InputError
-/// where several were started and the program was built without MPI.
+/// Joins the processes of this launch. Returns null if this process was started alone. Call it once. Throws InputError
+/// if several processes were started and the program was built without MPI.
 [[nodiscard]] std::shared_ptr<Ranks> join();
-/// Whether it did.
+/// Returns true if join() has joined a launch.
 [[nodiscard]] bool has_joined();
 
-/// How many of them may run on the processors of this one, itself included; 1 where it was started alone. All call it.
+/// Returns the number of ranks that may run on the processors of this one, itself included; 1 if it was started alone.
+/// All ranks must call it.
 [[nodiscard]] std::size_t ranks_on_these_processors();
 
-/// From now on each ends with an exit code of its own. All call it.
+/// Makes each rank end with its own exit code from now on. All ranks must call it.
 void agree_to_end();
 
-/// For the end of the process, once what it has to say is said. Where it has joined others: once they have agreed to
-/// end, waits until all have come here, since a launcher may kill all when one ends with an error; otherwise ends them
-/// all with this exit code, and this one.
+/// Ends the use of MPI at the end of the process, after its last output. A process that was started alone does nothing.
+/// If the ranks have agreed to end, it waits until all have called it, because a launcher may kill all ranks when one
+/// ends with an error. Otherwise it aborts all ranks, including this one, with this exit code.
 void end_process(int exit_code);
 
 }  // namespace ricochet::mpi

@@ -1,4 +1,4 @@
-// In place of mpi_ranks.cpp where the program is built without MPI.
+// Replaces mpi_ranks.cpp if the program is built without MPI.
 #include <string>
 
 #include "mpi/launch.h"

@@ -27,13 +27,13 @@ std::string expected_shape(py::ssize_t columns) {
 
 std::string kind_of(const py::handle& object) { return py::str(py::type::handle_of(object).attr("__name__")); }
 
-/// What NumPy has said, in one line and short.
+/// Returns NumPy's message, shortened to one line.
 std::string reason_of(const py::error_already_set& error) {
     const std::string text = py::str(error.value());
     return printable(text.substr(0, text.find('\n')), 160);
 }
 
-/// Returns whether a whole number of Python's fits into 64 bits.
+/// Returns true if a Python integer fits into 64 bits.
 bool has_64_bits(PyObject* number) {
     const bool fits =
         PyLong_AsUnsignedLongLong(number) != static_cast<unsigned long long>(-1) || PyErr_Occurred() == nullptr;
@@ -43,7 +43,7 @@ bool has_64_bits(PyObject* number) {
     return fits || fits_signed;
 }
 
-/// The first entry of an array of objects that is no number, or why the array is none of numbers.
+/// Returns the first entry of an array of objects that is not a number, or the reason why the array is not numeric.
 std::string first_odd_entry(const py::array& array, const char* type) {
     const py::object flat = array.attr("ravel")();
     const py::object number = py::module_::import("numpy").attr("number");
@@ -63,15 +63,15 @@ std::string first_odd_entry(const py::array& array, const char* type) {
                        type);
 }
 
-/// What is masked would count as any other number.
+/// Throws InputError for masked entries, which would otherwise count as numbers.
 void refuse_masked(const py::handle& object, const char* name, const std::string& expected) {
     const py::module_ masked = py::module_::import("numpy.ma");
     if (!masked.attr("is_masked")(object).cast<bool>()) return;
     throw InputError(fmt::format("{}: found masked entries, expected {}; fill or remove them", name, expected));
 }
 
-/// As NumPy sees it. type: of the numbers that are expected. An object of Python's own kinds (None, a dictionary,
-/// ragged lists) is no array of numbers.
+/// Returns the object as a NumPy array. type: the expected type of numbers. Throws InputError if it is not an array of
+/// numbers, such as None, a dictionary or ragged lists.
 py::array as_array(const py::handle& object, const char* name, const std::string& expected,
                    const char* type = "float") {
     const bool is_plain = Py_TYPE(object.ptr()) == py::detail::npy_api::get().PyArray_Type_;
@@ -202,7 +202,7 @@ py::array given_flags(std::vector<std::uint8_t>&& flags) {
 }
 
 void set_threads(int threads) {
-    auto limit = std::make_unique<ThreadLimit>(threads);  // refuses what is senseless before anything changes
+    auto limit = std::make_unique<ThreadLimit>(threads);  // refuses invalid arguments before anything changes
     thread_limit() = std::move(limit);
 }
 

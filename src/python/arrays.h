@@ -1,5 +1,5 @@
 /// \file
-/// Arrays in and out: what users hand in is checked and named in messages, what they get keeps its memory alive.
+/// Arrays in both directions. Input from users is checked, and messages name it. Output keeps its memory alive.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -22,22 +22,24 @@ namespace py = pybind11;
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-/// Entries up to which a copy is made without a look at what memory there is. Few bytes may show many: broadcast_to().
+/// Number of entries up to which a copy is made without a check of the available memory. An array of few bytes may show
+/// many entries: broadcast_to().
 inline constexpr std::size_t kFewNumbers = std::size_t{1} << 20;
 
-/// Numbers of shape (count, columns) as doubles; columns 0: of shape (count). An array that is so already is not
-/// copied. Throws InputError "name: found ..., expected ..." for anything else, also for text and complex numbers.
+/// Returns numbers of shape (count, columns) as doubles; for columns 0, of shape (count). An array of doubles is not
+/// copied. Throws InputError "NAME: found ..., expected ..." for anything else, also for text and complex numbers.
 [[nodiscard]] Doubles numbers(const py::handle& object, const char* name, py::ssize_t columns);
-/// Numbers of shape (n, 3), or (3,) for one row.
+/// Returns numbers of shape (n, 3), or (3,) for one row.
 [[nodiscard]] Doubles vectors(const py::handle& object, const char* name);
-/// Repeats the only row of an array as often as another array has rows; leaves arrays of more rows alone.
+/// Repeats the only row of an array as often as another array has rows. Does nothing if the array has more rows.
 void repeat_one(Doubles& array, const Doubles& other, const char* name);
-/// The same with one number for all, or none.
+/// Returns one row of numbers. The object may also be a single number, or None for no numbers.
 [[nodiscard]] Doubles numbers_or_one(const py::handle& object, const char* name);
-/// Whole numbers of shape (count, columns), from 0 to below 2^32; columns 0: of shape (count), to below 2^64.
+/// Returns whole numbers of shape (count, columns), from 0 to below 2^32; for columns 0, of shape (count), to below
+/// 2^64.
 [[nodiscard]] std::vector<std::uint64_t> whole_numbers(const py::handle& object, const char* name, py::ssize_t columns);
 
-/// The rows of an array of three columns.
+/// Returns the rows of an array of three columns.
 [[nodiscard]] inline std::span<const Vec3> points(const Doubles& array) {
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     return {reinterpret_cast<const Vec3*>(array.data()), static_cast<std::size_t>(array.shape(0))};
@@ -46,7 +48,7 @@ void repeat_one(Doubles& array, const Doubles& other, const char* name);
     return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
-/// The array of memory that `keeper` keeps alive. Vec3 gives a second axis of 3.
+/// Returns an array over memory that `keeper` keeps alive. Vec3 gives a second axis of 3.
 template <class T>
 [[nodiscard]] py::array array_over(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
     const py::capsule owner(new std::shared_ptr<const void>(std::move(keeper)),
@@ -59,7 +61,7 @@ template <class T>
     }
 }
 
-/// The same, read-only.
+/// Returns such an array, read-only.
 template <class T>
 [[nodiscard]] py::array lent(const T* data, std::size_t count, std::shared_ptr<const void> keeper) {
     py::array array = array_over(data, count, std::move(keeper));
@@ -67,10 +69,10 @@ template <class T>
     return array;
 }
 
-/// The same of flags, as booleans.
+/// Returns such an array of flags, as booleans.
 [[nodiscard]] py::array lent_flags(const std::uint8_t* data, std::size_t count, std::shared_ptr<const void> keeper);
 
-/// The array of a vector, whose memory it takes over; the user may write into it.
+/// Returns an array that owns the memory of a vector. The user may write into it.
 template <class T>
 [[nodiscard]] py::array given(std::vector<T>&& vector) {
     auto keeper = std::make_shared<std::vector<T>>(std::move(vector));
@@ -78,13 +80,13 @@ template <class T>
     const std::size_t count = keeper->size();
     return array_over(data, count, std::move(keeper));
 }
-/// The same of flags, as booleans.
+/// Returns such an array of flags, as booleans.
 [[nodiscard]] py::array given_flags(std::vector<std::uint8_t>&& flags);
 
-/// The thread limit of questions and steps (ricochet.set_threads).
+/// Sets the thread limit of queries and steps (ricochet.set_threads).
 void set_threads(int threads);
 
-// What the module is made of.
+// Parts of the module.
 void bind_mesh(py::module_& module);
 void bind_simulation(py::module_& module);
 

@@ -1,5 +1,5 @@
 /// \file
-/// Ctrl-C while C++ code works on many threads.
+/// Handling of Ctrl-C while C++ code runs on many threads.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -17,7 +17,8 @@
 
 namespace ricochet::python {
 
-/// Calls work() on a thread of its own, and look() on this one again and again until it has ended. Without the lock.
+/// Calls work() on a separate thread, and look() repeatedly on this one until work() has ended. Call it without the
+/// lock.
 template <class Work, class Look>
 void run_beside(const Work& work, std::chrono::milliseconds interval, const Look& look) {
     std::exception_ptr error;
@@ -37,16 +38,17 @@ void run_beside(const Work& work, std::chrono::milliseconds interval, const Look
     if (error != nullptr) std::rethrow_exception(error);
 }
 
-/// Lets Ctrl-C end parallel loops. Python handles signals on its main thread alone, so the thread that has made the
-/// object looks for them. Made with the lock.
+/// Lets Ctrl-C end parallel loops. Python handles signals only on its main thread, so the thread that made the object
+/// checks for them. Create it with the lock.
 class CtrlC {
 public:
     CtrlC() = default;
     CtrlC(const CtrlC&) = delete;
     CtrlC& operator=(const CtrlC&) = delete;
 
-    /// Returns work(), called without the lock. Ctrl-C ends its loops, and its exception comes out. is_short: work has
-    /// one block, so that this thread does it all and looks between; else it is done beside this thread, which looks.
+    /// Returns work(), called without the lock. Ctrl-C ends its loops, and its exception is rethrown. is_short: work
+    /// has one block, so this thread does it and checks for Ctrl-C meanwhile. Otherwise another thread does the work,
+    /// and this thread checks.
     template <class Work>
     auto run(bool is_short, const Work& work) {
         std::optional<decltype(work())> result;
@@ -60,7 +62,7 @@ public:
                 stoppable();
             else
                 run_beside(stoppable, kInterval, [this] { look(); });
-        } catch (const Ended&) {  // error_ says why
+        } catch (const Ended&) {  // the reason is in error_
         }
         if (error_ != nullptr) std::rethrow_exception(error_);
         return std::move(*result);
@@ -70,7 +72,7 @@ private:
     using Clock = std::chrono::steady_clock;
     static constexpr std::chrono::milliseconds kInterval{50};
 
-    /// Ends a loop.
+    /// Exception that ends a loop.
     struct Ended : std::exception {};
 
     void look() {
@@ -79,7 +81,7 @@ private:
         error_ = std::make_exception_ptr(py::error_already_set());
         is_ended_ = true;
     }
-    /// From any thread.
+    /// Called from any thread.
     void poll() {
         if (std::this_thread::get_id() == thread_ && Clock::now() >= next_) {
             next_ = Clock::now() + kInterval;

@@ -1,4 +1,4 @@
-// Forces of the user's: on all particles at once, by a function of Python or by a compiled one.
+// Forces by users, for all particles at once: a Python function or a compiled function.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ricochet::python {
 namespace {
 
-/// How messages name the function: by its place in `forces` and its name, or the kind of object that is called.
+/// Returns the function's name for messages: its index in `forces`, and its name or the type of the callable object.
 std::string name_of(const py::object& function, std::size_t number) {
     py::object name = py::getattr(function, "__name__", py::none());
     if (!py::isinstance<py::str>(name)) name = py::type::of(function).attr("__name__");
@@ -29,7 +29,7 @@ py::array copied(std::span<const T> list) {
     return array;
 }
 
-/// What both kinds have in common.
+/// Common part of both kinds of forces.
 class UserForce : public ParticlesForce {
 public:
     UserForce(py::object function, std::string name) : function_(std::move(function)), name_(std::move(name)) {}
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] const py::object& function() const { return function_; }
 
 protected:
-    /// Adds forces, N, as accelerations.
+    /// Adds forces, in N, as accelerations.
     void add(std::span<const Vec3> forces, const ParticlesView& particles, std::span<Vec3> result) const {
         for (std::size_t i = 0; i < forces.size(); ++i) {
             const Vec3 acceleration = forces[i] / particles.masses[i];
@@ -61,7 +61,8 @@ private:
     std::string name_;
 };
 
-/// Arrays in, an array of forces out. It may keep what it is given: those are copies.
+/// Force of a Python function, which gets arrays and returns an array of forces. It may keep its input, because the
+/// arrays are copies.
 class PythonForce : public UserForce {
 public:
     using UserForce::UserForce;
@@ -78,10 +79,10 @@ public:
     }
 };
 
-/// What ricochet.compiled_force() has made, called without the GIL.
+/// Force made by ricochet.compiled_force(), called without the GIL.
 class CompiledForce : public UserForce {
 public:
-    /// Returns 0 where the user's function has raised something.
+    /// Returns 0 if the user's function has raised an exception.
     using Function = std::int32_t (*)(double time, std::int64_t count, const double* position, const double* velocity,
                                       const double* mass, const double* radius, double* force);
 
@@ -101,13 +102,14 @@ public:
     }
 
 private:
-    /// Compiled code cannot say what it has raised: the same call from Python does.
+    /// Raises the exception of the user's function. Compiled code cannot report it, so the same call is repeated from
+    /// Python.
     [[noreturn]] void raise_again(const ParticlesView& particles) const {
         const Locked locked;
         function().attr("_call")(particles.time, copied(particles.positions), copied(particles.velocities),
                                  copied(particles.masses), copied(particles.radii));
         throw RunError(
-            fmt::format("{}: it has raised an exception at {} s, and has not when it was called again: forces "
+            fmt::format("{}: it raised an exception at {} s, but not when it was called again: forces "
                         "must be pure",
                         name(), particles.time));
     }
@@ -134,8 +136,8 @@ std::shared_ptr<const ParticlesForce> force_of(const py::object& force, std::siz
     const py::object compiled = py::module_::import("ricochet._forces").attr("CompiledForce");
     if (py::isinstance(force, compiled)) {
         if (!py::hasattr(force, "_callback")) {
-            throw py::type_error(fmt::format(
-                "forces[{}]: CompiledForce: this object has not been made: compiled_force() makes one", number));
+            throw py::type_error(
+                fmt::format("forces[{}]: CompiledForce: this object has not been made: use compiled_force()", number));
         }
         return std::make_shared<CompiledForce>(force, name_of(force.attr("function"), number));
     }

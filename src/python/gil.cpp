@@ -20,7 +20,7 @@ std::thread::id ending_thread;  // set before is_ending
     while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
-/// Threads that come for the lock until now get it; those that come later stay.
+/// Lets threads that already wait for the lock take it. Threads that ask for it later stay in stay().
 void end() {
     ending_thread = std::this_thread::get_id();
     is_ending = true;
@@ -33,12 +33,12 @@ void end() {
 
 void wait_for_threads_at_exit() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&end));
-    // A child has none of its parent's other threads.
+    // A child process has no other threads of its parent.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
                                                            py::cpp_function([] { beside_count = own_count; }));
 }
 
-// The thread that ends the interpreter may still ask something itself.
+// The thread that ends the interpreter may still call into this module.
 void stay_if_ending() {
     if (is_ending && std::this_thread::get_id() != ending_thread) stay();
 }

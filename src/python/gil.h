@@ -1,7 +1,7 @@
 /// \file
-/// Python's lock, let go of and taken again, also while the interpreter ends. Python ends a thread that asks for the
-/// lock then, which C++ code on its stack does not survive; here it is kept waiting instead, for ever, as a daemon
-/// thread is that has nothing left to do.
+/// Scopes that release and take Python's lock, also safe while the interpreter ends. At that time Python ends a thread
+/// that asks for the lock, and C++ code on its stack does not survive this. These scopes make such a thread wait
+/// forever instead, like a daemon thread without work.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,15 +10,16 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// Tells Python to call it at its end: then what runs here is waited for, for two seconds at most. Steps end there.
+/// Registers a function that Python calls at its end. It waits, for two seconds at most, for the threads that run here.
+/// Running steps end meanwhile.
 void wait_for_threads_at_exit();
 
-/// For threads that run long without the lock: does not return once the interpreter ends.
+/// Does not return once the interpreter ends. For threads that run long without the lock.
 void stay_if_ending();
 
 namespace detail {
 
-/// Counts a thread that runs C++ code beside the interpreter, or Python code within such.
+/// Scope that counts a thread that runs C++ code beside the interpreter, or Python code within such code.
 class Beside {
 public:
     Beside();
@@ -27,7 +28,7 @@ public:
     Beside& operator=(const Beside&) = delete;
 };
 
-/// Where a thread has no lock: before it asks for it, and after it has let go of it.
+/// Scope of a thread without the lock: before it asks for the lock, and after it has released it.
 class WithoutLock {
 public:
     WithoutLock() { stay_if_ending(); }
@@ -38,7 +39,7 @@ public:
 
 }  // namespace detail
 
-/// Without the lock while it lives; instead of py::gil_scoped_release.
+/// Scope without the lock. Replaces py::gil_scoped_release.
 class Unlocked {
 private:
     detail::Beside beside_;
@@ -46,7 +47,7 @@ private:
     detail::WithoutLock without_;
 };
 
-/// With the lock while it lives, within Unlocked; instead of py::gil_scoped_acquire.
+/// Scope with the lock, within Unlocked. Replaces py::gil_scoped_acquire.
 class Locked {
 private:
     detail::Beside beside_;

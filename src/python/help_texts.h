@@ -1,5 +1,5 @@
 /// \file
-/// What help() and inspect.signature() show of compiled functions.
+/// Texts of compiled functions for help() and inspect.signature().
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,7 +10,7 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// Objects of ricochet._results, by their classes, so that signatures name them.
+/// Objects of ricochet._results, with one type per class, so that signatures name them.
 template <class Name>
 struct ResultObject : py::object {
     ResultObject() = default;
@@ -25,9 +25,9 @@ using AllHitsObject = ResultObject<AllHitsName>;
 using ContactsObject = ResultObject<ContactsName>;
 using TriangleTotalsObject = ResultObject<TriangleTotalsName>;
 
-/// Rewrites the texts of the functions in a class or a module: pybind11 puts the signature into the first line, where
-/// Python sees only text. Python gets it in the form that it reads, and the type of the result goes to the end, with
-/// the fields of named tuples. Once for each class and module, after its last function.
+/// Rewrites the texts of the functions in a class or a module. pybind11 puts the signature into the first line, which
+/// Python treats as text. The new text has the signature in Python's form, and ends with the type of the result and the
+/// fields of named tuples. Call it once for each class and module, after its last function.
 void write_signatures(const py::object& class_or_module);
 
 }  // namespace ricochet::python

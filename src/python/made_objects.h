@@ -1,6 +1,6 @@
 /// \file
-/// Objects of Python whose __init__ has not run. pybind11 would give their methods memory that holds nothing: they are
-/// refused wherever they are handed in. Every file that binds or casts one of these classes includes this one.
+/// Checks for Python objects whose __init__ has not run. pybind11 would give their methods uninitialised memory, so
+/// they are refused as arguments. Every file that binds or casts one of these classes includes this file.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -10,15 +10,15 @@
 
 namespace ricochet::python {
 
-/// Throws TypeError for an instance of a class of pybind11's that has no value yet: one of Class.__new__(Class), or of
-/// a class derived from it whose __init__ uses it before super().__init__().
+/// Throws TypeError for an instance of a pybind11 class that has no value yet. Such an instance comes from
+/// Class.__new__(Class), or from a derived class whose __init__ uses it before super().__init__().
 void require_made(const py::handle& object);
 
-/// Lets the class that all classes of pybind11 derive from (Mesh.__base__), and what users derive from it alone, refuse
-/// to make objects with a TypeError: pybind11 ends the interpreter.
+/// Makes the base class of all pybind11 classes (Mesh.__base__) raise a TypeError when an object of it is made. This
+/// also applies to classes that users derive from it alone. pybind11 would end the interpreter.
 void guard_root_class();
 
-/// How arguments become references to T.
+/// Converts arguments to references to T.
 template <class T>
 class MadeCaster : public py::detail::type_caster_base<T> {
 public:

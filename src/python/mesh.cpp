@@ -1,4 +1,4 @@
-// ricochet.Mesh: exact questions about a mesh.
+// ricochet.Mesh: exact queries on a mesh.
 #include <fmt/format.h>
 
 #include <array>
@@ -57,7 +57,7 @@ AffineMap map_of(const py::object& transform) {
             {rows[3], rows[7], rows[11]}};
 }
 
-/// Keeps names of triangles, one each, or none, in the object's dictionary. Throws InputError for others.
+/// Stores names of triangles, one each or none, in the object's dictionary. Throws InputError for anything else.
 void set_names(const py::object& mesh, const char* kind, const py::object& names) {
     const auto count = py::cast<const MeshQueries&>(mesh).mesh().triangles.size();
     py::module_::import("ricochet._mesh").attr("_set_names")(mesh, count, kind, names);
@@ -75,7 +75,7 @@ void bind_names(Type& type, const char* kind, const char* text) {
         [kind](const py::object& mesh, const py::object& names) { set_names(mesh, kind, names); }, text);
 }
 
-/// The triangles of polygons: those of face i have the corners offsets[i] to offsets[i + 1].
+/// Returns the triangles of polygons. Face i has the corners offsets[i] to offsets[i + 1].
 py::array triangulated(const py::object& vertices, const py::object& offsets, const py::object& corners) {
     const Doubles positions = numbers(vertices, "points", 3);
     const auto narrow = [](const std::vector<std::uint64_t>& list) {
@@ -92,11 +92,11 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
         .attr("reshape")(-1, 3);
 }
 
-/// Questions that are put in one block: so many.
+/// Number of queries up to which they are one block.
 constexpr py::ssize_t kFewQuestions = 256;
 
-/// Puts `count` questions while other threads of Python run; Ctrl-C ends them. A copy answers them, so that
-/// set_vertices() may run beside. transform: where the mesh stands; None: as its vertices say.
+/// Makes `count` queries while other Python threads run; Ctrl-C ends them. Uses a copy of the mesh, so that
+/// set_vertices() may run concurrently. transform: placement of the mesh, or None for none.
 template <class Ask>
 auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
     const auto answer = [&](const auto& asked) {
@@ -112,7 +112,7 @@ HitsObject hits_of(MeshHits&& hits) {
                           given(std::move(hits.point)));
 }
 
-/// Rays as Python hands them in.
+/// Rays from Python arguments.
 struct Rays {
     Doubles origins;
     Doubles directions;
@@ -136,7 +136,7 @@ HitsObject first_hits(const MeshQueries& mesh, const py::object& origins, const 
     return hits_of(ask(mesh, rays.count(), transform, [&](const auto& m) { return m.first_hits(batch); }));
 }
 
-/// Returns AllHits, and whether each ray runs in the planes of all triangles that it meets there.
+/// Returns AllHits, and for each hit whether the ray lies in the planes of all triangles that it meets there.
 py::tuple all_hits_and_planes(const MeshQueries& mesh, const py::object& origins, const py::object& directions,
                               const py::object& most, const py::object& transform) {
     const Rays rays(origins, directions, most);
@@ -258,7 +258,7 @@ py::array bounds_of(const MeshQueries& mesh) {
     return given(std::vector<Vec3>{box.lower, box.upper});
 }
 
-/// Returns the factors of a scale along x, y and z, as scenes take it: one number or three, negative ones mirror.
+/// Returns the factors of a scale along x, y and z, in the form of scenes: one number or three; negative ones mirror.
 Vec3 factors_of(const py::object& scale) {
     constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
     std::optional<Vec3> factors;
@@ -277,7 +277,7 @@ Vec3 factors_of(const py::object& scale) {
     return *factors;
 }
 
-/// Turns the up axis first and scales then, as scenes do.
+/// Rotates the up axis first and then scales, as scenes do.
 void place(ImportedMesh& imported, const std::optional<std::string>& up, const Vec3& scale) {
     const bool turns_up = up == "y" && !imported.y_up;
     const bool turns_back = up == "z" && imported.y_up;
@@ -292,7 +292,7 @@ void place(ImportedMesh& imported, const std::optional<std::string>& up, const V
     }
 }
 
-/// Returns for each triangle the number of its names' combination in PolygonMesh::groups; empty without names.
+/// Returns for each triangle the index of its combination of names in PolygonMesh::groups; empty without names.
 std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
     std::vector<std::uint32_t> numbers;
     if (imported.polygons.face_groups.empty()) return numbers;
@@ -301,7 +301,7 @@ std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
     return numbers;
 }
 
-/// Gives a mesh the names that its file gives to its faces.
+/// Gives a mesh the names of faces from its file.
 void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector<std::uint32_t>&& numbers) {
     if (numbers.empty()) return;
     const auto text = [&](std::uint32_t name) {
@@ -341,56 +341,58 @@ py::object read(const std::filesystem::path& file, const std::optional<std::stri
     return mesh;
 }
 
-constexpr const char* kMeshText = R"(A mesh of triangles, and exact questions about it.
+constexpr const char* kMeshText = R"(A mesh of triangles, with exact queries.
 
 vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 3).
 
-Whether a ray hits, and what it hits first, is decided exactly for the doubles given: also at edges and vertices, also far
-from the origin. Answers are the same bits for any number of threads and any order. Questions run on all threads and let
-other threads of Python run. What is wrong with an argument is raised as ricochet.InputError, a ValueError.
+Hits and first hits are decided exactly for the given doubles, also at edges and vertices, and far from the origin. Results
+have the same bits for any number of threads and any order of queries. Queries use all threads and let other Python threads
+run. A wrong argument raises ricochet.InputError, a ValueError.
 
-transform: a matrix of shape (4, 4) that places the mesh for one question: a rotation or reflection times one scale, and a
-translation. The question is mapped and rounded, and nothing is copied.)";
+transform: a matrix of shape (4, 4) that places the mesh for one query: a rotation or reflection times one scale, and a
+translation. The query is mapped and rounded, and nothing is copied.)";
 
 void bind_rays(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("first_hits", &first_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none(),
-             "The first hit of each ray. Directions have any length above 0; one origin may stand for all rays, or one "
-             "direction. most: how far rays reach, in metres, one number or one each.")
+             "Returns the first hit of each ray. Directions have any length above 0. All rays may share one origin or "
+             "one "
+             "direction. most: range of rays in metres, one number or one each.")
         .def("all_hits", &all_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none(),
-             "Every place where a ray meets the surface, once: an edge or a vertex that triangles share is one place, "
-             "and a way along the surface is where it begins.")
+             "Returns every hit of every ray once. An edge or a vertex that triangles share is one hit. A path along "
+             "the surface is one hit, at its begin.")
         .def("_all_hits_and_planes", &all_hits_and_planes, arg("origins"), arg("directions"), arg("most") = py::none(),
              arg("transform") = py::none())
         .def("count_hits", &count_hits, arg("origins"), arg("directions"), arg("most") = py::none(),
-             arg("transform") = py::none(), "How many places all_hits() finds for each ray.")
+             arg("transform") = py::none(), "Returns the number of hits that all_hits() finds for each ray.")
         .def("occluded", &occluded, arg("origins"), arg("directions"), arg("most") = py::none(),
-             arg("transform") = py::none(), "Whether each ray hits anything; cheaper than first_hits().");
+             arg("transform") = py::none(), "Returns whether each ray hits anything. It is cheaper than first_hits().");
 }
 
 void bind_points(py::class_<MeshQueries>& type) {
     using py::arg;
     type.def("inside", &inside, arg("points"), arg("rule") = "parity", arg("transform") = py::none(),
-             "Whether each point is inside, exactly; points on the surface are not. The mesh must be closed. rule: "
-             "\"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not 0: "
-             "overlapping shells are joined).")
+             "Returns whether each point is inside, exactly; points on the surface are not. The mesh must be closed. "
+             "rule: \"parity\" (an odd number of shells encloses the point) or \"winding\" (its winding number is not "
+             "0, so overlapping shells are joined).")
         .def("winding_numbers", &winding_numbers, arg("points"), arg("transform") = py::none(),
-             "How often the mesh winds around each point: 1 inside a closed mesh wound outward, 0 outside, added up "
-             "where shells overlap and triangles repeat. In an open mesh between: above 1/2 where the surface "
-             "surrounds more than half of the point.")
+             "Returns the winding number of the mesh around each point: 1 inside a closed mesh wound outward, 0 "
+             "outside. Overlapping shells and repeated triangles add up. In an open mesh it is a fraction, and above "
+             "1/2 if the surface covers more than half of all directions from the point.")
         .def("closest_points", &closest_points, arg("points"), arg("within") = std::numeric_limits<double>::infinity(),
              arg("transform") = py::none(),
-             "The point of the mesh nearest to each point, where one is within that distance.")
+             "Returns the point of the mesh nearest to each point, if there is one within that distance.")
         .def("signed_distances", &signed_distances, arg("points"), arg("rule") = "parity",
              arg("transform") = py::none(),
-             "Distance of each point from the surface, negative inside by the rule of inside(). The mesh must be "
-             "closed.")
+             "Returns the distance of each point from the surface, negative inside by the rule of inside(). The mesh "
+             "must be closed.")
         .def("sweep", &sweep, arg("from_points"), arg("to_points"), arg("radius") = 0.0,
              arg("vertices_after") = py::none(), arg("transform") = py::none(),
-             "What points, or spheres of a radius (one number or one each), meet first on straight ways. "
-             "vertices_after: where the mesh's own vertices go meanwhile. The distance is the fraction of the way.");
+             "Returns the first contact of points, or spheres of a radius (one number or one each), on straight paths. "
+             "vertices_after: positions to which the mesh's vertices move meanwhile. The distance is the fraction of "
+             "the path.");
 }
 
 void bind_pickling(py::class_<MeshQueries>& type) {
@@ -406,7 +408,7 @@ void bind_pickling(py::class_<MeshQueries>& type) {
                 return py::make_tuple(vertices_of(m), faces_of(m), mesh.attr("__dict__"));
             },
             [](const py::tuple& state) {
-                if (state.size() != 3) throw InputError("Mesh: this is not what one is pickled as");
+                if (state.size() != 3) throw InputError("Mesh: the pickled state is not one of a Mesh");
                 return std::pair(MeshQueries(mesh_of(state[0], state[1])), py::dict(state[2]));
             }));
 }
@@ -422,27 +424,28 @@ void bind_mesh(py::module_& module) {
                  return MeshQueries(std::move(mesh));
              }),
              arg("vertices"), arg("faces"))
-        .def_static("read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
-                    "A mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
-                    "up, \"y\" or \"z\" (None: y of glTF files, else z). scale: the file's unit in metres, or a factor "
-                    "for each "
-                    "axis; negative factors mirror. merge: joins vertices within that distance, m (0: equal "
-                    "positions); no vertex "
-                    "moves farther. The names that the file gives to faces are in `materials`, `groups` and `objects`.")
+        .def_static(
+            "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
+            "Reads a mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
+            "up, \"y\" or \"z\" (None: y for glTF files, else z). scale: the file's unit in metres, or a factor "
+            "for each "
+            "axis; negative factors mirror. merge: joins vertices within that distance, m (0: equal "
+            "positions); no vertex "
+            "moves farther. The names that the file gives to faces are in `materials`, `groups` and `objects`.")
         .def_property_readonly("vertices", &vertices_of, "Shape (n, 3), read-only.")
         .def_property_readonly("faces", &faces_of, "Shape (m, 3), read-only.")
-        .def_property_readonly("bounds", &bounds_of, "The lower and the upper corner of the box about the mesh.")
+        .def_property_readonly("bounds", &bounds_of, "Lower and upper corner of the bounding box.")
         .def_property_readonly(
-            "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "m^2.")
+            "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "Surface area, in m^2.")
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
-            "Of a closed mesh; above 0 where it is wound outward.")
+            "Volume of a closed mesh, in m^3; above 0 if it is wound outward.")
         .def_property_readonly(
             "is_closed", &MeshQueries::is_closed,
-            "Whether there is an inside: every edge has an even number of triangles. Vertices at equal "
+            "True if the mesh has an inside: every edge has an even number of triangles. Vertices at equal "
             "positions count as one, and repeated triangles once. The winding has no influence.")
         .def("set_vertices", &set_vertices, arg("vertices"),
-             "Moves the vertices: cheaper than a new mesh, with the answers of a new one.")
+             "Moves the vertices. It is cheaper than a new mesh, with the same results.")
         .def("__len__", [](const MeshQueries& m) { return m.mesh().triangles.size(); })
         .def("__repr__", [](const MeshQueries& m) {
             return fmt::format("<ricochet.Mesh of {} triangles and {} vertices>", m.mesh().triangles.size(),
@@ -450,15 +453,14 @@ void bind_mesh(py::module_& module) {
         });
     bind_pickling(type);
     bind_names(type, "groups",
-               "The group of each triangle, as an OBJ file's `g`, or None. Set it to names or numbers, one "
+               "The group of each triangle, like an OBJ file's `g`, or None. Set it to names or numbers, one "
                "each: a collider's `group_materials` gives them materials.");
-    bind_names(type, "objects",
-               "The object of each triangle, as an OBJ file's `o`, or None. The same as for `groups`.");
+    bind_names(type, "objects", "The object of each triangle, like an OBJ file's `o`, or None. Use it like `groups`.");
     bind_names(
         type, "materials",
-        "The material of each triangle, as an OBJ file's `usemtl`, or None. Set it to names or numbers, one each: in "
-        "a scene they are then names of its `materials`, unless the collider's `group_materials` lists them. Names "
-        "that read() has taken from a file mean nothing until `group_materials` lists them.");
+        "The material of each triangle, like an OBJ file's `usemtl`, or None. Set it to names or numbers, one each. In "
+        "a scene these are names of its `materials`, unless the collider's `group_materials` lists them. Names that "
+        "read() has taken from a file mean nothing until `group_materials` lists them.");
     module.def("_triangulate", &triangulated, arg("points"), arg("offsets"), arg("corners"));
     bind_rays(type);
     bind_points(type);

@@ -16,7 +16,7 @@ namespace {
 namespace py = pybind11;
 using namespace ricochet;
 
-/// The classes of errors as Python knows them; they live as long as the process.
+/// Python classes of the errors; they live as long as the process.
 struct ErrorClasses {
     PyObject* input = nullptr;
     PyObject* run = nullptr;
@@ -24,7 +24,7 @@ struct ErrorClasses {
 };
 ErrorClasses error_classes;
 
-/// Messages may hold names of files, which need not be UTF-8.
+/// Raises an exception. Messages may contain file names, which need not be UTF-8.
 void raise(PyObject* type, const char* what) {
     const auto size = static_cast<py::ssize_t>(std::strlen(what));
     const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(what, size, "backslashreplace"));
@@ -57,10 +57,10 @@ PYBIND11_MODULE(_core, module) {
     add_errors(module);
     module.attr("__version__") = RICOCHET_VERSION;
     module.def("set_threads", &python::set_threads, py::arg("threads"),
-               "Lets questions and steps use so many threads, at most 1024; 0 is all that the machine has. No result "
+               "Sets the number of threads for queries and steps, at most 1024; 0 means all of the machine. No result "
                "depends on it.");
-    module.def("thread_count", &thread_count, "How many threads questions and steps use now.");
-    module.def("scene_schema", &scene_schema, "The JSON Schema of scenes, as text.");
+    module.def("thread_count", &thread_count, "Returns the number of threads that queries and steps use now.");
+    module.def("scene_schema", &scene_schema, "Returns the JSON Schema of scenes, as text.");
     python::guard_root_class();
     python::wait_for_threads_at_exit();
     python::bind_mesh(module);

@@ -1,4 +1,4 @@
-// ricochet._core.Simulation.render: a picture of a simulation as it is, in an array.
+// ricochet._core.Simulation.render: a picture of the current state of a simulation, as an array.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,17 +21,17 @@ namespace {
 
 constexpr Vec3 kColliderColor{0.21, 0.20, 0.19};
 constexpr Vec3 kPlaneColor{0.30, 0.30, 0.29};
-constexpr double kParticleAlbedo = 0.8;  // of the colour map's colours, so that sunlit ones do not burn out
-/// Radius of particles without one, of the diagonal of what is shown.
+constexpr double kParticleAlbedo = 0.8;  // factor of the colour map, so that sunlit colours are not overexposed
+/// Radius of particles without one, as a fraction of the diagonal of the scene.
 constexpr double kPointSize = 0.004;
 
-/// A whole number of a range.
+/// Returns a whole number, and throws InputError if it is out of range.
 int within(int value, int lowest, int highest, const char* name) {
     if (value >= lowest && value <= highest) return value;
     throw InputError(fmt::format("{}: found {}, expected {} to {}", name, value, lowest, highest));
 }
 
-/// What is shown of a simulation.
+/// Visible content of a simulation.
 struct Shown {
     std::vector<PreviewMesh> meshes;
     std::vector<PreviewPlane> planes;
@@ -83,7 +83,7 @@ Vec3 vector_of(const py::handle& object, const char* name) {
     throw InputError(fmt::format("{}: found [{}, {}, {}], expected finite numbers", name, v.x, v.y, v.z));
 }
 
-/// What the caller says of the camera, then what the scene says, then what shows everything.
+/// Returns the camera. The caller's values override the scene's camera, which overrides a camera that shows everything.
 Camera camera_of(const SimulationHandle& handle, const ViewSubject& subject, double aspect, const py::object& position,
                  const py::object& target, double field_of_view) {
     Camera camera = automatic_camera(subject, handle.up(), aspect);
@@ -129,9 +129,9 @@ void bind_picture(py::class_<SimulationHandle>& type) {
     type.def(
         "render", &render, arg("width") = 960, arg("height") = 540, arg("samples") = 16, arg("position") = py::none(),
         arg("target") = py::none(), arg("field_of_view") = 0.0,
-        "A picture of particles, coloured by their speed, and colliders as they are now: red, green and blue from 0 "
-        "to 255, of shape (height, width, 3). From the scene's camera, or one that shows everything, unless "
-        "position, target and field_of_view (degrees) say otherwise.");
+        "Returns a picture of the current particles, coloured by their speed, and colliders: red, green and blue from "
+        "0 to 255, of shape (height, width, 3). The camera is the scene's, or one that shows everything. position, "
+        "target and field_of_view (degrees) override it.");
 }
 
 }  // namespace ricochet::python

@@ -1,4 +1,4 @@
-// ricochet._core.Simulation: scenes, steps, and what a simulation shows.
+// ricochet._core.Simulation: scenes, steps, and the state of a simulation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ py::dict attributes_of(const Handle& handle) {
     });
 }
 
-/// One value for all, or one each.
+/// Returns the value of an entry, from a list with one value for all or one each.
 double value_of(const Doubles& list, std::size_t i) { return list.size() == 1 ? *list.data() : list.data()[i]; }
 
 Doubles one_or_each(const py::handle& object, const char* name, std::size_t count) {
@@ -101,7 +101,7 @@ std::size_t remove_particles(Handle& handle, const py::object& ids) {
 
 // Contacts and totals.
 
-/// A contact as a structured array holds it.
+/// Contact in the layout of a structured array.
 struct Contact {
     double time;
     std::uint64_t particle;
@@ -159,7 +159,7 @@ ContactsObject take_contacts(Handle& handle) {
     return py::object(array.attr("view")(result("Contacts")));
 }
 
-/// The number of a collider that is named by its number or its name.
+/// Returns the index of a collider that is given by index or by name.
 std::size_t collider_of(const Simulation& simulation, const py::handle& which) {
     const auto& colliders = simulation.colliders();
     if (py::isinstance<py::str>(which)) {
@@ -245,7 +245,7 @@ py::dict statistics_of(const Handle& handle) {
 
 // Steps.
 
-/// How many steps it takes to come to a time, s, from where the simulation is.
+/// Returns the number of steps from the present state to a time, in s.
 std::uint64_t steps_to(const Simulation& simulation, double time) {
     if (!(time >= 0.0)) throw InputError(fmt::format("until: found {}, expected a time of at least 0 s", time));
     const double steps = std::ceil(time / simulation.options().time_step - 1e-6);
@@ -269,7 +269,7 @@ std::unique_ptr<Handle> made(std::string text, std::string file, std::vector<std
                                     std::move(own));
 }
 
-/// The simulation in an object of Python; null where its __init__ has not run.
+/// Returns the simulation in a Python object, or null if its __init__ has not run.
 Handle* handle_in(PyObject* object) {
     auto* const instance = reinterpret_cast<py::detail::instance*>(object);
     return static_cast<Handle*>(instance->get_value_and_holder().value_ptr());
@@ -291,7 +291,7 @@ void deallocate(PyObject* object) {
     py::detail::pybind11_object_dealloc(object);
 }
 
-/// A force may be a method of who holds the simulation: Python finds such cycles.
+/// Enables garbage collection of cycles: a force may be a method of the object that owns the simulation.
 void take_part_in_garbage_collection(PyHeapTypeObject* heap_type) {
     PyTypeObject& type = heap_type->ht_type;
     type.tp_flags |= Py_TPFLAGS_HAVE_GC;
@@ -301,19 +301,19 @@ void take_part_in_garbage_collection(PyHeapTypeObject* heap_type) {
 }
 
 void bind_state(py::class_<Handle>& type) {
-    type.def_property_readonly("time", reader(&Simulation::time), "Seconds.")
-        .def_property_readonly("step_index", reader(&Simulation::step_index), "Steps done.")
-        .def_property_readonly("step_count", reader(&Simulation::step_count), "Steps in all.")
-        .def_property_readonly("finished", reader(&Simulation::finished), "Whether the last step is done.")
-        .def_property_readonly("kinetic_energy", reader(&Simulation::kinetic_energy), "Joule.")
+    type.def_property_readonly("time", reader(&Simulation::time), "Simulation time, in seconds.")
+        .def_property_readonly("step_index", reader(&Simulation::step_index), "Number of steps done.")
+        .def_property_readonly("step_count", reader(&Simulation::step_count), "Number of steps of the whole run.")
+        .def_property_readonly("finished", reader(&Simulation::finished), "True if the last step is done.")
+        .def_property_readonly("kinetic_energy", reader(&Simulation::kinetic_energy), "Kinetic energy, in joule.")
         .def_property_readonly("potential_energy", reader(&Simulation::potential_energy),
-                               "Joule; None where a force has no potential.")
+                               "Potential energy, in joule; None if a force has no potential.")
         .def_property_readonly(
             "state_hash",
             [](const Handle& handle) {
                 return fmt::format("{:016x}", handle.read([](const Simulation& s) { return s.state_hash(); }));
             },
-            "Of id, position and velocity of all particles: the same for the same bits, as the tool prints it.")
+            "Hash of id, position and velocity of all particles: equal for equal bits. The tool prints the same hash.")
         .def_property_readonly(
             "warnings",
             [](const Handle& handle) {
@@ -322,16 +322,16 @@ void bind_state(py::class_<Handle>& type) {
                 all.insert(all.end(), own.begin(), own.end());
                 return all;
             },
-            "A list of what the tool would warn of.")
+            "List of the warnings that the tool would print.")
         .def_property_readonly("particles", &particles_of,
                                "ricochet.Particles: the particles as read-only arrays, without a copy. They keep their "
                                "values when the simulation goes on.")
         .def_property_readonly("attributes", &attributes_of,
-                               "A dictionary of arrays: the particles' attributes as they are shown, by name.")
-        .def_property_readonly("statistics", &statistics_of, "A dictionary of counts over the run so far.")
-        .def_property_readonly("colliders", &colliders_of, "A list of their names.")
+                               "Dictionary of arrays: the visible attributes of particles, by name.")
+        .def_property_readonly("statistics", &statistics_of, "Dictionary of counts over the run so far.")
+        .def_property_readonly("colliders", &colliders_of, "List of the colliders' names.")
         .def_property_readonly("bodies", &bodies_of,
-                               "A list with a dictionary for each dynamic body: position and motion, in SI units.")
+                               "List with a dictionary for each dynamic body: position and motion, in SI units.")
         .def("__len__",
              [](const Handle& handle) { return handle.read([](const Simulation& s) { return s.particles().size(); }); })
         .def("__repr__", [](const Handle& handle) {
@@ -353,18 +353,19 @@ void bind_changes(py::class_<Handle>& type) {
             arg("time"))
         .def("add_particles", &add_particles, arg("position"), arg("velocity") = py::none(), arg("mass") = 1.0,
              arg("radius") = 0.0, arg("spin") = py::none(), arg("lifetime") = std::numeric_limits<double>::infinity(),
-             "Takes in particles as they are now, all or none. Vectors of shape (n, 3); numbers one for all or one "
-             "each. Returns their ids.")
-        .def("remove_particles", &remove_particles, arg("ids"), "Returns how many of the ids were those of particles.")
+             "Adds particles, all or none, and returns their ids. Vectors have shape (n, 3). Other arguments are one "
+             "number for all or one each.")
+        .def("remove_particles", &remove_particles, arg("ids"),
+             "Removes particles, and returns the number of ids that existed.")
         .def("take_contacts", &take_contacts,
-             "The contacts since the last call as a structured array, in the order of their times; with contacts=True.")
+             "Returns the contacts since the last call as a structured array, ordered by time. Requires contacts=True.")
         .def("triangle_totals", &triangle_totals, arg("collider"),
-             "Hits and impulses on each triangle of a collider, by its number or name.")
+             "Returns hits and impulses on each triangle of a collider, by its number or name.")
         .def("collider_mesh", &collider_mesh, arg("collider"),
-             "The mesh of a collider, by its number or name; None for planes.")
+             "Returns the mesh of a collider, by its number or name; None for planes.")
         .def(
             "save", [](const Handle& handle) { return py::bytes(handle.save()); },
-            "All that steps have left behind, for restore() in a simulation of the same scene.")
+            "Returns the whole state, for restore() in a simulation of the same scene.")
         .def(
             "restore",
             [](Handle& handle, const py::buffer& state) {
@@ -372,7 +373,7 @@ void bind_changes(py::class_<Handle>& type) {
                 if (!bytes) throw py::error_already_set();
                 handle.restore(py::cast<std::string>(bytes));
             },
-            arg("state"), "Takes over what save() has returned, in a simulation of the same scene and forces.");
+            arg("state"), "Restores a state from save(), in a simulation of the same scene and forces.");
 }
 
 }  // namespace

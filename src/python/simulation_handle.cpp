@@ -22,27 +22,27 @@
 namespace ricochet::python {
 namespace {
 
-/// How often a run looks for Ctrl-C and shows how far it is.
+/// Interval at which a run checks for Ctrl-C and shows its progress.
 constexpr std::chrono::milliseconds kLookAround{100};
 
-/// How long a step may go on after Ctrl-C before it is given up.
+/// Time that a step may continue after Ctrl-C before it is abandoned.
 constexpr std::chrono::milliseconds kPatience{250};
 
 constexpr const char* kBallisticWarning =
-    "forces: with them the integrator ballistic moves all particles as velocity_verlet; say \"velocity_verlet\" or "
-    "another one in simulation.integrator";
+    "forces: with them the integrator ballistic moves all particles like velocity_verlet; set simulation.integrator to "
+    "\"velocity_verlet\" or another one";
 
-/// Begins every saved state; its last digit changes with the layout.
+/// First word of every saved state. Its last digit changes with the layout.
 constexpr std::uint64_t kSavedFormat = 0x5249434f50590001ULL;
 
 /// A saved state.
 struct Saved {
     std::uint64_t scene_forces = 0;
-    std::string forces;  ///< the user's own, by name
-    std::string state;   ///< the library's, which a checksum ends
+    std::string forces;  ///< names of the user's forces
+    std::string state;   ///< state of the library, which ends with a checksum
 };
 
-/// The bytes as they come; InputError where there are not so many.
+/// Returns a source of these bytes. It throws InputError if they end too early.
 ByteSource source_of(std::span<const char>& rest) {
     return [&rest](std::span<std::byte> part) {
         if (part.size() > rest.size()) throw InputError("restore: the saved state ends too early");
@@ -61,14 +61,14 @@ bool is_whole(const std::string& state) {
     return hash.value() == checksum;
 }
 
-/// All that can be known before a simulation is changed.
+/// Reads a saved state and makes all checks that are possible before a simulation is changed.
 Saved saved_in(const std::string& bytes) {
     std::span<const char> rest(bytes);
     BinaryReader reader(source_of(rest));
     std::uint64_t format = 0;
     if (bytes.size() >= sizeof(format)) reader(format);
     if (format != kSavedFormat) {
-        throw InputError("restore: found other bytes, expected those that save() of this version has returned");
+        throw InputError("restore: found other bytes, expected the result of save() of this version");
     }
     Saved saved;
     reader(saved.scene_forces);
@@ -82,19 +82,20 @@ Saved saved_in(const std::string& bytes) {
     return saved;
 }
 
-/// Looks for Ctrl-C and shows progress while a run goes on, with the GIL taken back for as long as it takes. Only the
-/// thread that has made it looks.
+/// Checks for Ctrl-C and shows progress during a run, and takes the GIL only for that time. Only the thread that has
+/// created it does so.
 class Watch {
 public:
     explicit Watch(const py::object& progress) : progress_(progress) {}
 
-    /// Between steps: false when the run is to end. From any thread.
+    /// Returns false if the run must end. Called between steps, from any thread.
     [[nodiscard]] bool goes_on() {
         stay_if_ending();
         look();
         return !has_error_;
     }
-    /// Within a step: false when the step has not ended by itself for a while. From any thread.
+    /// Returns false if the run must end and the step has not finished for some time. Called within a step, from any
+    /// thread.
     [[nodiscard]] bool goes_on_within() {
         look();
         return !has_error_ || Clock::now() < latest_;
@@ -123,12 +124,13 @@ private:
     const py::object& progress_;
     std::thread::id thread_ = std::this_thread::get_id();
     Clock::time_point next_ = Clock::now() + kLookAround;
-    Clock::time_point latest_;  // for the step to end; set before has_error_
+    Clock::time_point latest_;  // time by which the step must end; set before has_error_
     std::exception_ptr error_;
     std::atomic<bool> has_error_ = false;
 };
 
-/// Particles up to which one thread moves all, and a single step needs no thread of its own that looks for Ctrl-C.
+/// Number of particles up to which one thread moves all. Then a single step needs no separate thread that checks for
+/// Ctrl-C.
 constexpr std::size_t kFewParticles = 256;
 
 }  // namespace
@@ -145,7 +147,7 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
-    // Here particles can be added.
+    // The warning does not apply, because particles can be added later.
     std::erase_if(scene_.warnings, [](const std::string& warning) { return warning.ends_with("nothing will move"); });
     if (!forces_.empty() && scene_.setup.options.integrator.kind == IntegratorKind::ballistic) {
         scene_.warnings.emplace_back(kBallisticWarning);
@@ -162,13 +164,13 @@ SimulationHandle::~SimulationHandle() {
     try {
         keep_lent();
     } catch (...) {
-        (void)simulation_.release();  // without memory for a copy: arrays still show what it holds
+        (void)simulation_.release();  // no memory for a copy: the arrays keep the simulation's memory
     }
 }
 
 SimulationHandle::Turn::Turn(const SimulationHandle& handle) : handle_(handle) {
     if (!handle_.is_busy_.exchange(true)) return;
-    throw RunError("this simulation is being stepped: it can be asked and changed between its steps only");
+    throw RunError("this simulation is being stepped: it can be read and changed only between its steps");
 }
 
 void SimulationHandle::advance(std::uint64_t count, const py::object& progress) {
@@ -181,10 +183,10 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
             try {
                 simulation_->advance(
                     count, [&] { return watch.goes_on(); }, [&] { return watch.goes_on_within(); });
-            } catch (const StoppedError&) {  // the watch knows why
+            } catch (const StoppedError&) {  // the watch has the reason
             }
         };
-        // The loops of other threads, for which this one would wait, may be long.
+        // This thread would have to wait for the loops of other threads, which may be long.
         const bool is_short = count == 1 && simulation_->particles().size() <= kFewParticles;
         is_short ? advance() : run_beside(advance, kLookAround, [&] { (void)watch.goes_on(); });
     }
@@ -250,7 +252,8 @@ void SimulationHandle::restore(const std::string& bytes) {
     }
     if (saved.scene_forces != forces_fingerprint(text_, overrides_)) {
         throw InputError(
-            "restore: found a state made under other forces or flows of the scene, expected those of this simulation");
+            "restore: found a state made under other forces or flows of the scene, expected the ones of this "
+            "simulation");
     }
     change([&](Simulation& simulation) {
         std::span<const char> rest(saved.state);

@@ -1,5 +1,5 @@
 /// \file
-/// A simulation as Python holds it: stepped while other threads of Python run, its arrays lent without a copy.
+/// A simulation owned by Python: it steps while other Python threads run, and lends its arrays without a copy.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -18,50 +18,50 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// The particles as arrays of Python show them: the simulation's own memory until the simulation changes, which leaves
-/// the memory to the arrays and goes on with a copy.
+/// Particles that Python arrays show. They are the simulation's own memory until the simulation changes. Then the
+/// arrays keep this memory, and the simulation continues with a copy.
 struct LentParticles {
     const Particles* shown = nullptr;
-    Particles kept;  ///< after that
+    Particles kept;  ///< memory of the arrays after that
 };
 
-/// The user's own forces: those that force_of() has made.
+/// Forces by the user, made by force_of().
 using UserForces = std::vector<std::shared_ptr<const ParticlesForce>>;
 
 class SimulationHandle {
 public:
-    /// forces: besides the scene's. text: a scene; file: its name in messages, to whose folder its
-    /// paths are relative.
+    /// text: a scene. file: its name in messages; paths in the scene are relative to its folder. forces: added to the
+    /// forces of the scene.
     SimulationHandle(std::string text, std::string file, std::vector<std::string> overrides, bool keeps_contacts,
                      bool verifies, UserForces forces);
     ~SimulationHandle();
     SimulationHandle(const SimulationHandle&) = delete;
     SimulationHandle& operator=(const SimulationHandle&) = delete;
 
-    /// Calls use(simulation) with the GIL held. RunError while another thread steps it.
+    /// Calls use(simulation) with the GIL held. Throws RunError while another thread steps it.
     template <class Use>
     auto read(const Use& use) const {
         const Turn turn(*this);
         return use(const_cast<const Simulation&>(*simulation_));
     }
-    /// The same for what changes it between steps: lent arrays stay what they are.
+    /// Calls change(simulation), which may change it between steps. Lent arrays keep their values.
     template <class Change>
     auto change(const Change& change) {
         const Turn turn(*this);
         keep_lent();
         return change(*simulation_);
     }
-    /// Steps without the GIL, at most `count` steps. Ctrl-C ends it with its exception: after the step that runs, or
-    /// before it where it takes long. progress (None or a callable without arguments) is called some ten times a
-    /// second, and what it throws ends it too.
+    /// Makes at most `count` steps without the GIL. Ctrl-C ends it with its exception, after the current step, or
+    /// within the step if it takes long. progress (None or a callable without arguments) is called some ten times a
+    /// second. An exception of progress also ends it.
     void advance(std::uint64_t count, const py::object& progress);
 
     [[nodiscard]] std::shared_ptr<LentParticles> lend() const;
-    /// The contacts since the last call; RunError without keeps_contacts.
+    /// Returns the contacts since the last call. Throws InputError without keeps_contacts.
     [[nodiscard]] std::vector<ContactRecord> take_contacts();
 
     [[nodiscard]] const SceneDescription& scene() const { return scene_; }
-    /// Against gravity, of unit length.
+    /// Returns the direction against gravity, of unit length.
     [[nodiscard]] const Vec3& up() const { return up_; }
     [[nodiscard]] const std::string& text() const { return text_; }
     [[nodiscard]] const std::string& file() const { return file_; }
@@ -69,14 +69,14 @@ public:
     [[nodiscard]] bool keeps_contacts() const { return keeps_contacts_; }
     [[nodiscard]] bool verifies() const { return verifies_; }
     [[nodiscard]] const UserForces& forces() const { return forces_; }
-    /// The library's state, and which forces it was made under.
+    /// Returns the state of the library, and the names of the forces.
     [[nodiscard]] std::string save() const;
-    /// Throws InputError for what save() has not given, or a simulation with other forces has; then nothing has
-    /// changed. Then what Simulation::restore() throws.
+    /// Restores a state. Throws InputError for bytes that are not from save(), or from a simulation with other forces;
+    /// then nothing has changed. Otherwise it throws like Simulation::restore().
     void restore(const std::string& bytes);
 
 private:
-    /// One thread at a time.
+    /// Exclusive use by one thread at a time.
     class Turn {
     public:
         explicit Turn(const SimulationHandle& handle);
@@ -105,11 +105,11 @@ private:
     mutable std::atomic<bool> is_busy_ = false;
 };
 
-/// A force that is a function of Python, or a compiled one; its number is for messages. Throws InputError for anything
+/// Returns a force from a Python function or a compiled one; its number is for messages. Throws InputError for anything
 /// else.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> force_of(const py::object& force, std::size_t number);
-/// For Python's search for cycles: what force_of() has made keeps a function alive, which may keep the simulation
-/// alive.
+/// Visits the functions of forces, for Python's search for cycles. A force keeps its function alive, which may keep the
+/// simulation alive.
 [[nodiscard]] int visit_functions(const UserForces& forces, visitproc visit, void* arg);
 void let_go_of_functions(const UserForces& forces);
 void bind_picture(py::class_<SimulationHandle>& type);

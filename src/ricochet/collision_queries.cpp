@@ -23,12 +23,12 @@
 
 namespace ricochet {
 
-/// A collision world, with what only some of the questions need: that is made when the first of them is asked.
+/// A collision world, with data that only some queries need. These data are built by the first such query.
 struct CollisionQueries::Impl {
     explicit Impl(std::shared_ptr<const CollisionWorld> collision_world) : world(std::move(collision_world)) {}
 
     [[nodiscard]] const SignedDistance& signed_distance() const;
-    /// Of the closed meshes.
+    /// Returns the interiors of the closed meshes.
     [[nodiscard]] const std::vector<MeshInterior>& interiors() const;
 
     std::shared_ptr<const CollisionWorld> world;
@@ -42,7 +42,8 @@ private:
 
 namespace {
 
-/// Part by which a ray's segment is longer than the distance to the farthest surface, so that rounding cuts none off.
+/// Relative excess of a ray's segment over the distance to the farthest surface, so that rounding does not cut off a
+/// surface.
 constexpr double kBeyond = 0x1p-20;
 
 void require_position(const Vec3& p, const char* what) {
@@ -63,7 +64,7 @@ Vec3 unit(const Vec3& direction) {
                                  direction.x, direction.y, direction.z));
 }
 
-/// m along the ray, beyond which there is nothing.
+/// Returns the distance along the ray, in m, beyond which there is no surface.
 double length_of_interest(const CollisionWorld& world, const Vec3& origin, const Vec3& along) {
     double farthest = 0.0;
     const Box3& box = world.bounds();
@@ -75,7 +76,7 @@ double length_of_interest(const CollisionWorld& world, const Vec3& origin, const
     return farthest * (1.0 + kBeyond) + std::numeric_limits<double>::min();
 }
 
-/// m along the ray to the first coordinate of kLargestCoordinate.
+/// Returns the distance along the ray, in m, to the first point with a coordinate of kLargestCoordinate.
 double length_to_limits(const Vec3& origin, const Vec3& along) {
     double length = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
@@ -134,7 +135,7 @@ std::optional<RayHit> CollisionQueries::first_hit(const Vec3& origin, const Vec3
     const std::optional<Contact> contact = find_first_contact(geometry, {path, 0.0}, scratch).contact;
     if (!contact) return std::nullopt;
     const double distance = contact->time * longest;
-    // From very far away a shape's own rounding decides which side its normal is seen from.
+    // From very far away, rounding of a shape decides which side its normal faces.
     const ContactSurface& hit = contact->first();
     const Vec3 normal = dot(hit.normal, along) > 0.0 ? -hit.normal : hit.normal;
     return RayHit{distance, start + distance * along, normal, world.name_of(hit.surface)};

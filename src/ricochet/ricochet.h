@@ -1,5 +1,5 @@
 /// \file
-/// Everything that the library offers. The headers can also be included one by one.
+/// Includes all public headers of the library. Each can also be included by itself.
 #pragma once
 
 #include "ricochet/collision/collider.h"

@@ -124,11 +124,11 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
     require_index(i, impl().world.colliders().size(), "collider");
     TriangleTotals result;
     if (impl().recorder.totals().empty()) return result;
-    // Sleepers' weight is lent to the totals: it comes out exactly as it went in.
+    // Adds the weights of sleeping particles to the totals for the time of this call. They are removed exactly.
     impl().add_weights_of_sleepers(1.0);
     const std::size_t first = impl().world.first_surface_of(i);
     for (std::size_t k = 0; k < impl().world.surface_count_of(i); ++k) {
-        // The parts of a shape are one.
+        // All parts of a shape share one entry.
         const std::size_t at = impl().world.name_of(static_cast<SurfaceId>(first + k)).triangle;
         result.hits.resize(at + 1);
         result.impulse.resize(at + 1);
@@ -165,13 +165,13 @@ const std::vector<std::string>& Simulation::warnings() const { return impl().war
 
 bool Simulation::has_spheres() const { return impl().has_spheres; }
 
-// An impulse too large for the totals is counted when the weight is added for good.
+// Impulses too large for the totals are counted when the weight is added permanently.
 void Simulation::Impl::add_weights_of_sleepers(double sign) {
     const double now = clock.time_at(recorder.statistics().steps);
     for (std::size_t i = 0; i < store.size(); ++i) (void)mover.add_weight(i, now, sign);
 }
 
-// A state that is not finite and will be frozen by the next step counts as frozen already.
+// A state that is not finite counts as frozen, because the next step will freeze it.
 bool Simulation::Impl::has_energy(std::size_t i) const {
     const Particles& p = particles();
     return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);

@@ -1,5 +1,5 @@
 /// \file
-/// The simulation: particles, forces, emitters and colliders, stepped in time.
+/// The simulation: particles, forces, emitters and colliders, advanced in time steps.
 #pragma once
 
 #include <cstdint>
@@ -36,312 +36,335 @@
 
 namespace ricochet {
 
-/// Everything a simulation is made from.
+/// Input of a simulation.
 struct SimulationSetup {
     SimulationOptions options;
     AccelerationSwitches acceleration;  ///< for tests and benchmarks
     std::vector<std::unique_ptr<Force>> forces;
-    std::vector<Material> materials;  ///< colliders refer to these by index; at least one when there are colliders
+    std::vector<Material> materials;  ///< colliders refer to these by index; at least one if there are colliders
     std::vector<ColliderDescription> colliders;
-    /// The frames that colliders stand in (ColliderDescription::frame); null where none does. Only the exact response
-    /// follows colliders that move.
+    /// Frames of the colliders (ColliderDescription::frame); null if no collider has one. Only the exact response
+    /// supports moving colliders.
     std::shared_ptr<const FrameTree> frames = {};
-    /// What the driven frames are: bodies that impulses of particles move; one for each.
+    /// Bodies of the driven frames, one each. Impulses of particles move them.
     std::vector<BodyDescription> bodies = {};
     std::vector<EmitterDescription> emitters;
-    std::vector<Particle> particles;       ///< present at time 0; ids are given by the simulation in this order
-    std::vector<Spring> springs;           ///< between them: ids are positions in `particles`
-    std::vector<SpringFace> spring_faces;  ///< cloth between springs of the list; shown, without a force of its own
-    /// Forces between particles; they add up. Particles that are born within a step feel them from the next one on.
+    std::vector<Particle> particles;  ///< present at time 0; the simulation assigns ids in this order
+    std::vector<Spring> springs;      ///< springs between particles: ids are indices into `particles`
+    /// Cloth between the springs above, for display. It exerts no force of its own.
+    std::vector<SpringFace> spring_faces;
+    /// Forces between particles; they add up. Particles born within a step feel them from the next step on.
     std::vector<ParticlesForceEntry> particles_forces = {};
-    /// An own method for all particles together, instead of options.integrator, which then says only how particles go
-    /// on after a bounce. Between a step's ends their path is the cubic Hermite polynomial.
+    /// Custom solver for all particles together. It replaces options.integrator, which then applies only after a
+    /// bounce. Within a step, paths are cubic Hermite polynomials between the positions and velocities at its ends.
     SystemSolver solver = {};
-    std::optional<Box3> bounds;                       ///< particles outside are retired
-    std::vector<AttributeDescription> attributes;     ///< what particles carry of the user's own, and for looks
-    std::optional<ReferenceCamera> reference_camera;  ///< of emission rates per screen area
-    std::optional<HeatSettings> heat = std::nullopt;  ///< what changes the attribute `temperature`; nothing: nothing
-    /// The processes that share the particles, each with the same setup; null: this one has all. See show_whole().
+    std::optional<Box3> bounds;                    ///< particles outside are removed
+    std::vector<AttributeDescription> attributes;  ///< user-defined attributes of particles, and attributes for display
+    std::optional<ReferenceCamera> reference_camera;  ///< reference for emission rates per screen area
+    /// Processes that change the attribute `temperature`; nothing: it is constant.
+    std::optional<HeatSettings> heat = std::nullopt;
+    /// Processes that share the particles, each with the same setup; null: a single process has all. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
 };
 
-/// Counters over the whole run so far. Every one is the same for any thread count.
+/// Counters over the whole run so far. Their values do not depend on the number of threads.
 struct SimulationStatistics {
     std::uint64_t steps = 0;
-    std::uint64_t particle_steps = 0;                ///< sum over steps of the particles alive, resting ones too
-    std::uint64_t emitted = 0;                       ///< particles ever created, explicit ones included
-    std::uint64_t expired = 0;                       ///< retired at the end of their lifetime
+    std::uint64_t particle_steps = 0;                ///< sum over steps of the particles alive, resting ones included
+    std::uint64_t emitted = 0;                       ///< all particles ever created, explicit ones included
+    std::uint64_t expired = 0;                       ///< removed at the end of their lifetime
     std::uint64_t absorbed = 0;                      ///< removed by absorbing surfaces
     std::uint64_t shattered = 0;                     ///< replaced by fragments at an impact
-    std::uint64_t children = 0;                      ///< of the emitted ones those born of particles
-    std::uint64_t births_refused_by_depth = 0;       ///< beyond max_depth
-    std::uint64_t births_refused_by_population = 0;  ///< beyond most_particles
+    std::uint64_t children = 0;                      ///< emitted particles that were spawned by particles
+    std::uint64_t births_refused_by_depth = 0;       ///< refused because they exceed max_depth
+    std::uint64_t births_refused_by_population = 0;  ///< refused because they exceed most_particles
     std::uint64_t births_refused_by_overlap = 0;     ///< spheres for which an emitter found no free position
-    std::uint64_t out_of_bounds = 0;                 ///< retired outside the bounds
-    std::uint64_t removed = 0;                       ///< by remove_particles()
+    std::uint64_t out_of_bounds = 0;                 ///< removed outside the bounds
+    std::uint64_t removed = 0;                       ///< removed by remove_particles()
     std::uint64_t contacts = 0;                      ///< impacts
-    std::uint64_t pair_impacts = 0;                  ///< impacts of two spheres on each other
-    double overlap_largest = 0.0;                    ///< of two spheres at a step's end, over the smaller radius
-    double overlap_verified = 0.0;                   ///< the same as options.verify finds it
-    std::uint64_t pair_violations = 0;               ///< what options.verify found wrong between spheres
-    std::uint64_t born_in_overlap = 0;               ///< spheres that stood in others at their birth
+    std::uint64_t pair_impacts = 0;                  ///< impacts between two spheres
+    double overlap_largest = 0.0;       ///< largest overlap of two spheres at a step's end, over the smaller radius
+    double overlap_verified = 0.0;      ///< largest overlap that options.verify has found, over the smaller radius
+    std::uint64_t pair_violations = 0;  ///< violations between spheres that options.verify has found
+    std::uint64_t born_in_overlap = 0;  ///< spheres that overlapped others at their birth
     std::uint32_t bounces_per_step_max = 0;
     std::uint64_t resting = 0;      ///< particles at rest after the last step
-    double unsimulated_time = 0.0;  ///< s, summed over particles, cut off by a budget
-    /// Particle-steps that spent their budget, of bounces or of sub-steps of dormand_prince.
+    double unsimulated_time = 0.0;  ///< in s, summed over particles; time lost because a budget was spent
+    /// Particle-steps that spent their budget of bounces, or of dormand_prince substeps.
     std::uint64_t budget_exhausted = 0;
-    std::uint64_t asleep = 0;              ///< of the resting ones those that cost nothing
-    std::uint64_t started_inside = 0;      ///< particles born on a surface or, as spheres, overlapping one
-    std::uint64_t started_in_overlap = 0;  ///< of them the spheres
-    std::uint64_t stayed = 0;             ///< impacts after which no certified position nearer to the surface was found
-    std::uint64_t squeezed = 0;           ///< particle-steps that ended without room between surfaces that close
-    std::uint64_t lost_impulses = 0;      ///< impulses too large for the per-triangle totals
-    std::uint64_t violations = 0;         ///< what options.verify found wrong with positions and ways
-    std::uint64_t energy_violations = 0;  ///< and with energies and rebounds
-    std::uint64_t trials = 0;             ///< states that a response tested for collision or penetration; 0 for exact
-    std::uint64_t penetrations = 0;       ///< particle-steps in which a particle was seen behind a surface
-    double penetration_sum = 0.0;         ///< m, sum of their depths, before anything put them right
-    double penetration_deepest = 0.0;     ///< m
-    std::uint64_t springs_broken = 0;     ///< stretched beyond their limit
-    std::uint64_t springs_lost = 0;       ///< removed because a particle at an end was gone
-    /// Steps whose implicit equations were not solved to the tolerance, or the contacts in which did not settle; and
-    /// those of coupled particles in which dormand_prince could not keep its tolerance.
+    std::uint64_t asleep = 0;              ///< resting particles that cost no time
+    std::uint64_t started_inside = 0;      ///< particles born on a surface or, for spheres, overlapping one
+    std::uint64_t started_in_overlap = 0;  ///< spheres among these
+    std::uint64_t stayed = 0;              ///< impacts without a certified position nearer to the surface
+    std::uint64_t squeezed = 0;            ///< particle-steps that ended pinched between approaching surfaces
+    std::uint64_t lost_impulses = 0;       ///< impulses too large for the per-triangle totals
+    std::uint64_t violations = 0;          ///< violations of positions and paths that options.verify has found
+    std::uint64_t energy_violations = 0;   ///< violations of energies and rebounds that options.verify has found
+    std::uint64_t trials = 0;              ///< states that a response tested for collision or penetration; 0 for exact
+    std::uint64_t penetrations = 0;        ///< particle-steps in which a particle was found behind a surface
+    double penetration_sum = 0.0;          ///< sum of penetration depths before their correction, in m
+    double penetration_deepest = 0.0;      ///< in m
+    std::uint64_t springs_broken = 0;      ///< stretched beyond their limit
+    std::uint64_t springs_lost = 0;        ///< removed because a particle at one end was gone
+    /// Steps whose implicit equations were not solved to the tolerance, or whose contacts did not settle. Also counts
+    /// steps of coupled particles in which dormand_prince could not keep its tolerance.
     std::uint64_t unsolved_steps = 0;
     std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond 1e75
-    /// Particle-steps in which dormand_prince could not keep its tolerance: its sub-steps could not be shorter.
+    /// Particle-steps in which dormand_prince could not keep its tolerance, because its substeps could not be shorter.
     std::uint64_t coarse_steps = 0;
-    std::uint64_t body_parts = 0;  ///< parts of steps, of scenes with bodies that impulses move; at least one a step
+    std::uint64_t body_parts = 0;  ///< substeps of scenes with dynamic bodies; at least one per step
 };
 
-/// Per-triangle totals of one mesh collider, since the start.
+/// Totals per triangle of one mesh collider, since the start.
 struct TriangleTotals {
     std::vector<std::uint64_t> hits;  ///< impacts per triangle of the collider's mesh
-    std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, N s
-    /// The part of `impulse` that no hit gave, N s: sliding, weight at rest, and spheres that are planned together.
+    std::vector<Vec3> impulse;        ///< sum of impulses that particles gave to the triangle, in N s
+    /// Part of `impulse` from lasting contacts instead of impacts, in N s: sliding, weight at rest, and time-stepped
+    /// contact islands.
     std::vector<Vec3> lasting_impulse = {};
 };
 
-/// What particles have done to one collider that moves, or whose material does, since the start.
+/// Totals of one collider with a moving frame or a moving surface, since the start.
 struct ColliderTotals {
     std::uint64_t hits = 0;  ///< impacts
-    Vec3 impulse;            ///< N s, given to it
-    Vec3 moment;             ///< N m s, given about the origin of its frame where that was, in world axes
-    double work = 0.0;       ///< J, done on it; below 0: it has driven them
+    Vec3 impulse;            ///< impulse on the collider, in N s
+    Vec3 moment;             ///< angular impulse on it about the moving origin of its frame, in world axes, in N m s
+    double work = 0.0;       ///< work done on it, in J; negative if it has driven the particles
 };
 
-/// How a body that impulses move stands and moves.
+/// State of a dynamic body.
 struct BodyState {
-    std::string frame;            ///< its name
-    Vec3 center;                  ///< of mass, m
-    Vec3 velocity;                ///< of that, m/s
-    Vec3 angular_velocity;        ///< rad/s
-    Vec3 angular_momentum;        ///< about the centre of mass, kg m^2/s
-    double mass = 0.0;            ///< kg
-    double coordinate = 0.0;      ///< of a joint: rad or m from where it started
-    double rate = 0.0;            ///< of that, per s
-    double kinetic_energy = 0.0;  ///< J
-    AffineMap world_from_frame;   ///< where its frame is, m, and how it is turned
+    std::string frame;            ///< name of its frame
+    Vec3 center;                  ///< centre of mass, in m
+    Vec3 velocity;                ///< of the centre of mass, in m/s
+    Vec3 angular_velocity;        ///< in rad/s
+    Vec3 angular_momentum;        ///< about the centre of mass, in kg m^2/s
+    double mass = 0.0;            ///< in kg
+    double coordinate = 0.0;      ///< of a joint, in rad or m from its start
+    double rate = 0.0;            ///< of the coordinate, in rad/s or m/s
+    double kinetic_energy = 0.0;  ///< in J
+    AffineMap world_from_frame;   ///< position (in m) and orientation of its frame
 };
 
 class CollisionWorld;
 
-/// What Simulation::show_whole() shows.
+/// Data that Simulation::show_whole() makes available. Each value includes those above it.
 enum class Shown {
     contacts,           ///< contact_records()
-    counts,             ///< those, statistics() and collider_totals()
-    particles,          ///< those, particles() and what is made of them
-    all,                ///< those, triangle_totals(), and what save() saves
-    all_but_particles,  ///< the same without any particle: what save_particles() saves beside it
+    counts,             ///< also statistics() and collider_totals()
+    particles,          ///< also particles() and all data derived from them
+    all,                ///< also triangle_totals(), and the state that save() saves
+    all_but_particles,  ///< like `all`, but without particles: the state that belongs to save_particles()
 };
 
-/// How evenly ranks that share a run are busy, by what their particles cost: counted, not measured.
+/// Load balance of ranks that share a run. It is computed from the counted costs of their particles, not from measured
+/// times.
 struct RankBalance {
     std::uint64_t moved = 0;   ///< particles that have changed ranks
-    double busiest_now = 1.0;  ///< work of the busiest rank over the mean, in the last interval between two looks
-    double busiest = 1.0;      ///< the same of all intervals since the run began or went on, work of each added up
+    double busiest_now = 1.0;  ///< work of the busiest rank over the mean, in the last balancing interval
+    /// Ratio for all intervals since the run began or was restored. The work of the intervals is added up.
+    double busiest = 1.0;
 };
 
-/// A particle that was born, by its id, and where it comes from.
+/// A particle that was born, by its id, and its origin.
 struct BirthRecord {
     std::uint64_t particle = 0;
     Origin origin{};
 };
 
-/// Is given the contact records of a step.
+/// Function that receives the contact records of a step.
 using ContactCallback = std::function<void(std::span<const ContactRecord>)>;
 
-/// A step was stopped by its caller, see Simulation::advance().
+/// Error of a step that its caller has stopped, see Simulation::advance().
 class StoppedError : public RunError {
 public:
     using RunError::RunError;
 };
 
-/// A running simulation. step() is deterministic: the same setup gives the same bits for any thread count. One that has
-/// been moved from can be assigned to and destroyed; everything else throws RunError.
+/// A running simulation. step() is deterministic: the same setup gives the same bits for any number of threads. A
+/// moved-from simulation can be assigned to and destroyed; all other calls throw RunError.
 class Simulation {
 public:
-    /// Builds the colliders. Throws InputError when the setup cannot work (degenerate placement, extent too large,
-    /// ...).
+    /// Builds the colliders. Throws InputError if the setup is invalid (degenerate placement, extent too large, ...).
     explicit Simulation(SimulationSetup setup);
     ~Simulation();
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
 
-    /// Advances by one time step (the last one may be shorter). No effect when finished(). Throws DivergedError when
-    /// springs gain energy without bound, or forces bring a particle beyond the speed of light: the integrator cannot
-    /// follow them with this step; RunError for a force, a flow that carries particles or a solver that gives numbers
-    /// that are not finite, with its name and the particle's id, the same for any thread count; and what forces throw.
-    /// Particles are inside the step then: calls throw RunError.
+    /// Advances by one time step; the last one may be shorter. Has no effect when finished().
+    ///
+    /// Throws DivergedError if springs gain energy without bound, or if forces accelerate a particle beyond the speed
+    /// of light: the integrator cannot follow them with this step. Throws RunError if a force, a flow that carries
+    /// particles or a solver returns numbers that are not finite. The message contains its name and the particle's id,
+    /// and does not depend on the number of threads. Also throws the exceptions of forces. After an error, particles
+    /// are in the middle of a step, and further calls throw RunError.
     void step();
-    /// The bits of `count` calls of step(), or of as many as it takes until finished() or until go_on, which is asked
-    /// after each step, says no; faster, because free flights are integrated at once. While go_on is asked, places
-    /// and velocities of particles may still be those of an earlier step, and what is made of them (energies, hash,
-    /// frames, save()); everything else is up to date. Throws like step() and what go_on throws.
-    /// goes_on_within: asked within steps too, from any thread and by several at a time; where it says no, the step is
-    /// given up and StoppedError is thrown. The simulation is then as it was after the last whole step, to the bit, and
-    /// can go on; it has no contact_records(), pair_records() and birth_records() where that step was not made again
-    /// (states are kept now and then, and the steps since the last one are made again, for half a second at most).
-    /// Nothing is given up, and the step goes on to its end, where that would take longer, where the simulation has
-    /// been changed since a state was kept, where a state takes more than 2^28 bytes, and where ranks share the run.
+    /// Advances by `count` steps, or fewer if finished() is reached or go_on returns false. The result has the same
+    /// bits as calls of step(). It is faster, because all steps of a free flight are integrated together.
+    ///
+    /// `go_on` is called after each step. During this call, positions and velocities of particles may still belong to
+    /// an earlier step. So may data derived from them (energies, hash, frames, save()). All other data are up to date.
+    /// Throws like step(), and the exceptions of go_on.
+    ///
+    /// `goes_on_within` is also called within steps, from any thread and from several at a time. If it returns false,
+    /// the step is abandoned and StoppedError is thrown. The simulation is then in the state after the last whole step,
+    /// to the bit, and can continue. For this, states are saved from time to time, and the steps since the last saved
+    /// state are repeated. If the last step was not repeated, contact_records(), pair_records() and birth_records() are
+    /// empty.
+    ///
+    /// In these cases a step is not abandoned but completed:
+    /// - Repeating the steps would take more than half a second.
+    /// - The simulation has been changed since the last saved state.
+    /// - A state takes more than 2^24 bytes.
+    /// - Ranks share the run.
     void advance(std::uint64_t count, const std::function<bool()>& go_on = {},
                  const std::function<bool()>& goes_on_within = {});
     [[nodiscard]] bool finished() const;
-    [[nodiscard]] double time() const;               ///< s
-    [[nodiscard]] std::uint64_t step_index() const;  ///< steps done
-    [[nodiscard]] std::uint64_t step_count() const;  ///< steps in all
+    [[nodiscard]] double time() const;               ///< in s
+    [[nodiscard]] std::uint64_t step_index() const;  ///< completed steps
+    [[nodiscard]] std::uint64_t step_count() const;  ///< all steps of the run
 
-    /// Writes everything that the steps so far have left behind, so that another simulation of the same setup can go on
-    /// from here to the same bits. The bytes are those of this version of the library and this kind of machine. Throws
-    /// what the sink throws, and RunError after a step that has ended with an error.
+    /// Writes the complete state after the last step. Another simulation of the same setup can continue from it with
+    /// the same bits. The format is specific to this version of the library and this kind of machine. Throws the
+    /// exceptions of the sink, and RunError after a step that has ended with an error.
     void save(const ByteSink& sink) const;
-    /// Takes such a state over, in a simulation made from the same setup (threads, options.duration and options.verify
-    /// may differ); one with emitters must not have made a step. Throws InputError when the bytes are damaged or not
-    /// such a state, or belong to other colliders, materials, options or bounds, or to other numbers of emitters,
-    /// springs or attributes (forces and the settings of emitters and springs are not compared); the simulation cannot
-    /// be used then. What options.verify found before it is not known, and particles are
-    /// watched from where they are.
+    /// Restores a saved state in a simulation made from the same setup. Threads, options.duration and options.verify
+    /// may differ. A simulation with emitters must not have made a step.
+    ///
+    /// Throws InputError if the bytes are damaged or no saved state. Also throws it if they belong to other colliders,
+    /// materials, options or bounds, or to other numbers of emitters, springs or attributes. Forces and the settings of
+    /// emitters and springs are not compared. The simulation cannot be used after an error.
+    ///
+    /// Earlier violations found by options.verify are unknown after this call. Particles are verified from their
+    /// restored positions on.
     void restore(const ByteSource& source);
 
-    /// Where ranks share the run (SimulationSetup::ranks), each has particles of its own, and what they have done; the
-    /// bits are those of one process. Particles change ranks where one of those is behind, so that which a rank has is
-    /// not known beforehand. The simulations of all ranks make the same calls of step(), advance(), restore() and of
-    /// this: while `show` runs, which it does on the first rank only, the simulation there has what all of them
-    /// have together. A state that it saves then can be restored by any number of ranks. Without ranks it just calls
-    /// `show`. Throws what that throws.
+    /// Calls `show` on the first rank, while the simulation there has the data of all ranks.
+    ///
+    /// If ranks share the run (SimulationSetup::ranks), each rank has its own particles and their records. The results
+    /// have the same bits as a run in one process. Particles move to other ranks to balance the load, so their rank
+    /// cannot be predicted. The simulations of all ranks must make the same calls of step(), advance(), restore() and
+    /// this function. A state that `show` saves can be restored by any number of ranks. Without ranks, this function
+    /// only calls `show`. Throws the exceptions of `show`.
     void show_whole(Shown what, const std::function<void()>& show);
-    /// Saves the particles that this rank has (all, without ranks), for restore_particles(): a part of the state whose
-    /// rest is what save() saves while show_whole() shows all_but_particles. Throws like save().
+    /// Saves the particles of this rank (all particles without ranks) for restore_particles(). The rest of the state is
+    /// saved by save() while show_whole() shows all_but_particles. Throws like save().
     void save_particles(const ByteSink& sink) const;
-    /// Takes such a part in, after restore() of the rest: to be called once for each part, by every rank, which keeps
-    /// what is to live there. Any number of ranks, of whatever number the parts are from. Throws like restore().
+    /// Restores particles from one such part, after restore() of the rest. Every rank must call it once for each part;
+    /// it keeps the particles that belong to it. The number of ranks may differ from that of the saved run. Throws like
+    /// restore().
     void restore_particles(const ByteSource& source);
-    /// As of the last step; the same on all ranks. Without them nothing is counted.
+    /// Returns the load balance after the last step; the same on all ranks. Without ranks nothing is counted.
     [[nodiscard]] RankBalance rank_balance() const;
-    /// Where ranks share the run, and have all made their simulation: those of one machine hold its meshes once from
-    /// then on, where the system allows it (Ranks::have_in_common(), which may throw). Without ranks nothing happens.
+    /// Shares meshes between the ranks of one machine, if the system allows it (Ranks::have_in_common(), which may
+    /// throw). All ranks must have made their simulation. Has no effect without ranks.
     void have_meshes_in_common();
-    /// Bytes of meshes that this rank has in common with the others of its machine.
+    /// Returns the bytes of meshes that this rank shares with the others of its machine.
     [[nodiscard]] std::uint64_t common_memory_bytes() const;
 
-    // Changes between two steps, also within the function that advance() asks and within the callback of on_contact().
-    // The same changes after the same steps give the same bits for any thread count. Not inside a step that has ended
-    // with an error: RunError. A saved state holds particles that were added and does not hold those that were removed.
+    // Changes between two steps. They are also allowed in `go_on` of advance() and in the callback of on_contact(). The
+    // same changes after the same steps give the same bits for any number of threads. After a step that has ended with
+    // an error they throw RunError. A saved state contains added particles and does not contain removed ones.
 
-    /// Takes in a particle as it is now: it is born at time(), whatever its birth_time and origin say. Returns its id.
-    /// Throws InputError that names the value that cannot be, and where there is no room below
+    /// Adds a particle in its present state and returns its id. It is born at time(); its birth_time and origin are
+    /// ignored. Throws InputError with the name of an invalid value, and if there would be more than
     /// options().most_particles.
     std::uint64_t add_particle(Particle particle);
-    /// All of them, or none where one cannot be. Their ids, in their order.
+    /// Adds all particles, or none if one is invalid. Returns their ids, in their order.
     std::vector<std::uint64_t> add_particles(std::span<const Particle> particles);
-    /// False when no living particle has that id.
+    /// Removes a particle. Returns false if no living particle has that id.
     bool remove_particle(std::uint64_t id);
-    /// Returns how many of the ids were those of living particles.
+    /// Removes particles. Returns the number of ids that belonged to living particles.
     std::size_t remove_particles(std::span<const std::uint64_t> ids);
-    /// Gives out the arrays of the particles, with the memory that particles() has shown, and goes on with copies of
-    /// them, to the same bits: for callers that have lent out what lies there. Not while a
-    /// step runs.
+    /// Releases the arrays of the particles, with the memory that particles() has returned, for callers that have lent
+    /// it out. The simulation continues with copies, to the same bits. Must not be called during a step.
     [[nodiscard]] Particles release_particles();
-    /// Replaces all forces from the next step on; wakes all sleeping particles. Forces are no part of a saved state:
-    /// to be set again after restore(). Throws InputError for a null pointer, and for forces where a flow carries the
-    /// particles.
+    /// Replaces all forces from the next step on and wakes all sleeping particles. Forces are not part of a saved state
+    /// and must be set again after restore(). Throws InputError for a null pointer, and for any forces if a flow
+    /// carries the particles.
     void set_forces(std::vector<std::unique_ptr<Force>> forces);
-    /// Calls `callback` after every step that has impacts, once, with the contact records of the step: see
-    /// contact_records(), which holds them too. It runs on the thread that called step(); what it throws comes out of
-    /// step(), which is done by then. It must not call step() or advance(). An empty function ends it.
+    /// Sets a function that is called once after every step with impacts, with the contact records of the step.
+    /// contact_records() returns them too. The function runs on the thread that called step(). It must not call step()
+    /// or advance(). Its exceptions leave step(), which is complete by then. An empty function ends the calls.
     void on_contact(ContactCallback callback);
 
-    /// What the colliders can be asked without particles. Not while a step runs.
+    /// Returns the queries of colliders without particles. Must not be used during a step.
     [[nodiscard]] const CollisionQueries& collisions() const;
 
     [[nodiscard]] const SimulationOptions& options() const;
     [[nodiscard]] const Particles& particles() const;
-    /// The particles' attributes as they are shown: with the factors of their emitters' curves over life.
+    /// Returns the particles' attributes for display: multiplied by the factors of their emitters' curves over
+    /// lifetime.
     [[nodiscard]] AttributeTable shown_attributes() const;
-    /// Of each particle the id of the parent with which it goes (CloudRule), -1 where it flies by itself; nothing in
-    /// setups without clouds.
+    /// Returns, for each particle, the id of the parent that it follows (CloudRule), or -1 if it follows none. Returns
+    /// nothing for setups without clouds.
     [[nodiscard]] std::optional<std::vector<std::int64_t>> cloud_parents() const;
-    /// The springs of the setup, bound to the order of particles().
+    /// Returns the springs of the setup, bound to the order of particles().
     [[nodiscard]] const SpringNetwork& springs() const;
-    /// The cloth of the setup, torn parts included.
+    /// Returns the cloth of the setup, torn parts included.
     [[nodiscard]] const std::vector<SpringFace>& spring_faces() const;
     [[nodiscard]] const SimulationStatistics& statistics() const;
     [[nodiscard]] const std::vector<ColliderDescription>& colliders() const;
-    /// Of the setup, in its order.
+    /// Returns the materials of the setup, in its order.
     [[nodiscard]] std::span<const Material> materials() const;
-    /// Mesh of collider i (placement baked in), in the world or in the frame that it stands in; nothing for planes. One
-    /// that deforms is as it is at time().
-    /// Balls and cylinders, which have no triangles, are shown by a fine mesh.
+    /// Returns the mesh of collider i with its placement applied, in the world or in its frame. Returns nothing for
+    /// planes. A deforming mesh is in its shape at time(). Balls and cylinders, which have no triangles, are
+    /// represented by a fine mesh.
     [[nodiscard]] std::optional<TriangleMesh> collider_mesh(std::size_t i) const;
-    /// Where the frame of collider i is at a time, s, and how it moves: the world itself for those at rest.
+    /// Returns the position and motion of collider i's frame at a time, in s; the world itself for colliders at rest.
     [[nodiscard]] MovingPose collider_pose(std::size_t i, double time) const;
-    /// Totals of collider i, one entry a triangle (one in all for a plane); empty without options.triangle_totals.
+    /// Returns the totals of collider i, with one entry per triangle (a single one for a plane). They are empty without
+    /// options.triangle_totals.
     [[nodiscard]] TriangleTotals triangle_totals(std::size_t i) const;
-    /// What particles have done to the colliders, in their order; all zero for those that do not move and whose
-    /// material does not either. Empty where there are no others.
+    /// Returns the totals of all colliders, in their order. They are zero for colliders without a moving frame or
+    /// surface. The list is empty if all colliders are of that kind.
     [[nodiscard]] const std::vector<ColliderTotals>& collider_totals() const;
-    /// Of the setup, in its order.
+    /// Returns the states of the setup's bodies, in its order.
     [[nodiscard]] std::vector<BodyState> bodies() const;
-    /// Triangles of all mesh colliders together, degenerate ones included.
+    /// Returns the number of triangles of all mesh colliders, degenerate ones included.
     [[nodiscard]] std::size_t triangle_count() const;
-    /// Triangles without area, which take no part in collisions.
+    /// Returns the number of triangles without area, which collisions ignore.
     [[nodiscard]] std::size_t degenerate_triangles() const;
 
-    /// Every reflection of the last step in the order of (time, particle id, order of events); empty without
-    /// options.record_contacts and on_contact(). An impact on one surface is one record; one in a corner has a record
-    /// for every reflection, all of the same time. Surfaces are named by surface_name().
+    /// Returns every reflection of the last step in the order of (time, particle id, order of events). The list is
+    /// empty without options.record_contacts and on_contact(). An impact on one surface gives one record. An impact in
+    /// a corner gives one record per reflection, all with the same time. surface_name() names their surfaces.
     [[nodiscard]] const std::vector<ContactRecord>& contact_records() const;
-    /// Every impact of two spheres on each other in the last step, where spheres meet, in the order of (time, first);
-    /// those of one island that is worked off impact by impact. Spheres that are planned together have none.
+    /// Returns every impact between two spheres in the last step, in the order of (time, first). Only islands that are
+    /// resolved impact by impact have such records. Time-stepped contact islands have none.
     [[nodiscard]] const std::vector<PairImpactRecord>& pair_records() const;
-    /// True where particles spawn others.
+    /// Returns true if particles can spawn others.
     [[nodiscard]] bool spawns_children() const;
-    /// Where particles spawn others: those that were born in the last step, also where they are gone by its end, in the
-    /// order of their ids. Ids depend on the time step then; Origin::lineage does not.
+    /// Returns the particles that were born in the last step, in the order of their ids, if particles can spawn others.
+    /// Particles removed by its end are included. Their ids depend on the time step; Origin::lineage does not.
     [[nodiscard]] const std::vector<BirthRecord>& birth_records() const;
-    /// Where on its surface a record's contact is: the surface's point nearest to the particle's centre.
+    /// Returns the contact of a record on its surface: the surface point nearest to the particle's centre.
     [[nodiscard]] SurfacePosition contact_point(const ContactRecord& record) const;
     [[nodiscard]] SurfaceName surface_name(SurfaceId surface) const;
 
-    /// True when a particle has a size, or an emitter may make one that has: known from the start, the same all run
-    /// long.
+    /// Returns true if a particle has a size, or if an emitter may create one with a size. The value is known from the
+    /// start and constant.
     [[nodiscard]] bool has_spheres() const;
 
-    /// What the settings promise badly, one sentence each: a penalty sub-step beyond the stability bound.
+    /// Returns warnings about settings, one sentence each, for example about a penalty substep beyond the stability
+    /// bound.
     [[nodiscard]] const std::vector<std::string>& warnings() const;
 
-    /// What options.verify found wrong, in the order of steps and particles; the first kMostViolations of them. All are
-    /// counted in statistics().violations, energy_violations and pair_violations.
+    /// Returns the first kMostViolations violations that options.verify has found, in the order of steps and particles.
+    /// All are counted in statistics().violations, energy_violations and pair_violations.
     [[nodiscard]] const std::vector<Violation>& violations() const;
     static constexpr std::size_t kMostViolations = 1000;
-    /// All that options.verify found wrong in the last step, in the same order.
+    /// Returns all violations that options.verify has found in the last step, in the same order.
     [[nodiscard]] const std::vector<Violation>& last_violations() const;
-    /// True when the response knows particle i (of particles()) to be behind a surface, and is about to push it back.
+    /// Returns true if the response knows that particle i (of particles()) is behind a surface and will push it back.
     [[nodiscard]] bool is_penetrating(std::size_t i) const;
 
-    /// Energies leave frozen particles out: what is known of them is where they were stopped, not how they would move.
-    [[nodiscard]] double kinetic_energy() const;                   ///< J
-    [[nodiscard]] std::optional<double> potential_energy() const;  ///< J; nothing where a force has no potential
-    /// A hash (FNV-1a) over id, position and velocity in id order: the same for the same bits.
+    /// Energies exclude frozen particles. Only the position at which they were stopped is known, not how they would
+    /// move.
+    [[nodiscard]] double kinetic_energy() const;                   ///< in J
+    [[nodiscard]] std::optional<double> potential_energy() const;  ///< in J; nothing if a force has no potential
+    /// Returns a hash (FNV-1a) over id, position and velocity of the particles in id order, and over the motion of the
+    /// bodies. Equal bits give equal hashes.
     [[nodiscard]] std::uint64_t state_hash() const;
 
 private:

@@ -272,7 +272,7 @@ TEST_F(CheckWarnings, TellsOfStepsInWhichAllFallsThroughTheWholeScene) {
                emitter(R"("type": "point", "center": [0, 0, )" + height + "]");
     };
     const std::string text = warnings(drop("0.00048") + gravity());
-    EXPECT_EQ(text.rfind("simulation.time_step: in one step of 0.01 s what falls from rest falls 0.000491 m", 0), 0U)
+    EXPECT_EQ(text.rfind("simulation.time_step: in one step of 0.01 s, a free fall from rest covers 0.000491 m", 0), 0U)
         << text;
     EXPECT_EQ(warnings(drop("0.0005") + gravity()), "");
     EXPECT_EQ(warnings(drop("0.00048")), "");

@@ -125,7 +125,7 @@ TEST(ExportCsv, TotalsOlderThanTheLastFrameAreTold) {
     const ProgramResult picture =
         run_ricochet({"render", folder.path("run").string(), "--output", folder.path("a.png").string(), "--size",
                       "32x24", "--collider-color", "hits"});
-    EXPECT_NE(picture.output.find("the colliders' colours show it up to 0 s"), std::string::npos) << picture.output;
+    EXPECT_NE(picture.output.find("the colliders' colours end at 0 s"), std::string::npos) << picture.output;
 }
 
 TEST(ExportCsv, ParticlesReadBackToTheLastBit) {

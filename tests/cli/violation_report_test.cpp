@@ -21,12 +21,12 @@ TEST(ViolationReport, NamesParticlePositionTimeColliderAndTriangle) {
         (std::vector<std::string>{
             "leak: particle 7 at (1, 0.10000000000000001, -2) m, time 0.25 s: a segment crosses collider \"tube\", "
             "triangle 99",
-            "leak: particle 8 at (0, 0, 0) m, time 1 s: is on another side than at birth of collider \"floor\"",
+            "leak: particle 8 at (0, 0, 0) m, time 1 s: is on a different side than at birth of collider \"floor\"",
             "leak: particle 9 at (0, 0, 0) m, time 1 s: overlaps collider \"tube\", triangle 3",
             "leak: particle 10 at (0, 0, 0) m, time 1 s: its segments do not join",
             "energy: particle 11 at (0, 0, 0) m, time 1 s: has gained energy from surfaces",
-            "spheres: particle 12 at (0, 0, 0) m, time 1 s: stands in another sphere",
-            "spheres: particle 13 at (0, 0, 0) m, time 1 s: its impact on another sphere does not add up",
+            "spheres: particle 12 at (0, 0, 0) m, time 1 s: overlaps another sphere",
+            "spheres: particle 13 at (0, 0, 0) m, time 1 s: its impact on another sphere is inconsistent",
             "energy: particle 14 at (0, 0, 0) m, time 1 s: an impact has another rebound than the surfaces that it "
             "has hit"}));
 }

@@ -37,7 +37,7 @@ private:
 TEST(MemoryLimit, WithoutGroupsIsWhatTheMachineHasFreeWithItsSwap) {
     const FakeKernel kernel;
     EXPECT_EQ(kernel.limit().bytes, 4'500'000.0 * 1024.0);
-    EXPECT_EQ(kernel.limit().source, "what the machine has free");
+    EXPECT_EQ(kernel.limit().source, "the free memory of the machine");
 }
 
 TEST(MemoryLimit, WithoutAFileAboutMemoryIsThatOfTheMachine) {
@@ -89,7 +89,7 @@ TEST(MemoryLimit, IsWhatTheLimitsOfTheProcessLeave) {
     const MemoryLimit limit = memory_limit();
     EXPECT_LE(limit.bytes, 301e6);  // pages that are given back since the ceiling was set
     EXPECT_GT(limit.bytes, 200e6);
-    EXPECT_EQ(limit.source, "what `ulimit -d` leaves");
+    EXPECT_EQ(limit.source, "the rest of `ulimit -d`");
     EXPECT_NO_THROW(require_memory(100e6, "a small thing"));
     try {
         require_memory(5e9, "a large thing");

@@ -77,8 +77,8 @@ TEST(BodyScene, SaysWhatCannotBeABody) {
         (Lines{"frames.wheel.motions: a body moves by what acts on it, in the world; expected no such key"}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1], "inertia_products": [2, 0, 0])")),
-        (Lines{"frames.wheel.body: body 'wheel': the inertia is that of no body with a volume (moments above 0, none "
-               "above the sum of the others, products that go with them)"}));
+        (Lines{"frames.wheel.body: body 'wheel': the inertia is impossible for a body with a volume (moments above "
+               "0, none above the sum of the others, consistent products)"}));
 }
 
 TEST(BodyScene, RefusesAMotorThatHasNoForceAndNamesOnlyTheValueThatIsWrong) {

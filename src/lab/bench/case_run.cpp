@@ -58,7 +58,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 
-// Edge length that build_near starts from, m: coarse for every ground but the terrain, where it is coarser still.
+// Edge lengths from which build_near starts, in m. They are coarse for every ground; the terrain needs an even coarser
+// one.
 constexpr double kCoarseEdge = 0.25;
 constexpr double kCoarseTerrainEdge = 15.0;
 
@@ -70,7 +71,7 @@ TriangleMesh make_rough_bowl(double edge) {
     return mesh;
 }
 
-// Open at the top, its floor in z = 0.
+// Creates a bin that is open at the top, with its floor in z = 0.
 TriangleMesh make_bin(double edge) {
     constexpr double kWalls = 0.8;
     TriangleMesh mesh = meshes::make_box({.length = 0.2, .width = 0.2, .height = kWalls}, edge);
@@ -96,7 +97,7 @@ TriangleMesh make_ground(Ground ground, double edge) {
         case Ground::bin:
             return make_bin(edge);
         case Ground::rocks:
-            break;  // many, each by itself
+            break;  // make_rocks() creates them
     }
     throw InputError("a benchmark case names a ground that does not exist");
 }
@@ -104,13 +105,13 @@ TriangleMesh make_ground(Ground ground, double edge) {
 // Particles per unit of parallel work.
 constexpr std::size_t kBlock = 4096;
 
-// The radii's random numbers have a stream of their own: points and spheres start at the same positions where these
+// Random numbers of the radii have a separate stream. Points and spheres then start at the same positions if these
 // suit.
 constexpr std::uint32_t kPlaceStream = 0;
 constexpr std::uint32_t kRadiusStream = 1;
 
 double mass_of(const Case& c, double radius) {
-    constexpr double kUnitSphere = 4.18879020478639098;  // m^3
+    constexpr double kUnitSphere = 4.18879020478639098;  // in m^3
     return c.density * kUnitSphere * radius * radius * radius;
 }
 
@@ -120,7 +121,8 @@ double radius_of(const Case& c, std::uint64_t index) {
     return c.least_radius * portable_pow(c.largest_radius / c.least_radius, random.uniform());
 }
 
-// Inside a closed ground a sphere keeps clear of it wherever it stands beside its place.
+// Returns the lattice positions of a case. Inside a closed ground, a sphere must stay clear of the ground at every
+// allowed offset from its lattice position.
 std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
     std::vector<Vec3> places;
     const Vec3 size = c.box.size();
@@ -131,7 +133,7 @@ std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
         const Vec3 place = c.box.lower + c.pitch * step;
         if (insides == nullptr || insides->contains_ball(place, 0.5 * c.pitch)) places.push_back(place);
     }
-    if (places.size() < c.particles) throw InputError("a benchmark case has more particles than its lattice has room");
+    if (places.size() < c.particles) throw InputError("a benchmark case has more particles than lattice positions");
     return places;
 }
 
@@ -222,11 +224,11 @@ void return_freed_memory() { (void)::malloc_trim(0); }
 MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                          const std::vector<Particle>& particles) {
     const auto held = [&](const std::vector<Particle>& who) { return held_by_simulation(make_setup(c, mesh), who); };
-    (void)held({});  // what the first simulation of a process brings for good
+    (void)held({});  // one-time allocations of the first simulation of a process
     const double mesh_bytes =
         static_cast<double>(sizeof(Vec3) * mesh->vertices.capacity() + sizeof(Triangle) * mesh->triangles.capacity());
     MemoryUse use;
-    // Counted, not asked of the allocator: Embree maps large blocks past it.
+    // Counted instead of measured by the allocator, because Embree maps large blocks by itself.
     std::vector<ColliderDescription> colliders = colliders_of(c, mesh);
     for (ColliderDescription& collider : colliders) {
         collider.frame.clear();
@@ -250,7 +252,7 @@ std::vector<Flight> flights_of(const Particles& particles) {
     return flights;
 }
 
-/// True before the steps whose segments the references get.
+/// Returns true before the steps whose segments the references get.
 bool is_snapshot(std::uint64_t step, const Case& c) {
     const std::uint64_t snapshots = std::clamp<std::uint64_t>(kReferenceFlights / c.particles, 1, c.steps);
     return step == 0 || step * snapshots / c.steps != (step - 1) * snapshots / c.steps;
@@ -302,7 +304,7 @@ bool CaseRun::prepare(const Announce& announce) {
     if (!scout(announce, states)) return false;
     if (!announce("references", 0)) return false;
     reference_.emplace(*mesh_, states, NativeRays::BounceRules{case_.time_step, case_.restitution});
-    // Other responses let particles into the wall, and the references would begin there.
+    // Other responses let particles enter the wall, and the references would start there.
     const std::optional<Vec3> heart = heart_of(case_.ground);
     if (heart && case_.response == ResponseKind::exact) reference_->count_leaks(*mesh_, *heart);
     if (case_.moves == Moves::nothing) return true;
@@ -335,7 +337,7 @@ bool CaseRun::time_simulation(CaseTimes& times, const Announce& announce) {
         offset += bytes.size();
     });
     if (!announce("simulation", 1)) return false;
-    if (case_.warm_up > 0) simulation.step();  // a simulation just restored searches for every particle
+    if (case_.warm_up > 0) simulation.step();  // a restored simulation first queries every particle
     bool goes_on = true;
     const double seconds = time_of([&] {
         simulation.advance(case_.steps, [&] {

@@ -1,5 +1,5 @@
 /// \file
-/// A case made ready: its mesh, its particles, its simulation, run to where its measured steps begin.
+/// A benchmark case ready to run: its mesh, its particles, and its simulation at the start of the measured steps.
 #pragma once
 
 #include <cstddef>
@@ -22,32 +22,34 @@
 
 namespace ricochet::bench {
 
-// From a case to its mesh, its particles and its simulation.
+// Creation of a case's mesh, particles and simulation.
 
-/// A point that sees every point inside the ground in a straight line; nothing where the ground has no inside.
+/// Returns a point from which every point inside the ground is visible in a straight line; nothing if the ground has no
+/// inside.
 [[nodiscard]] std::optional<Vec3> heart_of(Ground ground);
 
-/// The case's mesh, with about as many triangles as it wants.
+/// Creates the case's mesh, with about as many triangles as the case requests.
 [[nodiscard]] std::shared_ptr<const TriangleMesh> make_mesh(const Case& c);
 
-/// The case's particles on its mesh, those inside clear of it by their radius; the same every time, whatever the
-/// machine and its threads.
+/// Creates the case's particles on its mesh. Particles inside keep a distance of at least their radius from it. The
+/// result does not depend on the machine or its threads.
 [[nodiscard]] std::vector<Particle> make_particles(const Case& c, const TriangleMesh& mesh);
 
-/// Everything for a simulation but the particles: the case's response, ballistic steps, as many as the case has.
+/// Creates a setup without particles: the case's response, ballistic steps, and the case's number of steps.
 [[nodiscard]] SimulationSetup make_setup(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh);
 
-// Which points are inside a closed mesh that has a heart: a point that sees its whole inside in straight lines.
+// Inside tests for a closed mesh that has a heart: a point that sees its whole inside in straight lines.
 
 /// The inside of one mesh. Safe from any number of threads.
 class Insides {
 public:
-    /// The mesh must be closed, star-shaped about the heart, and outlive this.
+    /// The mesh must be closed and star-shaped about the heart. It must outlive this object.
     Insides(const TriangleMesh& mesh, const Vec3& heart);
 
-    /// Exact: true when the straight line from the heart to p hits no triangle.
+    /// Returns true if the straight line from the heart to p hits no triangle. The decision is exact.
     [[nodiscard]] bool contains(const Vec3& p) const;
-    /// The same for a ball's middle, which must be at least the radius (m, >= 0) away from every triangle, to rounding.
+    /// Returns true if a ball's centre is inside and at least the radius (in m, >= 0) away from every triangle, to
+    /// rounding.
     [[nodiscard]] bool contains_ball(const Vec3& middle, double radius) const;
 
 private:
@@ -56,62 +58,65 @@ private:
     TriangleBvh bvh_;
 };
 
-/// Bytes that the process has allocated and not freed; 0 where the allocator does not tell.
+/// Returns the bytes that the process has allocated and not freed; 0 if the allocator does not report them.
 [[nodiscard]] std::uint64_t allocated_bytes();
 
-/// Hands back to the system what has been freed, so that one case's memory is not there twice in the next.
+/// Returns freed memory to the system, so that memory of one case is not counted again in the next.
 void return_freed_memory();
 
-/// What a case's simulation holds after a step.
+/// Memory of a case's simulation after a step.
 struct MemoryUse {
-    /// With what the step itself keeps for the next one; of the search structures for spheres only what the ray
-    /// library does not map past the allocator.
+    /// Includes data that the step keeps for the next one. Memory that Embree maps by itself for the search structures
+    /// of spheres is not included.
     double bytes_per_particle = 0.0;
-    double bytes_per_triangle = 0.0;  ///< with the mesh and its search structures, without totals per triangle
+    double bytes_per_triangle = 0.0;  ///< includes the mesh and its search structures, without totals per triangle
 };
 
-/// Builds the case's simulation with and without its particles and counts what it has allocated.
+/// Builds the case's simulation with and without its particles and measures its allocations.
 [[nodiscard]] MemoryUse measure_memory(const Case& c, const std::shared_ptr<const TriangleMesh>& mesh,
                                        const std::vector<Particle>& particles);
 
-// One case, brought to where its measured steps begin, to be timed as often as wanted.
+// One case, advanced to the start of its measured steps, which can be timed repeatedly.
 
-/// Times of the measured steps and of the references, s, one entry a repeat.
+/// Times of the measured steps and of the references, in s, one entry per repeat.
 struct CaseTimes {
     std::vector<double> simulation;
     std::vector<double> raw;
     std::vector<double> sorted;
     std::vector<double> bounces;
-    std::vector<double> naive;  ///< of the measured steps in the usual way; empty where nothing moves
+    std::vector<double> naive;  ///< of the measured steps with NaiveMotion; empty if nothing moves
 };
 
-/// Told before every piece of work; step counts from 1, 0 where the work has no steps. False ends the measurement.
+/// Function called before every piece of work. `step` counts from 1; it is 0 if the work has no steps. If it returns
+/// false, the measurement ends.
 using Announce = std::function<bool(std::string_view doing, std::uint64_t step)>;
 
-/// The references get the states of evenly spaced steps: as many as give about so many flights, at least one. Fewer
-/// would make the references of small cases too short to be timed, more would not fit into memory for large ones.
+/// Approximate number of flights for the references. They get the states of as many evenly spaced steps as this takes,
+/// at least one. Fewer: the references of small cases would be too short to be timed. More: the states of large cases
+/// would not fit into memory.
 inline constexpr std::uint64_t kReferenceFlights = 4'000'000;
 
-/// What the measured steps do: the same every time.
+/// Results of the measured steps. They are the same in every repeat.
 struct Course {
     std::uint64_t particle_steps = 0;
     std::uint64_t contacts = 0;
-    std::uint64_t pair_impacts = 0;  ///< of spheres on each other that are worked off one after the other
+    std::uint64_t pair_impacts = 0;  ///< between spheres, resolved sequentially
     double largest_overlap = 0.0;    ///< of two spheres, over the smaller radius, from the start on
     std::uint64_t state_hash = 0;
 };
 
-/// A case and everything that timing it needs.
+/// A case with all data for its timing.
 class CaseRun {
 public:
-    /// Makes the particles.
+    /// Creates the particles.
     CaseRun(const Case& c, std::shared_ptr<const TriangleMesh> mesh);
 
-    /// Measures memory, goes through all steps once and prepares the references. False when told to end.
+    /// Measures memory, runs all steps once and prepares the references. Returns false if `announce` ends it.
     [[nodiscard]] bool prepare(const Announce& announce);
 
-    /// Times the measured steps and then each reference, with the threads that there are. False when told to end; the
-    /// times are of no use then. Throws RunError when the steps end in another state than in prepare().
+    /// Times the measured steps and then each reference, with the present number of threads. Returns false if
+    /// `announce` ends it; the times are then useless. Throws RunError if the steps end in another state than in
+    /// prepare().
     [[nodiscard]] bool time(CaseTimes& times, const Announce& announce);
 
     [[nodiscard]] const Case& description() const { return case_; }
@@ -119,9 +124,10 @@ public:
     [[nodiscard]] std::size_t triangles() const { return mesh_->triangles.size(); }
     [[nodiscard]] const MemoryUse& memory() const { return memory_; }
     [[nodiscard]] const Course& course() const { return course_; }
-    /// After prepare().
+    /// Requires prepare().
     [[nodiscard]] const Reference& reference() const { return *reference_; }
-    /// Particles that the usual way has brought outside a closed ground that moves; nothing for others.
+    /// Returns the number of particles that NaiveMotion has moved outside a closed moving ground; nothing for other
+    /// cases.
     [[nodiscard]] std::optional<std::uint64_t> naive_leaks() const { return naive_leaks_; }
 
 private:
@@ -139,7 +145,7 @@ private:
     MemoryUse memory_;
     Course course_;
     std::optional<Reference> reference_;
-    std::optional<NaiveMotion> naive_;  ///< where something moves
+    std::optional<NaiveMotion> naive_;  ///< set if something moves
     std::vector<Flight> naive_start_;
     std::optional<std::uint64_t> naive_leaks_;
 };

@@ -12,10 +12,10 @@ namespace ricochet::bench {
 
 namespace {
 
-// Everything inside the cavity: its radius is at most 1.8 m.
+// Box around the cavity, whose radius is at most 1.8 m.
 const Box3 kAroundCavity{{-1.8, -1.8, -1.8}, {1.8, 1.8, 1.8}};
 
-// Some 1.5 % of the particle-steps hit; a finer mesh is rougher.
+// Steps with impacts in some 1.5 % of the particle-steps. A finer mesh is rougher.
 constexpr double kGasStep = 0.0084;
 constexpr double kGasStepOnFineMesh = 0.0069;
 
@@ -51,7 +51,7 @@ Case settle(std::string_view suite, std::string_view name, std::size_t triangles
             .steps = 200};
 }
 
-// Half a second in which everything lands and bounces once or twice.
+// Half a second in which every particle lands and bounces once or twice.
 Case hail(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -70,7 +70,7 @@ Case hail(std::string_view suite, std::string_view name, std::size_t triangles, 
             .steps = 25};
 }
 
-// The drops pass from the rim to the ground in one step, which is the only one, and hardly bounce.
+// The drops move from the rim to the ground in a single step and hardly bounce.
 Case rain(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -102,7 +102,7 @@ Case pinball(std::string_view suite, std::string_view name, std::size_t triangle
             .steps = 2};
 }
 
-// Into the edge and out again: some pi / 0.01 bounces.
+// Particles move into the edge and out again, with some pi / 0.01 bounces.
 Case wedge(std::string_view suite, std::string_view name, std::size_t triangles, std::size_t particles) {
     return {.suite = suite,
             .name = name,
@@ -116,7 +116,7 @@ Case wedge(std::string_view suite, std::string_view name, std::size_t triangles,
             .steps = 1};
 }
 
-// Radii of spheres, m: one, and three decades of them; the mesh of these cases has edges of some 12 mm.
+// Radii of spheres, in m: a single one, and a range of three decades. The mesh of these cases has edges of some 12 mm.
 constexpr std::size_t kTrianglesForSpheres = 320'000;
 constexpr double kRadius = 0.002;
 constexpr double kLeastRadius = 2e-5;
@@ -130,7 +130,7 @@ Case with_radii(Case c, std::string_view base, double least, double largest) {
     return c;
 }
 
-// A gas that falls, so that every response has something to hold up.
+// A gas that falls, so that every response has particles to support.
 Case answered_by(ResponseKind response) {
     Case c = gas("response", name_of(response), 20'000, 100'000, kGasStep);
     c.gravity = 9.81;
@@ -140,7 +140,7 @@ Case answered_by(ResponseKind response) {
     return c;
 }
 
-// The same where nothing moves, without looking ahead, and where something does: a group.
+// Returns a group of two cases, both without look-ahead: one without motion and one with motion.
 std::vector<Case> beside_rest(Case c, std::string_view at_rest, std::string_view moving, Moves moves) {
     c.against = Against::at_rest;
     c.base = c.name = at_rest;
@@ -161,8 +161,8 @@ using Cases = std::vector<Case>;
 
 void append(Cases& to, const Cases& cases) { to.insert(to.end(), cases.begin(), cases.end()); }
 
-// The step of each size is such that some 1.5 % of the particle-steps hit, found by a run with 60 000 particles: the
-// rate of hits goes with surface over volume, which grows until all of the cavity's roughness is there.
+// At each size, the step gives impacts in some 1.5 % of the particle-steps, as measured with 60 000 particles. The rate
+// of impacts is proportional to surface over volume, which grows until the mesh resolves all of the cavity's roughness.
 Cases size_cases() {
     constexpr std::size_t kMany = 1'000'000;
     constexpr double kStepOnFinestMeshes = 0.0066;
@@ -177,7 +177,7 @@ Cases size_cases() {
             gas("size", "size-10M", 10'000'000, kMany, kStepOnFinestMeshes)};
 }
 
-// Few particles take many steps, so that what is timed lasts some tenths of a second.
+// Few particles take many steps, so that the timed work lasts some tenths of a second.
 Cases count_cases() {
     const auto count = [](std::string_view name, std::size_t particles) {
         return gas("count", name, 1'300'000, particles, kGasStepOnFineMesh);
@@ -209,7 +209,7 @@ Cases response_cases() {
     return cases;
 }
 
-// A flight of 0.7 m a step, so that some half of the particle-steps hit; a gas; and a gas among rocks.
+// Three motions: flights of 0.7 m per step with impacts in half of the particle-steps, a gas, and a gas among rocks.
 Cases moving_cases() {
     constexpr std::size_t kTriangles = 100'000;
     constexpr std::size_t kParticles = 50'000;
@@ -231,7 +231,7 @@ Cases moving_cases() {
     return cases;
 }
 
-// Spheres in a case, those that pass through each other first: a group.
+// Returns a group of two cases: spheres that pass through each other, and spheres that collide.
 std::vector<Case> beside_apart(Case c, std::string_view apart, std::string_view together) {
     c.against = Against::apart;
     c.base = c.name = apart;
@@ -244,7 +244,7 @@ std::vector<Case> beside_apart(Case c, std::string_view apart, std::string_view 
 // A gas of packing 0.01 in which a step is a flight of one radius.
 Case dilute_spheres() {
     constexpr std::size_t kMany = 20'000;
-    constexpr double kRadiusOfGas = 0.0079;  // (0.01 / 20 000)^(1/3) of the cavity's metre
+    constexpr double kRadiusOfGas = 0.0079;  // (0.01 / 20 000)^(1/3) of the cavity's radius of 1 m
     Case c = with_steps(gas("pairs", "", 20'000, kMany, kRadiusOfGas), 4, 60);
     c.spread = 0.0;
     c.start = Start::lattice;
@@ -253,7 +253,8 @@ Case dilute_spheres() {
     return c;
 }
 
-// The peers' scene of docs/particle-contacts.md: 5 mm, a fifth more or less, dropped as a loose cloud; one second.
+// The scene of docs/particle-contacts.md for the comparison with other programs. Spheres of 5 mm, plus or minus a
+// fifth, fall as a loose cloud for one second.
 Case filling_spheres(std::size_t particles) {
     return {.suite = "pairs",
             .name = "filling",
@@ -274,7 +275,7 @@ Case filling_spheres(std::size_t particles) {
             .pitch = 0.0132};
 }
 
-// The cavity turns a quarter filled, at 25 degrees a second.
+// The cavity is a quarter full and turns at 25 degrees per second.
 Case tumbling_spheres() {
     return {.suite = "pairs",
             .name = "drum",
@@ -321,7 +322,7 @@ Cases make_all_cases() {
     };
     append(cases, size_cases());
     append(cases, count_cases());
-    // Fewer particles where a step is long: one thread has to do it too.
+    // Cases with long steps have fewer particles, because one thread has to run them too.
     append(cases, {gas("threads", "gas", 1'300'000, 1'000'000, kGasStepOnFineMesh),
                    settle("threads", "settle", 1'300'000, 200'000), pinball("threads", "pinball", 1'300'000, 200'000)});
     append(cases, radius_cases());

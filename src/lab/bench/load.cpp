@@ -29,7 +29,7 @@ constexpr std::size_t kFew = 20'000;
 constexpr std::size_t kMany = 1'000'000;
 constexpr std::size_t kMost = 5'000'000;
 
-// The writer of the library knows PLY in its binary form only.
+// The library's writer supports PLY in its binary form only.
 void write_ascii_ply(const TriangleMesh& mesh, const std::filesystem::path& path) {
     std::string text = fmt::format(
         "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
@@ -104,7 +104,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder that goes away with all that is in it.
+/// A temporary folder. The destructor removes it with its contents.
 class ScratchFolder {
 public:
     ScratchFolder() {
@@ -176,7 +176,7 @@ std::shared_ptr<const TriangleMesh> LoadMeasurer::time_reading() {
     ImportedMesh imported;
     reads_.push_back(time_of([&] { imported = read_mesh(file_); }));
     if (imported.mesh.triangles.size() != triangles_) {
-        throw RunError(fmt::format("{} of suite load: the file brings back {} triangles of {}", case_.name,
+        throw RunError(fmt::format("{} of suite load: the file was read with {} triangles instead of {}", case_.name,
                                    imported.mesh.triangles.size(), triangles_));
     }
     return std::make_shared<const TriangleMesh>(std::move(imported.mesh));

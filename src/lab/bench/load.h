@@ -1,5 +1,5 @@
 /// \file
-/// The benchmark's table of mesh files that are read and made ready to collide with.
+/// Benchmark of mesh files: reading them and preparing them for collisions.
 #pragma once
 
 #include <cstddef>
@@ -15,46 +15,47 @@
 
 namespace ricochet::bench {
 
-/// How a mesh is written down.
+/// Format of a mesh file.
 enum class FileForm { obj, binary_ply, ascii_ply, binary_stl, off };
 
-/// "OBJ", "PLY, binary" and so on.
+/// Returns a name such as "OBJ" or "PLY, binary".
 [[nodiscard]] std::string_view name_of(FileForm form);
-/// The ending of such files, with its dot.
+/// Returns the file name extension, with its dot.
 [[nodiscard]] std::string_view ending_of(FileForm form);
 
 /// One file.
 struct LoadCase {
     std::string_view name;  ///< unique
     FileForm form = FileForm::obj;
-    std::size_t triangles = 0;  ///< wanted; the mesh comes near it
+    std::size_t triangles = 0;  ///< requested number; the mesh comes near it
 };
 
-/// All cases, from few triangles to many.
+/// Returns all cases, from few triangles to many.
 [[nodiscard]] const std::vector<LoadCase>& load_cases();
 
-/// The mesh that the file of a case holds: a rocky cavity.
+/// Creates the mesh of a case's file: a rocky cavity.
 [[nodiscard]] TriangleMesh make_mesh(const LoadCase& c);
 
-/// Writes the mesh; text with as many digits as bring back the same double. Throws RunError when the disk refuses.
+/// Writes the mesh. Text files have enough digits to read back the same doubles. Throws RunError if the file cannot be
+/// written.
 void write_form(const TriangleMesh& mesh, const std::filesystem::path& path, FileForm form);
 
-// Measures how long it takes from a mesh file to a world that particles can collide with.
+// Measures the time from a mesh file to a world that particles can collide with.
 
-/// A file with a number of threads, measured. Times are the median of the repeats.
+/// Result for one file and one number of threads. Times are the median of the repeats.
 struct LoadRow {
     std::string name;
     std::string format;
     std::size_t triangles = 0;
-    int threads = 0;  ///< of the build; reading takes one
+    int threads = 0;  ///< of the build; reading uses one
     std::uint64_t file_bytes = 0;
     double read_seconds = 0.0;   ///< from the file to the checked index list
-    double build_seconds = 0.0;  ///< from there to the collision world as a simulation has it
+    double build_seconds = 0.0;  ///< from there to the collision world of a simulation
 };
 
-/// Writes the case's file into a folder of its own that goes away again, and times reading and building, separately.
-/// The file has just been written, so that the system has it in memory. Nothing when the hook has ended it. Throws
-/// RunError when the file cannot be written or does not bring back as many triangles.
+/// Writes the case's file into a temporary folder, and times reading and building separately. The system still has the
+/// file in memory, because it has just been written. Returns nothing if the hook has ended it. Throws RunError if the
+/// file cannot be written or does not read back as many triangles.
 [[nodiscard]] std::optional<std::vector<LoadRow>> measure_load(const LoadCase& c, const MeasurementPlan& plan,
                                                                const Hook& hook = {});
 

@@ -44,7 +44,7 @@ private:
     Progress progress_;
     std::list<CaseRun> runs_;
     std::vector<std::vector<CaseTimes>> times_;  ///< by case and number of threads
-    std::vector<int> threads_;                   ///< as they are: 0 of the plan is resolved
+    std::vector<int> threads_;                   ///< actual numbers; a 0 in the plan is resolved
 };
 
 bool Measurer::prepare() {
@@ -80,7 +80,8 @@ bool Measurer::repeat_all() {
     return true;
 }
 
-/// How many of the one are done in the time of the other, repeat by repeat.
+/// Returns the number of units of the first kind that are done in the time of one reference unit. It is the median over
+/// the repeats.
 double ratio_of(std::uint64_t count, const std::vector<double>& seconds, std::uint64_t reference_count,
                 const std::vector<double>& reference_seconds) {
     return median_ratio(reference_seconds, seconds) * static_cast<double>(count) / static_cast<double>(reference_count);
@@ -128,7 +129,7 @@ Row row_of(const CaseRun& run, const CaseTimes& times) {
     return row;
 }
 
-/// Which of the numbers of threads is one.
+/// Returns the index of the measurement with one thread.
 std::optional<std::size_t> Measurer::single_thread() const {
     for (std::size_t k = 0; k < threads_.size(); ++k) {
         if (threads_[k] == 1) return k;
@@ -150,7 +151,7 @@ std::vector<Row> Measurer::rows() const {
                 row.speedup = median_ratio(times[*single].simulation, times[k].simulation);
                 row.speedup_raw = median_ratio(times[*single].raw, times[k].raw);
             }
-            // Particle-steps of the base in the time in which the case does one.
+            // Number of particle-steps of the base in the time of one particle-step of the case.
             const double cost = ratio_of(base.course().particle_steps, times_.front()[k].simulation,
                                          run.course().particle_steps, times[k].simulation);
             if (run.description().against == Against::points) row.ratio_points = cost;

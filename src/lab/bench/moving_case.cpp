@@ -16,7 +16,7 @@ namespace ricochet::bench {
 namespace {
 
 constexpr std::size_t kTrianglesOfARock = 1000;
-constexpr double kLattice = 2.0;  // m
+constexpr double kLattice = 2.0;  // in m
 constexpr double kCoarseEdge = 0.25;
 constexpr double kDegreesAStep = 1.0;
 constexpr double kDegreesATumblingStep = 0.05;
@@ -31,7 +31,7 @@ TriangleMesh make_one_rock() {
 
 std::size_t count_of_rocks(std::size_t triangles) { return std::max<std::size_t>(1, triangles / kTrianglesOfARock); }
 
-/// Where each rock of so many stands: the lattice's places nearest to a cube, about the origin.
+/// Returns the positions of `count` rocks: lattice points in nearly a cube, about the origin.
 std::vector<Vec3> places_of_rocks(std::size_t count) {
     std::size_t side = 1;
     while (side * side * side < count) ++side;

@@ -1,5 +1,5 @@
 /// \file
-/// The colliders of a case and how they move.
+/// The colliders of a case and their motion.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +14,18 @@
 
 namespace ricochet::bench {
 
-/// Rocks on their lattice, about the origin, as one mesh of about so many triangles.
+/// Creates rocks on their lattice, about the origin, as one mesh of about the given number of triangles.
 [[nodiscard]] TriangleMesh make_rocks(std::size_t triangles);
 
-/// The case's colliders; what moves stands in a frame of frames_of().
+/// Returns the case's colliders. Moving ones belong to frames of frames_of().
 [[nodiscard]] std::vector<ColliderDescription> colliders_of(const Case& c,
                                                             const std::shared_ptr<const TriangleMesh>& mesh);
 
-/// How they move; null where nothing does.
+/// Returns the frames of the moving colliders; null if nothing moves.
 [[nodiscard]] std::shared_ptr<const FrameTree> frames_of(const Case& c);
 
-/// Flights at a time, s, as the case's ground sees them: in its frame, and over its size. The same where the ground
-/// stands still or has several parts.
+/// Converts flights to the coordinates of the case's ground at a time, in s: to its frame, and divided by its size.
+/// Returns them unchanged if the ground does not move or has several parts.
 [[nodiscard]] std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights, double time);
 
 }  // namespace ricochet::bench

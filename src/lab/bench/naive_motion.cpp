@@ -19,16 +19,16 @@ constexpr std::size_t kBlock = 1024;
 }  // namespace
 
 struct NaiveMotion::Impl {
-    /// A collider; its triangles are those of the Embree geometry of the same number.
+    /// A collider. Its index equals the number of its Embree geometry.
     struct Part {
         std::vector<Vec3> vertices;  ///< in its frame
         std::shared_ptr<const TriangleMesh> mesh;
         std::optional<std::size_t> frame;
-        RTCGeometry geometry = nullptr;  ///< the scene's
+        RTCGeometry geometry = nullptr;  ///< owned by the scene
         MovingPose pose;
-        std::shared_ptr<const MeshMotion> motion;  ///< of the vertices, where it deforms
+        std::shared_ptr<const MeshMotion> motion;  ///< motion of the vertices of a deforming mesh
         MeshMoment moment;
-        std::vector<Vec3> placed;  ///< the vertices in the world
+        std::vector<Vec3> placed;  ///< vertices in world coordinates
 
         [[nodiscard]] bool moves() const { return frame || motion; }
     };
@@ -68,7 +68,7 @@ NaiveMotion::Impl::Impl(const std::vector<ColliderDescription>& colliders, std::
         part.motion = shape.motion;
         if (part.moves()) rtcSetGeometryBuildQuality(part.geometry, RTC_BUILD_QUALITY_REFIT);
         rtcAttachGeometry(scene.get(), part.geometry);
-        rtcReleaseGeometry(part.geometry);  // the scene holds it
+        rtcReleaseGeometry(part.geometry);  // the scene keeps a reference
         parts.push_back(std::move(part));
     }
     for (Part& part : parts) place(part, 0.0);
@@ -102,7 +102,7 @@ void NaiveMotion::Impl::move_to(double time) {
     rtcCommitScene(scene.get());
 }
 
-/// True where it bounces.
+/// Moves a particle by one step. Returns true if it bounces.
 bool NaiveMotion::Impl::step(Flight& flight, double time_step, double restitution) const {
     embree::QueryContext context;
     embree::init_context(context, nullptr);

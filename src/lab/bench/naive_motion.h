@@ -1,6 +1,6 @@
 /// \file
-/// What is usually done about colliders that move: all triangles where they are at the end of a step, and one ray a
-/// particle. None of the sweep's code runs here.
+/// The usual method for moving colliders: all triangles at their positions at the end of a step, and one ray per
+/// particle. It runs no code of the sweep.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace ricochet::bench {
 
-/// Colliders that move, in the usual way: at every step their triangles are put where they are at its end, Embree
-/// refits its hierarchy, and each particle has one ray to where it would be. What it hits there it bounces off,
-/// relative to the surface, and the rest of its step is lost. What moves over a particle between two steps is not seen.
+/// Moving colliders with the usual method. At every step, their triangles are moved to their positions at its end, and
+/// Embree refits its hierarchy. Each particle traces one ray to the end of its path. If the ray hits a surface, the
+/// particle bounces relative to that surface and loses the rest of its step. A surface that moves over a particle
+/// between two steps is missed.
 class NaiveMotion {
 public:
-    /// Colliders have to be meshes. Throws RunError when memory is short.
+    /// All colliders must be meshes. Throws RunError if memory is insufficient.
     NaiveMotion(const std::vector<ColliderDescription>& colliders, std::shared_ptr<const FrameTree> frames);
     ~NaiveMotion();
     NaiveMotion(NaiveMotion&&) noexcept;
     NaiveMotion& operator=(NaiveMotion&&) noexcept;
 
     struct Steps {
-        double begin = 0.0;  ///< s
+        double begin = 0.0;  ///< in s
         double time_step = 0.0;
         std::uint64_t count = 0;
         double restitution = 1.0;
     };
-    /// Moves all flights; returns how many bounces there were.
+    /// Moves all flights. Returns the number of bounces.
     [[nodiscard]] std::uint64_t run(std::span<Flight> flights, const Steps& steps);
 
 private:

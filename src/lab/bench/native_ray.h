@@ -1,5 +1,5 @@
 /// \file
-/// Private to the references: one ray as Embree takes it. Included by the .cpp files that trace rays only.
+/// Private to the references: one ray in Embree's format. Only the .cpp files that trace rays include this file.
 #pragma once
 
 #include <array>
@@ -10,8 +10,9 @@
 
 namespace ricochet::bench {
 
-/// How far from the surface the next ray starts, of the mesh's largest coordinate: some ten roundings of a float, as
-/// renderers choose it. Less and rays hit the triangle that they leave, more and they start behind the next wall.
+/// Distance of the next ray's start from the surface, relative to the mesh's largest coordinate. It is some ten
+/// roundings of a float, as renderers choose it. Smaller: rays hit the triangle that they leave. Larger: rays start
+/// behind the next wall.
 inline constexpr double kRayOffset = 1e-6;
 
 [[nodiscard]] inline RTCRayHit ray_of(const RaySegment& segment) {

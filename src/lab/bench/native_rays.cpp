@@ -10,17 +10,17 @@
 namespace ricochet::bench {
 namespace {
 
-// Rays per unit of parallel work: whole packets.
+// Rays per unit of parallel work. It is a multiple of the packet size.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kPacket = 16;
 
-// As many as the simulation allows by default.
+// Default limit of the simulation.
 constexpr int kMostBounces = 1000;
 
-/// Sixteen rays and which of them are there.
+/// Up to sixteen rays, with a mask of the lanes in use.
 struct Packet {
     alignas(64) std::array<int, kPacket> valid{};
-    RTCRayHit16 rays{};  // Embree looks at lanes without a ray, too
+    RTCRayHit16 rays{};  // initialised, because Embree also reads unused lanes
 
     void set(std::size_t lane, const RaySegment& segment) {
         valid[lane] = -1;
@@ -45,7 +45,7 @@ struct Packet {
 struct NativeRays::Impl {
     std::vector<Vec3> vertices;
     std::vector<Triangle> triangles;
-    double offset = 0.0;  ///< m
+    double offset = 0.0;  ///< in m
     embree::Device device;
     embree::Scene scene;
 
@@ -53,7 +53,7 @@ struct NativeRays::Impl {
     [[nodiscard]] std::uint32_t first_hit(const RaySegment& segment) const;
     void trace_packet(std::span<const RaySegment> segments, std::span<std::uint32_t> hits) const;
     [[nodiscard]] std::uint64_t fly(Flight flight, const BounceRules& rules, Vec3& end) const;
-    /// Moves the flight to the triangle and turns it. `left` is the rest of the time, s.
+    /// Moves the flight to the triangle and reflects its velocity. `left` is the remaining time, in s.
     void reflect(Flight& flight, double& left, double restitution, const Triangle& triangle) const;
 };
 

@@ -1,6 +1,6 @@
 /// \file
-/// What Embree does by itself, as the reference that the benchmark divides by: native float triangles, robust
-/// traversal, no certificate. None of the sweep's code runs here.
+/// Embree alone, as the reference of the benchmark's ratios: native float triangles, robust traversal, no certificate.
+/// It runs no code of the sweep.
 #pragma once
 
 #include <array>
@@ -13,43 +13,44 @@
 
 namespace ricochet::bench {
 
-/// Instead of a triangle's number: none.
+/// Triangle number of a ray without a hit.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A ray as Embree takes it.
+/// A ray in Embree's format.
 struct RaySegment {
-    std::array<float, 3> from;   ///< m
-    std::array<float, 3> along;  ///< m, to the other end
+    std::array<float, 3> from;   ///< in m
+    std::array<float, 3> along;  ///< offset to the other end, in m
 };
 
-/// A particle that flies straight on.
+/// A particle that moves in a straight line.
 struct Flight {
-    Vec3 position;  ///< m
-    Vec3 velocity;  ///< m/s
+    Vec3 position;  ///< in m
+    Vec3 velocity;  ///< in m/s
 };
 
 /// A mesh in Embree's own form. Safe from any number of threads; every loop uses all of them.
 class NativeRays {
 public:
-    /// The mesh need not outlive it. Throws RunError when memory is short.
+    /// The mesh may be destroyed afterwards. Throws RunError if memory is insufficient.
     explicit NativeRays(const TriangleMesh& mesh);
     ~NativeRays();
     NativeRays(NativeRays&&) noexcept;
     NativeRays& operator=(NativeRays&&) noexcept;
 
-    /// The first triangle that each segment hits, kNoTriangle where none; one ray at a time, in the order given.
+    /// Writes the first triangle that each segment hits, or kNoTriangle. It traces one ray at a time, in the given
+    /// order.
     void trace(std::span<const RaySegment> segments, std::span<std::uint32_t> triangles) const;
-    /// The same in packets of sixteen neighbours of the list.
+    /// Writes the first triangle that each segment hits, or kNoTriangle. It traces packets of sixteen consecutive rays.
     void trace_packets(std::span<const RaySegment> segments, std::span<std::uint32_t> triangles) const;
 
-    /// How flights bounce.
+    /// Rules for bounces of flights.
     struct BounceRules {
-        double duration = 0.0;     ///< s
+        double duration = 0.0;     ///< in s
         double restitution = 1.0;  ///< of every surface
     };
-    /// Flies every particle straight on from bounce to bounce: the hit is sharpened in double precision on the plane of
-    /// the triangle hit, and the next ray starts a little off it along the normal. Writes where each ends and
-    /// returns the number of bounces. It may pass through walls.
+    /// Moves every particle in straight lines from bounce to bounce. Hits are refined in double precision on the plane
+    /// of the hit triangle. The next ray starts at a small offset along the normal. Writes the end positions and
+    /// returns the number of bounces. Particles may pass through walls.
     [[nodiscard]] std::uint64_t bounce(std::span<const Flight> flights, const BounceRules& rules,
                                        std::span<Vec3> ends) const;
 

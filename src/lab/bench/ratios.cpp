@@ -26,7 +26,7 @@ const CaseRatios* find(const SuiteRatios& ratios, const std::string& name) {
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-/// What is wrong with a file of ratios.
+/// Error of an invalid file of ratios.
 class WrongFile : public InputError {
 public:
     WrongFile(const std::filesystem::path& file, const std::string& what)
@@ -44,11 +44,12 @@ std::string read_text(const std::filesystem::path& file) {
 Json parse(const std::filesystem::path& file) {
     if (!std::filesystem::is_regular_file(file)) throw WrongFile(file, "there is no such file");
     Json json = Json::parse(read_text(file), nullptr, false);
-    if (!json.is_object()) throw WrongFile(file, "it is no JSON object");
+    if (!json.is_object()) throw WrongFile(file, "it is not a JSON object");
     for (const char* key : {"suite", "machine", "ricochet"}) {
-        if (!json.contains(key) || !json[key].is_string()) throw WrongFile(file, fmt::format("\"{}\" is no text", key));
+        if (!json.contains(key) || !json[key].is_string())
+            throw WrongFile(file, fmt::format("\"{}\" is not a text", key));
     }
-    if (!json.contains("cases") || !json["cases"].is_object()) throw WrongFile(file, "\"cases\" is no object");
+    if (!json.contains("cases") || !json["cases"].is_object()) throw WrongFile(file, "\"cases\" is not an object");
     return json;
 }
 
@@ -58,7 +59,7 @@ std::optional<double> ratio_in(const Json& json, const char* key, const std::str
     if (json[key].is_null()) return std::nullopt;
     const double ratio = json[key].is_number() ? json[key].get<double>() : 0.0;
     if (!(ratio > 0.0) || !std::isfinite(ratio)) {
-        throw WrongFile(file, fmt::format("case {}: {} is no number above 0", name, key));
+        throw WrongFile(file, fmt::format("case {}: {} is not a number above 0", name, key));
     }
     return ratio;
 }

@@ -1,6 +1,6 @@
 /// \file
-/// The ratios of a run kept in a file, to see whether later versions of the program have become slower. Ratios of two
-/// runs can be compared where their times cannot.
+/// Ratios of a run in a file, to detect later versions of the program that are slower. Ratios of two runs can be
+/// compared even if their times cannot.
 #pragma once
 
 #include <filesystem>
@@ -14,43 +14,43 @@
 
 namespace ricochet::bench {
 
-/// What is kept of a case.
+/// Stored ratios of a case.
 struct CaseRatios {
     std::string name;
     std::optional<double> raw;             ///< Row::ratio_raw, > 0
     std::optional<double> native_bounces;  ///< Row::ratio_native_bounces, > 0
 };
 
-/// What is kept of a suite.
+/// Stored ratios of a suite.
 struct SuiteRatios {
     std::string suite;
-    std::string machine;  ///< that they come from
-    std::string version;  ///< of ricochet
+    std::string machine;  ///< machine on which they were measured
+    std::string version;  ///< version of ricochet
     std::vector<CaseRatios> cases;
 };
 
-/// The ratios of measured rows; of a case's rows the first counts.
+/// Returns the ratios of measured rows. The first row of a case counts.
 [[nodiscard]] SuiteRatios ratios_of(std::span<const Row> rows, std::string_view suite, std::string_view machine,
                                     std::string_view version);
 
-/// As JSON.
+/// Returns the ratios as JSON.
 [[nodiscard]] std::string to_json(const SuiteRatios& ratios);
 
-/// Reads what to_json() has written. Throws InputError when the file cannot be read, is something else, or belongs to
-/// another suite.
+/// Reads a file that contains the text of to_json(). Throws InputError if the file cannot be read, has another content,
+/// or belongs to another suite.
 [[nodiscard]] SuiteRatios read_ratios(const std::filesystem::path& file, std::string_view suite);
 
-/// One ratio, before and now; nothing where it does not exist.
+/// One ratio, before and now; nothing if it does not exist.
 struct RatioChange {
     std::string name;   ///< of the case
-    std::string ratio;  ///< its field's name: "ratio_raw" or "ratio_native_bounces"
+    std::string ratio;  ///< name of its field: "ratio_raw" or "ratio_native_bounces"
     std::optional<double> before;
     std::optional<double> now;
     bool fell = false;  ///< by more than the tolerance
 };
 
-/// Every ratio that is there before or now, in the order of the cases before, new ones last. Only a ratio that is there
-/// on both sides can fall.
+/// Returns every ratio that exists before or now, in the order of the cases before, followed by new cases. `fell` can
+/// be true only for a ratio that exists on both sides.
 /// \param tolerance  part of the ratio before, in [0, 1)
 [[nodiscard]] std::vector<RatioChange> compare_ratios(const SuiteRatios& before, const SuiteRatios& now,
                                                       double tolerance);

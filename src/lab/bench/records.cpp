@@ -37,7 +37,8 @@ std::string cpu_model() {
     return "unknown";
 }
 
-/// Words of small letters and digits. Marks in brackets and what comes after an at sign (the clock) are no words.
+/// Returns the words of a text in small letters and digits. Text in brackets and after an at sign (the clock) is
+/// skipped.
 std::vector<std::string> words_of(std::string_view text) {
     std::vector<std::string> words(1);
     int depth = 0;
@@ -250,7 +251,7 @@ std::vector<std::string> cells_of(const Row& row) {
             fmt::format("{:.0f}", row.bytes_per_triangle)};
 }
 
-/// A column that only some suites have.
+/// A column that only some suites use.
 struct ExtraColumn {
     const char* header;
     std::optional<double> (*value)(const Row&);

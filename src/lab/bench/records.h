@@ -1,5 +1,5 @@
 /// \file
-/// What was measured and with what, as named fields, JSON, CSV and tables. docs/bench.md lists the names.
+/// Results and their environment as named fields, JSON, CSV and tables. docs/bench.md lists the names.
 #pragma once
 
 #include <cstdint>
@@ -15,29 +15,30 @@
 
 namespace ricochet::bench {
 
-// What numbers were measured with: machine, compiler, libraries.
+// Environment of a measurement: machine, compiler, libraries.
 
 struct Environment {
     std::string machine;  ///< machine_slug()
-    std::string cpu;      ///< as the processor calls itself
+    std::string cpu;      ///< model name that the processor reports
     int hardware_threads = 0;
     std::string compiler;     ///< with its version
     std::string build_type;   ///< CMake's
-    std::string build_flags;  ///< the compiler's, without those for warnings
+    std::string build_flags;  ///< the compiler's, without warning flags
     std::string ray_library;
     std::string thread_library;
     std::string date;  ///< UTC, as in 2024-05-31T18:00:00Z
     std::string ricochet;
 };
 
-/// A name for machines of the same kind, fit for a folder: the processor's model in small letters, digits and hyphens,
-/// and its threads, as in "xeon-platinum-8488c-2t". What every model of a maker says is left out.
+/// Returns a folder name for machines of the same kind, as in "xeon-platinum-8488c-2t". It contains the processor's
+/// model in small letters, digits and hyphens, and the number of its threads. Words that all models of a maker share
+/// are left out.
 [[nodiscard]] std::string machine_slug(std::string_view cpu, int hardware_threads);
 
-/// Here and now. version: of ricochet.
+/// Returns the present environment. `version` is that of ricochet.
 [[nodiscard]] Environment this_environment(std::string_view version);
 
-/// A value; std::monostate where there is none.
+/// A value; std::monostate if there is none.
 using Cell = std::variant<std::monostate, std::string, std::uint64_t, double>;
 
 struct Field {
@@ -49,22 +50,23 @@ struct Field {
 using Record = std::vector<Field>;
 
 [[nodiscard]] Record record_of(const Row& row);
-/// The same fields, empty where files have none, and those of files.
+/// Returns the same fields, empty if they do not apply to files, followed by the fields of files.
 [[nodiscard]] Record record_of(const LoadRow& row);
-/// To be appended to those of a row.
+/// Returns fields that are appended to the fields of a row.
 [[nodiscard]] Record record_of(const Environment& environment);
 
-/// An array of objects, one a record; null where there is no value or it is not finite.
+/// Returns an array with one object per record. Values that are missing or not finite are null.
 [[nodiscard]] std::string to_json(std::span<const Record> records);
 
-/// A header and one line a record (RFC 4180), nothing where JSON has null. Records have the same fields.
+/// Returns a header and one line per record (RFC 4180). Cells are empty for values that are null in JSON. All records
+/// must have the same fields.
 [[nodiscard]] std::string to_csv(std::span<const Record> records);
 
-// Measurements as tables for a terminal: a header and one row each.
+// Measurements as tables for a terminal: a header and one line per row.
 
 using Table = std::vector<std::vector<std::string>>;
 
-/// Columns that have no number in any row are left out where only some suites have them.
+/// Returns a table. Columns that only some suites use are left out if no row has a number.
 [[nodiscard]] Table to_table(std::span<const Row> rows);
 [[nodiscard]] Table to_table(std::span<const LoadRow> rows);
 [[nodiscard]] Table to_table(std::span<const RatioChange> changes);

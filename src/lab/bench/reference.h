@@ -1,5 +1,5 @@
 /// \file
-/// What a case is measured by: Embree alone on the same segments, and rays in spatial order.
+/// References of a case: Embree alone on the same segments, in arbitrary and in spatial order.
 #pragma once
 
 #include <cstddef>
@@ -14,34 +14,35 @@
 
 namespace ricochet::bench {
 
-/// Indices of the points along the Z-curve through the cube of their box, 2^21 cells an axis; equal cells in the order
-/// of the list. Points must be finite. Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
+/// Returns the indices of the points along the Z-curve through the cube of their box, with 2^21 cells per axis. Points
+/// in equal cells keep the order of the list. Points must be finite. Source: G. M. Morton, "A Computer Oriented
+/// Geodetic Data Base", IBM, 1966.
 [[nodiscard]] std::vector<std::uint32_t> morton_order(std::span<const Vec3> points);
 
-// The work that Embree does by itself on a case's segments, ready to be timed.
+// The work of Embree alone on a case's segments, ready to be timed.
 
-/// Rays and flights, in arbitrary and in spatial order. What can be prepared is prepared: rays are single precision
-/// already, and sorting takes no part in what is timed.
+/// Rays and flights, in arbitrary and in spatial order. Preparation is not part of the timed work: rays are already in
+/// single precision and sorted.
 class Reference {
 public:
-    /// The flights of some states of the simulation, as it has them: in arbitrary order.
+    /// `states` are the flights of some states of the simulation, in the arbitrary order of its particles.
     Reference(const TriangleMesh& mesh, const std::vector<std::vector<Flight>>& states,
               const NativeRays::BounceRules& rules);
 
-    /// One ray a flight, one at a time, in arbitrary order.
+    /// Traces one ray per flight, one at a time, in arbitrary order.
     void trace() { rays_.trace(segments_, hits_); }
-    /// The same rays, each state's in spatial order, in packets of sixteen.
+    /// Traces the same rays in packets of sixteen. The rays of each state are in spatial order.
     void trace_sorted() { rays_.trace_packets(sorted_segments_, hits_); }
-    /// The usual bounce loop, in arbitrary order.
+    /// Runs the usual bounce loop, in arbitrary order.
     void bounce() { bounces_ = rays_.bounce(flights_, rules_, ends_); }
 
-    /// Lets every flight bounce and counts those that end outside a closed mesh, seen from its heart.
+    /// Runs the bounce loop and counts the flights that end outside a closed mesh with the given heart.
     void count_leaks(const TriangleMesh& mesh, const Vec3& heart);
 
     [[nodiscard]] std::size_t rays() const { return flights_.size(); }
-    /// Of the last bounce().
+    /// Returns the count of the last bounce().
     [[nodiscard]] std::uint64_t bounces() const { return bounces_; }
-    /// Nothing before count_leaks().
+    /// Returns the count of count_leaks(); nothing before its first call.
     [[nodiscard]] std::optional<std::uint64_t> leaks() const { return leaks_; }
 
 private:

@@ -1,5 +1,5 @@
 /// \file
-/// The same scene again and again: a simulation takes its setup with it, a comparison needs one for every run.
+/// Runs one scene many times. A simulation consumes its setup, so a comparison needs a copy for every run.
 #include "lab/compare/comparison.h"
 
 #include <fmt/format.h>
@@ -17,11 +17,11 @@
 
 namespace ricochet {
 
-/// Makes setups that share what never changes (forces, meshes) and nothing else.
+/// Creates setups that share only constant data (forces, meshes).
 class SetupCopies {
 public:
     explicit SetupCopies(SimulationSetup setup);
-    /// A setup with these options.
+    /// Returns a setup with these options.
     [[nodiscard]] SimulationSetup make(const SimulationOptions& options) const;
     [[nodiscard]] const SimulationOptions& options() const { return setup_.options; }
 
@@ -32,7 +32,7 @@ private:
 
 namespace {
 
-/// A force that several simulations have in common; forces are pure.
+/// A force shared by several simulations. Forces are pure functions.
 class SharedForce final : public Force {
 public:
     explicit SharedForce(std::shared_ptr<const Force> force) : force_(std::move(force)) {}
@@ -57,7 +57,7 @@ SetupCopies::SetupCopies(SimulationSetup setup) : setup_(std::move(setup)) {
     setup_.forces.clear();
 }
 
-// By all of its members, in their order: one more does not compile until it is copied here.
+// Copies the members one by one, in their order. A new member does not compile until it is copied here.
 SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
     const auto& [own_options, acceleration, no_forces, materials, colliders, frames, bodies, emitters, particles,
                  springs, spring_faces, particles_forces, solver, bounds, attributes, reference_camera, heat, ranks] =
@@ -75,8 +75,8 @@ namespace {
 
 constexpr ResponseChoice kExact{ResponseKind::exact, false};
 
-/// Runs a part of a comparison, and says which one it was where it diverges. A timed run does what the measured one
-/// did.
+/// Executes one run of a comparison. If it diverges, names the run in the error. A timed run is the same as the
+/// measured one, so it needs no name.
 template <class Run>
 auto named(std::string_view part, const ResponseChoice& response, double time_step, const Run& run) {
     try {
@@ -89,19 +89,20 @@ auto named(std::string_view part, const ResponseChoice& response, double time_st
     }
 }
 
-/// The rest of a refusal: what a plan comes to without the responses that a scene refuses.
+/// Returns the end of an error message: the --responses option without the responses that a scene refuses.
 std::string without_refused(const std::vector<ResponseChoice>& accepted) {
     std::string names;
     for (const ResponseChoice& choice : accepted) names += (names.empty() ? "" : ",") + name_of(choice);
     return fmt::format("or leave it out (--responses {})", names.empty() ? name_of(kExact) : names);
 }
 
-/// Makes a simulation of each response at the step, s, and runs none. Throws InputError for the first that cannot be.
+/// Creates a simulation of each response at the step, in s, without running it. Throws InputError for the first invalid
+/// one.
 void require_runs(const SetupCopies& copies, const std::vector<ResponseChoice>& responses, double time_step) {
     const auto make = [&](const ResponseChoice& response) {
         const Simulation simulation(copies.make(options_for(copies.options(), response, time_step)));
     };
-    make(kExact);  // what it refuses has nothing to do with rows
+    make(kExact);  // an error of the exact response does not depend on the rows
     std::vector<ResponseChoice> accepted;
     std::string refusal;
     for (const ResponseChoice& response : responses) {
@@ -117,7 +118,7 @@ void require_runs(const SetupCopies& copies, const std::vector<ResponseChoice>& 
     if (!refusal.empty()) throw InputError(fmt::format("{}; {}", refusal, without_refused(accepted)));
 }
 
-/// Works through a plan.
+/// Runs a plan.
 class Comparer {
 public:
     Comparer(SimulationSetup setup, const ComparisonPlan& plan, const ComparisonHook& hook)
@@ -152,7 +153,7 @@ private:
         return copies_.make(options_for(copies_.options(), response, time_step));
     }
 
-    /// What every run is called with; tells the hook which run it is.
+    /// Returns the hook of the next run. It passes the progress to the comparison's hook.
     StepHook next_run(const ResponseChoice& response, double time_step, std::uint32_t repeat) {
         ++progress_.run;
         progress_.response = name_of(response);

@@ -1,6 +1,6 @@
 /// \file
-/// A comparison: one scene with several answers to collisions at several time steps, what each costs and gets wrong.
-/// docs/compare.md says what every number means.
+/// A comparison runs one scene with several collision responses at several time steps. It measures the costs and the
+/// errors of each. docs/compare.md explains every number.
 #pragma once
 
 #include <cstddef>
@@ -19,55 +19,55 @@ namespace ricochet {
 /// A response at a time step.
 struct ComparisonRow {
     ResponseChoice response;
-    double time_step = 0.0;  ///< s
-    bool listed = true;      ///< false: exact was not asked for and is only the base of ratios
+    double time_step = 0.0;  ///< in s
+    bool listed = true;      ///< false: exact was not requested and is only the base of ratios
     RunFigures figures;
     ReferenceErrors errors;
     RunCost cost;
-    /// s, the step of exact that ratio_at_equal_error divides by; nothing when no step of it is as good.
+    /// Time step, in s, of the exact run that ratio_at_equal_error divides by; nothing if no exact run is as accurate.
     std::optional<double> equal_error_step;
 };
 
-/// The run that all are measured against: exact at a fine step.
+/// The reference run for all errors: exact at a fine step.
 struct ComparisonReference {
     RunFigures figures;
-    double energy_scale = 0.0;   ///< J, what energy errors are divided by
-    bool has_potential = false;  ///< energies are kinetic plus potential; false: kinetic only
+    double energy_scale = 0.0;   ///< in J, divisor of energy errors
+    bool has_potential = false;  ///< true: energies are kinetic plus potential; false: kinetic only
 };
 
-/// Everything that a comparison finds.
+/// Results of a comparison.
 struct Comparison {
     ComparisonPlan plan;
-    SimulationOptions options;  ///< the scene's own
+    SimulationOptions options;  ///< options of the scene
     ComparisonReference reference;
-    std::vector<ComparisonRow> rows;  ///< responses in the order of the plan, of each the steps from long to short
+    std::vector<ComparisonRow> rows;  ///< in the order of the plan's responses, each from long to short steps
 
-    /// The rows that were asked for, in their order.
+    /// Returns the requested rows, in their order.
     [[nodiscard]] std::vector<const ComparisonRow*> listed_rows() const;
 };
 
-/// Where a comparison is.
+/// Progress of a comparison.
 struct ComparisonProgress {
     std::size_t run = 0;   ///< number of the present run, from 1
-    std::size_t runs = 0;  ///< in all
+    std::size_t runs = 0;  ///< number of all runs
     std::string response;
-    double time_step = 0.0;    ///< s
-    std::uint32_t repeat = 0;  ///< of a timed run, from 1; 0: a measured one
-    std::uint64_t step = 0;    ///< steps done of this run
-    std::uint64_t steps = 0;   ///< in all
+    double time_step = 0.0;    ///< in s
+    std::uint32_t repeat = 0;  ///< number of a timed run, from 1; 0: a measured run
+    std::uint64_t step = 0;    ///< completed steps of this run
+    std::uint64_t steps = 0;   ///< all steps of this run
 };
 
-/// Called after every step of every run; false ends the comparison.
+/// Function called after every step of every run. If it returns false, the comparison ends.
 using ComparisonHook = std::function<bool(const ComparisonProgress&)>;
 
-/// Runs nothing: throws InputError, one line, for a setup that cannot work, or that refuses a response of the plan; the
-/// line names that one and the responses that are left.
+/// Checks a comparison without running it. Throws InputError, with a message of one line, for an invalid setup or one
+/// that refuses a response of the plan. The message names that response and the remaining ones.
 void require_comparable(SimulationSetup setup, const ComparisonPlan& plan);
 
-/// Runs the plan on a scene: the reference and every row once with all checks on, then the timed runs, one after the
-/// other within a repeat so that noise hits all alike. Nothing when the hook has ended it. The numbers apart from the
-/// costs are the same every time. Throws InputError as require_comparable() does, before anything runs, and RunError
-/// when a timed run ends in another state than the measured one.
+/// Runs the plan on a scene: the reference and every row once with all checks on, then the timed runs. Each repeat runs
+/// all rows one after the other, so that noise affects all rows alike. Returns nothing if the hook has ended it. All
+/// numbers except the costs are reproducible. Throws InputError as require_comparable() does, before the first run.
+/// Throws RunError if a timed run ends in another state than the measured one.
 [[nodiscard]] std::optional<Comparison> compare_responses(SimulationSetup setup, const ComparisonPlan& plan,
                                                           const ComparisonHook& hook = {});
 

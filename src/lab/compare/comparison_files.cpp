@@ -15,8 +15,8 @@ namespace {
 
 using Row = ComparisonRow;
 
-// A column whose value is an expression of the row; `all` is the comparison. A macro, since a lambda for each of forty
-// columns would say the same types forty times.
+// A column whose value is an expression of the row. `all` is the comparison. This is a macro, because forty lambdas
+// would repeat the same types forty times.
 #define RICOCHET_COLUMN(name, value)                                                                          \
     ComparisonColumn {                                                                                        \
         name, []([[maybe_unused]] const Row& row, [[maybe_unused]] const Comparison& all) -> ComparisonCell { \
@@ -171,7 +171,7 @@ Json row_json(const ComparisonRow& row, const Comparison& comparison) {
     Json json;
     for (const ComparisonColumn& column : comparison_columns())
         json[column.name] = json_of(column.cell(row, comparison));
-    json["warnings"] = row.figures.warnings;  // in words
+    json["warnings"] = row.figures.warnings;  // as text
     json["cost_seconds_each"] = row.cost.seconds_each;
     return json;
 }
@@ -208,14 +208,14 @@ std::string comparison_json(const Comparison& comparison, const ComparisonSource
     json["settings"] = settings_json(comparison, source);
     json["reference"] = reference_json(comparison);
     json["rows"] = Json::array();
-    json["base"] = Json::array();  // exact where it was not asked for
+    json["base"] = Json::array();  // exact, if it was not requested
     for (const ComparisonRow& row : comparison.rows) {
         json[row.listed ? "rows" : "base"].push_back(row_json(row, comparison));
     }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-// No cell holds a comma, a quote or a line break, so none needs quotes.
+// No cell contains a comma, a quote or a line break, so none needs quotes.
 std::string comparison_csv(const Comparison& comparison) {
     std::string text = header(',') + "\r\n";
     for (const ComparisonRow* row : comparison.listed_rows()) text += line_of(*row, comparison, ',', "") + "\r\n";

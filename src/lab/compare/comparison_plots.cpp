@@ -17,25 +17,25 @@ struct StepPlot {
     const char* file;
     const char* title;
     const char* label;   // of the vertical axis
-    const char* column;  // what is drawn
+    const char* column;  // values to draw
     bool logarithmic;
 };
 
 constexpr std::array kStepPlots{
-    StepPlot{"cost.png", "What a particle costs in a step", "ns a particle-step", "cost_ns_per_particle_step", true},
+    StepPlot{"cost.png", "Cost per particle-step", "ns per particle-step", "cost_ns_per_particle_step", true},
     StepPlot{"error_position.png", "Distance from the reference at the end", "rms distance [m]", "position_error_rms",
              true},
     StepPlot{"error_impact.png", "Error of the time of the first impact", "median error [s]", "impact_error_median",
              true},
-    StepPlot{"penetration.png", "Deepest place behind a surface", "depth [m]", "penetration_deepest", true},
+    StepPlot{"penetration.png", "Largest depth behind a surface", "depth [m]", "penetration_deepest", true},
     StepPlot{"tunnelled.png", "Particles that went through a surface", "particles tunnelled", "tunnelled", false},
 };
 
 constexpr std::size_t kMostTics = 8;
 
 struct Values {
-    std::vector<double> positive;  // of all responses
-    bool any = false;              // there are numbers at all
+    std::vector<double> positive;  // values of all responses
+    bool any = false;              // true: there is at least one number
 };
 
 double value_of(const ComparisonRow& row, const Comparison& comparison, const char* column) {
@@ -54,7 +54,7 @@ std::string script_start(const Comparison& comparison) {
            gnuplot_line_styles(comparison.plan.responses.size());
 }
 
-/// The axis of time steps, marked at the very steps where they are few.
+/// Returns the axis of time steps. If they are few, it has a tick at each step.
 std::string step_axis(const std::vector<double>& steps) {
     constexpr double kMargin = 1.3;
     std::string text = fmt::format("set xlabel 'time step [s]'\nset logscale x\nset xrange [{:.6g}:{:.6g}]\n",
@@ -65,7 +65,8 @@ std::string step_axis(const std::vector<double>& steps) {
     return text + "set xtics (" + tics + ")\n";
 }
 
-/// Whole decades around the values, so that every range has labels; a plain axis from 0 where nothing is above it.
+/// Returns an axis of whole decades around the values, so that every range has labels. If no value is above 0, it is a
+/// linear axis from 0.
 std::string value_axis(const Values& values, bool logarithmic) {
     if (values.positive.empty()) return "unset logscale y\nset yrange [-0.05:1]\n";
     const auto [least, most] = std::minmax_element(values.positive.begin(), values.positive.end());
@@ -83,7 +84,7 @@ std::vector<const ComparisonRow*> rows_of(const Comparison& comparison, const Re
     return rows;
 }
 
-/// One response's line; where nothing of it can be drawn, its name with the reason.
+/// Returns the line of one response. If it has no points to draw, the key shows its name with the reason.
 std::string curve(const Comparison& comparison, std::size_t index, const StepPlot& plot, bool logarithmic) {
     Values values;
     const std::string name = name_of(comparison.plan.responses[index]);

@@ -33,7 +33,7 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
-/// One part for every response.
+/// Returns text with one part per response.
 std::string for_each_response(const Comparison& comparison, const std::function<std::string(const Rows&)>& part_of) {
     std::vector<std::string> parts;
     for (const ResponseChoice& response : comparison.plan.responses) {
@@ -42,7 +42,7 @@ std::string for_each_response(const Comparison& comparison, const std::function<
     return joined(parts);
 }
 
-/// One part for every response, at the step that is shown over time.
+/// Returns text with one part per response, at the step that is shown over time.
 std::string at_shown_step(const Comparison& comparison,
                           const std::function<std::string(const ComparisonRow&)>& part_of) {
     return for_each_response(comparison, [&](const Rows& rows) {
@@ -61,7 +61,8 @@ std::string cost_reading(const Comparison& comparison) {
                        }));
 }
 
-/// From the longest to the shortest step; with the power of the step that this would be, where both are above 0.
+/// Returns the values at the longest and the shortest step. If both are above 0, adds the power of the step that
+/// connects them.
 std::string trend(const Rows& rows, Number number, const char* unit) {
     const double from = number(*rows.front());
     const double to = number(*rows.back());
@@ -133,7 +134,7 @@ std::string penetration_reading(const Comparison& comparison) {
         }
     }
     std::string text;
-    if (!parts.empty()) text += fmt::format("Deepest places behind a surface: {}.", joined(parts));
+    if (!parts.empty()) text += fmt::format("Largest depths behind a surface: {}.", joined(parts));
     if (!never.empty())
         text += fmt::format("{}Never seen behind a surface: {}.", text.empty() ? "" : " ", joined(never));
     return text;

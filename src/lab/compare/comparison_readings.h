@@ -1,5 +1,5 @@
 /// \file
-/// What a picture of a comparison shows, in a sentence or two made from the numbers.
+/// Sentences that describe the pictures of a comparison, made from the numbers.
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace ricochet {
 
-/// A number with three digits; `-` where it is none.
+/// Returns a number with three digits, or `-` if it is not finite.
 [[nodiscard]] std::string short_text(double number);
 
-/// picture: one of kComparisonPictures. Throws std::invalid_argument for others.
+/// Returns one or two sentences that describe a picture, which is one of kComparisonPictures. Throws
+/// std::invalid_argument for others.
 [[nodiscard]] std::string reading_of(const std::string& picture, const Comparison& comparison);
 
 }  // namespace ricochet

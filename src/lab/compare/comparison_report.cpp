@@ -17,12 +17,12 @@ namespace {
 
 using Table = std::vector<std::vector<std::string>>;
 
-/// A piece of the report, before it is known in which language it is written.
+/// A block of the report, independent of the output format.
 struct Block {
     enum class Kind { heading, paragraph, list, table, picture };
     Kind kind = Kind::paragraph;
-    std::string text;  // of a picture: its file
-    Table cells;       // of a list: one a line
+    std::string text;  // name of the file, for a picture
+    Table cells;       // one line each, for a list
 };
 
 Block heading(std::string text) { return {Block::Kind::heading, std::move(text), {}}; }
@@ -44,10 +44,10 @@ std::string settings_of(const ResponseChoice& response, const SimulationOptions&
             return fmt::format("offset {:.3g} m", options.project.offset);
         case ResponseKind::penalty:
             return fmt::format(
-                "{}, {} sub-steps a step, friction speed {:.3g} m/s",
+                "{}, {} substeps per step, friction speed {:.3g} m/s",
                 options.penalty.stiffness
                     ? fmt::format("stiffness {:.3g} N/m", *options.penalty.stiffness)
-                    : fmt::format("stiffness for contacts of {:.3g} sub-steps", options.penalty.contact_steps),
+                    : fmt::format("stiffness for contacts of {:.3g} substeps", options.penalty.contact_steps),
                 options.penalty.substeps, options.penalty.friction_speed);
         case ResponseKind::exact:
             break;
@@ -76,10 +76,10 @@ std::vector<std::string> what_was_run(const Comparison& comparison, const Compar
     return lines;
 }
 
-/// The counts behind the first table.
+/// Returns the table of the counts behind the first table.
 Table details(const Comparison& comparison) {
     Table table{{"response", "step (s)", "wrong side", "pushed back", "jumped", "passed", "behind a surface (share)",
-                 "mean depth (m)", "impacts missed", "extra", "contacts", "most a step", "unsimulated (s)", "resting",
+                 "mean depth (m)", "impacts missed", "extra", "contacts", "most per step", "unsimulated (s)", "resting",
                  "trials", "alive", "state"}};
     for (const ComparisonRow* row : comparison.listed_rows()) {
         const RunFigures& f = row->figures;
@@ -109,9 +109,9 @@ std::vector<std::string> warnings_of(const Comparison& comparison, const Compari
 std::vector<Block> blocks_of(const Comparison& comparison, const ComparisonSource& source,
                              const std::vector<std::string>& pictures, const std::string& remark) {
     std::vector<Block> blocks{
-        heading("What was run"),
+        heading("Setup"),
         list_of(what_was_run(comparison, source)),
-        heading("What came out"),
+        heading("Results"),
         {Block::Kind::table, {}, comparison_table(comparison)},
         paragraph("Errors are against the reference. Cost: time of all steps over particle-steps; the ratios are over "
                   "exact, at the same step and at the longest step of exact whose error is no larger.")};
@@ -130,7 +130,7 @@ std::vector<Block> blocks_of(const Comparison& comparison, const ComparisonSourc
     return blocks;
 }
 
-// Names of files may hold anything.
+// File names may contain any character.
 std::string escaped(const std::string& text, const std::vector<std::pair<char, const char*>>& table) {
     std::string result;
     for (const char c : text) {

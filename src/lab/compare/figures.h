@@ -1,5 +1,5 @@
 /// \file
-/// What one run of a comparison shows: the numbers of a row.
+/// Results of one run of a comparison: the numbers of a row.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,40 @@
 
 namespace ricochet {
 
-/// Instead of a number that does not exist, such as the mean of nothing.
+/// Value of a number that does not exist, such as the mean of an empty set.
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// Particles that went through a surface. Each particle counts once in every number.
+/// Particles that went through a surface. Each particle counts at most once in every number.
 struct TunnelCounts {
-    /// On the wrong side at the end of its life or of the run and not being pushed back, or jumped, or passed.
+    /// Particles that tunnelled: jumped, passed, or on the wrong side at the end of their life or of the run. A
+    /// particle on the wrong side does not count while the response pushes it back.
     std::uint64_t tunnelled = 0;
-    /// On the other side of a closed collider than at birth, or with an odd number of crossings of an open mesh.
+    /// Particles on another side of a closed collider than at birth, or with an odd number of crossings of an open
+    /// mesh.
     std::uint64_t wrong_side = 0;
-    std::uint64_t penetrating = 0;  ///< of those on the wrong side: the response knows and is pushing them back
-    std::uint64_t jumped = 0;       ///< went right through a closed collider within one segment
-    /// Went into a closed collider and came out of it where the surface faces the other way: through it in several
-    /// segments.
+    std::uint64_t penetrating = 0;  ///< particles on the wrong side that the response is pushing back
+    std::uint64_t jumped = 0;       ///< particles that crossed a closed collider completely within one segment
+    /// Particles that crossed a closed collider in several segments. They entered it and left it where the surface
+    /// faces the opposite direction.
     std::uint64_t passed = 0;
 };
 
-/// How large a set of errors is. Without any (count 0) the numbers are kNoNumber.
+/// Statistics of a set of errors. If the set is empty (count 0), the numbers are kNoNumber.
 struct ErrorSpread {
     std::uint64_t count = 0;
-    double median = kNoNumber;         ///< the mean of the middle two where the count is even
-    double percentile_95 = kNoNumber;  ///< the smallest error that at least 95 % do not exceed
+    double median = kNoNumber;         ///< mean of the middle two if the count is even
+    double percentile_95 = kNoNumber;  ///< smallest error that at least 95 % do not exceed
     double root_mean_square = kNoNumber;
     double largest = kNoNumber;
 };
 
-/// An entry of a series over time.
+/// An entry of a time series of energy errors.
 struct EnergyPoint {
-    double time = 0.0;   ///< s
+    double time = 0.0;   ///< in s
     double error = 0.0;  ///< see ReferenceErrors
 };
 
-/// What one measured run shows by itself.
+/// Results of one measured run by itself.
 struct RunFigures {
     SimulationStatistics statistics;
     TunnelCounts tunnel;
@@ -51,53 +53,57 @@ struct RunFigures {
     std::uint64_t state_hash = 0;
     std::vector<std::string> warnings;  ///< Simulation::warnings()
 
-    /// Particle-steps in which a particle was seen behind a surface, as a share of all; kNoNumber without any.
+    /// Returns the share of particle-steps in which a particle was seen behind a surface; kNoNumber if there were no
+    /// particle-steps.
     [[nodiscard]] double penetration_share() const {
         return statistics.particle_steps == 0
                    ? kNoNumber
                    : static_cast<double>(statistics.penetrations) / static_cast<double>(statistics.particle_steps);
     }
-    /// Mean of their depths, m; 0 without any.
+    /// Returns the mean depth of these, in m; 0 if there were none.
     [[nodiscard]] double penetration_mean() const {
         return statistics.penetrations == 0 ? 0.0
                                             : statistics.penetration_sum / static_cast<double>(statistics.penetrations);
     }
 };
 
-/// What one measured run shows against the reference.
+/// Errors of one measured run against the reference.
 struct ReferenceErrors {
-    /// Energy minus the reference's at the same time, over the energy scale; at most kMostEnergyPoints of the steps.
+    /// Energy minus the reference's at the same time, over the energy scale, at most at kMostEnergyPoints of the steps.
     std::vector<EnergyPoint> energy;
     double energy_largest = kNoNumber;  ///< largest magnitude over all steps
     double energy_final = kNoNumber;    ///< signed
-    /// Magnitudes, s, of the time of a particle's first impact minus that in the reference, where both have one.
+    /// Magnitudes, in s, of the difference between the times of a particle's first impact in this run and in the
+    /// reference. Only particles with both impacts count.
     ErrorSpread impact;
-    std::uint64_t impacts_missed = 0;  ///< particles that have an impact in the reference only
-    std::uint64_t impacts_extra = 0;   ///< particles that have one in this run only
-    /// Distances, m, between the particles' last positions here and there, where both are alive.
+    std::uint64_t impacts_missed = 0;  ///< particles with an impact in the reference only
+    std::uint64_t impacts_extra = 0;   ///< particles with an impact in this run only
+    /// Distances, in m, between a particle's last positions in both runs. Only particles alive in both count.
     ErrorSpread position;
 };
 
-/// Most points of ReferenceErrors::energy.
+/// Largest number of points of ReferenceErrors::energy.
 inline constexpr std::size_t kMostEnergyPoints = 200;
 
-/// What a row cost. Only these numbers differ between two comparisons of the same scene.
+/// Costs of a row. Only these numbers differ between two comparisons of the same scene.
 struct RunCost {
-    std::vector<double> seconds_each;         ///< of all steps together, one a timed run
-    double seconds = kNoNumber;               ///< their median
+    std::vector<double> seconds_each;         ///< time of all steps together, one per timed run
+    double seconds = kNoNumber;               ///< median of seconds_each
     double ns_per_particle_step = kNoNumber;  ///< seconds over particle-steps
     double ns_per_contact = kNoNumber;        ///< seconds over contacts; kNoNumber without contacts
-    double ratio_at_equal_step = kNoNumber;   ///< over exact's at this step: the median of the repeats' ratios
-    double ratio_at_equal_error = kNoNumber;  ///< over exact's at ReferenceErrors no larger; kNoNumber without such
+    double ratio_at_equal_step = kNoNumber;   ///< relative to exact at this step: the median of the repeats' ratios
+    /// Ratio to the longest exact step with no larger error; kNoNumber without one.
+    double ratio_at_equal_error = kNoNumber;
 };
 
-// How large a set of numbers is.
+// Statistics of a set of numbers.
 
-/// The middle one, or the mean of the middle two; kNoNumber of nothing.
+/// Returns the middle value, or the mean of the middle two; kNoNumber for an empty set.
 [[nodiscard]] double median(std::vector<double> values);
-/// The smallest value that at least this share (0..1) of all does not exceed (nearest rank); kNoNumber of nothing.
+/// Returns the smallest value that at least this share (0..1) of all values does not exceed (nearest rank); kNoNumber
+/// for an empty set.
 [[nodiscard]] double percentile(std::vector<double> values, double share);
-/// Of errors >= 0; the root of the mean square is summed in the order given.
+/// Returns the statistics of errors >= 0. The root mean square is summed in the given order.
 [[nodiscard]] ErrorSpread spread_of(const std::vector<double>& errors);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// Pictures through the gnuplot program.
+// Draws pictures with the gnuplot program.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,19 @@ namespace ricochet {
 
 // The common style of the pictures that gnuplot draws for reports.
 
-/// The beginning of a script: terminal, grid, borders, key. A variable `ending` set before it is to be appended to the
-/// names of the pictures. remark: one line, what the script draws and how it is run.
+/// Returns the beginning of a script: terminal, grid, borders and key. The script has to append the variable `ending`,
+/// which may be set before it, to the names of the pictures. `remark` is one line that describes the pictures and
+/// the command that draws them.
 [[nodiscard]] std::string gnuplot_start(std::string_view remark);
 
-/// Defines line styles 1 to count: colours that the colour-blind tell apart, and points of different forms, those of
-/// the first larger, so that equal points show all.
+/// Returns definitions of line styles 1 to `count`. Their colours are distinct for colour-blind readers, and their
+/// points have different forms. Earlier styles have larger points, so that coinciding points stay visible.
 [[nodiscard]] std::string gnuplot_line_styles(std::size_t count);
 
-/// Runs a script in its folder and waits. The script must put the variable `ending` behind the names of the pictures
-/// that it writes; they appear under their own names only when all are complete. Returns why there are no pictures:
-/// empty, or one line (not installed, gnuplot's own words, stopped). should_stop: asked while waiting. Nothing is left
-/// behind either when a signal ends the process (core/unfinished_file.h).
+/// Runs a script in its folder and waits for its end. The script must append the variable `ending` to the names of the
+/// pictures that it writes. They get their own names only when all are complete. Returns an empty string, or one line
+/// that explains why there are no pictures: gnuplot is not installed, was stopped, or failed with a message.
+/// `should_stop` is called during the wait. No files remain if a signal ends the process (core/unfinished_file.h).
 [[nodiscard]] std::string draw_with_gnuplot(
     const std::filesystem::path& folder, const std::string& script, const std::vector<std::string>& pictures,
     const std::function<bool()>& should_stop = [] { return false; });

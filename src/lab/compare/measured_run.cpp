@@ -1,5 +1,5 @@
 /// \file
-/// Where a collider's surface faces at a particle's crossing, as well as a report of the verifier says where.
+/// Runs one measured or timed simulation, and computes surface normals at crossings from the verifier's reports.
 #include "lab/compare/measured_run.h"
 
 #include <algorithm>
@@ -21,12 +21,13 @@
 
 namespace ricochet {
 
-/// Keeps the surfaces of a simulation.
+/// The surfaces of a simulation, and their normals at crossings.
 class SurfaceNormals {
 public:
     explicit SurfaceNormals(const Simulation& simulation);
-    /// Of any length, for a crossing. Of a triangle by the counter-clockwise rule; of a ball or cylinder outward, for
-    /// the position where the segment ended, since that is what is reported. Zero where there is none: planes.
+    /// Returns the normal at a crossing, of any length. Normals of triangles follow the counter-clockwise rule. Normals
+    /// of balls and cylinders point outward; they are taken at the end of the segment, which is the reported position.
+    /// Returns zero for planes.
     [[nodiscard]] Vec3 at(const Violation& crossing) const;
 
 private:
@@ -66,7 +67,7 @@ Vec3 SurfaceNormals::at(const Violation& crossing) const {
     return cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
 }
 
-// Normals go into the world by the transposed inverse, whose columns are the cross products of the map's own.
+// Normals are transformed to the world by the transposed inverse. Its columns are the cross products of the map's own.
 Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
     const AffineMap& map = shape.world_from_unit;
     const Vec3 x{map.row_x.x, map.row_y.x, map.row_z.x};
@@ -88,7 +89,7 @@ Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
 
 namespace {
 
-/// Watches a run from step to step.
+/// Records the data of a run, step by step.
 class Measurement {
 public:
     explicit Measurement(const Simulation& simulation)
@@ -97,7 +98,7 @@ public:
         note_energy(simulation);
         if (simulation.spawns_children()) note_births(simulation);
     }
-    Measurement(const Measurement&) = delete;  // the judge asks the normals of this one
+    Measurement(const Measurement&) = delete;  // the judge refers to the normals of this object
     Measurement& operator=(const Measurement&) = delete;
     ~Measurement() = default;
 
@@ -132,7 +133,7 @@ private:
         if (potential) trace_.total.push_back(kinetic + *potential);
     }
 
-    // Those that are there from the start have no emitter.
+    // Records the keys of new particles. Particles that exist from the start have no emitter.
     void note_births(const Simulation& simulation) {
         for (const BirthRecord& birth : simulation.birth_records()) {
             while (trace_.keys.size() < birth.particle) trace_.keys.push_back({kNoEmitter, trace_.keys.size()});
@@ -205,7 +206,7 @@ bool is_as_good(const ReferenceErrors& exact, const ReferenceErrors& row) {
     if (row.position.count > 0 && exact.position.count > 0) {
         return exact.position.root_mean_square <= row.position.root_mean_square;
     }
-    return exact.impact.median <= row.impact.median;  // false where there is none
+    return exact.impact.median <= row.impact.median;  // false if there are none
 }
 
 }  // namespace
@@ -258,7 +259,8 @@ void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
 
 namespace {
 
-/// True for the steps that a series of at most kMostEnergyPoints keeps: the first, the last, evenly between.
+/// Returns true for the steps that a series of at most kMostEnergyPoints keeps: the first, the last, and steps evenly
+/// spaced between them.
 bool is_kept(std::size_t step, std::size_t count) {
     if (count <= kMostEnergyPoints || step == 0) return true;
     const std::size_t intervals = kMostEnergyPoints - 1;
@@ -286,7 +288,7 @@ std::size_t born(const RunTrace& trace) {
     return std::max({trace.first_impact.size(), trace.alive.size(), trace.keys.size()});
 }
 
-/// The reference's id of every particle of the run; kNobody where it was not born there.
+/// Returns the reference's id of every particle of the run; kNobody if it was not born in the reference.
 std::vector<std::size_t> partners(const RunTrace& run, const RunTrace& reference) {
     std::vector<std::size_t> result(born(run), kNobody);
     const std::size_t known = born(reference);
@@ -321,7 +323,7 @@ void add_impact_errors(const RunTrace& run, const RunTrace& reference, std::span
     }
     const auto all = std::count_if(reference.first_impact.begin(), reference.first_impact.end(),
                                    [](double time) { return !std::isnan(time); });
-    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // of those that were never born here
+    errors.impacts_missed += static_cast<std::uint64_t>(all) - matched;  // particles never born in this run
     errors.impact = spread_of(differences);
 }
 

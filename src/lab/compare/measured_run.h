@@ -1,5 +1,5 @@
 /// \file
-/// One run with all checks on: its figures, and what is needed to hold it against the reference.
+/// One run with all checks on: its results, and the data for its comparison with the reference.
 #pragma once
 
 #include <compare>
@@ -16,7 +16,7 @@
 
 namespace ricochet {
 
-/// Names a particle in every run of a scene: by the lineage of those that emitters make, by the id of the others.
+/// Name of a particle in every run of a scene: its lineage if it comes from an emitter, otherwise its id.
 struct ParticleKey {
     std::uint32_t emitter = kNoEmitter;
     std::uint64_t number = 0;
@@ -24,19 +24,21 @@ struct ParticleKey {
     friend auto operator<=>(const ParticleKey&, const ParticleKey&) = default;
 };
 
-/// What is kept of a run until it has been compared. Lists by particle have one entry an id; no histories.
+/// Data of a run that are kept until it has been compared. Lists by particle have one entry per id; they contain no
+/// histories.
 struct RunTrace {
-    std::vector<double> times;         ///< s, ascending: 0 and the end of every step
-    std::vector<double> kinetic;       ///< J, at these times
-    std::vector<double> total;         ///< J, kinetic plus potential; as long as has_potential
-    bool has_potential = true;         ///< the potential was defined all along
-    std::vector<double> first_impact;  ///< s; kNoNumber without one
-    std::vector<std::uint8_t> alive;   ///< at the end
-    std::vector<Vec3> end_position;    ///< m; of those alive
-    /// Where particles spawn others: who each is, whatever its id, which depends on the time step then. Else empty.
+    std::vector<double> times;         ///< in s, ascending: 0 and the end of every step
+    std::vector<double> kinetic;       ///< in J, at these times
+    std::vector<double> total;         ///< in J, kinetic plus potential; recorded as long as has_potential
+    bool has_potential = true;         ///< true: the potential was defined at all times
+    std::vector<double> first_impact;  ///< in s; kNoNumber without one
+    std::vector<std::uint8_t> alive;   ///< true at the end of the run
+    std::vector<Vec3> end_position;    ///< in m; of particles alive
+    /// Keys of the particles, if particles spawn others; otherwise empty. Ids depend on the time step then, keys do
+    /// not.
     std::vector<ParticleKey> keys;
 
-    /// What the energy of this run is: total where there is a potential, else kinetic.
+    /// Returns the energy of this run: total energy if there is a potential, otherwise kinetic energy.
     [[nodiscard]] const std::vector<double>& energy() const { return has_potential ? total : kinetic; }
 };
 
@@ -45,47 +47,50 @@ struct MeasuredRun {
     RunTrace trace;
 };
 
-/// Called after every step; false ends the run.
+/// Function called after every step. If it returns false, the run ends.
 using StepHook = std::function<bool(const Simulation&)>;
 
-/// Runs to the end with verification and contact records on. Nothing when the hook has ended it.
+/// Runs a simulation to the end with verification and contact records on. Returns nothing if the hook has ended it.
 [[nodiscard]] std::optional<MeasuredRun> measure_run(SimulationSetup setup, const StepHook& go_on);
 
-// One run for its time only, and what the times of a row come to.
+// One run for its time only, and the costs of a row.
 
-/// What a timed run gives.
+/// Result of a timed run.
 struct TimedRun {
     double seconds = 0.0;  ///< of Simulation::advance() alone, over the whole run
     std::uint64_t state_hash = 0;
 };
 
-/// Runs to the end without verification and records. Nothing when the hook, whose time does not count, has ended it.
+/// Runs a simulation to the end without verification and records. The time of the hook is not counted. Returns nothing
+/// if the hook has ended it.
 [[nodiscard]] std::optional<TimedRun> time_run(SimulationSetup setup, const StepHook& go_on);
 
-/// The median of a / b over the repeats.
+/// Returns the median of a / b over the repeats.
 [[nodiscard]] double ratio_of_times(const std::vector<double>& a, const std::vector<double>& b);
 
-/// The longest step of exact whose error is no larger than the row's: the root mean square of the distances at the end;
-/// where the row or exact has none, the median error of the first impacts. Nothing when there is no such step. exact:
-/// rows of the exact response by descending step.
+/// Returns the exact row with the longest step whose error is no larger than the row's. The error is the root mean
+/// square of the distances at the end. If the row or exact has none, it is the median error of the first impacts.
+/// Returns nothing if there is no such step. `exact` contains the rows of the exact response by descending step.
 [[nodiscard]] const ComparisonRow* equally_good(const ComparisonRow& row,
                                                 const std::vector<const ComparisonRow*>& exact);
 
-/// Fills the costs of a row from its times. at_equal_step: exact's row at the same step.
+/// Computes the costs of a row from its times. `at_equal_step` is exact's row at the same step.
 void settle_cost(ComparisonRow& row, const ComparisonRow& at_equal_step,
                  const std::vector<const ComparisonRow*>& exact);
 
-// One run against the reference: energies at equal times, first impacts and last positions of equal particles.
+// Errors of one run against the reference: energies at equal times, first impacts and last positions of equal
+// particles.
 
-/// Value at `time` of a series given at ascending times, linear between them and constant beyond both ends. Not empty.
+/// Returns the value at `time` of a series given at ascending times. It is interpolated linearly and constant beyond
+/// both ends. The series must not be empty.
 [[nodiscard]] double interpolate(std::span<const double> times, std::span<const double> values, double time);
 
-/// What energy errors are divided by, J: the largest rise of the reference's energy over its minimum, or its largest
-/// kinetic energy where that is larger.
+/// Returns the divisor of energy errors, in J. It is the larger of two values: the largest rise of the reference's
+/// energy over its minimum, and its largest kinetic energy.
 [[nodiscard]] double energy_scale(const RunTrace& reference);
 
-/// A particle is the same one where the keys are; without keys where the ids are, since the schedule of births does not
-/// depend on the time step.
+/// Returns the errors of a run. Particles correspond if their keys are equal. Without keys they correspond if their ids
+/// are equal, because the schedule of births does not depend on the time step.
 [[nodiscard]] ReferenceErrors errors_against(const RunTrace& run, const RunTrace& reference);
 
 }  // namespace ricochet

@@ -26,7 +26,7 @@ std::optional<Number> parse_all(std::string_view text) {
     return value;
 }
 
-/// The entries of a list with commas between them; an empty entry is refused.
+/// Returns the entries of a list separated by commas. Throws InputError for an empty entry.
 std::vector<std::string_view> entries_of(std::string_view option, std::string_view text) {
     std::vector<std::string_view> entries;
     std::string_view rest = text;

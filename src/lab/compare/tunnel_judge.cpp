@@ -14,7 +14,7 @@ bool same_position(const Vec3& a, const Vec3& b) {
     return max_abs(a - b) <= kSameCrossing * std::max(max_abs(a), max_abs(b));
 }
 
-/// Neighbouring triangles that a segment crosses in their common edge are one crossing.
+/// Counts crossings. Neighbouring triangles that a segment crosses in their common edge count as one crossing.
 std::size_t count_crossings(const std::vector<const Violation*>& meetings) {
     std::vector<Vec3> different;
     for (const Violation* crossing : meetings) {
@@ -64,8 +64,8 @@ void TunnelJudge::add_step(std::span<const Violation> violations) {
     for (const Pair& pair : flipped) toggle(odd_, pair);
 }
 
-// A segment that crossed a shape has gone in, come out, or passed through it. Ins and outs change the side, so where
-// the number of segments and the change of side do not agree, one has passed through.
+// A segment that crossed a shape has entered it, left it, or passed through it. Entering and leaving change the side.
+// If the number of segments and the change of side do not agree, one segment has passed through.
 void TunnelJudge::judge_shape(const Pair& pair, const Segments& segments, bool flipped) {
     std::size_t count = 0;
     for (const auto& [time, crossings] : segments) count += crossings.size();
@@ -91,8 +91,8 @@ void TunnelJudge::judge_mesh(const Pair& pair, ColliderKind kind, const Segments
     }
 }
 
-// A particle that a surface pushes back comes out where the surface faces the way it faced where it went in. One that
-// comes out where it faces the other way has passed through.
+// A particle that a surface pushes back leaves it through a part with the same facing as the entry. A particle that
+// leaves through a part with the opposite facing has passed through.
 void TunnelJudge::change_side(const Pair& pair, const Violation& crossing) {
     const Vec3 normal = normal_at_(crossing);
     const auto [entry, is_entry] = went_in_.try_emplace(pair, normal);

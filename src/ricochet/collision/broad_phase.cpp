@@ -8,11 +8,12 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of a path in search of pieces flat enough for the boxes. Only pieces near the triangles are halved; a path
-/// so curved that this is not enough is tested against every triangle.
+/// Largest number of times that a path is halved to find pieces flat enough for the boxes. Only pieces near the
+/// triangles are halved. A path that is still too curved then is tested against every triangle.
 constexpr int kPieceDepth = 40;
 
-// The margin for curvature keeps chords that begin on such a piece and end on the next one away from the triangles too.
+// Returns true if a piece of the path may come near the triangles. The margin for curvature also keeps chords that
+// begin on this piece and end on the next one away from the triangles.
 bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from,
                          double to) {
     Box3 box;
@@ -25,7 +26,7 @@ bool may_reach_triangles(const CollisionWorld& world, const QueryMargins& margin
     return !(gap.x > 0.0 || gap.y > 0.0 || gap.z > 0.0);
 }
 
-/// One path against the hierarchy, piece by piece.
+/// Tests one path against the bounding volume hierarchy, piece by piece.
 struct PieceQuery {
     const CollisionWorld& world;
     const QueryMargins& margins;
@@ -40,7 +41,7 @@ struct PieceQuery {
         }
     }
 
-    // Pieces are visited in the order of time, so a contact ends the query.
+    // Visits pieces in the order of time, so a contact ends the query.
     void test_piece(double from, double to, int depth) {
         if (from > narrow_phase.first_time() || candidates == CandidateSet::all) return;
         if (path.degree == 2) {
@@ -60,7 +61,7 @@ struct PieceQuery {
         }
     }
 
-    // Chords of the path that covers_chord() accepts are covered too.
+    // The tube also covers chords of the path that covers_chord() accepts.
     void query_chord(double from, double to) {
         const double span = to - from;
         const bool is_parabola = path.degree == 2;
@@ -75,12 +76,12 @@ struct PieceQuery {
     }
 };
 
-/// When a path first comes near a triangle, piece by piece.
+/// Computes when a path first comes near a triangle, piece by piece.
 struct ClearQuery {
     const CollisionWorld& world;
     const QueryMargins& margins;
     const Path& path;
-    double until;  ///< s, of interest, and then what has been found
+    double until;  ///< time of interest, in s; the result after the query
 
     void test_piece(double from, double to, int depth) {
         if (from >= until) return;
@@ -123,14 +124,14 @@ double broad_phase_margin(const Path& path, const QueryMargins& margins) {
     return margins.radius + 2.0 * margins.slack + std::min(path.sagitta(0.0, path.duration), 0.5 * margins.curvature);
 }
 
-// A point of a chord lies within the chord's sagitta of the path, and that point of the path within its piece's sagitta
-// of the piece's chord; together they must stay within what the boxes leave for it.
+// A point of a chord lies within the chord's sagitta of the path. The nearest path point lies within its piece's
+// sagitta of the piece's chord. The sum must not exceed the margin that the boxes leave for curvature.
 bool covers_chord(const CollisionWorld& world, const QueryMargins& margins, const Path& path, double from, double to) {
     return path.degree < 2 || world.triangles().empty() || 2.0 * path.sagitta(from, to) <= margins.curvature ||
            !may_reach_triangles(world, margins, path, from, to);
 }
 
-// Paths of which the boxes do not hold what lies beside them are tested against every triangle.
+// If the boxes do not cover the surroundings of a path, the path is tested against every triangle.
 CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins& margins, const Path& path,
                                  NarrowPhase& narrow_phase) {
     PieceQuery query{world, margins, path, narrow_phase};
@@ -139,7 +140,7 @@ CandidateSet test_triangles_near(const CollisionWorld& world, const QueryMargins
     } else if (!world.culls() || may_reach_triangles(world, margins, path, 0.0, path.duration)) {
         query.test_all();
     }
-    // Which chords a particle goes along does not depend on whether anything is culled.
+    // The chords that a particle follows must not depend on culling.
     if (!world.culls() && margins.boxes_hold) return CandidateSet::near;
     return query.candidates;
 }

@@ -10,23 +10,24 @@
 namespace ricochet {
 namespace {
 
-/// Surfaces that count, the nearest first. The search costs their third power.
+/// Largest number of surfaces considered, the nearest first. The cost of the search grows with its third power.
 constexpr std::size_t kMostSurfaces = 24;
 
-/// Rounds in which the displacement may bring other surfaces near.
+/// Largest number of rounds. A displacement can bring other surfaces near, which the next round includes.
 constexpr int kMostRounds = 8;
 
-/// Part of the clearance that a displacement may miss by rounding.
+/// Part of the clearance that a displacement may miss through rounding.
 constexpr double kClearEnough = 0x1p-20;
 
-/// Determinant of three normals, or squared sine of the angle between two, below which they count as dependent.
+/// Smallest determinant of three normals, or squared sine of the angle between two, for which they count as
+/// independent.
 constexpr double kDependent = 1e-24;
 
-/// A surface near the ball: the displacement d has to fulfil dot(d, normal) >= missing.
+/// A surface near the ball. The displacement d has to satisfy dot(d, normal) >= missing.
 struct Limit {
     SurfaceId surface = 0;
     Vec3 normal;
-    double missing = 0.0;  ///< m
+    double missing = 0.0;  ///< in m
 };
 
 /// Returns all surfaces nearer to the ball than `reach`, the nearest first.
@@ -56,7 +57,7 @@ std::vector<Limit> limits_near(const CollisionWorld& world, const Vec3& center, 
     return limits;
 }
 
-/// Searches the shortest displacement that fulfils all limits: it fulfils at most three of them with equality.
+/// Finds the shortest displacement that satisfies all limits. It satisfies at most three of them with equality.
 class ShortestDisplacement {
 public:
     ShortestDisplacement(std::span<const Limit> limits, double slack) : limits_(limits), slack_(slack) {}

@@ -1,5 +1,5 @@
 /// \file
-/// Colliders as a scene describes them.
+/// Descriptions of colliders, as a scene gives them.
 #pragma once
 
 #include <array>
@@ -15,52 +15,52 @@
 
 namespace ricochet {
 
-/// An infinite plane; solid on both sides (particles on either side stay there).
+/// An infinite plane. It is solid from both sides: particles on either side stay there.
 struct PlaneShape {
     Vec3 point;
-    Vec3 normal{0, 0, 1};  ///< need not be of unit length; not zero
+    Vec3 normal{0, 0, 1};  ///< any length but 0
 };
 
-/// A triangle mesh, two-sided. Scale, rotation and position are baked into world coordinates.
+/// A triangle mesh, solid from both sides. The collision world applies scale, rotation and position to its vertices.
 struct MeshShape {
     std::shared_ptr<const TriangleMesh> mesh;
     Placement placement;
-    std::string file;  ///< where it came from, for messages and reports; may be empty
-    /// Material of every triangle, as indices into the simulation's materials; empty: the collider's material
-    /// everywhere.
+    std::string file;  ///< source file, for messages and reports; may be empty
+    /// Material of every triangle, as indices into the simulation's materials. If empty, all triangles have the
+    /// collider's material.
     std::vector<std::uint32_t> triangle_materials = {};
-    /// Where its vertices are in time, before the placement, where it deforms: those of the mesh say nothing then.
-    /// Null: it keeps its shape.
+    /// Positions of the vertices over time, before the placement, of a deforming mesh; null for a rigid one. The
+    /// vertices of `mesh` are ignored if this is set.
     std::shared_ptr<const MeshMotion> motion = nullptr;
 };
 
-/// A ball about the local origin: a sphere, or an ellipsoid under a scale that differs by axis. Solid from both sides.
+/// A ball about the local origin: a sphere, or an ellipsoid if the scale differs by axis. It is solid from both sides.
 struct BallShape {
-    double radius = 1.0;  ///< m, > 0
+    double radius = 1.0;  ///< in m, > 0
     Placement placement;
 };
 
-/// A cylinder about the local z axis with flat caps, centred on the origin. Solid from both sides.
+/// A cylinder about the local z axis with flat caps, centred on the origin. It is solid from both sides.
 struct CylinderShape {
-    double radius = 1.0;  ///< m, > 0
-    double height = 1.0;  ///< m, > 0
+    double radius = 1.0;  ///< in m, > 0
+    double height = 1.0;  ///< in m, > 0
     Placement placement;
 };
 
-/// A box about the local origin; collides as its twelve triangles.
+/// A box about the local origin. It collides as its twelve triangles.
 struct CuboidShape {
-    Vec3 size{1, 1, 1};  ///< full edge lengths, m, > 0
+    Vec3 size{1, 1, 1};  ///< full edge lengths, in m, > 0
     Placement placement;
 };
 
-/// The map of the unit ball onto a ball collider.
+/// Returns the map of the unit ball onto a ball collider.
 [[nodiscard]] inline AffineMap world_from_unit(const BallShape& ball) {
     Placement placement = ball.placement;
     placement.scale *= ball.radius;
     return world_from_local(placement);
 }
 
-/// The map of the cylinder x^2 + y^2 <= 1, |z| <= 1 onto a cylinder collider.
+/// Returns the map of the cylinder x^2 + y^2 <= 1, |z| <= 1 onto a cylinder collider.
 [[nodiscard]] inline AffineMap world_from_unit(const CylinderShape& cylinder) {
     Placement placement = cylinder.placement;
     placement.scale.x *= cylinder.radius;
@@ -69,10 +69,10 @@ struct CuboidShape {
     return world_from_local(placement);
 }
 
-/// Any shape that particles can collide with.
+/// A shape that particles can collide with.
 using ColliderShape = std::variant<PlaneShape, MeshShape, BallShape, CylinderShape, CuboidShape>;
 
-/// The word by which scenes and files call a shape: plane, mesh, sphere, cylinder or box.
+/// Returns the name of a shape in scenes and files: plane, mesh, sphere, cylinder or box.
 [[nodiscard]] inline const char* type_name(const ColliderShape& shape) {
     constexpr std::array<const char*, std::variant_size_v<ColliderShape>> kNames{"plane", "mesh", "sphere", "cylinder",
                                                                                  "box"};
@@ -84,17 +84,18 @@ struct ColliderDescription {
     std::string name;
     ColliderShape shape;
     std::uint32_t material = 0;  ///< index into the simulation's materials
-    /// The frame that it stands in, and moves with: its placement is within that. Empty: the world.
+    /// Name of the frame that the collider moves with. Its placement is relative to that frame. If empty, it is the
+    /// world.
     std::string frame = {};
 };
 
-/// True for a mesh whose vertices move.
+/// Returns true if the collider is a mesh whose vertices move.
 [[nodiscard]] inline bool is_deforming(const ColliderDescription& collider) {
     const auto* const mesh = std::get_if<MeshShape>(&collider.shape);
     return mesh != nullptr && mesh->motion != nullptr;
 }
 
-/// Calls visit(material) for the materials of a collider and of the groups of its triangles, some more than once.
+/// Calls visit(material) for the materials of a collider and of its triangles. It may visit a material more than once.
 template <class Visit>
 void visit_materials(const ColliderDescription& collider, const Visit& visit) {
     visit(collider.material);

@@ -1,5 +1,5 @@
 /// \file
-/// All colliders of a scene and the one order of their surfaces, whatever frame they are in.
+/// All colliders of a scene, in all frames, with one order of their surfaces.
 #pragma once
 
 #include <cstddef>
@@ -11,35 +11,35 @@
 
 namespace ricochet {
 
-/// All colliders of a scene, whatever frame they stand in, and how their surfaces are numbered.
+/// All colliders of a scene, in all frames, and the numbers of their surfaces.
 class ColliderList {
 public:
-    /// Throws InputError that names the collider when a mesh has no triangles, or one material a triangle is not given
-    /// for each.
+    /// Throws InputError with the name of the collider if a mesh has no triangles, or has materials for only some of
+    /// them.
     explicit ColliderList(std::vector<ColliderDescription> colliders);
 
     [[nodiscard]] const std::vector<ColliderDescription>& all() const { return colliders_; }
     [[nodiscard]] std::size_t surface_count() const { return first_surfaces_.back(); }
-    /// First surface of a collider; of the number after the last: surface_count().
+    /// Returns the first surface of a collider, or surface_count() for the index after the last collider.
     [[nodiscard]] SurfaceId first_surface_of(std::size_t collider) const { return first_surfaces_[collider]; }
     [[nodiscard]] std::uint32_t collider_of(SurfaceId surface) const {
         return colliders_.size() == 1 ? 0 : collider_among_many(surface);
     }
     [[nodiscard]] SurfaceName name_of(SurfaceId surface) const;
-    /// Material of a surface: that of its triangle, or of its collider.
+    /// Returns the material of a surface: the material of its triangle if it has one, otherwise of its collider.
     [[nodiscard]] std::uint32_t material_of(SurfaceId surface) const;
-    /// Lets go of a mesh of which a world holds its own copy.
+    /// Releases a mesh of which a collision world has its own copy.
     void drop_mesh(std::size_t collider);
-    /// The same of one that deforms, whose motion, placed, takes the place of the one that was given.
+    /// Replaces the motion of a deforming mesh by the given one, with the placement applied. Releases its mesh.
     void replace_motion(std::size_t collider, std::shared_ptr<const MeshMotion> motion);
-    /// Bytes, without the meshes.
+    /// Returns the memory of the list, in bytes, without the meshes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     [[nodiscard]] std::uint32_t collider_among_many(SurfaceId surface) const;
 
     std::vector<ColliderDescription> colliders_;
-    std::vector<SurfaceId> first_surfaces_;  ///< of each collider, and what would be that of the next
+    std::vector<SurfaceId> first_surfaces_;  ///< one per collider, then surface_count()
 };
 
 }  // namespace ricochet

@@ -31,8 +31,8 @@ AffineMap checked_map(const ColliderDescription& collider, const AffineMap& map)
     return map;
 }
 
-/// Refuses a surface whose extents, m, along its own axes are too small once it is placed. A scale of zero is left to
-/// checked_map().
+/// Throws InputError if a surface is too small after its placement. `extents`, in m, are its sizes along its own axes.
+/// A scale of zero is left to checked_map().
 void require_size(const ColliderDescription& collider, const AffineMap& map, const Vec3& extents) {
     for (int axis = 0; axis < 3; ++axis) {
         const double scale = max_abs(Vec3{map.row_x[axis], map.row_y[axis], map.row_z[axis]});
@@ -46,7 +46,8 @@ void require_size(const ColliderDescription& collider, const AffineMap& map, con
     }
 }
 
-/// The same for a mesh. One that is flat along an axis is as large there as it is elsewhere.
+/// Throws InputError if a mesh is too small after its placement. A mesh may be flat, so its largest extent counts for
+/// all axes.
 void require_size(const ColliderDescription& collider, const AffineMap& map, const std::vector<Vec3>& vertices) {
     Box3 box;
     for (const Vec3& vertex : vertices) box.include(vertex);
@@ -54,7 +55,7 @@ void require_size(const ColliderDescription& collider, const AffineMap& map, con
     require_size(collider, map, Vec3{largest, largest, largest});
 }
 
-/// That of a shape, once its size is known to be in the range.
+/// Returns the map of a shape after checks of its size and placement.
 AffineMap checked_shape(const ColliderDescription& collider, const AffineMap& map) {
     require_size(collider, map, Vec3{2, 2, 2});
     return checked_map(collider, map);
@@ -88,8 +89,8 @@ Box3 box_of(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     return all;
 }
 
-/// True where a triangle's rim is as near as its face, to rounding, and the face is below: a sphere that rolls over the
-/// rim changes from one to the other there, not a part in 1e8 of its radius before.
+/// Returns true if p is above the triangle's face and the distances from its rim and its face differ by rounding only.
+/// A sphere that rolls over a rim then changes from face to rim exactly there, and not 1e-8 of its radius too early.
 bool is_over_rim(const TrianglePlane& triangle, const Vec3& p, double distance_from_rim) {
     const double height = std::fabs(triangle.signed_distance(p));
     if (height < (1.0 - kRimTie) * distance_from_rim || height == 0.0) return false;
@@ -137,7 +138,7 @@ void CollisionWorld::add(std::size_t number) {
     }
 }
 
-/// The running triangle count keeps the ranges sorted by first triangle.
+/// Appends the range of a collider. The running triangle count keeps the ranges sorted by first triangle.
 void CollisionWorld::add_range(std::size_t number, Kind kind, std::size_t index) {
     ranges_.push_back({list_->first_surface_of(number), static_cast<std::uint32_t>(triangles_.size()),
                        static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(index), kind});
@@ -148,8 +149,8 @@ void CollisionWorld::add_shape(std::size_t number, const AnalyticShape& shape) {
     shapes_.push_back({shape, list_->first_surface_of(number)});
 }
 
-// The boxes of a class are enlarged by its largest radius and the chord margin; radii up to half the chord margin share
-// the points' class.
+// Boxes of a class are enlarged by its largest radius and the chord margin. Radii up to half the chord margin share the
+// class of points.
 double CollisionWorld::largest_radius_of_class(double radius) const {
     if (radius <= 0.5 * chord_margin_) return 0.5 * chord_margin_;
     const int exponent = std::ilogb(radius);
@@ -244,7 +245,7 @@ double CollisionWorld::mean_box() const {
 
 SurfaceId CollisionWorld::surface_of_triangle(std::uint32_t triangle) const {
     if (ranges_.size() == 1) return triangle;
-    // Planes own no triangles, so the last range that starts at or before the triangle and is a mesh is the owner.
+    // Planes own no triangles. The owner is therefore the last range that starts at or before the triangle.
     auto after = std::upper_bound(ranges_.begin(), ranges_.end(), triangle,
                                   [](std::uint32_t t, const Range& range) { return t < range.first_triangle; });
     --after;
@@ -313,7 +314,7 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 }
 
 double CollisionWorld::size_of(SurfaceId surface) const {
-    // A ball's box is 3.5 of its radii long. A long cylinder bends as much as a short one.
+    // The diagonal of a ball's box is 3.5 of its radii. A long cylinder has the same curvature as a short one.
     constexpr double kMostRadii = 4.0;
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind != Kind::shape) return bounds_.diagonal();

@@ -1,5 +1,5 @@
 /// \file
-/// What a contact query finds: the first contact of a path, and the triangles that come near it next.
+/// Results of contact queries: the first contact of a path, and the triangles that come near it next.
 #pragma once
 
 #include <array>
@@ -17,20 +17,20 @@ namespace ricochet {
 struct ContactSurface {
     SurfaceId surface = 0;
     Vec3 normal;       ///< unit, facing the side that the path comes from; for spheres from the surface to the centre
-    bool flat = true;  ///< a plane or the inside of a triangle; false: an edge, a vertex or a curved surface
-    /// The particle slides, rolls or rests on it when it comes to the impact. Its normal speed there is rounding, so
-    /// the impact never counts it as approached.
+    bool flat = true;  ///< true: a plane, cap or face of a triangle; false: an edge, a vertex or a curved surface
+    /// True if the particle already slides, rolls or rests on the surface before the impact. Its normal speed there is
+    /// rounding, so the impact never treats it as an approached surface.
     bool holds = false;
 };
 
-/// The first contact of a path: all surfaces that it reaches at the same time (kSimultaneousUlps), the smallest number
-/// first.
+/// The first contact of a path: all surfaces that it reaches at the same time (kSimultaneousUlps), in ascending order
+/// of their numbers.
 struct Contact {
     static constexpr int kMostSurfaces = 8;
 
-    double time = 0.0;  ///< time of impact, s along the path
+    double time = 0.0;  ///< time of impact, in s, from the start of the path
     std::array<ContactSurface, kMostSurfaces> surfaces;
-    int count = 0;  ///< at least 1; of more than kMostSurfaces the smallest numbers are kept
+    int count = 0;  ///< at least 1; if more than kMostSurfaces are hit, those with the smallest numbers are kept
 
     [[nodiscard]] std::span<const ContactSurface> all() const {
         return {surfaces.data(), static_cast<std::size_t>(count)};
@@ -38,22 +38,23 @@ struct Contact {
     [[nodiscard]] const ContactSurface& first() const { return surfaces[0]; }
 };
 
-/// Unit normal of a surface that a point at p reaches from `side` (+1, -1) with velocity v. A point that moves exactly
-/// in the surface's plane (side 0) has hit its boundary head-on: the normal is then against the motion.
+/// Returns the unit normal of a surface that a point at p with velocity v reaches from `side` (+1 or -1). A point that
+/// moves exactly in the surface's plane (side 0) has hit its boundary head-on. Its normal is then opposite to its
+/// velocity.
 [[nodiscard]] Vec3 facing_normal(const CollisionWorld& world, SurfaceId surface, int side, const Vec3& p,
                                  const Vec3& v);
-/// The same for a surface whose unit normal is known.
+/// Returns the facing normal of a surface whose unit normal is known.
 [[nodiscard]] Vec3 facing_normal(const Vec3& normal, int side, const Vec3& v);
 
-/// All triangles that come near a particle's path in one step to come, where they are known and few. They serve speed
-/// only: the query that they are cached for needs no broad phase.
+/// All triangles that come near a particle's path in one later step, if they are known and few. They affect speed only:
+/// the query of that step needs no broad phase.
 class ContactCandidates {
 public:
     static constexpr std::size_t kMost = 4;
 
-    /// Nothing is known.
+    /// Creates a list of unknown candidates.
     constexpr ContactCandidates() { triangles_.fill(kUnknown); }
-    /// No triangle comes near.
+    /// Returns an empty list: no triangle comes near.
     [[nodiscard]] static constexpr ContactCandidates none() {
         ContactCandidates candidates;
         candidates.triangles_.fill(kNoTriangle);
@@ -61,13 +62,13 @@ public:
     }
 
     [[nodiscard]] bool is_known() const { return triangles_[0] != kUnknown; }
-    /// Only when is_known().
+    /// Returns the triangles. Requires is_known().
     [[nodiscard]] std::span<const std::uint32_t> triangles() const {
         std::size_t count = 0;
         while (count < kMost && triangles_[count] != kNoTriangle) ++count;
         return {triangles_.data(), count};
     }
-    /// One more; with more than kMost nothing is known any longer. Only when is_known().
+    /// Adds a triangle. If there are more than kMost, the candidates become unknown. Requires is_known().
     void add(std::uint32_t triangle) {
         const std::size_t count = triangles().size();
         if (count == kMost) {

@@ -67,7 +67,7 @@ std::optional<SurfaceId> NearSurfaces::blocker(const Vec3& p, const Vec3& q) con
     return smallest;
 }
 
-/// Of shapes the part that is nearest to p.
+/// Returns the surfaces in ascending order. Each shape is represented by its part nearest to p.
 std::vector<SurfaceId> NearSurfaces::surfaces(const Vec3& p) const {
     std::vector<SurfaceId> list;
     for (const std::uint32_t k : scratch_->planes) list.push_back(world().planes()[k].surface);
@@ -145,15 +145,15 @@ double NearSurfaces::offset_at(const WayPoint& p) const {
 
 namespace {
 
-/// True when one is hit. Otherwise the particle has passed them all, and what comes then is not known: the triangles
-/// near the path have to be found by the broad phase.
+/// Returns true if the path hits a candidate. Otherwise the particle has passed all of them and later contacts are
+/// unknown: the broad phase has to find the triangles near the path.
 bool is_candidate_hit(const ContactCandidates& candidates, NarrowPhase& narrow_phase, ContactScratch& scratch) {
     for (const std::uint32_t triangle : candidates.triangles()) (void)narrow_phase.test_triangle(triangle);
     if (!narrow_phase.has_hit()) scratch.triangles.clear();
     return narrow_phase.has_hit();
 }
 
-/// Tests the triangles near the path, and looks ahead where nothing is hit; planes and shapes have been tested.
+/// Tests the triangles near the path and looks ahead if nothing is hit. Planes and shapes must have been tested.
 LookAheadOutcome test_triangles(const CollisionWorld& world, const QueryMargins& margins, const ContactQuery& query,
                                 NarrowPhase& narrow_phase, ContactScratch& scratch) {
     if (query.candidates.is_known() && is_candidate_hit(query.candidates, narrow_phase, scratch)) {

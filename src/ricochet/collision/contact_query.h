@@ -1,6 +1,6 @@
 /// \file
-/// The first contact of a path with the world: planes and shapes, then triangles by broad and narrow phase, and in the
-/// same query how long the path remains free beyond its end; and the certificate of segments beside the path.
+/// Finds the first contact of a path with the world: planes and shapes, then triangles by broad and narrow phase. The
+/// same query finds how long the path remains free beyond its end. It also certifies segments beside the path.
 #pragma once
 
 #include <optional>
@@ -17,55 +17,59 @@ class ForeignSurfaces;
 
 // The surfaces near a path, and the certificate of segments beside it.
 
-/// The surfaces that a contact query has gathered near its path, up to the first contact. What it says about segments
-/// holds for those on the path or within slack() of it. Valid until the next query with the same scratch memory.
+/// The surfaces that a contact query has gathered near its path, up to the first contact. Statements about segments are
+/// valid for segments on the path or within slack() of it. Valid until the next query with the same scratch memory.
 class NearSurfaces {
 public:
     NearSurfaces(const SurfaceGeometry& geometry, const ContactScratch& scratch, const QueryMargins& margins,
                  const Vec3& start, CandidateSet candidates)
         : geometry_(geometry), scratch_(&scratch), margins_(margins), start_(start), candidates_(candidates) {}
 
-    /// The certificate: no surface blocks the closed segment [p, q] of the centre. A surface blocks a segment that
-    /// intersects it (decided exactly for planes and triangles) or that comes nearer to it than the radius less
-    /// sphere_tolerance(). Surfaces overlapped from the start only block what intersects them.
+    /// Returns true if no surface blocks the closed segment [p, q] of the centre. This is the certificate. A surface
+    /// blocks a segment that intersects it; this is decided exactly for planes and triangles. It also blocks a segment
+    /// that comes nearer to it than the radius less sphere_tolerance(). Surfaces that are overlapped from the start
+    /// block only segments that intersect them.
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
-    /// The surface of the smallest number that blocks the segment.
+    /// Returns the surface with the smallest number that blocks the segment, or nothing.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
-    /// The same for a segment that starts on surfaces: true when it leaves all of them and intersects no other.
+    /// Returns true if a segment that starts on surfaces leaves all of them and intersects no other.
     [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
 
-    // The same of links from one stored position to the next, which have to be free in the frame of every collider
-    // that is near. Where nothing moves, a link is the segment.
+    // Functions for space-time segments between two stored positions. Such a segment is free if it is free in the frame
+    // of every collider near it. If nothing moves, it is the straight segment.
 
-    /// From now on with the surfaces of other frames, which must outlive it.
+    /// Adds the surfaces of other frames, which must outlive this object.
     void join(const ForeignSurfaces& foreign) { foreign_ = &foreign; }
     [[nodiscard]] const ForeignSurfaces* foreign() const { return foreign_; }
-    /// Where the path starts.
+    /// Returns the start of the path.
     [[nodiscard]] WayPoint start() const;
-    /// The stored position nearest to a point at a time along the path.
+    /// Returns the stored position nearest to a point at a time along the path.
     [[nodiscard]] WayPoint point_at(const Vec3& p, double time) const;
     [[nodiscard]] bool is_link_free(const WayPoint& p, const WayPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> link_blocker(const WayPoint& p, const WayPoint& q) const;
-    /// CollisionWorld's functions of the same names for a surface of any frame, seen from this one.
+    /// CollisionWorld's functions of the same names. They accept a surface of any frame and return values in this
+    /// frame.
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] int side_of_surface(SurfaceId surface, const WayPoint& p) const;
     [[nodiscard]] bool is_flat(SurfaceId surface) const;
-    /// m, the contact offset for a position, by the largest of its coordinates in all frames.
+    /// Returns the contact offset, in m, for the largest coordinate that a position has in any frame.
     [[nodiscard]] double offset_at(const WayPoint& p) const;
 
-    /// True when the surfaces include all that the path's chord between two times may intersect.
+    /// Returns true if the surfaces include all surfaces that the path's chord between two times may intersect.
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
-    /// All of them on which the point lies exactly.
+    /// Returns the surfaces on which the point lies exactly.
     [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
-    /// True when the sphere overlaps a surface by more than the tolerance (a point: lies on one) at the path's start.
+    /// Returns true if the particle starts in overlap. A sphere overlaps a surface by more than the tolerance; a point
+    /// lies on one.
     [[nodiscard]] bool starts_in_overlap() const;
 
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
     [[nodiscard]] const CollisionWorld& world() const { return geometry_.world(); }
     [[nodiscard]] double radius() const { return margins_.radius; }
-    /// m, how far beside the path certified positions may lie: nothing is known of surfaces further off.
+    /// Returns the distance from the path, in m, within which positions can be certified. Surfaces farther away are
+    /// unknown.
     [[nodiscard]] double slack() const { return margins_.slack; }
 
 private:
@@ -80,33 +84,33 @@ private:
     QueryMargins margins_;
     Vec3 start_;
     CandidateSet candidates_;
-    const ForeignSurfaces* foreign_ = nullptr;  ///< null where there are none
+    const ForeignSurfaces* foreign_ = nullptr;  ///< null if no other frame has surfaces near
 };
 
-/// A path, and what is already known about it.
+/// A path, and the facts already known about it.
 struct ContactQuery {
-    const Path& path;     ///< of the centre; finite
-    double radius = 0.0;  ///< m, 0 for a point; prepared (CollisionWorld::prepare_radius)
-    /// Where the particle goes after the path, with which it begins; null: do not look ahead. The contact is the same.
+    const Path& path;     ///< path of the centre; finite
+    double radius = 0.0;  ///< in m, 0 for a point; prepared (CollisionWorld::prepare_radius)
+    /// Continuation of the path, which begins with `path`; null: no look-ahead. The contact does not depend on it.
     const LookAhead* look_ahead = nullptr;
-    /// All triangles near this path, where an earlier query has found them (LookAheadResult::candidates).
+    /// All triangles near this path, if an earlier query has found them (LookAheadResult::candidates).
     ContactCandidates candidates = {};
-    /// Surfaces that the particle touches and is held by, so that it follows them: they are no contacts, and block only
-    /// what intersects them.
+    /// Surfaces that support the particle, so that it follows them. They are no contacts, and block only segments that
+    /// intersect them.
     std::span<const SurfaceId> held = {};
-    /// m, by which positions along the path may lie further beside it than rounding puts them.
+    /// Distance, in m, that positions along the path may lie beside it in addition to rounding.
     double beside = 0.0;
 };
 
-/// The first contact, and what else the query has found on the way to it.
+/// The first contact, and the other results of the same query.
 struct ContactQueryResult {
-    std::optional<Contact> contact;  ///< the first under the order (time, collider, triangle)
-    NearSurfaces near;               ///< for certificates of segments along the path, up to the contact
-    LookAheadResult ahead;           ///< only without a contact
+    std::optional<Contact> contact;  ///< the first in the order (time, collider, triangle)
+    NearSurfaces near;               ///< certifies segments along the path, up to the contact
+    LookAheadResult ahead;           ///< set only without a contact
 };
 
-/// The first contact of a point or a sphere. geometry and scratch: of one thread; what `near` says is valid until the
-/// next query with them.
+/// Returns the first contact of a point or a sphere. `geometry` and `scratch` must belong to the calling thread. The
+/// member `near` is valid until the next query with them.
 [[nodiscard]] ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const ContactQuery& query,
                                                     ContactScratch& scratch);
 

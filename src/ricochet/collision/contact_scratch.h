@@ -1,6 +1,6 @@
 /// \file
-/// Memory of one thread that contact queries use again and again, so that the loop over particles allocates nothing;
-/// with it the distances and normals of surfaces.
+/// Memory of one thread that contact queries reuse, so that the loop over particles allocates nothing. The file also
+/// defines the distances and normals of surfaces.
 #pragma once
 
 #include <algorithm>
@@ -18,16 +18,16 @@ namespace ricochet {
 
 // Distances and normals of surfaces for one thread, with a cache of triangle planes.
 
-/// The planes of the triangles that were used last. An impact uses the same few triangles again and again: for the time
-/// of impact, for distances, for normals. Results do not depend on what is cached. For one thread.
+/// Cache of the triangle planes used last. An impact needs the planes of the same few triangles several times: for the
+/// time of impact, for distances and for normals. Results do not depend on the cache. For use by one thread.
 class TrianglePlaneCache {
 public:
     TrianglePlaneCache() { clear(); }
 
-    /// Needed before the cache serves another world.
+    /// Empties the cache. Required before the cache is used with another world.
     void clear() { triangle_.fill(kNoTriangle); }
 
-    /// Valid until the next call.
+    /// Returns the plane of a triangle. The reference is valid until the next call.
     [[nodiscard]] const TrianglePlane& of(const CollisionWorld& world, std::uint32_t triangle) {
         const std::size_t slot = triangle % kSlots;
         if (triangle_[slot] != triangle) {
@@ -45,17 +45,18 @@ private:
     std::array<TrianglePlane, kSlots> plane_;
 };
 
-/// Distances and normals of surfaces: CollisionWorld's functions of the same names, faster for triangles that were used
-/// last. One object serves one particle in one thread; world and cache must outlive it.
+/// Distances and normals of surfaces. It has functions of CollisionWorld, which are faster here for recently used
+/// triangles. One object is for one particle in one thread. World and cache must outlive it.
 class SurfaceGeometry {
 public:
-    /// least_offset: m, of contact_offset(), where coordinates are rounded as larger ones are: in a frame that moves.
+    /// `least_offset` is the smallest contact offset, in m. It is used in moving frames, whose coordinates are rounded
+    /// like larger ones.
     SurfaceGeometry(const CollisionWorld& world, TrianglePlaneCache& cache, double least_offset = 0.0)
         : world_(&world), cache_(&cache), least_offset_(least_offset) {
         cache.clear();
     }
 
-    /// The contact offset at a position, m.
+    /// Returns the contact offset at a position, in m.
     [[nodiscard]] double contact_offset(const Vec3& position) const {
         return std::max(ricochet::contact_offset(position), least_offset_);
     }
@@ -81,38 +82,38 @@ private:
     double least_offset_ = 0.0;
 };
 
-/// Lists of one query; a query overwrites those of the one before.
+/// Lists of one query. The next query overwrites them.
 struct ContactScratch {
     /// A surface that the path reaches.
     struct Hit {
-        double time;  ///< s
+        double time;  ///< in s
         SurfaceId surface;
-        int side;  ///< of a point's path; unused for spheres
+        int side;  ///< side that a point comes from; unused for spheres
         bool flat;
-        Vec3 normal;  ///< for spheres; that of points is worked out for the first contact only
+        Vec3 normal;  ///< set for spheres; for points it is computed for the first contact only
     };
     /// A triangle that comes near after the path's end.
     struct Approach {
         std::uint32_t triangle;
-        double begin;  ///< s along the look-ahead's path
+        double begin;  ///< in s along the look-ahead's path
     };
 
-    std::vector<std::uint32_t> triangles;  ///< candidates that the path does not clear, up to the first contact found
-    std::vector<std::uint32_t> planes;     ///< the same, indices into CollisionWorld::planes()
-    std::vector<std::uint32_t> shapes;     ///< the same, indices into CollisionWorld::shapes()
+    std::vector<std::uint32_t> triangles;  ///< candidates that may touch the path, up to the first contact found
+    std::vector<std::uint32_t> planes;     ///< planes that may touch it, as indices into CollisionWorld::planes()
+    std::vector<std::uint32_t> shapes;     ///< shapes that may touch it, as indices into CollisionWorld::shapes()
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Hit> hits;
     std::vector<Approach> approaches;
     std::vector<WayPoint> chain;  ///< ends of certified segments, see CertifiedPath
-    /// Of queries in the frames of other bodies, one each.
+    /// Scratch memory of queries in the frames of other bodies, one each.
     std::vector<std::unique_ptr<ContactScratch>> foreign;
-    /// Of a path among colliders that move, see MovingSweep, which has them while it is there.
+    /// Lists of a path among moving colliders. A MovingSweep owns them during its lifetime.
     struct Sweep {
         std::vector<BodyId> near;
         std::vector<double> tolerances;
-        std::vector<double> fourth;  ///< of the bodies near: bounds of the fourth derivative in their frames, m/s^4
+        std::vector<double> fourth;  ///< bounds of the fourth derivative in the frames of the near bodies, in m/s^4
         std::vector<double> besides;
-        std::vector<Path> clear;  ///< in the frames of the bodies near: what a piece that meets nothing is the begin of
+        std::vector<Path> clear;  ///< start of a piece without contact, in the frames of the near bodies
         std::vector<double> cuts;
         std::vector<double> keys;
     };

@@ -13,11 +13,11 @@ namespace ricochet {
 
 namespace {
 
-/// Relative rounding of the times here, generously: margins of distance are far above it.
+/// Bound of the relative rounding error of times. Distance margins are far larger.
 constexpr double kTimeRounding = 0x1p-40;
 
-/// Steps of sphere tracing through free space at a time; a field of a thousand cells is crossed in fewer but along
-/// walls.
+/// Largest number of sphere tracing steps in one call. A field of a thousand cells is crossed in fewer steps, except
+/// along walls.
 constexpr int kMostTracingSteps = 64;
 
 }  // namespace
@@ -29,14 +29,14 @@ Path shortened(const Path& path, double duration) {
     return shorter;
 }
 
-// First root of g0 + g1 t + g2 t^2, the height above the margin on the side of the start, in the form without
-// cancellation (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
+// Solves for the first root of g0 + g1 t + g2 t^2, the height above the margin on the side of the start. The formula
+// avoids cancellation (e.g. Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
 double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     const Vec3 start = path.c[0] - plane.point;
     const double height = dot(plane.normal, start);
     const double side = height < 0.0 ? -1.0 : 1.0;
-    // The margin knows the path only; the height errs by the distance along the plane too: a difference, a product and
-    // two sums, less than five roundings of each component.
+    // The margin covers rounding of the path only. The height also has an error proportional to the distance along the
+    // plane. It is computed by a difference, a product and two sums: less than five roundings of each component.
     constexpr double kHeightError = 16.0 * 0x1p-53;
     const double g0 = side * height - margin - kHeightError * dot(abs(plane.normal), abs(start));
     const double g1 = side * dot(plane.normal, path.c[1]);
@@ -63,7 +63,7 @@ double time_outside(const Path& path, const Box3& box) {
     return longest;
 }
 
-// Within t the particle gets no further than v t + a t^2 / 2, which is the clearance at the root in the form without
+// Within a time t the particle moves at most v t + a t^2 / 2. The step solves for the clearance, in the form without
 // cancellation.
 double time_clear_of_field(const Path& path, const DistanceField& field, double margin, double from) {
     double acceleration = 2.0 * length(path.c[2]);
@@ -101,14 +101,14 @@ double time_of_leaving(const Path& path, const Box3& box) {
 
 namespace {
 
-/// Steps of conservative advancement of a sphere towards a triangle that it comes near. Fewer: more steps in which it
-/// is queried for nothing. More: each costs some hundred operations.
+/// Steps of conservative advancement of a sphere towards a triangle. Fewer: more time steps query the sphere for
+/// nothing. More: each costs some hundred operations.
 constexpr int kAdvancementSteps = 4;
 
-/// A further step of advancement is not worth it when the last one has gained less than this part of a time step.
+/// Advancement stops when the last step has gained less than this part of a time step.
 constexpr double kLittleOfAStep = 0x1p-5;
 
-/// One look-ahead while it runs.
+/// The state of one look-ahead.
 class LookAheadQuery {
 public:
     LookAheadQuery(const CollisionWorld& world, const QueryMargins& margins, const Path& path, const LookAhead& ahead,
@@ -157,7 +157,7 @@ LookAheadOutcome LookAheadQuery::run() {
     return {};
 }
 
-// A shape is either cleared by a path or not: durations are tried, each half of the one before.
+// A shape is either cleared by a path or not, so the search halves the duration until the shape is cleared.
 void LookAheadQuery::advance_past_planes_and_shapes() {
     double& free_until = result_.free_until;
     free_until = ahead_.path.duration;
@@ -173,7 +173,7 @@ void LookAheadQuery::advance_past_planes_and_shapes() {
     if (free_until < ahead_.least) free_until = 0.0;
 }
 
-/// Where paths may come near triangles.
+/// Returns the box in which paths may come near triangles.
 Box3 LookAheadQuery::box_of_interest() const {
     const double margin = 2.0 * (margins_.radius + ahead_.margin + margins_.curvature);
     const Vec3 by{margin, margin, margin};
@@ -188,16 +188,16 @@ bool LookAheadQuery::boxes_hold(double duration) const {
 bool LookAheadQuery::query_line() {
     const double end = std::min(end_of_query(), time_of_leaving(ahead_.path, box_of_interest()));
     if (!(ahead_.margin < margins_.curvature) || !boxes_hold(end)) return false;
-    if (end == 0.0) return true;  // it does not come near the triangles
+    if (end == 0.0) return true;  // the path does not come near the triangles
     query_piece(0.0, end);
     keep_candidates(std::min(end, end_of_interest()));
     return true;
 }
 
-// While a parabola is beyond one side of all triangles no query is needed. Free space is crossed by sphere tracing.
-// Where triangles are near, the broad phase is queried piece by piece: over one piece the query's path, the
-// look-ahead's and all their chords of a step stay within what the boxes leave beside the chord. Where that is not even
-// a step, only the free space beyond the path's end is traced.
+// While a parabola is beyond one side of all triangles, it needs no query. Sphere tracing crosses free space. Near
+// triangles, the broad phase is queried piece by piece. Over one piece, three curves stay within the margin that the
+// boxes leave: the query's path, the look-ahead's path and their chords of a step. If such a piece is shorter than a
+// step, only the free space beyond the path's end is traced.
 bool LookAheadQuery::query_parabola() {
     const double outside = time_outside(ahead_.path, box_of_interest());
     if (outside >= ahead_.least) {
@@ -226,8 +226,8 @@ bool LookAheadQuery::query_parabola() {
     return true;
 }
 
-// A triangle that is near only after the query's path is no candidate of that path, and one that is near only before
-// its end, or is left behind, does not matter to what comes after.
+// A triangle that is near only after the end of the query's path is no candidate of that path. A triangle that is near
+// only before that end, or is left behind, does not matter afterwards.
 void LookAheadQuery::query_piece(double from, double to) {
     const double span = to - from;
     const Tube tube(ahead_.path.position(from), ahead_.path.position(to), margin_until(to),
@@ -246,7 +246,7 @@ void LookAheadQuery::query_piece(double from, double to) {
     });
 }
 
-/// m, how near to the look-ahead's path until some time triangles are of interest.
+/// Returns the distance, in m, from the look-ahead's path within which triangles matter until a time.
 double LookAheadQuery::margin_until(double time) const {
     const Box3& box = world_.triangle_bounds();
     const double largest =
@@ -267,12 +267,12 @@ void LookAheadQuery::add_approach(std::uint32_t triangle, double enter, double l
     scratch_.approaches.push_back({triangle, begin});
 }
 
-// What the boxes say about a sphere is how it passes the triangle's plane, and beside the triangle it does that early.
-// Along a direction in which the triangle is behind, the distance shrinks no faster than the sphere moves against it
-// (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley
-// 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
-/// A time before which the sphere certainly does not come near the triangle; later than `last` when it does not until
-/// then.
+// For a sphere, the boxes only bound when it passes the triangle's plane. Beside the triangle that time is too early.
+// If the triangle is behind along a direction, the distance shrinks no faster than the sphere moves against that
+// direction (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD
+// thesis, Berkeley 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
+/// Returns a time before which the sphere certainly does not come near the triangle. It is later than `last` if the
+/// sphere does not come near until then.
 double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, double last) const {
     const Path& path = ahead_.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
@@ -304,9 +304,9 @@ void LookAheadQuery::keep_candidates(double until) {
     }
 }
 
-// The steps to come are rounded. Each must lead away from the triangle by more than that, else they may lead back
-// through it; and a safe position elsewhere on the path must not be moved through it.
-/// May a triangle be forgotten that a sphere leaves behind at some speed, m/s?
+// The following steps are rounded. Each must lead away from the triangle by more than the rounding error, or rounding
+// could lead it back through the triangle. A safe position elsewhere on the path must not be moved through it either.
+/// Returns true if a triangle can be dropped because a sphere leaves it behind at the given speed, in m/s.
 bool LookAheadQuery::is_left_behind(double separating_speed) const {
     if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
     return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);

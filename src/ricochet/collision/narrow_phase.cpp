@@ -12,7 +12,7 @@ namespace {
 
 using Hit = ContactScratch::Hit;
 
-/// Edges and vertices hit together with a face that has the same normal are seams of a flat surface.
+/// Removes seams of flat surfaces: edges and vertices that are hit together with a face of the same normal.
 void drop_seams(std::vector<Hit>& hits) {
     const auto faces_end = std::partition(hits.begin(), hits.end(), [](const Hit& hit) { return hit.flat; });
     const auto is_seam = [&](const Hit& hit) {
@@ -22,7 +22,7 @@ void drop_seams(std::vector<Hit>& hits) {
     hits.erase(std::remove_if(faces_end, hits.end(), is_seam), hits.end());
 }
 
-/// The latest time that counts as the same.
+/// Returns the latest time that counts as simultaneous with `first`.
 double latest_with(double first) { return first + kSimultaneousUlps * ulp(first); }
 
 }  // namespace
@@ -156,7 +156,7 @@ Contact NarrowPhase::take_first_contact() {
     const double latest = latest_with(first_time_);
     auto& hits = scratch_.hits;
     std::erase_if(hits, [&](const Hit& hit) { return hit.time > latest; });
-    // A surface that a point hits edge-on counts only when no surface is hit from a side.
+    // A surface that a point hits edge-on counts only if no surface is hit from a side.
     const auto has_side = [&](const Hit& hit) { return hit.side != 0 || sphere_; };
     if (std::any_of(hits.begin(), hits.end(), has_side)) {
         std::erase_if(hits, [&](const Hit& hit) { return !has_side(hit); });

@@ -1,5 +1,5 @@
 /// \file
-/// The narrow phase: exact tests of one path against one plane, shape or triangle after the other.
+/// The narrow phase tests one path exactly against planes, shapes and triangles, one after the other.
 #pragma once
 
 #include <cstdint>
@@ -13,42 +13,44 @@
 
 namespace ricochet {
 
-/// Largest magnitude of a coordinate that the terms of a path reach, m.
+/// Returns the largest magnitude, in m, of a coordinate that the terms of a path reach.
 [[nodiscard]] double largest_coordinate(const Path& path);
 
-/// How far beside a path a query takes surfaces into account.
+/// Margins of a query: the distances from a path within which it considers surfaces.
 struct QueryMargins {
     QueryMargins(const CollisionWorld& world, const Path& path, double radius_in, double beside_in = 0.0);
 
-    const TriangleBvh* bvh;  ///< the broad phase for the radius
-    double radius;           ///< m, 0 for points
-    double beside;           ///< m, ContactQuery::beside
-    double tolerance;        ///< m, sphere_tolerance() of the path; 0 for points
-    double largest;          ///< m, largest coordinate that the path reaches
-    double slack;            ///< m: positions that are certified lie at most that far beside the path
-    double curvature;        ///< m, what the boxes leave for the path's curvature; 0 where they do not hold
-    bool boxes_hold;         ///< false: the boxes leave less than the path's rounding and `beside` need, so that every
-                             ///< triangle near the path's own box is a candidate
+    const TriangleBvh* bvh;  ///< broad phase for the radius
+    double radius;           ///< in m, 0 for points
+    double beside;           ///< in m, ContactQuery::beside
+    double tolerance;        ///< in m, sphere_tolerance() of the path; 0 for points
+    double largest;          ///< in m, largest coordinate that the path reaches
+    double slack;            ///< in m, largest distance of certified positions from the path
+    double curvature;        ///< in m, margin that the boxes leave for the path's curvature; 0 if boxes_hold is false
+    /// True if the boxes cover the path's rounding and `beside`. If false, every triangle near the path's own box is a
+    /// candidate.
+    bool boxes_hold;
 };
 
-/// Tests a point's (radius 0) or a sphere's path against surfaces and keeps the first hits. What it gathers goes into
-/// the scratch memory: the hits, the surfaces that the path does not clear, those overlapped from its start.
+/// Tests the path of a point (radius 0) or a sphere against surfaces and keeps the first hits. It writes three lists
+/// into the scratch memory: the hits, the surfaces that may touch the path, and the surfaces overlapped from its start.
 class NarrowPhase {
 public:
-    /// All must outlive it. The path must be finite. held: see ContactQuery.
+    /// All arguments must outlive the object. The path must be finite. `held`: see ContactQuery.
     NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
                 std::span<const SurfaceId> held, ContactScratch& scratch);
 
     void test_planes();
     void test_shapes();
-    /// Triangles of no area are left out. Where a sphere moves straight away from the triangle: the speed of that, m/s;
-    /// else 0.
+    /// Tests a triangle; ignores triangles without area. Returns the speed, in m/s, at which a sphere moves straight
+    /// away from the triangle, or 0 if it does not.
     double test_triangle(std::uint32_t triangle);
 
     [[nodiscard]] bool has_hit() const { return !scratch_.hits.empty(); }
-    /// s, that of the first hit so far; infinite without one.
+    /// Returns the time of the first hit so far, in s; infinite without a hit.
     [[nodiscard]] double first_time() const { return first_time_; }
-    /// The surfaces of the first hits. Only when has_hit(), and only once: it drops the other hits.
+    /// Returns the surfaces of the first hits. Requires has_hit(). Can be called only once, because it drops the other
+    /// hits.
     [[nodiscard]] Contact take_first_contact();
 
 private:
@@ -61,7 +63,7 @@ private:
     const CollisionWorld& world_;
     const Path& path_;
     const QueryMargins& margins_;
-    std::span<const SurfaceId> held_;  ///< followed, see ContactQuery
+    std::span<const SurfaceId> held_;  ///< supporting surfaces, see ContactQuery
     ContactScratch& scratch_;
     std::optional<SphereSweep> sphere_;  ///< nothing for points
     double first_time_ = std::numeric_limits<double>::infinity();

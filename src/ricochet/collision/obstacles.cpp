@@ -8,12 +8,12 @@
 namespace ricochet {
 namespace {
 
-/// A sphere in overlap comes nearer when the distance shrinks by more than this part of it: less is rounding. A larger
-/// part adds up over many steps.
+/// Smallest ratio of distances that does not count as coming nearer, for a sphere in overlap. A smaller decrease is
+/// rounding. A larger tolerance would add up over many steps.
 constexpr double kNearerStill = 1.0 - 0x1p-49;
 
-/// Part of sphere_tolerance() that is used: a slow sphere comes to stand right at the limit, and what it loses to
-/// rounding from there on must stay within the whole.
+/// Part of sphere_tolerance() that is used. A slow sphere stops right at this limit, and its later rounding errors must
+/// stay within the whole tolerance.
 constexpr double kPartOfTolerance = 0.5;
 
 bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 2.0 * kSeamTurn; }
@@ -29,7 +29,7 @@ bool Obstacles::blocks(SurfaceId surface, const Vec3& to) const {
     return distance < kNearerStill * world_.nearest(surface, from_).distance;
 }
 
-/// Calls found(surface), which returns whether to go on, for every blocking surface in unspecified order.
+/// Calls found(surface) for every blocking surface, in unspecified order, until it returns false.
 template <class Found>
 void Obstacles::for_each_blocker(const Vec3& to, Found&& found) const {
     for (const auto& plane : world_.planes()) {
@@ -81,7 +81,7 @@ void Obstacles::gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector
             return face.flat && same_normal(face.normal, edge.normal);
         });
     };
-    // Into a list of its own: erasing in this one would compare with what has moved already.
+    // A separate list is needed: erasing in place would compare with elements that have already moved.
     std::vector<ContactSurface> kept;
     for (const ContactSurface& surface : all) {
         if (!is_seam(surface)) kept.push_back(surface);

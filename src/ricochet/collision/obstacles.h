@@ -1,5 +1,5 @@
 /// \file
-/// What stands between two positions: the discrete collision test of methods that only check where a step ends.
+/// Discrete collision test between two positions, for methods that only check the end of a step.
 #pragma once
 
 #include <vector>
@@ -8,22 +8,23 @@
 
 namespace ricochet {
 
-/// Tests the ends of a particle's steps that all begin at one position. Blocked means: the closed segment between the
-/// two positions intersects a surface (decided exactly for planes and triangles), or the sphere at the end is nearer to
-/// a surface than its radius less half of sphere_tolerance(). What it overlaps already at the beginning blocks only
-/// when it comes nearer still. What a sphere grazes between the two positions is missed: only the segment of its centre
-/// is tested.
+/// Tests the ends of a particle's steps that all begin at one position. A step is blocked in two cases. Either the
+/// closed segment between the two positions intersects a surface, which is decided exactly for planes and triangles. Or
+/// the sphere at the end is nearer to a surface than its radius less half of sphere_tolerance(). A surface that the
+/// sphere overlaps at the beginning blocks only if the sphere comes even nearer. Surfaces that a sphere grazes between
+/// the two positions are missed: only the segment of its centre is tested.
 class Obstacles {
 public:
     /// The radius must have been prepared (CollisionWorld::prepare_radius).
     Obstacles(const CollisionWorld& world, const Vec3& from, double radius)
         : world_(world), bvh_(world.bvh_for(radius)), from_(from), radius_(radius) {}
 
-    /// Both positions must be finite.
+    /// Returns true if a surface blocks the segment to `to`. Both positions must be finite.
     [[nodiscard]] bool block(const Vec3& to) const;
 
-    /// The surfaces that block the segment to `to`, in ascending order, with their normals at the free position p: each
-    /// once, without edges beside a face of the same normal. v: velocity, for surfaces that are hit edge-on.
+    /// Collects the surfaces that block the segment to `to`, in ascending order, with their normals at the free
+    /// position p. Each surface appears once. Edges beside a face of the same normal are left out. `v` is the velocity,
+    /// for surfaces that are hit edge-on.
     void gather(const Vec3& to, const Vec3& p, const Vec3& v, std::vector<ContactSurface>& out) const;
 
 private:

@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Parts of the largest coordinate within which surfaces are touched, by far; positions change by less where several
-/// bodies push one off.
+/// Distance within which surfaces count as touched, in parts of the largest coordinate. It is generous: positions
+/// change by less if several bodies push a particle off.
 constexpr double kBirthReach = 0x1p-30;
 
 /// Calls within = consider(surface, distance) for all planes and shapes, and for the triangles within that distance.
@@ -32,7 +32,7 @@ void visit_distances(const CollisionWorld& world, const Vec3& center, double wit
     });
 }
 
-/// The triangles of meshes that deform which come within a distance in this step.
+/// Returns the triangles of deforming meshes that come within a distance in this step.
 std::vector<SurfaceId> near_deforming(const MovingColliders& bodies, const Vec3& center, double within) {
     std::vector<SurfaceId> near;
     const Vec3 by{within, within, within};

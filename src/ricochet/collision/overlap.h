@@ -1,5 +1,5 @@
 /// \file
-/// Whether a sphere at rest overlaps a surface: the question at its birth.
+/// Tests whether a sphere at rest overlaps a surface, for particles that are born.
 #pragma once
 
 #include <optional>
@@ -12,35 +12,41 @@ namespace ricochet {
 /// A surface that a sphere overlaps.
 struct Overlap {
     SurfaceId surface = 0;
-    double distance = 0.0;  ///< m, of the centre from it: the sphere reaches its radius less this behind it
+    /// Distance of the surface from the centre, in m. The sphere reaches behind the surface by its radius less this.
+    double distance = 0.0;
 };
 
-/// The nearest of the surfaces that are nearer to the centre than the radius by more than sphere_tolerance(), of
-/// several at one distance the smallest number; nothing for a sphere that touches at most, for a point (radius 0), and
-/// for a centre that is not finite. What lies wholly inside a solid overlaps nothing. The broad phase proposes the
-/// triangles: one query of a point. Safe from any number of threads.
+/// Returns the nearest surface that a sphere overlaps. A sphere overlaps a surface that is nearer to the centre than
+/// the radius by more than sphere_tolerance(). If several have the same distance, the one with the smallest number is
+/// returned. Returns nothing for a sphere that at most touches, for a point (radius 0), and for a centre that is not
+/// finite. A sphere wholly inside a solid overlaps nothing. The broad phase proposes the triangles in one point query.
+/// Can be called from any number of threads.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& world, const Vec3& center, double radius);
 
-/// The bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, s, and maybe some
-/// more; in their order.
+/// Returns the bodies with a frame that a sphere, or a point (radius 0), may touch or overlap at a time, in s. The list
+/// is in the order of the bodies and may contain more than those.
 [[nodiscard]] std::vector<BodyId> bodies_near(const MovingColliders& bodies, const Vec3& center, double radius,
                                               double time);
 
-/// The same among colliders of all frames, as they stand at a time, s. bodies: null where none moves.
+/// Returns the nearest overlapped surface among colliders of all frames, in their positions at a time, in s. `bodies`
+/// is null if no collider moves.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const MovingColliders* bodies,
                                                      const Vec3& center, double radius, double time);
 
-/// A position beside `center`, off the surfaces of bodies that it lies on exactly at a time, s: a few contact offsets
-/// to where their normals point. Nothing where it lies on none.
+/// Returns a position beside `center` for a particle that lies exactly on surfaces of bodies at a time, in s. The
+/// position is a few contact offsets away, along the normals of these surfaces. Returns nothing if the particle lies on
+/// none.
 [[nodiscard]] std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time);
 
-/// The surfaces that a sphere, or a point (radius 0), touches: those from whose distance its radius differs by at most
-/// `reach`, m, by number. Not one that a point lies exactly on. One query of a point.
+/// Returns the surfaces, by number, that a sphere, or a point (radius 0), touches. A surface is touched if its distance
+/// differs from the radius by at most `reach`, in m. Surfaces that a point lies exactly on are left out. Needs one
+/// point query.
 [[nodiscard]] std::vector<SurfaceId> surfaces_touched(const CollisionWorld& world, const Vec3& center, double radius,
                                                       double reach);
 
-/// Radius, m, of the largest ball about the centre that a sphere in overlap can collide with as if it overlapped
-/// nothing: one contact offset less than the distance. 0 for a point, where rounding of positions would be felt.
+/// Returns the radius, in m, of the largest ball about the centre with which an overlapping sphere can collide as if it
+/// overlapped nothing. It is one contact offset less than the distance. It is 0, for a point, if the ball is so small
+/// that rounding of positions would matter.
 [[nodiscard]] double core_radius(const Overlap& overlap, const Vec3& center, double radius);
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace {
 
-/// Follows a path: halves it until its chords are free, and stops at the first that is not.
+/// Follows a path: halves it until its chords are free, and stops at the first blocked chord.
 class PathFollower {
 public:
     PathFollower(const NearSurfaces& near, const Path& path, const WayPoint& start, std::vector<WayPoint>& chain)
@@ -42,7 +42,7 @@ private:
     CertifiedPath followed_;
 };
 
-/// The normals along which a particle is moved off the surfaces it has hit; at most three matter in space.
+/// The normals along which a particle is moved off the surfaces that it has hit. At most three matter in space.
 struct Normals {
     std::array<Vec3, 3> n;
     int count = 0;
@@ -57,8 +57,8 @@ struct Normals {
     }
 };
 
-/// The shortest displacement that gains one unit of distance from every plane (the minimum-norm solution of n_i . d =
-/// 1); the plain sum of the normals where the planes are too sharp or too parallel for that.
+/// Returns the shortest displacement that increases the distance from every plane by one unit (the minimum-norm
+/// solution of n_i . d = 1). Returns the sum of the normals if the planes are too sharp or too parallel for that.
 Vec3 escape_direction(const Normals& normals) {
     const auto& n = normals.n;
     if (normals.count == 1) return n[0];
@@ -71,16 +71,17 @@ Vec3 escape_direction(const Normals& normals) {
     return kContactOffsetUlps * length(direction) <= kLargestContactOffsetUlps ? direction : sum;
 }
 
-/// What moves a position on the path at the contact along the normal until it is exactly `radius` from the first
-/// surface.
+/// Returns the displacement along the normal that moves the path's position at the contact to exactly `radius` from the
+/// first surface.
 Vec3 correction_at(const NearSurfaces& near, const WayPoint& at, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
     if (near.radius() == 0.0) return -near.signed_distance_from(surface, at) * near.unit_normal_of(surface, at);
     return (near.radius() - near.nearest(surface, at).distance) * contact.first().normal;
 }
 
-/// The position on the path at the contact, corrected. A sphere that overlaps is left as it is, and so is a position
-/// next to the origin whose distance from a large triangle has a rounding error beyond all that the query has covered.
+/// Returns the corrected position on the path at the contact. Two positions are not corrected. One belongs to a sphere
+/// that overlaps. The other is near the origin, and its distance from a large triangle has a rounding error larger than
+/// the query has covered.
 Vec3 position_at(const NearSurfaces& near, const WayPoint& on_path, const Contact& contact) {
     const Vec3& position = on_path.position;
     const Vec3 correction = correction_at(near, on_path, contact);
@@ -90,7 +91,7 @@ Vec3 position_at(const NearSurfaces& near, const WayPoint& on_path, const Contac
     return flush_tiny(position + correction);
 }
 
-/// Normal of a blocking surface at p, facing p; zero when p lies in its plane.
+/// Returns a blocking surface with its normal at p, which faces p. The normal is zero if p lies in its plane.
 ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const WayPoint& p) {
     if (near.radius() > 0.0) {
         const auto nearest = near.nearest(surface, p);

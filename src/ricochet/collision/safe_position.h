@@ -1,8 +1,8 @@
 /// \file
-/// Where a particle is put after an impact: a representable point just before the surface, reached along certified
-/// segments of which none intersects any surface. Every segment is checked exactly against the surfaces near the path.
-/// A particle is only ever moved along such segments, which makes "nothing leaks" a theorem about the chain of stored
-/// positions.
+/// Safe position of a particle after an impact: a representable point just before the surface. It is reached along
+/// certified segments, none of which intersects any surface. Every segment is checked exactly against the surfaces near
+/// the path. Particles only ever move along such segments, so it is a theorem about the chain of stored positions that
+/// no particle passes through a surface.
 #pragma once
 
 #include <optional>
@@ -12,37 +12,38 @@
 
 namespace ricochet {
 
-/// How far a path could be followed in certified segments.
+/// The part of a path that certified segments could follow.
 struct CertifiedPath {
     WayPoint reached;                  ///< the last certified position
-    std::optional<SurfaceId> blocker;  ///< what the next, shortest segment intersects; nothing at the target
+    std::optional<SurfaceId> blocker;  ///< surface that blocks the next, shortest segment; nothing at the target
 };
 
-/// Follows `path` from its start to `target`, its position at time `until`, in certified segments: the chord itself
-/// when it is free, otherwise halves of the arc down to kCertificateDepth. chain: replaced by the certified positions
-/// in order, the start first.
+/// Follows `path` from its start to `target`, its position at time `until`, in certified segments. If the chord is
+/// free, it is the only segment. Otherwise the arc is halved, down to kCertificateDepth. `chain` is replaced by the
+/// certified positions in order, the start first.
 [[nodiscard]] CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
                                         std::vector<WayPoint>& chain);
 
 /// A certified position next to a contact.
 struct SafePosition {
     WayPoint reached;
-    bool stayed = false;               ///< no certified position nearer than the path's start was found
-    std::optional<SurfaceId> blocker;  ///< where the path is blocked before the contact, there: by what
+    bool stayed = false;  ///< true: no certified position nearer to the surface than the path's start was found
+    std::optional<SurfaceId> blocker;  ///< surface that blocks the path at `reached`, if that is before the contact
 };
 
-/// A position off the surfaces of the contact along their normals by contact_offset(), by more when that fails, and
-/// the last certified position on the path when nothing else is free. "Do not move" is always valid. chain: as for
-/// follow_path().
+/// Returns a certified position near the contact. It is off the surfaces of the contact along their normals by
+/// contact_offset(), or by more if that fails. If no such position is free, it is the last certified position on the
+/// path. The start of the path is always valid. `chain`: as for follow_path().
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
                                               std::vector<WayPoint>& chain);
 
-/// For a particle that was put exactly on surfaces: a position one contact offset off them, on the side that their
-/// normals point to, along a segment that leaves them and intersects no other surface. `near` is that of a path that
-/// starts at p. Nothing when p is on no surface or no position was found.
+/// Returns a position for a particle that was put exactly on surfaces. It is one contact offset off them, on the side
+/// that their normals point to. The segment to it leaves these surfaces and intersects no other. `near` is that of a
+/// path that starts at p. Returns nothing if p is on no surface or no position was found.
 [[nodiscard]] std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p);
 
-/// The contact that a certificate has found where the roots found none: the path slips between surfaces by rounding.
+/// Returns the contact with the surface that blocks a certificate, if root finding found no contact. Rounding can let
+/// the roots of a path miss a surface.
 [[nodiscard]] Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const CertifiedPath& followed);
 
 }  // namespace ricochet

@@ -9,8 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// True when no point of a box is so near to p that a triangle in it could replace one at that squared distance,
-/// however distances are rounded: they err by less than 2^-48 of the distance from the box's far corner.
+/// Returns true if no triangle in a box can be nearer to p than the given squared distance, however distances are
+/// rounded. Their rounding error is less than 2^-48 of the distance from the box's farthest corner.
 bool is_farther(const Box3& box, const Vec3& p, double squared) {
     const Vec3 below = box.lower - p;
     const Vec3 above = p - box.upper;
@@ -19,7 +19,7 @@ bool is_farther(const Box3& box, const Vec3& p, double squared) {
     return length_squared(gap) > (1.0 + 0x1p-19) * squared + 0x1p-74 * length_squared(farthest);
 }
 
-/// The order that makes one of several triangles the nearest.
+/// Returns true if x precedes y in the order that selects the nearest triangle.
 bool comes_before(const ClosestPointOnTriangle& x, std::uint32_t x_triangle, const ClosestPointOnTriangle& y,
                   std::uint32_t y_triangle) {
     if (x.distance_squared != y.distance_squared) return x.distance_squared < y.distance_squared;
@@ -64,7 +64,7 @@ std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
     return static_cast<std::uint32_t>(after - meshes_.begin() - 1);
 }
 
-/// Without culling every triangle is visited: the reference of tests.
+/// Visits triangles near p. Without culling it visits every triangle, as the reference of tests.
 template <class Visit>
 void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) const {
     if (world_.culls()) {
@@ -74,7 +74,7 @@ void SignedDistance::visit_near(const Vec3& p, double within, Visit&& visit) con
     for (std::uint32_t triangle = 0; triangle < world_.triangles().size(); ++triangle) (void)visit(triangle);
 }
 
-/// The nearest triangles of all meshes, one traversal for all.
+/// Finds the nearest triangle of every mesh in one traversal.
 class SignedDistance::NearSearch {
 public:
     NearSearch(const SignedDistance& distance, const Vec3& p, double within, std::vector<Candidate>& found)
@@ -82,8 +82,8 @@ public:
         found_.clear();
     }
 
-    /// Returns the distance within which more may be found: as far as the mesh whose nearest triangle is the farthest,
-    /// once each has one.
+    /// Returns the distance within which the search continues. When each mesh has a nearest triangle, it is the largest
+    /// of their distances.
     double operator()(std::uint32_t triangle) {
         if (distance_.world_.is_degenerate(triangle)) return within_;
         const std::uint32_t mesh = distance_.mesh_of_triangle(triangle);
@@ -177,8 +177,8 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_shape(std::uint32_t index
     return if_within(found, within);
 }
 
-/// Over a face the distance from its plane is the accurate one. On the surface itself the offset to p has no direction:
-/// there the pseudonormal stands in, or the triangle's normal where that is zero.
+/// Over a face, the distance from its plane is the accurate one. If p lies on the surface, the offset to p has no
+/// direction. The pseudonormal replaces it, or the triangle's normal if the pseudonormal is zero.
 std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& candidate, const Vec3& p,
                                                             double within) const {
     const Mesh& mesh = meshes_[candidate.mesh];
@@ -254,7 +254,7 @@ std::size_t SignedDistance::count_met(std::uint32_t collider, const Vec3& p, con
     return list.size();
 }
 
-/// Calls found(surface), which returns whether to go on, for the surfaces of the collider that [p, q] intersects.
+/// Calls found(surface) for the surfaces of the collider that [p, q] intersects, until it returns false.
 template <class Found>
 void SignedDistance::visit_intersected(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const {
     const Part& part = parts_[collider];

@@ -1,9 +1,9 @@
 /// \file
-/// Where is a point with respect to the colliders of a scene: on which side, how far, and where is the closest point?
+/// Signed distances of points from the colliders of a scene: the side, the distance and the closest point.
 ///
-/// Planes, balls and cylinders answer by their formula. Meshes answer by the nearest triangle, whose side is judged by
-/// pseudonormals (geometry/mesh/pseudonormals.h): right for meshes that bound a solid and are wound outward; everywhere
-/// else it is the side of the nearest sheet, and at open edges it means nothing.
+/// Planes, balls and cylinders use their formulas. Meshes use the nearest triangle, whose side is decided by
+/// pseudonormals (geometry/mesh/pseudonormals.h). The side is correct for meshes that bound a solid and are wound
+/// outward. For other meshes it is the side of the nearest sheet, and it has no meaning at open edges.
 #pragma once
 
 #include <cstddef>
@@ -18,53 +18,57 @@ namespace ricochet {
 
 /// The point of a collider's surface that is closest to a point p.
 struct SurfacePoint {
-    Vec3 point;             ///< on the surface, m
-    Vec3 direction;         ///< unit, from the surface to p; the surface's own normal where p lies on it
-    double distance = 0.0;  ///< m, >= 0
-    int side = 0;           ///< +1: where the surface's normal points to (outside of a ball, a cylinder, a closed mesh
-                            ///< wound outward); -1: behind; 0: on it, or undecided (sheets back to back)
-    SurfaceId surface = 0;  ///< a nearest one
+    Vec3 point;             ///< on the surface, in m
+    Vec3 direction;         ///< unit vector from the surface to p, or the surface's own normal if p lies on it
+    double distance = 0.0;  ///< in m, >= 0
+    /// Side of the surface that p is on. +1: in front, where its normal points; outside of a ball, a cylinder or a
+    /// closed mesh wound outward. -1: behind. 0: on the surface, or undecided (sheets back to back).
+    int side = 0;
+    SurfaceId surface = 0;  ///< nearest surface; one of them if there are several
     std::uint32_t collider = 0;
-    bool on_rim = false;  ///< nearest is an open edge or its end, where sides mean nothing
+    bool on_rim = false;  ///< true if the nearest feature is an open edge or its end, where the side has no meaning
 };
 
-/// Immutable; safe from any number of threads. Results depend neither on the broad phase nor on the order in which it
-/// proposes triangles: nearest is the smallest under (squared distance in doubles, face before edge before vertex,
-/// surface). A point on a face's rim that is as near as its face counts as the face's.
+/// Signed distances of one collision world. Immutable; safe from any number of threads. Results depend neither on the
+/// broad phase nor on the order in which it proposes triangles. The nearest triangle is the smallest under (squared
+/// distance in doubles, face before edge before vertex, surface). A point on a face's rim that is as near as its face
+/// counts as a point of the face.
 class SignedDistance {
 public:
-    /// The world must outlive it.
+    /// The world must outlive this object.
     explicit SignedDistance(const CollisionWorld& world);
 
-    /// The point of one collider closest to p (finite); nothing when it is farther away than `within` (m, >= 0, may be
-    /// infinite) or the collider has no triangle with an area.
+    /// Returns the point of one collider that is closest to a finite point p. Returns nothing if it is farther away
+    /// than `within` (in m, >= 0, may be infinite) or if the collider has no triangle with an area.
     [[nodiscard]] std::optional<SurfacePoint> closest(std::uint32_t collider, const Vec3& p, double within) const;
 
-    /// The same of every collider that has one within that distance, appended in ascending order of the colliders.
-    /// Allocates only while `out` grows (and once a thread).
+    /// Appends the closest point of every collider that has one within that distance, in ascending order of the
+    /// colliders. Allocates memory only when `out` grows, and once per thread.
     void near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const;
 
-    /// Does the closed segment [p, q] intersect any surface of the collider? Exact for planes and meshes; errs on the
-    /// side of true for shapes with a formula, by some 2^-90. Both ends must be finite.
+    /// Returns true if the closed segment [p, q] intersects a surface of the collider. The decision is exact for planes
+    /// and meshes. For shapes with a formula it errs towards true, by some 2^-90. Both ends must be finite.
     [[nodiscard]] bool segment_intersects(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
-    /// How many surfaces of the collider the closed segment [p, q] intersects; one through an edge intersects both its
-    /// triangles. Of a shape with a formula 1 when the ends are on different sides, 2 when it goes in and out.
+    /// Returns the number of the collider's surfaces that the closed segment [p, q] intersects. A segment through an
+    /// edge intersects both its triangles. For shapes with a formula it is 1 if the ends are on different sides, and 2
+    /// if the segment goes in and out.
     [[nodiscard]] std::size_t count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
-    /// Bytes held besides the world.
+    /// Returns the memory of the object, in bytes, without the world.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     enum class Kind : std::uint8_t { plane, shape, mesh, elsewhere };
 
-    /// Where a collider is found: an index into the world's planes or shapes, or into meshes_.
+    /// Location of a collider's data: an index into the world's planes or shapes, or into meshes_.
     struct Part {
         Kind kind;
         std::uint32_t index;
     };
 
-    /// A collider's triangles, [first_triangle, end_triangle) of the world's; the pseudonormals count from the first.
+    /// The triangles of a collider: [first_triangle, end_triangle) of the world's triangles. The pseudonormals are
+    /// indexed from the first.
     struct Mesh {
         std::uint32_t collider;
         std::uint32_t first_triangle;
@@ -96,8 +100,8 @@ private:
                                                               double within) const;
 
     const CollisionWorld& world_;
-    std::vector<Part> parts_;   ///< per collider
-    std::vector<Mesh> meshes_;  ///< ascending
+    std::vector<Part> parts_;   ///< one per collider
+    std::vector<Mesh> meshes_;  ///< in ascending order of the colliders
 };
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// The names of surfaces, and points on them.
+/// Numbers and names of surfaces, and points on them.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,21 @@
 
 namespace ricochet {
 
-/// Number of a surface (a plane, a ball, the side or a cap of a cylinder, or one triangle of a mesh) among those of all
-/// colliders. Ascending in (collider, triangle): the order that breaks ties.
+/// Number of a surface among the surfaces of all colliders. A surface is a plane, a ball, the side or a cap of a
+/// cylinder, or one triangle of a mesh. Numbers ascend in (collider, triangle). This order breaks ties.
 using SurfaceId = std::uint32_t;
 
-/// Which collider, and which triangle of it (0 for planes, balls and cylinders), a surface is.
+/// Name of a surface: its collider, and its triangle within it (0 for planes, balls and cylinders).
 struct SurfaceName {
     std::uint32_t collider = 0;
     std::uint32_t triangle = 0;
 };
 
-/// A position on a surface.
+/// A point on a surface.
 struct SurfacePosition {
-    Vec3 point;        ///< m
-    Vec3 barycentric;  ///< for the triangle's corners in the order of its mesh; zero for planes, balls and cylinders
+    Vec3 point;  ///< in m
+    /// Weights of the triangle's corners in the order of its mesh; zero for planes, balls and cylinders.
+    Vec3 barycentric;
 };
 
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-/// Velocity in the world, with which a point at rest in the frame of a pose moves.
+/// Returns the world velocity of a point that is at rest in the frame of a pose.
 Vec3 carried(const MovingPose& pose, const Vec3& world) {
     return pose.velocity + cross(pose.angular_velocity, world - pose.world_from_frame.translation);
 }

@@ -1,5 +1,5 @@
 /// \file
-/// Positions on the way of a particle as they are stored, in the world, and as a frame sees them.
+/// Positions on the path of a particle: as stored, in world coordinates, and in the coordinates of a frame.
 #pragma once
 
 #include <algorithm>
@@ -11,31 +11,31 @@ namespace ricochet {
 
 /// A position on a path.
 struct WayPoint {
-    Vec3 position;      ///< m, in the frame that the path is given in
-    double time = 0.0;  ///< s along the path
-    Vec3 world{};       ///< m, as it is stored; `position` is its image
+    Vec3 position;      ///< in m, in the frame of the path
+    double time = 0.0;  ///< in s along the path
+    Vec3 world{};       ///< in m, as stored; `position` is its local position in the frame
 };
 
-/// The simulation times of a path.
+/// Conversion from the times of a path to simulation times. Times are in s.
 struct PathClock {
-    double begin = 0.0;     ///< s, at its start
-    double end = 0.0;       ///< s, at its end
-    double base = 0.0;      ///< s, to which path times are added
-    double offset = 0.0;    ///< s, path time of the start of a longer path that it is a piece of
-    double duration = 0.0;  ///< s, of the path
+    double begin = 0.0;     ///< simulation time at the start of the path
+    double end = 0.0;       ///< simulation time at the end of the path
+    double base = 0.0;      ///< simulation time that path times are added to
+    double offset = 0.0;    ///< start of the path within a longer path of which it is a piece
+    double duration = 0.0;  ///< duration of the path
 
     [[nodiscard]] double at(double s) const {
         if (s <= 0.0) return begin;
         if (s >= duration) return end;
         return std::clamp(base + (offset + s), begin, end);
     }
-    /// That of a piece of the path.
+    /// Returns the clock of a piece of the path.
     [[nodiscard]] PathClock piece(double from, double to) const {
         return {at(from), at(to), base, offset + from, to - from};
     }
 };
 
-/// What is seen from the frame of a body, or from the world (kAtRest), along a path that is given there.
+/// Bodies as seen from a reference frame: that of a body, or the world (kAtRest). A path is given in that frame.
 class MovingView {
 public:
     MovingView(const MovingColliders& bodies, BodyId home, const PathClock& clock)
@@ -45,27 +45,28 @@ public:
     [[nodiscard]] BodyId home() const { return home_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
-    /// The stored position nearest to a point of the frame.
+    /// Returns the stored position nearest to a point of the frame.
     [[nodiscard]] WayPoint point_at(const Vec3& p, double s) const {
         if (home_ == kAtRest) return {p, s, p};
         const MovingPose pose = bodies_->pose(home_, clock_.at(s));
         const Vec3 world = flush_tiny(pose.point(p));
         return {pose.image(world), s, world};
     }
-    /// A stored position.
+    /// Returns the way point of a stored position.
     [[nodiscard]] WayPoint stored(const Vec3& world, double s) const { return {image(home_, world, s), s, world}; }
-    /// Where a stored position is in a body's coordinates.
+    /// Returns the local position of a stored position in a body's coordinates.
     [[nodiscard]] Vec3 image(BodyId body, const Vec3& world, double s) const {
         return body == kAtRest ? world : bodies_->image(body, world, clock_.at(s));
     }
-    /// A direction of a body in the axes of this frame.
+    /// Converts a direction from a body's axes to the axes of this frame.
     [[nodiscard]] Vec3 direction_from(BodyId body, const Vec3& d, double s) const;
-    /// Velocity, in a body's coordinates, of what is at a point of the world and moves with a velocity in this frame.
-    /// At a key of either frame, where that may jump: `before` it or after.
+    /// Selects the velocity before or after a jump. Velocities may jump at a key of a frame.
     enum class Limit { before, after };
+    /// Returns the velocity, in a body's coordinates, of a point of the world that has the given velocity in this
+    /// frame.
     [[nodiscard]] Vec3 velocity_in(BodyId body, const WayPoint& at, const Vec3& velocity,
                                    Limit limit = Limit::after) const;
-    /// Velocity, as this frame sees it, of the material point of a body that is at a point of the world.
+    /// Returns the velocity, in this frame, of the material point of a body at a point of the world.
     [[nodiscard]] Vec3 velocity_of(BodyId body, const WayPoint& at) const;
 
 private:

@@ -9,9 +9,9 @@
 
 namespace ricochet {
 
-/// Calls visit(i), in ascending order, for every i in [begin, end) with predicate(i). Fast where matches are rare and
-/// the predicate, which must not have side effects, compiles to vector instructions: blocks of 16 without a match are
-/// skipped at once.
+/// Calls visit(i), in ascending order, for every i in [begin, end) with predicate(i). The predicate must not have side
+/// effects. Fast if matches are rare and the predicate compiles to vector instructions: blocks of 16 without a match
+/// are skipped at once.
 template <class Predicate, class Visit>
 void for_each_if(std::size_t begin, std::size_t end, const Predicate& predicate, const Visit& visit) {
     constexpr std::size_t kBlock = 16;
@@ -28,16 +28,16 @@ void for_each_if(std::size_t begin, std::size_t end, const Predicate& predicate,
     }
 }
 
-/// Reserves capacity for `more` entries at the list's end: exactly for a large batch, geometrically for many small
-/// ones, so that appending neither reallocates time and again nor holds millions of entries twice.
+/// Reserves capacity for `more` entries at the end of a list: exactly for a large batch, geometrically for small ones.
+/// Many small appends then do not reallocate each time, and a large one does not keep millions of entries twice.
 template <class T>
 void grow_capacity_by(std::vector<T>& list, std::size_t more) {
     const std::size_t wanted = list.size() + more;
     if (wanted > list.capacity()) list.reserve(std::max(wanted, list.capacity() + list.capacity() / 2));
 }
 
-/// Keeps the entries whose mark is not 0, in their order; each mark stands for `width` entries in a row. Moves runs of
-/// entries at once: fast where few go. Marks beyond the list's end stand for nothing.
+/// Keeps the entries whose mark is not 0, in their order. Each mark stands for `width` consecutive entries. Moves runs
+/// of entries at once, which is fast if few are removed. Marks beyond the end of the list are ignored.
 template <class T>
 void keep_marked(std::vector<T>& list, const std::vector<std::uint8_t>& keep, std::size_t width = 1) {
     const auto entry = [&list, width](auto mark) { return list.begin() + mark * static_cast<std::ptrdiff_t>(width); };

@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-// Two writers of one file, in one process or in two, never share a temporary name.
+// Returns a temporary name that no other writer of the same file uses, in this process or in another.
 std::filesystem::path temporary_name(const std::filesystem::path& target) {
     static std::atomic<unsigned> counter{0};
     std::filesystem::path name = target;
@@ -47,13 +47,13 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::string_view bytes) {
-    if (bytes.empty()) return;  // it may have no address, which fwrite does not take
+    if (bytes.empty()) return;  // empty data may have a null address, which fwrite does not accept
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) fail(target_, "write");
 }
 
 void AtomicFile::commit() {
     if (std::fflush(file_) != 0) fail(target_, "write");
-    // Some file systems say only now that they could not store what was written: before it has its name.
+    // Checked before the rename, because some file systems report a failed write only when the file is closed.
     if (std::fclose(std::exchange(file_, nullptr)) != 0) fail(target_, "close");
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "name");
     is_committed_ = true;

@@ -10,20 +10,20 @@
 
 namespace ricochet {
 
-/// Writes to a temporary name beside the target and renames it in commit(); without commit() nothing is left behind and
-/// an older file of that name stays as it was, also when a signal ends the process (core/unfinished_file.h). One thread
-/// at a time.
+/// Writer that uses a temporary name beside the target and renames the file in commit(). Without commit() the temporary
+/// file is removed and an older file of that name is unchanged. This also holds if a signal ends the process
+/// (core/unfinished_file.h). For one thread at a time.
 class AtomicFile {
 public:
-    /// Throws InputError when the target is a folder or a device, RunError when it cannot be created.
+    /// Throws InputError if the target is a folder or a device, and RunError if it cannot be created.
     explicit AtomicFile(std::filesystem::path target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Appends bytes. Throws RunError when the disk does not take them.
+    /// Appends bytes. Throws RunError if they cannot be written.
     void write(std::string_view bytes);
-    /// Closes the file and gives it its name. Throws RunError when that fails. To be called once, at the end.
+    /// Closes the file and gives it its name. Throws RunError if that fails. Call it once, at the end.
     void commit();
 
 private:
@@ -34,7 +34,7 @@ private:
     bool is_committed_ = false;
 };
 
-/// Writes a whole file in one go; throws like AtomicFile.
+/// Writes a whole file at once. Throws like AtomicFile.
 void write_file(const std::filesystem::path& target, std::string_view bytes);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Values as bytes and back, for states that are saved and resumed on one kind of machine.
+/// Serialization of values to bytes and back, for states that are saved and resumed on one kind of machine.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace ricochet {
 
-/// Types that are saved as they are in memory: without pointers and padding.
+/// True for types that are saved with their bytes in memory: types without pointers and padding.
 template <class T>
 inline constexpr bool kIsFlat = std::is_arithmetic_v<T> || std::is_enum_v<T>;  // std::byte is an enumeration
 template <>
@@ -26,7 +26,8 @@ inline constexpr bool kIsFlat<Vec3> = true;
 template <class T, std::size_t n>
 inline constexpr bool kIsFlat<std::array<T, n>> = kIsFlat<T>;
 
-/// Writes. One function template over both archives, archive(x.member) for every member, saves and restores a type.
+/// Archive that writes. A type has one function template for both archives: archive(x.member) for every member saves or
+/// restores it.
 class BinaryWriter {
 public:
     static constexpr bool kReads = false;
@@ -42,14 +43,14 @@ public:
         (*this)(static_cast<std::uint64_t>(values.size()));
         if (!values.empty()) sink_(std::as_bytes(std::span(values)));
     }
-    /// A list beside another one of `size` entries.
+    /// Writes a list that belongs to another list of `size` entries.
     template <class T>
     requires kIsFlat<T>
     void operator()(const std::vector<T>& values, std::size_t size) {
         static_cast<void>(size);
         (*this)(values);
     }
-    /// The same, or an empty one, which means that all have `absent`.
+    /// Writes such a list, which may be empty: then all entries have the value `absent`.
     template <class T>
     void all_or_none(const std::vector<T>& values, std::size_t size, const T& absent) {
         static_cast<void>(absent);
@@ -64,8 +65,8 @@ private:
     ByteSink sink_;
 };
 
-/// Reads what a BinaryWriter has written, in the same order. Whatever the bytes say, it takes no more memory than a few
-/// times what there is of them: lists grow as they are read.
+/// Archive that reads the output of a BinaryWriter, in the same order. Lists grow while they are read, so damaged
+/// lengths never allocate more than a few times the size of the input.
 class BinaryReader {
 public:
     static constexpr bool kReads = true;
@@ -92,7 +93,7 @@ public:
         if (found != size) throw InputError("saved lists that belong together have different lengths");
         fill(values, found);
     }
-    /// The same, or an empty one.
+    /// Reads such a list, which may also be empty.
     template <class T>
     requires kIsFlat<T>
     void all_or_none(std::vector<T>& values, std::size_t size, const T& absent) {
@@ -104,7 +105,7 @@ public:
     void operator()(std::string& text) { fill(text, length()); }
 
 private:
-    /// Bytes by which lists grow.
+    /// Number of bytes by which lists grow.
     static constexpr std::size_t kPiece = std::size_t{1} << 20;
 
     [[nodiscard]] std::uint64_t length() {
@@ -126,11 +127,11 @@ private:
     ByteSource source_;
 };
 
-/// For a list of any length, in archive_entries().
+/// Any length is accepted, in archive_entries().
 inline constexpr std::uint64_t kAnyLength = ~std::uint64_t{0};
 
-/// Saves or restores a list of what is not saved as it lies in memory, entry by entry, by visit(entry). Reading throws
-/// InputError unless it is as long as expected.
+/// Saves or restores a list whose entries are not flat, by calling visit(entry) for each. Throws InputError when
+/// reading if the list does not have the expected length.
 template <class Archive, class T, class Visit>
 void archive_entries(Archive& a, std::vector<T>& entries, const Visit& visit, std::uint64_t expected = kAnyLength) {
     auto count = static_cast<std::uint64_t>(entries.size());

@@ -19,7 +19,7 @@ struct Cubic {
 double size_of(double x) { return std::fabs(x); }
 double size_of(const Vec3& v) { return length(v); }
 
-/// Of its derivatives while |t| <= h.
+/// Returns bounds of the derivatives of a cubic for |t| <= h.
 template <class Value>
 DerivativeBounds bounds_of(const std::array<Value, 3>& c, double h) {
     const double a = size_of(c[0]);
@@ -42,7 +42,7 @@ MovingPose BodyPath::at(double time) const {
     const Cubic<Vec3> moved(way, t);
     const Cubic<double> turned(turns, t);
     MovingPose pose = turned_by(degrees + turned.value, turned.rate, turned.second);
-    // The carrier moves along its way, and the frame's origin about it.
+    // The carrier follows its path, and the origin of the frame moves around it.
     const Vec3 arm = pose.world_from_frame.direction(carrier);
     const Vec3 arm_at_begin = turned_by(degrees).world_from_frame.direction(carrier);
     const Vec3 carried = cross(pose.angular_velocity, arm);

@@ -1,5 +1,5 @@
 /// \file
-/// How a rigid body moves in a part of a time step: a point of it along a cubic, while it turns about an axis that
+/// Motion of a rigid body during a substep: one point of it follows a cubic, and the body turns about an axis that
 /// keeps its direction.
 #pragma once
 
@@ -10,24 +10,24 @@
 
 namespace ricochet {
 
-/// Where a body's frame is from `begin` to `end`, s. Where it begins it says the bits that its members hold, so that a
-/// path that takes over where another has ended leaves no gap.
+/// Pose of a body's frame as a function of time, from `begin` to `end`, in s. The pose at `begin` equals the members
+/// bit by bit, so a path that continues an earlier one leaves no gap.
 struct BodyPath {
     double begin = 0.0;
     double end = 0.0;
-    AffineMap at_begin;             ///< the origin's position at the begin, m, and a rotation: that at the angle 0
-    Vec3 carrier;                   ///< the point that moves along the cubic, in the frame's coordinates, m
-    std::array<Vec3, 3> way{};      ///< its way in the world: the factors of t, t^2 and t^3, m/s^n
-    Vec3 axis{0, 0, 1};             ///< unit, in the frame's axes, and so in those of the world
-    std::array<double, 3> turns{};  ///< the angle, degrees: the factors of t, t^2 and t^3
-    double degrees = 0.0;           ///< the angle at the begin
+    AffineMap at_begin;             ///< position of the origin at the begin, in m, and the rotation at angle 0
+    Vec3 carrier;                   ///< the point that follows the cubic, in m, in the frame's coordinates
+    std::array<Vec3, 3> way{};      ///< its path in the world: coefficients of t, t^2 and t^3, in m/s^n
+    Vec3 axis{0, 0, 1};             ///< unit vector; the same in the frame's axes and in world axes
+    std::array<double, 3> turns{};  ///< the angle in degrees: coefficients of t, t^2 and t^3
+    double degrees = 0.0;           ///< angle at the begin
 
-    /// The pose at a time, s, and how it moves.
+    /// Returns the pose at a time, in s, with its velocities and accelerations.
     [[nodiscard]] MovingPose at(double time) const;
-    /// Bounds of its motion over [from, to], s.
+    /// Returns bounds of the motion over [from, to], in s.
     [[nodiscard]] MotionBounds bounds(double from, double to) const;
 
-    /// Saves or restores it; a: an archive, which takes members one by one.
+    /// Saves or restores the path. a: an archive, which takes members one by one.
     template <class Archive>
     void archive(Archive& a) {
         a(begin), a(end), a(carrier), a(axis), a(degrees);

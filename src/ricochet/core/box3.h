@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// Closed axis-aligned box; empty (lower > upper) when default-constructed.
+/// Closed axis-aligned box. Empty (lower > upper) if default-constructed.
 struct Box3 {
     Vec3 lower{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
                std::numeric_limits<double>::infinity()};
@@ -31,11 +31,11 @@ struct Box3 {
     }
     [[nodiscard]] Vec3 center() const { return 0.5 * lower + 0.5 * upper; }
     [[nodiscard]] Vec3 size() const { return upper - lower; }
-    /// Length of the space diagonal; 0 when empty.
+    /// Returns the length of the space diagonal; 0 if the box is empty.
     [[nodiscard]] double diagonal() const { return empty() ? 0.0 : length(size()); }
 };
 
-/// The lowest 21 bits of x with two zero bits between neighbours.
+/// Returns the lowest 21 bits of x, with two zero bits between neighbours.
 [[nodiscard]] constexpr std::uint64_t spread_bits(std::uint64_t x) {
     x = (x | x << 32U) & 0x001F00000000FFFFULL;
     x = (x | x << 16U) & 0x001F0000FF0000FFULL;
@@ -44,8 +44,8 @@ struct Box3 {
     return (x | x << 2U) & 0x1249249249249249ULL;
 }
 
-/// Position of a point along the Z-order curve through 2^21 cells per axis of the box, 63 bits: close codes are close
-/// points. Points outside belong to the nearest cell, points that are NaN to any.
+/// Returns the position of a point along the Z-order curve through 2^21 cells per axis of the box, in 63 bits. Points
+/// with close codes are close to each other. Points outside belong to the nearest cell, NaN points to any cell.
 /// Source: G. M. Morton, "A Computer Oriented Geodetic Data Base", IBM, 1966.
 [[nodiscard]] inline std::uint64_t morton_code(const Vec3& p, const Box3& box) {
     constexpr double kCells = 1 << 21;
@@ -57,13 +57,13 @@ struct Box3 {
     return spread_bits(cell(0)) | spread_bits(cell(1)) << 1U | spread_bits(cell(2)) << 2U;
 }
 
-/// Sort key: the code's leading bits, then an index below 2^index_bits.
+/// Returns a sort key: the leading bits of the code, then an index below 2^index_bits.
 [[nodiscard]] inline std::uint64_t morton_key(const Vec3& p, const Box3& box, std::uint32_t index,
                                               unsigned index_bits) {
     return morton_code(p, box) << 1U >> index_bits << index_bits | index;
 }
 
-/// The index in a sort key.
+/// Returns the index in a sort key.
 [[nodiscard]] constexpr std::uint32_t index_of_key(std::uint64_t key, unsigned index_bits) {
     return static_cast<std::uint32_t>(key & ((std::uint64_t{1} << index_bits) - 1U));
 }

@@ -1,21 +1,22 @@
 /// \file
-/// Private to the library: what is done with boxes in many places.
+/// Private to the library: common operations on boxes.
 #pragma once
 
 #include "ricochet/core/box3.h"
 
 namespace ricochet {
 
-/// The box, larger by a margin (m) on every side.
+/// Returns the box, larger by a margin (in m) on every side.
 [[nodiscard]] inline Box3 grown(const Box3& box, double margin) {
     const Vec3 by{margin, margin, margin};
     return {box.lower - by, box.upper + by};
 }
 
-/// Around a ball.
+/// Returns the box around a ball.
 [[nodiscard]] inline Box3 ball_box(const Vec3& center, double radius) { return grown({center, center}, radius); }
 
-/// True when they have a point in common. Without branches: which comparison fails first is chance.
+/// Returns true if the boxes have a point in common. Without branches, because it is random which comparison fails
+/// first.
 [[nodiscard]] inline bool overlap(const Box3& a, const Box3& b) {
     return static_cast<bool>(
         static_cast<unsigned>(a.lower.x <= b.upper.x) & static_cast<unsigned>(b.lower.x <= a.upper.x) &

@@ -1,5 +1,5 @@
 /// \file
-/// Where the bytes of a saved state go to and come from.
+/// Sink and source of the bytes of a saved state.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// Takes the bytes, at least one, in order; throws when it cannot.
+/// Function that consumes bytes, at least one, in order. Throws if it cannot.
 using ByteSink = std::function<void(std::span<const std::byte>)>;
-/// Gives exactly as many bytes as the span holds, at least one, in order; throws when there are not so many.
+/// Function that fills the whole span, of at least one byte, in order. Throws if there are not enough bytes.
 using ByteSource = std::function<void(std::span<std::byte>)>;
 
 }  // namespace ricochet

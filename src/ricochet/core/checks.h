@@ -1,5 +1,5 @@
 /// \file
-/// Arguments of forces, flows and frames: each check throws InputError with one line.
+/// Checks of arguments of forces, flows and frames. Each check throws InputError with one line.
 #pragma once
 
 #include <string_view>
@@ -8,12 +8,13 @@
 
 namespace ricochet::detail {
 
-/// what: `drag: the coefficient`; unit: empty for pure numbers.
+/// Throw InputError unless the value is finite (positive, not negative). what: for example `drag: the coefficient`.
+/// unit: empty for pure numbers.
 void require_finite(const Vec3& value, std::string_view what, std::string_view unit);
 void require_finite(double value, std::string_view what, std::string_view unit);
 void require_positive(double value, std::string_view what, std::string_view unit);
 void require_not_negative(double value, std::string_view what, std::string_view unit);
-/// The unit vector along a direction of any length but zero.
+/// Returns the unit vector along a direction of any nonzero length.
 [[nodiscard]] Vec3 unit_direction(const Vec3& direction, std::string_view what);
 
 }  // namespace ricochet::detail

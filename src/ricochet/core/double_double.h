@@ -1,5 +1,5 @@
 /// \file
-/// Double-double arithmetic: the unevaluated sum of two doubles, about 106 significant bits.
+/// Double-double arithmetic: a number is the unevaluated sum of two doubles, with about 106 significant bits.
 ///
 /// Sources: T. J. Dekker, "A Floating-Point Technique for Extending the Available Precision", Numerische Mathematik 18,
 /// 1971 (split, product, fast two-sum); D. E. Knuth, "The Art of Computer Programming", vol. 2, section 4.2.2
@@ -9,7 +9,7 @@
 ///
 /// Everything assumes rounding to nearest even, no flush-to-zero, and that no intermediate result overflows or
 /// underflows. Bounds are relative errors in terms of u = 2^-53. The bits do not depend on whether the processor has a
-/// fused multiply-add: it is used for the (exact) error of a product only.
+/// fused multiply-add, because it is used only for the (exact) error of a product.
 #pragma once
 
 #include <cmath>
@@ -24,20 +24,20 @@ struct DoubleDouble {
     double lo = 0.0;  ///< trailing part, at most half a unit in the last place of hi
 
     constexpr DoubleDouble() = default;
-    /// A double, exactly.
+    /// Converts a double, exactly.
     constexpr explicit DoubleDouble(double value) : hi(value) {}
-    /// Two parts that are already normalised.
+    /// Takes two parts that are already normalised.
     constexpr DoubleDouble(double high, double low) : hi(high), lo(low) {}
 
-    /// The nearest double.
+    /// Returns the nearest double.
     constexpr explicit operator double() const { return hi; }
 
     friend constexpr bool operator==(const DoubleDouble&, const DoubleDouble&) = default;
-    /// Order of the represented numbers: lexicographic, since both are normalised.
+    /// Compares the represented numbers. The order is lexicographic, since both are normalised.
     friend constexpr std::partial_ordering operator<=>(const DoubleDouble&, const DoubleDouble&) = default;
 };
 
-/// a + b exactly, as rounded sum and rounding error (Knuth; any order of magnitudes).
+/// Returns a + b exactly, as rounded sum and rounding error (Knuth; any order of magnitudes).
 [[nodiscard]] constexpr DoubleDouble two_sum(double a, double b) {
     const double sum = a + b;
     const double b_part = sum - a;
@@ -45,16 +45,16 @@ struct DoubleDouble {
     return {sum, (a - a_part) + (b - b_part)};
 }
 
-/// a + b exactly, for |a| >= |b| or a = 0 (Dekker).
+/// Returns a + b exactly, for |a| >= |b| or a = 0 (Dekker).
 [[nodiscard]] constexpr DoubleDouble fast_two_sum(double a, double b) {
     const double sum = a + b;
     return {sum, b - (sum - a)};
 }
 
-/// a - b exactly, as rounded difference and rounding error.
+/// Returns a - b exactly, as rounded difference and rounding error.
 [[nodiscard]] constexpr DoubleDouble two_diff(double a, double b) { return two_sum(a, -b); }
 
-/// a as the sum of two numbers of at most 26 significant bits each (Veltkamp). |a| below 2^996.
+/// Returns a as the sum of two numbers of at most 26 significant bits each (Veltkamp). |a| must be below 2^996.
 [[nodiscard]] constexpr DoubleDouble split(double a) {
     constexpr double kSplitter = 0x1p27 + 1.0;
     const double shifted = kSplitter * a;
@@ -62,7 +62,7 @@ struct DoubleDouble {
     return {high, a - high};
 }
 
-/// a * b exactly, as rounded product and rounding error, by Dekker's splitting.
+/// Returns a * b exactly, as rounded product and rounding error, by Dekker's splitting.
 [[nodiscard]] constexpr DoubleDouble two_product_by_splitting(double a, double b) {
     const double product = a * b;
     const DoubleDouble as = split(a);
@@ -71,7 +71,7 @@ struct DoubleDouble {
     return {product, as.lo * bs.lo + rest};
 }
 
-/// a * b exactly, as rounded product and rounding error.
+/// Returns a * b exactly, as rounded product and rounding error.
 [[nodiscard]] constexpr DoubleDouble two_product(double a, double b) {
 #ifdef __FMA__
     if (!std::is_constant_evaluated()) {
@@ -84,7 +84,7 @@ struct DoubleDouble {
 
 [[nodiscard]] constexpr DoubleDouble operator-(const DoubleDouble& x) { return {-x.hi, -x.lo}; }
 
-/// Sum; error below 3 u^2 + 13 u^3 (Joldes et al., algorithm 6).
+/// Returns the sum; error below 3 u^2 + 13 u^3 (Joldes et al., algorithm 6).
 [[nodiscard]] constexpr DoubleDouble operator+(const DoubleDouble& x, const DoubleDouble& y) {
     const DoubleDouble s = two_sum(x.hi, y.hi);
     const DoubleDouble t = two_sum(x.lo, y.lo);
@@ -92,16 +92,16 @@ struct DoubleDouble {
     return fast_two_sum(v.hi, t.lo + v.lo);
 }
 
-/// Difference; error as for the sum.
+/// Returns the difference; error as for the sum.
 [[nodiscard]] constexpr DoubleDouble operator-(const DoubleDouble& x, const DoubleDouble& y) { return x + (-y); }
 
-/// Sum with a double; error below 2 u^2 + 5 u^3 (Joldes et al., algorithm 4).
+/// Returns the sum with a double; error below 2 u^2 + 5 u^3 (Joldes et al., algorithm 4).
 [[nodiscard]] constexpr DoubleDouble operator+(const DoubleDouble& x, double y) {
     const DoubleDouble s = two_sum(x.hi, y);
     return fast_two_sum(s.hi, x.lo + s.lo);
 }
 
-/// Product with a double; error below 3/2 u^2 + 4 u^3 (Joldes et al., algorithm 7).
+/// Returns the product with a double; error below 3/2 u^2 + 4 u^3 (Joldes et al., algorithm 7).
 [[nodiscard]] constexpr DoubleDouble operator*(const DoubleDouble& x, double y) {
     const DoubleDouble c = two_product(x.hi, y);
     const DoubleDouble t = fast_two_sum(c.hi, x.lo * y);
@@ -109,14 +109,14 @@ struct DoubleDouble {
 }
 [[nodiscard]] constexpr DoubleDouble operator*(double y, const DoubleDouble& x) { return x * y; }
 
-/// Product; error below 7 u^2 (Joldes et al., algorithm 10).
+/// Returns the product; error below 7 u^2 (Joldes et al., algorithm 10).
 [[nodiscard]] constexpr DoubleDouble operator*(const DoubleDouble& x, const DoubleDouble& y) {
     const DoubleDouble c = two_product(x.hi, y.hi);
     const double crossed = x.hi * y.lo + x.lo * y.hi;
     return fast_two_sum(c.hi, c.lo + crossed);
 }
 
-/// Quotient; error below 15 u^2 + 56 u^3 (Joldes et al., algorithm 17). y is not zero.
+/// Returns the quotient; error below 15 u^2 + 56 u^3 (Joldes et al., algorithm 17). y must not be zero.
 [[nodiscard]] constexpr DoubleDouble operator/(const DoubleDouble& x, const DoubleDouble& y) {
     const double quotient = x.hi / y.hi;
     const DoubleDouble r = y * quotient;
@@ -124,7 +124,7 @@ struct DoubleDouble {
     return fast_two_sum(quotient, remainder / y.hi);
 }
 
-/// Square root; error below 25/8 u^2 (Lefevre et al., algorithm SQRTDWtoDW). x is not negative.
+/// Returns the square root; error below 25/8 u^2 (Lefevre et al., algorithm SQRTDWtoDW). x must not be negative.
 [[nodiscard]] inline DoubleDouble sqrt(const DoubleDouble& x) {
     if (x.hi == 0.0) return {};
     const double root = std::sqrt(x.hi);
@@ -135,10 +135,10 @@ struct DoubleDouble {
 
 [[nodiscard]] constexpr DoubleDouble abs(const DoubleDouble& x) { return x.hi < 0.0 ? -x : x; }
 
-/// -1, 0 or +1.
+/// Returns -1, 0 or +1.
 [[nodiscard]] constexpr int sign(const DoubleDouble& x) { return (x.hi > 0.0) - (x.hi < 0.0); }
 
-/// x * 2^exponent; exact unless a part leaves the range of doubles.
+/// Returns x * 2^exponent; exact unless a part leaves the range of doubles.
 [[nodiscard]] inline DoubleDouble scaled(const DoubleDouble& x, int exponent) {
     return {std::ldexp(x.hi, exponent), std::ldexp(x.lo, exponent)};
 }

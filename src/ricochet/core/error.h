@@ -1,5 +1,5 @@
 /// \file
-/// The kinds of failure that reach the user, and how they read.
+/// The kinds of failure that reach the user, and the form of their messages.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 namespace ricochet {
 
 /// Wrong input: arguments, scene or mesh. The command line ends with exit code 2.
-/// The text is one line: what, where (file and line, byte offset or JSON path), what was expected, what to do.
+/// The text is one line: the fault, its location (file and line, byte offset or JSON path), the expected value, and the
+/// remedy.
 class InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
@@ -21,7 +22,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// A run has diverged: for example by a step too long for its forces. The text says when and where.
+/// Divergence of a run, for example by a step too long for its forces. The text says when and where it happened.
 class DivergedError : public RunError {
 public:
     using RunError::RunError;
@@ -32,12 +33,12 @@ namespace detail {
 [[noreturn]] void refuse_length(std::size_t found, std::size_t expected, const char* what);
 }  // namespace detail
 
-/// Throws InputError "what: found 7, expected a number below 3" unless index < size.
+/// Throws InputError "NAME: found 7, expected a number below 3" unless index < size.
 inline void require_index(std::size_t index, std::size_t size, const char* what) {
     if (index >= size) detail::refuse_index(index, size, what);
 }
 
-/// Throws InputError "what: found 7 entries, expected 3" unless they are equal.
+/// Throws InputError "NAME: found 7 entries, expected 3" unless the lengths are equal.
 inline void require_same_length(std::size_t found, std::size_t expected, const char* what) {
     if (found != expected) detail::refuse_length(found, expected, what);
 }

@@ -17,16 +17,16 @@
 namespace ricochet {
 namespace {
 
-/// Most entries of a chain. Frames that stand on more go on from the chain of another one, so that deep trees take
-/// memory in proportion to their frames.
+/// Most entries of a chain. Longer chains of frames continue the chain of another frame, so that deep trees take memory
+/// in proportion to their number of frames.
 constexpr std::size_t kLongestChain = 16;
 
-/// Instead of a parent's number: the world.
+/// Number of the world as a parent.
 constexpr std::size_t kWorld = std::numeric_limits<std::size_t>::max();
 
 using Chains = std::vector<std::vector<std::size_t>>;
 
-/// Calls visit(k) for a frame and all that it stands on, from the one in the world on.
+/// Calls visit(k) for all ancestors of a frame and the frame itself, starting at the one in the world.
 template <class Visit>
 void for_each_in_chain(const std::vector<FrameDescription>& frames, const Chains& chains, std::size_t frame,
                        const Visit& visit) {
@@ -42,7 +42,7 @@ std::unordered_map<std::string_view, std::size_t> numbers_of(std::span<const Fra
     return numbers;
 }
 
-/// The number of each frame's parent, or kWorld; unknown parents count as the world.
+/// Returns the number of each frame's parent, or kWorld. Unknown parents count as the world.
 std::vector<std::size_t> parents_of(std::span<const FrameDescription> frames) {
     const std::unordered_map<std::string_view, std::size_t> numbers = numbers_of(frames);
     std::vector<std::size_t> parents;
@@ -53,7 +53,7 @@ std::vector<std::size_t> parents_of(std::span<const FrameDescription> frames) {
     return parents;
 }
 
-/// The numbers of frames without a circle, each behind that of its parent.
+/// Returns the numbers of frames, without a cycle among them, so that each follows its parent.
 std::vector<std::size_t> parents_first(const std::vector<std::size_t>& parents) {
     std::vector<std::size_t> order;
     std::vector<std::uint8_t> is_known(parents.size(), 0);
@@ -66,10 +66,11 @@ std::vector<std::size_t> parents_first(const std::vector<std::size_t>& parents) 
     return order;
 }
 
-/// A sine of amplitude 1, and its derivatives, 1/s and 1/s^2.
+/// Value of a sine of amplitude 1, with its derivatives, in 1/s and 1/s^2.
 struct Wave {
     Wave(double frequency, double phase, double time) {
-        // Whole periods are taken off before the phase is added, which would be lost in many.
+        // Whole periods are removed before the phase is added, because a large number of periods would absorb the
+        // phase.
         const double turns = std::remainder(frequency * time, 1.0) + phase / 360.0;
         const double pulsation = 2.0 * std::numbers::pi * frequency;
         value = sine_of_turns(turns);
@@ -111,7 +112,7 @@ DerivativeBounds wave_bounds(double amplitude, double frequency) {
     return bounds;
 }
 
-/// What the motions of a chain add to its bounds, one after the other.
+/// Visitor that adds the motions of a chain to its bounds, one after the other.
 struct BoundsOf {
     MotionBounds& bounds;
     double from, to;
@@ -140,7 +141,7 @@ double next_key_of(const FrameMotion& motion, double time) {
     return std::numeric_limits<double>::infinity();
 }
 
-/// Adds what a motion is made of to a hash.
+/// Visitor that adds the parameters of a motion to a hash.
 struct HashOf {
     StateHash& hash;
 
@@ -186,7 +187,7 @@ void require_factors(const FrameDescription& frame, const KeyedScale& motion) {
 
 bool is_scale(const FrameMotion& motion) { return std::holds_alternative<KeyedScale>(motion); }
 
-// Checks a frame by itself; axes become unit vectors.
+// Checks one frame by itself, and normalises its axes.
 void prepare(FrameDescription& frame) {
     const auto of_frame = [&](const char* what) { return fmt::format("frame '{}': {}", frame.name, what); };
     detail::require_finite(frame.translation, of_frame("the translation"), "m");
@@ -216,20 +217,20 @@ void prepare(FrameDescription& frame) {
     }
 }
 
-/// The path that is valid at a time: where two meet, the later one.
+/// Returns the path that is valid at a time. At the border between two paths this is the later one.
 const BodyPath& path_at(const std::vector<BodyPath>& paths, double time) {
     const auto later = std::upper_bound(paths.begin(), paths.end(), time,
                                         [](double t, const BodyPath& path) { return t < path.begin; });
     return later == paths.begin() ? paths.front() : *(later - 1);
 }
 
-/// The first of some paths that ends at a time or after it.
+/// Returns the first path that ends at or after a time.
 template <class Iterator>
 Iterator first_path_to(Iterator begin, Iterator end, double time) {
     return std::partition_point(begin, end, [time](const BodyPath& path) { return path.end < time; });
 }
 
-/// Of all of them that are valid within [from, to].
+/// Returns bounds of all paths that are valid within [from, to].
 MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double to) {
     MotionBounds all;
     const auto first = first_path_to(paths.begin(), paths.end() - 1, from);
@@ -246,10 +247,10 @@ MotionBounds bounds_of(const std::vector<BodyPath>& paths, double from, double t
 
 }  // namespace
 
-// Every frame is gone through once: a walk up ends where an earlier one has been, or where it has been itself.
+// Every frame is visited once: a walk to the parents ends at a frame that it or an earlier walk has visited.
 std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames) {
     const std::vector<std::size_t> parents = parents_of(frames);
-    std::vector<std::size_t> walk_of(frames.size(), kWorld);  // that has come to it first
+    std::vector<std::size_t> walk_of(frames.size(), kWorld);  // first walk that visited the frame
     std::size_t first = kWorld;
     for (std::size_t walk = 0; walk < frames.size(); ++walk) {
         std::size_t i = walk;

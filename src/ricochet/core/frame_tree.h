@@ -1,6 +1,6 @@
 /// \file
-/// Moving frames of reference that stand on each other, like the links of an arm: where each is at a time, and how it
-/// moves then, differentiated exactly along the chain.
+/// Tree of moving frames of reference, like the links of an arm. Gives the pose and motion of each at a time,
+/// differentiated exactly along the chain.
 /// Method: forward kinematics of serial chains; velocities of composed rigid motions as in J. J. Craig, "Introduction
 /// to Robotics: Mechanics and Control", 3rd ed., 2005, chapter 5.
 #pragma once
@@ -21,103 +21,108 @@
 
 namespace ricochet {
 
-/// A turn about an axis through the frame's origin, by the right-hand rule.
+/// Rotation about an axis through the frame's origin, by the right-hand rule.
 struct KeyedRotation {
-    Vec3 axis{0, 0, 1};          ///< of any length but zero
+    Vec3 axis{0, 0, 1};          ///< of any nonzero length
     KeyedCurve<double> degrees;  ///< the angle
 };
-/// The trajectory of the frame's origin.
+/// Trajectory of the frame's origin.
 struct KeyedTranslation {
     KeyedCurve<Vec3> path;  ///< m
 };
-/// A steady turn about an axis through the frame's origin.
+/// Rotation at a constant rate about an axis through the frame's origin.
 struct Spin {
-    Vec3 axis{0, 0, 1};  ///< of any length but zero
+    Vec3 axis{0, 0, 1};  ///< of any nonzero length
     double rate = 0.0;   ///< degrees/s, by the right-hand rule; the angle is 0 at 0 s
 };
-/// A turn to and fro, by the angle amplitude sin(2 pi (frequency t + phase / 360)).
+/// Oscillating rotation by the angle amplitude sin(2 pi (frequency t + phase / 360)).
 struct Swing {
-    Vec3 axis{0, 0, 1};      ///< of any length but zero
+    Vec3 axis{0, 0, 1};      ///< of any nonzero length
     double amplitude = 0.0;  ///< degrees
     double frequency = 0.0;  ///< Hz
     double phase = 0.0;      ///< degrees
 };
-/// A way to and fro, by the offset amplitude sin(2 pi (frequency t + phase / 360)).
+/// Oscillating translation by the offset amplitude sin(2 pi (frequency t + phase / 360)).
 struct Oscillation {
     Vec3 amplitude;          ///< m
     double frequency = 0.0;  ///< Hz
     double phase = 0.0;      ///< degrees
 };
-/// A scale along the frame's axes, about its origin. What comes after it, and what stands on the frame, is scaled too.
+/// Scale along the frame's axes, about its origin. It also applies to the motions after it and to the children of the
+/// frame.
 struct KeyedScale {
     KeyedCurve<Vec3> factors;  ///< all above 0 at keys
 };
 using FrameMotion = std::variant<KeyedRotation, KeyedTranslation, Spin, Swing, Oscillation, KeyedScale>;
 
-/// One frame as it stands in its parent: moved, turned, and then moved by its motions one after the other, each in the
-/// axes that those before it have led to.
+/// Description of a frame relative to its parent: a translation, a rotation, and then its motions one after the other.
+/// Each motion acts in the axes that result from the motions before it.
 struct FrameDescription {
     std::string name;
     std::string parent;                  ///< empty: the world
     Vec3 translation;                    ///< m, of the origin in the parent's axes
-    Vec3 rotation_axis{0, 0, 1};         ///< of any length but zero
+    Vec3 rotation_axis{0, 0, 1};         ///< of any nonzero length
     double rotation_degrees = 0.0;       ///< about rotation_axis, right-hand rule
     std::vector<FrameMotion> motions{};  ///< in order
-    /// It moves as set_paths() says from time to time, from where it stands at first: a body that is pushed. It stands
-    /// in the world and has no motions.
+    /// The frame belongs to a dynamic body: it starts at the given pose and then follows set_paths(). Its parent is the
+    /// world and it has no motions.
     bool is_driven = false;
 };
 
-/// Where a frame is at a time: turned about an axis through its origin, which is at a position.
+/// Pose of a frame at one time: a rotation about an axis through its origin, and the position of the origin.
 struct KeyPose {
     double time = 0.0;     ///< s
     Vec3 position;         ///< m
-    Vec3 axis{0, 0, 1};    ///< of any length but zero
+    Vec3 axis{0, 0, 1};    ///< of any nonzero length
     double degrees = 0.0;  ///< by the right-hand rule
 };
 
-/// The motions of a frame through poses: between two of them its origin moves steadily on a straight line, and it turns
-/// steadily about one axis by the shortest way; before the first and after the last it stands still. Throws InputError
-/// as KeyedCurve does. Source: K. Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
+/// Returns the motions of a frame through poses. Between two poses its origin moves at constant velocity, and it turns
+/// at a constant rate about one axis by the shortest angle. Before the first pose and after the last it is at rest.
+/// Throws InputError like KeyedCurve. Source: K. Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 [[nodiscard]] std::vector<FrameMotion> motions_through(const std::vector<KeyPose>& poses);
 
-/// The first frame whose parents lead back to it; nothing when there is none. Unknown parents count as the world.
+/// Returns the first frame whose parents lead back to it, if there is one. Unknown parents count as the world.
 [[nodiscard]] std::optional<std::size_t> frame_in_circle(std::span<const FrameDescription> frames);
 
-/// Frames by name. Safe from any number of threads, but not beside set_paths(); the same bits on every system.
+/// Frames by name. Any number of threads may read it, but not while set_paths() runs. Results have the same bits on
+/// every system.
 class FrameTree {
 public:
     FrameTree() = default;
-    /// Throws InputError, naming the frame, for a name that is empty or taken, an unknown parent, parents that lead
-    /// back, an axis without length, an offset that is not finite, factors that are not above 0, or a driven frame that
-    /// has a parent or motions.
+    /// Throws InputError, naming the frame, for:
+    /// - a name that is empty or taken,
+    /// - an unknown parent, or parents that lead back,
+    /// - an axis without length, an offset that is not finite, or factors that are not above 0,
+    /// - a driven frame that has a parent or motions.
     explicit FrameTree(std::vector<FrameDescription> frames);
 
     [[nodiscard]] std::size_t size() const { return frames_.size(); }
-    /// Throws InputError unless frame < size(), as at() does.
+    /// Returns the description of a frame. Throws InputError unless frame < size(), as at() does.
     [[nodiscard]] const FrameDescription& description(std::size_t frame) const;
-    /// The number of the frame of that name.
+    /// Returns the number of the frame with that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
-    /// True where its own motions, or those of a frame that it stands on, have a scale: it is no rigid frame.
+    /// Returns true if a motion of the frame or of one of its ancestors is a scale: then it is not a rigid frame.
     [[nodiscard]] bool is_scaled(std::size_t frame) const;
-    /// The pose and motion, at a time (s), of a frame that is not scaled; throws InputError for one that is.
+    /// Returns pose and motion, at a time in s, of a frame that is not scaled. Throws InputError for a scaled frame.
     [[nodiscard]] MovingPose at(std::size_t frame, double time) const;
-    /// Where the points of any frame are at a time (s), with all scales.
+    /// Returns the map of points of any frame into the world at a time, in s, with all scales.
     [[nodiscard]] AffineMap map(std::size_t frame, double time) const;
-    /// Bounds of its motion over [from, to], s, its scales counted as part of the rotation; at keys within, of what is
-    /// on both sides of them.
+    /// Returns bounds of its motion over [from, to], in s. Scales count as part of the rotation. At keys the bounds
+    /// hold on both sides.
     [[nodiscard]] MotionBounds bounds(std::size_t frame, double from, double to) const;
-    /// The first time after `time`, s, at which a curve of it or of the frames that it stands on has a key: derivatives
-    /// may jump there; infinite when there is none.
+    /// Returns the first time after `time`, in s, with a key in a curve of the frame or its ancestors; infinity if
+    /// there is none. Derivatives can jump there.
     [[nodiscard]] double next_key(std::size_t frame, double time) const;
-    /// Of all that says how it moves: its own description and those of the frames that it stands on, without names.
+    /// Returns a hash of the motion: the descriptions of the frame and its ancestors, without names.
     [[nodiscard]] std::uint64_t hash(std::size_t frame) const;
 
-    /// How a driven frame has moved, and will: paths that follow each other without a gap, at least one. What comes
-    /// before and after is as the first and the last of them say. Throws InputError for other frames.
+    /// Sets the past and future motion of a driven frame: at least one path, each continuing the one before without a
+    /// gap. The first and the last path also apply before and after their intervals. Throws InputError for other
+    /// frames.
     void set_paths(std::size_t frame, std::vector<BodyPath> paths);
-    /// Of the same list, without a copy of it: another path comes after the last one, or takes the place of the last
-    /// one, and those in front are forgotten that end before a time, s, but for the last one.
+    /// Change the same list without a copy of it. They append a path, replace the last one, or remove the paths that
+    /// end before a time, in s. The last path is never removed.
     void append_path(std::size_t frame, const BodyPath& path);
     void replace_last_path(std::size_t frame, const BodyPath& path);
     void forget_paths(std::size_t frame, double before);
@@ -128,9 +133,9 @@ private:
     void step_into(MovingPose& pose, std::size_t frame, double time) const;
 
     std::vector<FrameDescription> frames_;
-    std::vector<std::vector<BodyPath>> paths_;      // one list a frame; empty but for driven ones that have been set
-    std::vector<std::vector<std::size_t>> chains_;  // of each frame: from the world, or another frame, to itself
-    std::vector<bool> is_scaled_;                   // one a frame
+    std::vector<std::vector<BodyPath>> paths_;      // one list per frame; empty except for driven frames with paths
+    std::vector<std::vector<std::size_t>> chains_;  // per frame: from the world, or another frame, to itself
+    std::vector<bool> is_scaled_;                   // one per frame
 };
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// The state hash that reports print, and the checksum of what is saved: equal hashes mean equal bits.
+/// The state hash in reports and the checksum of saved files: equal hashes mean equal bits.
 #pragma once
 
 #include <bit>
@@ -11,7 +11,7 @@
 
 namespace ricochet {
 
-/// FNV-1a with 64 bits over the little-endian bytes of what is added.
+/// FNV-1a hash with 64 bits over the little-endian bytes of the added values.
 /// Source: G. Fowler, L. C. Noll, K.-P. Vo, the FNV non-cryptographic hash (offset basis and prime as published).
 class StateHash {
 public:
@@ -23,7 +23,7 @@ public:
             value_ *= 0x100000001b3ULL;
         }
     }
-    /// In the order in which they are.
+    /// Adds bytes in their order.
     void add(std::span<const std::byte> bytes) {
         for (const std::byte byte : bytes) value_ = (value_ ^ std::to_integer<std::uint64_t>(byte)) * 0x100000001b3ULL;
     }

@@ -1,4 +1,4 @@
-// Frames through poses: a turn from each to the next.
+// Frames through poses: a rotation from each pose to the next.
 #include <algorithm>
 #include <utility>
 
@@ -25,7 +25,8 @@ Quaternion turn_of(const KeyPose& pose) {
     return {sine_of_turns(half + 0.25), (sine_of_turns(half) / size) * pose.axis};
 }
 
-/// The shortest turn that a quaternion says, with its angle in degrees; of whole turns nothing.
+/// Returns the shortest rotation that a quaternion describes, as an angle in degrees over an interval. Whole turns give
+/// no rotation.
 KeyedRotation shortest_turn(Quaternion q, double from, double to) {
     if (q.w < 0.0) q = {-q.w, -q.v};
     const double sine = length(q.v);

@@ -18,7 +18,7 @@ bool is_good(const Vec3& value) { return is_finite(value); }
 double size_of(double value) { return std::fabs(value); }
 double size_of(const Vec3& value) { return length(value); }
 
-// Mean slope of the segment that begins at a key.
+// Returns the mean slope of the segment that begins at a key.
 template <class Value>
 Value chord_slope(const std::vector<CurveKey<Value>>& keys, std::size_t k) {
     return (keys[k + 1].value - keys[k].value) / (keys[k + 1].time - keys[k].time);
@@ -45,18 +45,18 @@ void check(const std::vector<CurveKey<Value>>& keys, CurveEnds ends) {
     }
 }
 
-// Slope at a key between two segments: of the parabola through the three keys.
+// Returns the slope, at a key between two segments, of the parabola through the three keys.
 template <class Value>
 Value parabola_slope(double before, const Value& slope_before, double after, const Value& slope_after) {
     const double weight = before / (before + after);
     return slope_before + weight * (slope_after - slope_before);
 }
 
-/// Rows of lower x_(k-1) + middle x_k + upper x_(k+1) = right.
+/// Tridiagonal system with rows lower x_(k-1) + middle x_k + upper x_(k+1) = right.
 struct Tridiagonal {
     std::vector<double> lower, middle, upper;
 
-    /// By elimination: for rows whose middle is more than the sum of the others.
+    /// Solves the system by elimination. In each row the middle must exceed the sum of the other two.
     template <class Value>
     [[nodiscard]] std::vector<Value> solve(std::vector<Value> right) const {
         const std::size_t rows = middle.size();
@@ -74,10 +74,11 @@ struct Tridiagonal {
     }
 };
 
-/// The slopes with which the second derivative is the same on both sides of every key: those of the keys beside it
-/// weigh by one over their distance. Held curves are at rest at both ends. The last key of a repeated one is its first,
-/// which joins the first row and the last: T x = right with x and a share of T z = corner (J. Sherman, W. J. Morrison,
-/// Annals of Mathematical Statistics 21, 1950).
+/// Returns the slopes for which the second derivative is equal on both sides of every key. The slopes at the
+/// neighbouring keys have weights of one over their distance in time. Held curves are at rest at both ends.
+/// A repeated curve has its first key as its last one, which couples the first and the last row. Then x is the solution
+/// of T x = right, less a share of the solution of T z = corner (J. Sherman, W. J. Morrison, Annals of Mathematical
+/// Statistics 21, 1950).
 template <class Value>
 std::vector<Value> smooth_slopes(const std::vector<CurveKey<Value>>& keys, bool repeats) {
     const std::size_t segments = keys.size() - 1;
@@ -155,7 +156,7 @@ KeyedCurve<Value>::KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation i
     }
 }
 
-// At the ends of a held curve the slope is 0; a repeated one has the last segment before the first key.
+// At the ends of a held curve the slope is 0. A repeated curve has its last segment before the first key.
 template <class Value>
 void KeyedCurve<Value>::set_slopes() {
     const std::size_t count = keys_.size();
@@ -182,7 +183,7 @@ typename KeyedCurve<Value>::Phase KeyedCurve<Value>::phase_of(double time) const
     const double period = last - first;
     double rounds = std::floor((time - first) / period);
     double phase = time - rounds * period;
-    if (phase >= last) {  // by rounding
+    if (phase >= last) {  // caused by rounding
         phase = first;
         rounds += 1.0;
     }
@@ -240,8 +241,8 @@ Value KeyedCurve<Value>::second_derivative(double time) const {
     return eased + ((6.0 * s - 4.0) / span) * slopes_[k] + ((6.0 * s - 2.0) / span) * slopes_[k + 1];
 }
 
-/// Of the cubic on a segment, by its coefficients in s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12 s| <= 6,
-/// |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
+/// Includes the cubic on a segment, by the bounds of its coefficients for s from 0 to 1: |6 s (1 - s)| <= 3/2, |6 - 12
+/// s| <= 6, |(1 - s) (1 - 3 s)| <= 1, |6 s - 4| <= 4.
 template <class Value>
 void KeyedCurve<Value>::include_segment(std::size_t k, DerivativeBounds& bounds) const {
     const double span = keys_[k + 1].time - keys_[k].time;

@@ -1,5 +1,5 @@
 /// \file
-/// Values keyed in time, as animators set them: a curve through keys, with its exact derivatives.
+/// Curves through values that are keyed in time, as in animation, with their exact derivatives.
 /// Sources: ease in and out as the cubic 3 s^2 - 2 s^3: J. Lasseter, "Principles of Traditional Animation Applied to 3D
 /// Computer Animation", SIGGRAPH 1987 (slow in and out). Splines: E. Catmull, R. Rom, "A class of local interpolating
 /// splines", 1974; on uneven keys with the tangents of C. de Boor, "A Practical Guide to Splines", 1978, chapter IV
@@ -14,22 +14,22 @@
 
 namespace ricochet {
 
-/// What holds between two keys.
+/// Interpolation between two keys.
 enum class Interpolation {
     linear,            ///< a straight line; the derivative jumps at keys
     slow_in_slow_out,  ///< 3 s^2 - 2 s^3 of the change: at rest at every key, continuous derivative
-    spline,            ///< a cubic whose slope at a key is that of the parabola through it and both its neighbours
-                       ///< (Catmull-Rom where keys are evenly spaced): continuous derivative
-    cubic_spline,      ///< the cubic spline: the second derivative is continuous too, and each key moves all of it
+    spline,            ///< a cubic; its slope at a key is that of the parabola through the key and both neighbours
+                       ///< (Catmull-Rom if keys are evenly spaced): continuous derivative
+    cubic_spline,      ///< the cubic spline: continuous second derivative; each key affects the whole curve
 };
 
 [[nodiscard]] std::string_view name_of(Interpolation interpolation);
 
-/// What holds before the first and after the last key.
+/// Extrapolation before the first and after the last key.
 enum class CurveEnds {
-    hold,    ///< the value of that key; splines are at rest there, so that the derivative stays continuous
-    repeat,  ///< the keys again and again, each round beginning with the value that the one before ended with; a spline
-             ///< goes on smoothly
+    hold,    ///< the value of that key; splines are at rest there, so the derivative is continuous
+    repeat,  ///< the keys repeat, and each round begins with the value at the end of the one before; splines continue
+             ///< smoothly
 };
 
 /// One key. Value: double or Vec3.
@@ -39,34 +39,35 @@ struct CurveKey {
     Value value{};
 };
 
-/// Upper bounds of the sizes of a function of time and of its first to fourth derivative; in the user's unit, per s^n.
+/// Upper bounds of the magnitudes of a function of time and of its first to fourth derivative, in the user's unit per
+/// s^n.
 using DerivativeBounds = std::array<double, 5>;
 
-/// Those of a product of two functions, by Leibniz' rule.
+/// Returns the bounds of a product of two functions, by Leibniz' rule.
 [[nodiscard]] DerivativeBounds product(const DerivativeBounds& f, const DerivativeBounds& g);
 
-/// A curve through keys, for Value = double and Value = Vec3. Immutable: safe from any number of threads. Time is in s,
-/// values are in the user's unit.
+/// Curve through keys, for Value = double and Value = Vec3. Immutable, and so safe from any number of threads. Time is
+/// in s, values are in the user's unit.
 template <class Value>
 class KeyedCurve {
 public:
-    /// The same value at all times; throws InputError unless it is finite.
+    /// Makes a curve with one value at all times. Throws InputError unless it is finite.
     explicit KeyedCurve(const Value& constant = Value{});
-    /// Throws InputError unless there is a key, all are finite, times strictly increase, and no two keys are so near to
-    /// each other in time that the derivative between them overflows.
+    /// Throws InputError unless there is a key, all keys are finite and times strictly increase. It also throws if two
+    /// keys are so close in time that the derivative between them overflows.
     explicit KeyedCurve(std::vector<CurveKey<Value>> keys, Interpolation interpolation = Interpolation::linear,
                         CurveEnds ends = CurveEnds::hold);
 
-    /// The value at a time; a key's own value exactly at that key.
+    /// Returns the value at a time; exactly the key's value at a key.
     [[nodiscard]] Value value(double time) const;
-    /// Derivative by time, per s; at a key the one of what follows it.
+    /// Returns the first derivative by time, per s. At a key it is the derivative after the key.
     [[nodiscard]] Value derivative(double time) const;
-    /// Second derivative by time, per s^2; at a key the one of what follows it.
+    /// Returns the second derivative by time, per s^2. At a key it is the derivative after the key.
     [[nodiscard]] Value second_derivative(double time) const;
 
-    /// Bounds of the value and its derivatives between keys, over [from, to].
+    /// Returns bounds of the value and of its derivatives between keys, over [from, to].
     [[nodiscard]] DerivativeBounds bounds(double from, double to) const;
-    /// The first key after a time, s, where derivatives may jump; infinite after the last.
+    /// Returns the time of the first key after a time, in s; infinity after the last. Derivatives can jump there.
     [[nodiscard]] double next_key(double time) const;
 
     [[nodiscard]] const std::vector<CurveKey<Value>>& keys() const { return keys_; }
@@ -74,14 +75,14 @@ public:
     [[nodiscard]] CurveEnds ends() const { return ends_; }
 
 private:
-    // A time within the keys, and how many rounds were taken off.
+    // Time within the range of the keys, and the number of rounds that were subtracted.
     struct Phase {
         double time;
         double rounds;
     };
     [[nodiscard]] Phase phase_of(double time) const;
     [[nodiscard]] bool is_held(double time) const;
-    // The segment that begins at or before a time within the keys.
+    // Returns the segment that begins at or before a time within the keys.
     [[nodiscard]] std::size_t segment_at(double time) const;
     void set_slopes();
     [[nodiscard]] bool is_spline() const {
@@ -90,7 +91,7 @@ private:
     void include_segment(std::size_t k, DerivativeBounds& bounds) const;
 
     std::vector<CurveKey<Value>> keys_;
-    std::vector<Value> slopes_;  // of a spline, one a key
+    std::vector<Value> slopes_;  // of a spline, one per key
     Interpolation interpolation_ = Interpolation::linear;
     CurveEnds ends_ = CurveEnds::hold;
 };

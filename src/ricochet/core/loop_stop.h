@@ -1,14 +1,14 @@
 /// \file
-/// Private: lets the caller of parallel loops end them before their end, without a word of it in the code between.
+/// Private: lets the caller of parallel loops stop them early, without a parameter in the code between.
 #pragma once
 
 #include <functional>
 
 namespace ricochet {
 
-/// While it lives, the parallel loops that this thread begins, and the loops within their blocks, call a function
-/// before each block, from any of their threads. An exception of the function ends the loop. Several nest: the
-/// innermost counts.
+/// Scope in which a function is called before each block of the parallel loops that this thread starts, and of loops
+/// within their blocks. Any thread of the loop may call it. An exception of the function ends the loop. Scopes nest:
+/// only the innermost function is called.
 class LoopStop {
 public:
     explicit LoopStop(std::function<void()> ask);
@@ -21,7 +21,7 @@ private:
     const std::function<void()>* outer_;
 };
 
-/// Calls that function, if there is one: for blocks that take long.
+/// Calls the function of the innermost scope, if there is one. For blocks that take long.
 void poll_loop_stop();
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-/// Version 1 writes "no limit" as the largest whole number of pages.
+/// Smallest value that means "no limit", in bytes: version 1 writes the largest whole number of pages.
 constexpr double kNoGroupLimit = 0x1p60;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -28,16 +28,16 @@ std::optional<double> number_of(std::string_view text) {
     return static_cast<double>(value);
 }
 
-/// The first number of a file; nothing where there is none ("max").
+/// Returns the first number of a file, or nothing if there is none ("max").
 std::optional<double> number_in(const std::string& file) {
     std::string word;
     std::ifstream(file) >> word;
     return number_of(word);
 }
 
-/// The least limit of a group and of those above it. Where the group itself is not to be seen, as in a container, its
-/// root may be the group under which the container sees it. group: begins with a slash. Texts and no paths: libstdc++
-/// 12 frees twice where memory runs out while paths are joined.
+/// Returns the least limit of a group and its ancestors. In a container the group itself can be invisible; then the
+/// root of the mount may be that group. group: begins with a slash. Uses strings instead of paths, because libstdc++ 12
+/// frees twice if memory runs out while paths are joined.
 double group_limit(const std::string& mount, std::string group, const std::string& file) {
     double least = kUnlimited;
     for (;; group.erase(group.rfind('/'))) {
@@ -58,7 +58,7 @@ bool names_memory(std::string_view controllers) {
     return false;
 }
 
-/// Lines are "number:controllers:group"; version 2 has none of its controllers there.
+/// Reads the groups of the process. Lines are "number:controllers:group"; version 2 leaves the controllers empty.
 double limit_of_groups(const MemoryFiles& files) {
     double least = kUnlimited;
     std::ifstream groups(files.process / "cgroup");
@@ -79,7 +79,7 @@ double limit_of_groups(const MemoryFiles& files) {
     return least;
 }
 
-/// Pages in use: in all, and of data.
+/// Returns the pages in use: of the whole address space, and of data.
 std::array<double, 2> pages_in_use(const MemoryFiles& files) {
     std::ifstream statm(files.process / "statm");
     std::array<double, 6> pages{};
@@ -94,7 +94,7 @@ double limit_of_resource(__rlimit_resource resource, double pages_used) {
     return std::max(0.0, static_cast<double>(limit.rlim_cur) - used);
 }
 
-/// Lines are "MemAvailable:   16203452 kB".
+/// Returns the available memory of the machine, in bytes. Lines are "MemAvailable:   16203452 kB".
 double memory_of_machine(const MemoryFiles& files) {
     double available = 0.0;
     bool is_known = false;
@@ -118,10 +118,10 @@ double memory_of_machine(const MemoryFiles& files) {
 MemoryLimit memory_limit(const MemoryFiles& files) {
     const auto [all, data] = pages_in_use(files);
     const std::array limits{
-        MemoryLimit{memory_of_machine(files), "what the machine has free"},
+        MemoryLimit{memory_of_machine(files), "the free memory of the machine"},
         MemoryLimit{limit_of_groups(files), "the limit of its control group"},
-        MemoryLimit{limit_of_resource(RLIMIT_AS, all), "what `ulimit -v` leaves"},
-        MemoryLimit{limit_of_resource(RLIMIT_DATA, data), "what `ulimit -d` leaves"},
+        MemoryLimit{limit_of_resource(RLIMIT_AS, all), "the rest of `ulimit -v`"},
+        MemoryLimit{limit_of_resource(RLIMIT_DATA, data), "the rest of `ulimit -d`"},
     };
     return *std::min_element(limits.begin(), limits.end(),
                              [](const MemoryLimit& a, const MemoryLimit& b) { return a.bytes < b.bytes; });

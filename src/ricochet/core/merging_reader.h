@@ -1,5 +1,5 @@
 /// \file
-/// Saved lists of several processes, read as one.
+/// Reader that merges the saved lists of several processes.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 
 namespace ricochet {
 
-/// Reads what a BinaryWriter of each of several processes has written of the same type: an archive like BinaryReader.
-/// Lists are merged entry by entry, single values are the first one's. The first list that is read is that of the ids,
-/// in ascending order and different from each other: all other lists go by it.
+/// Archive like BinaryReader, for the output of one BinaryWriter per process, all of the same type. Lists are merged
+/// entry by entry; single values are taken from the first process. The first list must contain the ids, which ascend
+/// and are unique among all processes. It determines the order of all other lists.
 class MergingReader {
 public:
     static constexpr bool kReads = true;
 
-    /// parts: what each process has written; must outlive it.
+    /// parts: the output of each process; must outlive the reader.
     explicit MergingReader(const std::vector<std::vector<std::byte>>& parts) {
         for (const auto& part : parts) sources_.push_back({part, 0, 0});
     }
@@ -41,7 +41,7 @@ public:
         (*this)(byte);
         value = byte != 0;
     }
-    /// The ids.
+    /// Reads the ids.
     void operator()(std::vector<std::uint64_t>& ids) {
         std::vector<std::vector<std::uint64_t>> parts(sources_.size());
         for (std::size_t k = 0; k < parts.size(); ++k) {
@@ -52,7 +52,7 @@ public:
         find_runs(parts);
         interleave(parts, ids, 1);
     }
-    /// A list beside that of the ids: as many entries for each of them.
+    /// Reads a list that belongs to the ids, with equally many entries for each.
     template <class T>
     requires kIsFlat<T>
     void operator()(std::vector<T>& values, std::size_t size) {
@@ -74,7 +74,7 @@ public:
             to += bytes;
         }
     }
-    /// The same where a process may have none: it has `absent` then.
+    /// Reads such a list, which may be empty in some processes: their entries have the value `absent`.
     template <class T>
     void all_or_none(std::vector<T>& values, std::size_t size, const T& absent) {
         std::vector<std::vector<T>> parts(sources_.size());
@@ -84,7 +84,7 @@ public:
         for (std::size_t k = 0; k < parts.size(); ++k) parts[k].resize(sources_[k].count, absent);
         interleave(parts, values, width_of(size));
     }
-    /// A list of entries that are not saved as they lie in memory: as many for each id.
+    /// Reads a list of entries that are not flat, with equally many for each id.
     template <class T, class Visit>
     void entries(std::vector<T>& list, const Visit& visit, std::uint64_t expected) {
         std::uint64_t count = 0;
@@ -109,13 +109,13 @@ private:
         std::size_t at = 0;
         std::size_t count = 0;  ///< ids
     };
-    /// Entries that follow each other and are of one source.
+    /// Run of consecutive entries from one source.
     struct Run {
         std::uint32_t source = 0;
         std::size_t count = 0;
     };
 
-    [[noreturn]] static void complain() { throw RunError("what the ranks have sent does not fit together"); }
+    [[noreturn]] static void complain() { throw RunError("the ranks have sent lists that do not fit together"); }
 
     template <class T>
     static void read(Source& source, T& value) {
@@ -140,7 +140,8 @@ private:
         return bytes;
     }
     [[nodiscard]] std::uint64_t width_of(std::uint64_t entries) const { return size_ == 0 ? 0 : entries / size_; }
-    /// Of the source with the least id as many as come before those of all others, again and again.
+    /// Splits the ids into runs: the source with the least next id contributes all ids below the next ids of all other
+    /// sources.
     void find_runs(const std::vector<std::vector<std::uint64_t>>& ids) {
         using Head = std::pair<std::uint64_t, std::uint32_t>;  // the next id of a source
         std::priority_queue<Head, std::vector<Head>, std::greater<>> heads;
@@ -174,11 +175,11 @@ private:
 
     std::vector<Source> sources_;
     std::vector<Run> runs_;  // in the order of ids
-    std::size_t size_ = 0;   // ids of all
+    std::size_t size_ = 0;   // number of ids in all sources
     std::optional<std::uint32_t> selected_;
 };
 
-/// As for BinaryReader.
+/// Merges the list like MergingReader::entries().
 template <class T, class Visit>
 void archive_entries(MergingReader& a, std::vector<T>& entries, const Visit& visit, std::uint64_t expected) {
     a.entries(entries, visit, expected);

@@ -1,5 +1,5 @@
 /// \file
-/// How a rigid body, or what its joint leaves of one, yields to an impulse.
+/// Response of a rigid body, possibly restricted by a joint, to an impulse.
 #pragma once
 
 #include "ricochet/core/symmetric_matrix.h"
@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-/// An impulse, N s, and its moment about a point that is agreed upon, N m s.
+/// An impulse, in N s, and its moment about an agreed point, in N m s.
 struct Wrench {
     Vec3 impulse;
     Vec3 moment;
@@ -19,26 +19,26 @@ struct Wrench {
     }
 };
 
-/// The inverses of a body's mass and inertia; what a joint forbids is missing from them.
+/// Inverse mass and inverse inertia of a body, without the directions that a joint blocks.
 struct Mobility {
-    SymmetricMatrix of_mass;     ///< 1/kg
-    SymmetricMatrix of_inertia;  ///< 1/(kg m^2), about the center
-    Vec3 center;                 ///< m: the centre of mass, or a point of the fixed axis
+    SymmetricMatrix of_mass;     ///< in 1/kg
+    SymmetricMatrix of_inertia;  ///< in 1/(kg m^2), about the center
+    Vec3 center;                 ///< in m; the centre of mass, or a point of the fixed axis
 
-    /// The same seen through a rotation with a shift.
+    /// Returns the mobility transformed by a rotation with a translation.
     [[nodiscard]] Mobility seen_by(const AffineMap& map) const {
         return {congruent(map, of_mass), congruent(map, of_inertia), map.point(center)};
     }
-    /// Kinetic energy, J, that a wrench about the center would give the body, were it at rest.
+    /// Returns the kinetic energy, in J, that a wrench about the center would give the body at rest.
     [[nodiscard]] double energy_by(const Wrench& wrench) const {
         return 0.5 * (dot(wrench.impulse, of_mass * wrench.impulse) + dot(wrench.moment, of_inertia * wrench.moment));
     }
-    /// The change of velocity, m/s, of the body's point at `where` by an impulse there, N s.
+    /// Returns the velocity change, in m/s, of the body's point at `where` due to an impulse at that point, in N s.
     [[nodiscard]] Vec3 change_at(const Vec3& where, const Vec3& impulse) const {
         const Vec3 arm = where - center;
         return of_mass * impulse + cross(of_inertia * cross(arm, impulse), arm);
     }
-    /// The same by a wrench about the center.
+    /// Returns the velocity change, in m/s, of the body's point at `where` due to a wrench about the center.
     [[nodiscard]] Vec3 change_at(const Vec3& where, const Wrench& wrench) const {
         return of_mass * wrench.impulse + cross(of_inertia * wrench.moment, where - center);
     }

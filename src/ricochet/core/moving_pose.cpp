@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-// Rodrigues' formula, applied to each row of the rotation: row' = row R(axis, angle), the turn about -axis of the row.
+// Applies Rodrigues' formula to a row of the rotation: row' = row R(axis, angle), which rotates the row about -axis.
 Vec3 turned_row(const Vec3& row, const Vec3& axis, double sine, double cosine) {
     return cosine * row - sine * cross(axis, row) + ((1.0 - cosine) * dot(axis, row)) * axis;
 }
@@ -43,7 +43,7 @@ void scale(AffineMap& map, const Vec3& factors) {
     }
 }
 
-// Those of exp(i angle), by Faa di Bruno's formula.
+// Bounds of exp(i angle), by Faa di Bruno's formula.
 DerivativeBounds turn_bounds(DerivativeBounds a) {
     for (double& bound : a) bound *= std::numbers::pi / 180.0;
     return {1.0, a[1], a[2] + a[1] * a[1], a[3] + 3.0 * a[1] * a[2] + a[1] * a[1] * a[1],

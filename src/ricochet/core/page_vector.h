@@ -1,6 +1,6 @@
 /// \file
-/// Private: lists that take pages of their own where they are large, so that processes of one machine that hold the
-/// same list can have its pages in common.
+/// Private: lists that have memory pages of their own if they are large. Processes of one machine with equal lists can
+/// then share these pages.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,18 @@
 
 namespace ricochet {
 
-/// Bytes from which on a list takes pages of its own: less is not worth the calls.
+/// Smallest size, in bytes, of a list with pages of its own; smaller lists are not worth the system calls.
 inline constexpr std::size_t kLeastOwnPages = std::size_t{1} << 18;
 
-/// Pages that hold nothing else, zero. Throws std::bad_alloc.
+/// Returns zeroed pages that contain no other data. Throws std::bad_alloc.
 [[nodiscard]] void* take_pages(std::size_t bytes);
 void give_pages_back(void* pages, std::size_t bytes) noexcept;
 
-/// Of std::vector.
+/// Allocator for std::vector.
 template <class T>
 struct PageAllocator {
     using value_type = T;
-    /// Aligned to more than memory is by itself.
+    /// The type needs more than the default alignment of operator new.
     static constexpr bool kIsWide = alignof(T) > __STDCPP_DEFAULT_NEW_ALIGNMENT__;
 
     PageAllocator() = default;
@@ -48,8 +48,8 @@ struct PageAllocator {
 template <class T>
 using PageVector = std::vector<T, PageAllocator<T>>;
 
-/// The pages of a list that has some of its own; nothing of a smaller one. They may be replaced by others with the same
-/// bytes, also such that cannot be written, once the list stays as it is.
+/// Returns the pages of a list that has its own; an empty span for a smaller list. Once the list does not change any
+/// more, they may be replaced by other pages with the same bytes, even read-only ones.
 template <class T>
 [[nodiscard]] std::span<const std::byte> own_pages(const PageVector<T>& list) {
     if (list.empty() || !PageAllocator<T>::has_own_pages(list.capacity())) return {};

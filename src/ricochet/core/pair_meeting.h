@@ -1,5 +1,5 @@
 /// \file
-/// An impact of spheres on each other, as it is recorded for the verifier.
+/// Record, for the verifier, of an impact between spheres.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,25 @@ namespace ricochet {
 /// A solid sphere, I = 2/5 m r^2, just before and just after an impact.
 struct MetSphere {
     std::uint64_t particle = 0;  ///< id
-    double mass = 1.0;           ///< kg
-    double radius = 0.0;         ///< m
-    bool is_fixed = false;       ///< nothing moves it
+    double mass = 1.0;           ///< in kg
+    double radius = 0.0;         ///< in m
+    bool is_fixed = false;       ///< it is immovable
     RecordedMotion before;
     RecordedMotion after;
-    std::uint32_t material = 0;  ///< its number
-    double bound_way = 0.0;      ///< m, that it has slid or rolled on walls in this step, in approximate arcs
+    std::uint32_t material = 0;  ///< number of the material
+    double bound_way = 0.0;      ///< path on walls in this step by approximate sliding and rolling arcs, in m
 };
 
-/// Two of the spheres touch.
+/// Contact of two of the spheres.
 struct MetContact {
-    std::size_t first = 0;   ///< its number among the spheres
-    std::size_t second = 0;  ///< the same
-    Vec3 impulse;            ///< N s, that the first has given to the second
+    std::size_t first = 0;   ///< index among the spheres
+    std::size_t second = 0;  ///< index among the spheres
+    Vec3 impulse;            ///< in N s, from the first to the second
 };
 
-/// Spheres that were answered as one problem, at one time.
+/// Spheres whose impacts were solved as one problem, at one time.
 struct PairMeeting {
-    double time = 0.0;  ///< s
+    double time = 0.0;  ///< in s
     std::vector<MetSphere> spheres;
     std::vector<MetContact> contacts;
 };

@@ -30,10 +30,10 @@ void require_loop(std::size_t block_size, bool has_function) {
     if (!has_function) throw InputError("parallel loop: found an empty function, expected one that can be called");
 }
 
-/// What the first of the blocks that throw has thrown: the same for any number of threads.
+/// Exception of the first block that throws. It is the same for any number of threads.
 class FirstError {
 public:
-    /// Blocks behind one that has thrown are left out; those before it are not, as they may throw, too.
+    /// Runs a block. Skips blocks after one that has thrown; blocks before it still run, because they may throw, too.
     template <class Run>
     void watch(std::size_t block, const Run& run) {
         if (block > first_.load(std::memory_order_relaxed)) return;
@@ -56,7 +56,8 @@ private:
     std::exception_ptr error_;
 };
 
-/// Far more than any machine's processors: more would only take memory, for stacks that nobody uses.
+/// Most threads. It is far above the number of processors of any machine; more threads would only waste memory on
+/// stacks.
 constexpr int kMostThreads = 1024;
 
 int checked_threads(int threads) {
@@ -70,7 +71,7 @@ int checked_threads(int threads) {
 
 thread_local const std::function<void()>* loop_stop = nullptr;
 
-/// Lets a block's thread have the request to stop of the thread that began the loop.
+/// Scope that gives the thread of a block the stop request of the thread that began the loop.
 class HandedOn {
 public:
     explicit HandedOn(const std::function<void()>* stop) : own_(std::exchange(loop_stop, stop)) {}
@@ -116,8 +117,8 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
         const LoopSync::Iteration iteration(sync);
         const HandedOn handed_on(stop);
         poll_loop_stop();
-        // Bodies keep working memory per thread: a body that waits for tasks of its own must not meanwhile be given
-        // another body of this loop or of one around it.
+        // Bodies use thread-local working memory. While a body waits for its own tasks, its thread must not start
+        // another body of this loop or of an enclosing one.
         tbb::this_task_arena::isolate(
             [&] { body(block, block * block_size, std::min(count, (block + 1) * block_size)); });
     };
@@ -140,8 +141,8 @@ double ordered_sum(std::size_t count, std::size_t block_size,
     return std::accumulate(partial.begin(), partial.end(), 0.0);
 }
 
-// The thread sanitizer does not see how the packaged library synchronises the threads of its sort, and nothing of ours
-// runs inside it to say so.
+// With the thread sanitizer the sort is serial. The sanitizer does not see how the packaged library synchronises the
+// threads of its sort. No code of this library runs inside the sort to report it.
 void parallel_sort(std::vector<std::uint64_t>& values) {
 #if defined(RICOCHET_THREAD_SANITIZER)
     std::sort(values.begin(), values.end());
@@ -152,12 +153,12 @@ void parallel_sort(std::vector<std::uint64_t>& values) {
 
 namespace {
 
-/// A digit of a key, and the items that threads take at a time.
+/// Bits of a digit of a key.
 constexpr unsigned kDigitBits = 8;
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 constexpr std::size_t kSortBlock = std::size_t{1} << 15U;
 
-/// One pass of a radix sort: by the digit that begins at bit `shift`.
+/// Performs one pass of a radix sort, by the digit that begins at bit `shift`.
 void sort_by_digit(const std::vector<KeyedIndex>& from, std::vector<KeyedIndex>& to, unsigned shift) {
     const auto digit_of = [&](const KeyedIndex& item) { return (item.key >> shift) & (kDigits - 1); };
     std::vector<std::array<std::uint32_t, kDigits>> places((from.size() + kSortBlock - 1) / kSortBlock);
@@ -187,7 +188,7 @@ void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spar
     std::uint64_t differing = 0;
     for (const KeyedIndex& item : items) differing |= item.key ^ items.front().key;
     for (unsigned shift = 0; shift < 64 && (differing >> shift) != 0; shift += kDigitBits) {
-        shift += static_cast<unsigned>(std::countr_zero(differing >> shift));  // digits that are all the same
+        shift += static_cast<unsigned>(std::countr_zero(differing >> shift));  // skips bits that are equal in all keys
         sort_by_digit(items, spare, shift);
         items.swap(spare);
     }

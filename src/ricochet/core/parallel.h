@@ -1,6 +1,6 @@
 /// \file
 /// Parallel loops and sums: the only interface to TBB. Results do not depend on the number of threads, since block
-/// boundaries depend on the amount of work only.
+/// boundaries depend only on the amount of work.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace ricochet {
 
-/// Limits the number of worker threads of the process while it lives. threads = 0 means all hardware threads; throws
-/// InputError for a negative number.
+/// Scope that limits the number of worker threads of the process. threads = 0 means all hardware threads. Throws
+/// InputError for a negative number or one above 1024.
 class ThreadLimit {
 public:
     explicit ThreadLimit(int threads);
@@ -28,18 +28,19 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Worker threads that a parallel loop can use now.
+/// Returns the number of worker threads that a parallel loop can use now.
 [[nodiscard]] int thread_count();
 
-/// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread; serially when
-/// there is one block. A body that waits for tasks of its own is not interrupted by another body on the same thread, so
-/// bodies may use thread_local memory. Where bodies throw, the exception of the first of these blocks comes out,
-/// whatever the threads: the blocks before it have run to their end then, of those behind it some. Throws InputError
-/// for a block_size of 0 and an empty function.
+/// Calls body(block, begin, end) for [0, count) in blocks of block_size, in any order, on any thread. Runs serially if
+/// there is one block. A body that waits for its own tasks is not interrupted by another body on the same thread, so
+/// bodies may use thread_local memory.
+/// If bodies throw, the exception of the first such block is rethrown, for any number of threads. All blocks before
+/// that one have finished by then, and some of those after it. Throws InputError for a block_size of 0 and an empty
+/// function.
 void parallel_for_blocks(std::size_t count, std::size_t block_size,
                          const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body);
 
-/// Sum over [0, count) of block sums, added in block order: the same bits for any thread count. Throws like
+/// Returns the sum over [0, count) of block sums, added in block order: the same bits for any thread count. Throws like
 /// parallel_for_blocks().
 [[nodiscard]] double ordered_sum(std::size_t count, std::size_t block_size,
                                  const std::function<double(std::size_t begin, std::size_t end)>& block_sum);
@@ -47,25 +48,26 @@ void parallel_for_blocks(std::size_t count, std::size_t block_size,
 /// Sorts in ascending order with all threads.
 void parallel_sort(std::vector<std::uint64_t>& values);
 
-/// Something by its number, and the key that it is sorted by.
+/// Index of an item, and its sort key.
 struct KeyedIndex {
     std::uint64_t key = 0;
     std::uint32_t index = 0;
 };
 
-/// Sorts by key in ascending order with all threads; equal keys keep their order. Takes time in proportion to the
-/// number of items and the number of bits in which keys differ. spare: working memory, of as many items afterwards.
+/// Sorts by key in ascending order with all threads; equal keys keep their order. The time is proportional to the
+/// number of items and to the number of bits in which keys differ. spare: working memory, which has as many items
+/// afterwards.
 void parallel_sort(std::vector<KeyedIndex>& items, std::vector<KeyedIndex>& spare);
 
-/// TBB's version, for `--version` and reports.
+/// Returns TBB's version, for `--version` and reports.
 [[nodiscard]] const char* tbb_version();
 
-/// A sum whose bits do not depend on the order of its terms, accumulated from any number of threads: a 128-bit two's
-/// complement count of `unit`s. Terms are rounded to the unit, everything after that is exact. Terms beyond 2^126 units
-/// and NaN are refused, totals wrap beyond 2^127 units.
+/// Sum whose bits do not depend on the order of its terms, accumulated from any number of threads. It is a 128-bit
+/// two's complement count of `unit`s. Terms are rounded to the unit; everything after that is exact. Terms beyond 2^126
+/// units and NaN are refused, and totals wrap beyond 2^127 units.
 class FixedPointSum {
 public:
-    /// Adds a term; thread-safe. Returns false, and adds nothing, when the term cannot be represented.
+    /// Adds a term; thread-safe. Returns false, and adds nothing, if the term cannot be represented.
     bool add(double term, double unit) {
         const double scaled = term / unit;
         if (!(std::fabs(scaled) < 0x1p126)) return false;
@@ -81,12 +83,12 @@ public:
         add_words(low, high);
         return true;
     }
-    /// The total; not while others are adding.
+    /// Returns the total. Not safe while other threads add.
     [[nodiscard]] double value(double unit) const {
         std::uint64_t high = high_.load(std::memory_order_relaxed);
         std::uint64_t low = low_.load(std::memory_order_relaxed);
         const bool negative = (high >> 63) != 0;
-        if (negative) {  // as magnitude and sign, so that nothing cancels
+        if (negative) {  // as magnitude and sign, to avoid cancellation
             low = ~low + 1;
             high = ~high + (low == 0 ? 1 : 0);
         }
@@ -94,7 +96,7 @@ public:
         return (negative ? -magnitude : magnitude) * unit;
     }
 
-    /// The counter itself, low word first; not while others are adding.
+    /// Returns the counter itself, low word first. Not safe while other threads add.
     [[nodiscard]] std::array<std::uint64_t, 2> words() const {
         return {low_.load(std::memory_order_relaxed), high_.load(std::memory_order_relaxed)};
     }

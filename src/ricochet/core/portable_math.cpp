@@ -8,13 +8,13 @@
 namespace ricochet {
 namespace {
 
-// ln 2 in two parts; the first has so few digits that its products with exponents are exact.
+// ln 2 in two parts. The first has few enough digits that its products with exponents are exact.
 constexpr double kLn2High = 0x1.62e42fee00000p-1;
 constexpr double kLn2Low = 0x1.a39ef35793c76p-33;
 constexpr double kLargestExponent = 709.782712893384;
 constexpr double kSmallestExponent = -745.2;
 
-// 1 / n! for n = 0 to 13: on |x| <= ln 2 / 2 the first term left out is below 2^-57.
+// 1 / n! for n = 0 to 13. On |x| <= ln 2 / 2 the first omitted term is below 2^-57.
 constexpr std::array<double, 14> kInverseFactorials = [] {
     std::array<double, 14> terms{1.0};
     double factorial = 1.0;
@@ -22,14 +22,14 @@ constexpr std::array<double, 14> kInverseFactorials = [] {
     return terms;
 }();
 
-// 1 / (2 n + 1): log m = 2 artanh(s) with s = (m - 1) / (m + 1) below 0.172.
+// 1 / (2 n + 1), for log m = 2 artanh(s) with s = (m - 1) / (m + 1) below 0.172.
 constexpr std::array<double, 13> kOddReciprocals = [] {
     std::array<double, 13> terms{};
     for (std::size_t n = 0; n < terms.size(); ++n) terms[n] = 1.0 / (2.0 * static_cast<double>(n) + 1.0);
     return terms;
 }();
 
-// (-1)^n / (2 n + 1)!: on |x| <= pi / 2 the first term left out is below 2^-70.
+// (-1)^n / (2 n + 1)!. On |x| <= pi / 2 the first omitted term is below 2^-70.
 constexpr std::array<double, 13> kSineTerms = [] {
     std::array<double, 13> terms{1.0};
     double factorial = 1.0;
@@ -83,7 +83,8 @@ double sine_of_turns(double turns) {
     return angle * polynomial(kSineTerms, angle * angle);
 }
 
-// Halved until the series of the arctangent soon ends: tan(a / 2) = tan(a) / (1 + sqrt(1 + tan(a)^2)).
+// The angle is halved until the series of the arctangent converges fast: tan(a / 2) = tan(a) / (1 + sqrt(1 +
+// tan(a)^2)).
 double turns_of(double sine, double cosine) {
     constexpr int kHalvings = 4;
     constexpr int kTerms = 12;

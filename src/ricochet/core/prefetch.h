@@ -1,12 +1,12 @@
 /// \file
-/// Private to the library: begins to fetch what a loop comes to soon from memory.
+/// Private to the library: prefetches memory that a loop needs soon.
 #pragma once
 
 #include <cstddef>
 
 namespace ricochet {
 
-/// A whole object.
+/// Prefetches all cache lines of an object.
 template <class T>
 void prefetch_whole(const T& object) {
     constexpr std::size_t kLine = 64;

@@ -1,5 +1,5 @@
 /// \file
-/// Text of strangers (names of files, messages of readers, fields of frames) as a terminal may show it.
+/// Makes text from outside (file names, messages of readers, fields of frames) safe to show in a terminal.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace ricochet {
 
-/// The text with control characters, what turns the direction of writing, and what is not UTF-8 as escapes (\n, \x1b,
-/// \u202e), which no terminal obeys. Text that is longer than `longest` bytes then is cut, and ends in "...".
+/// Returns the text with escapes (\n, \x1b, \u202e), which no terminal obeys. Escaped are control characters,
+/// characters that change the writing direction, and bytes that are not UTF-8. A result longer than `longest` bytes is
+/// cut and ends in "...".
 [[nodiscard]] std::string printable(std::string_view text, std::size_t longest = std::string_view::npos);
 
-/// True for text that is printable as it is, and that a column of a table may be named: without commas and quotes.
+/// Returns true if the text is printable without escapes and can name a column of a table: it has no commas and quotes.
 [[nodiscard]] bool is_column_name(std::string_view text);
 
 }  // namespace ricochet

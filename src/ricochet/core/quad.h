@@ -1,9 +1,9 @@
 /// \file
-/// Four doubles at once, and three-component vectors of them: each of the four gets the bits that doubles get.
+/// Four doubles at once, and three-component vectors of them. Each of the four gets the same bits as scalar doubles.
 ///
-/// By the vector extensions of GCC and clang, which are fast in functions that are compiled for AVX2: for processors
-/// without it GCC takes vectors apart element by element. All is inlined whatever the optimisation, since vectors of 32
-/// bytes are passed on differently with and without AVX.
+/// Uses the vector extensions of GCC and clang, which are fast in functions compiled for AVX2. Without AVX2, GCC
+/// processes vectors element by element. Everything is inlined at any optimisation level, since the calling convention
+/// for vectors of 32 bytes differs with and without AVX.
 #pragma once
 
 #include <algorithm>
@@ -12,27 +12,29 @@
 
 #include "ricochet/core/vec3.h"
 
-/// For functions that code for several kinds of processors is made of: they become a part of what calls them.
+/// Marks building blocks of functions that are compiled for several kinds of processors: they are inlined into their
+/// callers.
 #define RICOCHET_INLINE [[gnu::always_inline]] inline
 
 namespace ricochet {
 
-/// What is true of each of four.
+/// Truth value for each of four lanes.
 struct QuadMask {
-    std::int64_t lanes __attribute__((vector_size(32)));  ///< all bits of a lane are alike
+    std::int64_t lanes __attribute__((vector_size(32)));  ///< all bits of a lane are equal
 };
 
 /// Four numbers.
 struct Quad {
     using Lanes = double __attribute__((vector_size(32)));
 
-    /// The same anywhere in memory where there are doubles.
+    /// Unaligned lanes, to load from and store to any doubles in memory.
     using Stored = double __attribute__((vector_size(32), aligned(8), may_alias));
 
     Lanes lanes;
 };
 
-/// Four doubles that follow each other in memory. Not memcpy(): GCC makes two halves of it where it knows no AVX yet.
+/// Loads four consecutive doubles. Does not use memcpy(), because GCC splits it into two halves if AVX is not enabled
+/// yet.
 [[nodiscard]] RICOCHET_INLINE Quad load_quad(const double* from) {
     return {*reinterpret_cast<const Quad::Stored*>(from)};
 }
@@ -54,19 +56,19 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 [[nodiscard]] RICOCHET_INLINE QuadMask operator<(const Quad& a, const Quad& b) { return {a.lanes < b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator>(const Quad& a, const Quad& b) { return {a.lanes > b.lanes}; }
 [[nodiscard]] RICOCHET_INLINE QuadMask operator&(const QuadMask& a, const QuadMask& b) { return {a.lanes & b.lanes}; }
-/// True where it is of one of them.
+/// Returns true if a lane is true.
 [[nodiscard]] RICOCHET_INLINE bool any(const QuadMask& a) {
     return (a.lanes[0] | a.lanes[1] | a.lanes[2] | a.lanes[3]) != 0;
 }
 
-/// a where the mask is true, else b.
+/// Returns a if the mask is true, else b, per lane.
 [[nodiscard]] RICOCHET_INLINE Quad select(const QuadMask& mask, const Quad& a, const Quad& b) {
     return {mask.lanes ? a.lanes : b.lanes};
 }
-/// The larger one, as std::max() tells it.
+/// Returns the larger one, with the semantics of std::max().
 [[nodiscard]] RICOCHET_INLINE Quad larger(const Quad& a, const Quad& b) { return select(a < b, b, a); }
 [[nodiscard]] RICOCHET_INLINE Quad root(const Quad& a) {
-    // Of four std::sqrt() GCC makes four calls, since these may set errno.
+    // GCC turns four std::sqrt() into four calls, since they may set errno.
 #if __has_builtin(__builtin_elementwise_sqrt)
     return {__builtin_elementwise_sqrt(a.lanes)};
 #elif defined(__SSE2__)
@@ -79,7 +81,7 @@ RICOCHET_INLINE void store(const Quad& a, double* to) { *reinterpret_cast<Quad::
 #endif
 }
 
-/// The same of one number, for code that does for four what it does for one.
+/// Scalar versions, for templates that handle one number or four.
 [[nodiscard]] RICOCHET_INLINE bool any(bool a) { return a; }
 template <class T>
 [[nodiscard]] RICOCHET_INLINE T select(bool mask, const T& a, const T& b) {
@@ -115,7 +117,7 @@ RICOCHET_INLINE QuadVec3& operator+=(QuadVec3& a, const QuadVec3& b) { return a 
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-/// Rows and columns change places.
+/// Transposes the 4 x 4 matrix of these rows.
 RICOCHET_INLINE void transpose(Quad& a, Quad& b, Quad& c, Quad& d) {
     const Quad::Lanes low_ab = __builtin_shufflevector(a.lanes, b.lanes, 0, 4, 2, 6);
     const Quad::Lanes high_ab = __builtin_shufflevector(a.lanes, b.lanes, 1, 5, 3, 7);

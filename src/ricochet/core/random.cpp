@@ -40,8 +40,8 @@ double RandomSequence::uniform() {
 
 double RandomSequence::uniform_around(double mean, double spread) { return mean + spread * (2.0 * uniform() - 1.0); }
 
-// Rejection keeps the C library's sine and cosine out, whose last bit differs between systems; each attempt draws
-// from the same per-particle counter, so the outcome is a function of the key alone.
+// Rejection avoids the C library's sine and cosine, whose last bit differs between systems. Each attempt draws from the
+// same per-particle counter, so the outcome depends on the key alone.
 Vec3 RandomSequence::in_unit_disk() {
     for (;;) {
         const double x = 2.0 * uniform() - 1.0;

@@ -1,5 +1,5 @@
 /// \file
-/// Counter-based random numbers: the value depends on the key and the counter only, not on the order of draws.
+/// Counter-based random numbers: the value depends only on the key and the counter, not on the order of draws.
 #pragma once
 
 #include <array>
@@ -14,26 +14,26 @@ namespace ricochet {
 [[nodiscard]] std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                                       std::array<std::uint32_t, 2> key);
 
-/// One particle's (or emitter's) own sequence of draws, keyed by (seed, stream, id); the draw counter is the state
-/// that has to be kept. Two sequences with different keys are independent.
+/// Sequence of draws of one particle or emitter, keyed by (seed, stream, id). Only the draw counter has to be saved.
+/// Two sequences with different keys are independent.
 class RandomSequence {
 public:
-    /// seed: the scene's seed. stream: what the draws are for (one number per purpose or emitter, below 2^32).
+    /// seed: the scene's seed. stream: the purpose of the draws (one number per purpose or emitter, below 2^32).
     /// id: particle id. draw: number of draws already made.
     RandomSequence(std::uint64_t seed, std::uint32_t stream, std::uint64_t id, std::uint32_t draw = 0);
 
-    /// Uniform in [0, 1): 53 random bits.
+    /// Draws uniformly in [0, 1), with 53 random bits.
     double uniform();
-    /// Uniform in [a - b, a + b): the scene file's pair [mean, spread].
+    /// Draws uniformly in [mean - spread, mean + spread): the scene file's pair [mean, spread].
     double uniform_around(double mean, double spread);
-    /// Uniform direction on the unit sphere.
+    /// Draws a uniform direction on the unit sphere.
     Vec3 unit_vector();
-    /// Uniform point of the unit disk (x, y); z = 0.
+    /// Draws a uniform point of the unit disk (x, y), with z = 0.
     Vec3 in_unit_disk();
-    /// Uniform point of the unit ball.
+    /// Draws a uniform point of the unit ball.
     Vec3 in_unit_ball();
 
-    /// Draws made so far; a sequence constructed with this number continues here.
+    /// Returns the number of draws made so far. A sequence constructed with this number continues after them.
     [[nodiscard]] std::uint32_t draws() const { return draw_; }
 
 private:

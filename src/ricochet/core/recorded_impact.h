@@ -1,5 +1,5 @@
 /// \file
-/// An impact of a particle on surfaces, as it is recorded for the verifier.
+/// Record, for the verifier, of an impact of a particle on surfaces.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace ricochet {
 
-/// An impact as it was resolved: the motion on both sides of it, the surfaces, and the contact state.
+/// A resolved impact: the motion before and after it, the surfaces, and the contact state.
 struct RecordedImpact {
     struct Surface {
-        std::uint32_t surface = 0;           ///< its number
-        Vec3 normal;                         ///< unit, towards the particle
-        Vec3 velocity_before;                ///< m/s, of the surface where it is touched
-        Vec3 velocity_after;                 ///< m/s
+        std::uint32_t surface = 0;           ///< number of the surface
+        Vec3 normal;                         ///< unit vector, towards the particle
+        Vec3 velocity_before;                ///< of the surface at the contact point, in m/s
+        Vec3 velocity_after;                 ///< in m/s
         double restitution = 1.0;            ///< of its material, 0..1
-        double restitution_threshold = 0.0;  ///< m/s, of its material
-        bool holds = false;                  ///< the impact took it for one that holds the particle
+        double restitution_threshold = 0.0;  ///< of its material, in m/s
+        bool holds = false;                  ///< the impact treated it as a surface that supports the particle
     };
 
-    double time = 0.0;  ///< s
+    double time = 0.0;  ///< in s
     RecordedMotion before;
     RecordedMotion after;
     std::vector<Surface> surfaces;
-    std::vector<std::uint32_t> held_by;  ///< surfaces of the contact interval that the impact has ended
+    std::vector<std::uint32_t> held_by;  ///< surfaces of the contact interval that the impact ended
 };
 
 }  // namespace ricochet

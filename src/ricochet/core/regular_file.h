@@ -1,5 +1,5 @@
 /// \file
-/// Reads whole files that others may have made.
+/// Reader of whole files that may come from outside.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// Reads a regular file whole. A pipe would be waited for, and a device may never end: both are refused. Throws
-/// InputError, naming the file and `expected`, for these, for a file that cannot be read and for one of more than
-/// `most` bytes.
+/// Reads a regular file whole. Refuses pipes, because the read would block, and devices, because they may never end.
+/// Throws InputError, naming the file and `expected`, for these, for unreadable files and for files of more than `most`
+/// bytes.
 [[nodiscard]] std::string read_regular_file(const std::filesystem::path& file, std::uint64_t most,
                                             const std::string& expected);
 

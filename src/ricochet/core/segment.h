@@ -1,17 +1,17 @@
 /// \file
-/// A straight piece of a trajectory.
+/// Straight piece of a trajectory.
 #pragma once
 
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
 
-/// A straight piece of a trajectory that a particle's centre has travelled.
+/// Straight piece of the trajectory of a particle's centre.
 struct Segment {
     Vec3 from;
     Vec3 to;
-    double time = 0.0;  ///< s, simulation time at which the flight (or contact phase) that it belongs to began
-    // Simulation times of its ends, s, where colliders move: by these it is judged in their frames.
+    double time = 0.0;  ///< in s, simulation time at the begin of the flight or contact phase
+    // Simulation times of its ends, in s, if colliders move: the segment is tested in their frames at these times.
     double begin = 0.0;
     double end = 0.0;
 };

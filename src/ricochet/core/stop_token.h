@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: lets the caller of a step end it before its end.
+/// Private to the library: lets the caller of a step end it early.
 #pragma once
 
 #include <functional>
@@ -7,13 +7,13 @@
 
 namespace ricochet {
 
-/// A request to end a step that runs. Long loops poll it between pieces of work of at most some milliseconds.
+/// Request to end a running step. Long loops poll it after each piece of work of at most a few milliseconds.
 class StopToken {
 public:
-    /// ask: called by poll() from any thread, by several at a time; throws when the step is to end. An empty function
-    /// ends nothing. Not while a step runs.
+    /// Sets the function that poll() calls, from any thread and from several at once. It throws to end the step. An
+    /// empty function never ends a step. Do not call set() while a step runs.
     void set(std::function<void()> ask) { ask_ = std::move(ask); }
-    /// Calls the function, and lets its exceptions pass.
+    /// Calls the function and lets its exceptions propagate.
     void poll() const {
         if (ask_) ask_();
     }

@@ -1,5 +1,5 @@
 /// \file
-/// Symmetric matrices of three rows: moments of inertia and of mass.
+/// Symmetric 3 x 3 matrices: moments of inertia and of mass.
 #pragma once
 
 #include "ricochet/core/transform.h"
@@ -22,7 +22,7 @@ struct SymmetricMatrix {
     [[nodiscard]] double determinant() const {
         return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
     }
-    /// Only where the determinant is not 0.
+    /// Returns the inverse. The determinant must not be 0.
     [[nodiscard]] SymmetricMatrix inverse() const {
         const double d = 1.0 / determinant();
         return {d * (yy * zz - yz * yz), d * (xx * zz - xz * xz), d * (xx * yy - xy * xy),
@@ -37,19 +37,19 @@ struct SymmetricMatrix {
     friend bool operator==(const SymmetricMatrix&, const SymmetricMatrix&) = default;
 };
 
-/// v v^T.
+/// Returns v v^T.
 [[nodiscard]] inline SymmetricMatrix outer_product(const Vec3& v) {
     return {v.x * v.x, v.y * v.y, v.z * v.z, v.x * v.y, v.x * v.z, v.y * v.z};
 }
-/// a b^T + b a^T.
+/// Returns a b^T + b a^T.
 [[nodiscard]] inline SymmetricMatrix mixed_product(const Vec3& a, const Vec3& b) {
     return {2.0 * a.x * b.x,       2.0 * a.y * b.y,       2.0 * a.z * b.z,
             a.x * b.y + a.y * b.x, a.x * b.z + a.z * b.x, a.y * b.z + a.z * b.y};
 }
-/// f times the unit matrix.
+/// Returns f times the unit matrix.
 [[nodiscard]] inline SymmetricMatrix diagonal_matrix(double f) { return {f, f, f, 0.0, 0.0, 0.0}; }
 
-/// M A M^T with the linear part M of a map.
+/// Returns M A M^T with the linear part M of a map.
 [[nodiscard]] inline SymmetricMatrix congruent(const AffineMap& map, const SymmetricMatrix& a) {
     const Vec3 x = a * map.row_x;
     const Vec3 y = a * map.row_y;

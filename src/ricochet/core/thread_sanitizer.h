@@ -15,13 +15,13 @@ namespace ricochet {
 /// One synchronisation point. Aligned, so that two of them never share a word of the sanitizer's shadow memory.
 class alignas(16) SyncPoint {
 public:
-    /// What this thread did so far is visible to every later acquire().
+    /// Makes all earlier effects of this thread visible to every later acquire().
     void release() {
 #ifdef RICOCHET_THREAD_SANITIZER
         __tsan_release(this);
 #endif
     }
-    /// What happened before every earlier release() is visible to this thread.
+    /// Makes all effects before every earlier release() visible to this thread.
     void acquire() {
 #ifdef RICOCHET_THREAD_SANITIZER
         __tsan_acquire(this);
@@ -29,8 +29,8 @@ public:
     }
 };
 
-/// A parallel loop on a library's threads: construct one around the loop and an Iteration in every body. Iterations are
-/// not ordered among each other, so a race between two of them is still found.
+/// Parallel loop on a library's threads. Construct a LoopSync around the loop and an Iteration in every body.
+/// Iterations are not ordered among each other, so a race between two of them is still found.
 class LoopSync {
 public:
     LoopSync() { start_.release(); }
@@ -38,7 +38,7 @@ public:
     LoopSync(const LoopSync&) = delete;
     LoopSync& operator=(const LoopSync&) = delete;
 
-    /// Lives while one body runs.
+    /// Scope of one body.
     class Iteration {
     public:
         explicit Iteration(LoopSync& loop) : loop_(loop) { loop_.start_.acquire(); }

@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// One of the files, in a list that a signal handler can walk along.
+/// List entry of a file; the list can be traversed by a signal handler.
 struct UnfinishedFile::Entry {
     std::string path;
     pid_t writer = 0;
@@ -25,8 +25,8 @@ void take_list() {
     while (in_use.test_and_set(std::memory_order_acquire)) continue;
 }
 
-/// Keeps the list to one thread, on which no signal handler runs meanwhile: so a handler may wait for it. A lock of the
-/// standard library may not be taken in a handler.
+/// Lock of the list. While a thread has it, no signal handler runs on that thread, so a handler may wait for the lock.
+/// Locks of the standard library may not be taken in a handler.
 class ListLock {
 public:
     ListLock() noexcept {
@@ -73,12 +73,12 @@ void UnfinishedFile::set_writer(int process) {
 
 void remove_unfinished_files() noexcept {
     using Entry = UnfinishedFile::Entry;
-    take_list();  // for good: no other file begins
+    take_list();  // never released, so that no other file is added
     for (const Entry* entry = UnfinishedFile::first_; entry != nullptr; entry = entry->next) {
         if (entry->writer > 0) (void)::kill(entry->writer, SIGKILL);
     }
     for (const Entry* entry = UnfinishedFile::first_; entry != nullptr; entry = entry->next) {
-        // It could make the file anew until it is gone.
+        // The file is removed after its writer has ended, because the writer could create the file again.
         while (entry->writer > 0 && ::waitpid(entry->writer, nullptr, 0) < 0 && errno == EINTR) continue;
         (void)::unlink(entry->path.c_str());
     }

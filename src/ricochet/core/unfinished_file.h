@@ -6,8 +6,8 @@
 
 namespace ricochet {
 
-/// Notes a temporary file for as long as it lives: remove_unfinished_files() removes it. Neither makes nor removes the
-/// file by itself. Any number of them, on any threads.
+/// Registers a temporary file for the lifetime of the object, so that remove_unfinished_files() removes it. It neither
+/// creates nor removes the file itself. Any number of them can exist, on any threads.
 class UnfinishedFile {
 public:
     explicit UnfinishedFile(const std::filesystem::path& path);
@@ -15,19 +15,20 @@ public:
     UnfinishedFile(const UnfinishedFile&) = delete;
     UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
-    /// Another program writes it: a child process by its number, to be killed first; 0 once it has been waited for.
+    /// Names the child process that writes the file and is to be killed first; 0 after it has been waited for.
     void set_writer(int process);
 
 private:
     struct Entry;
     friend void remove_unfinished_files() noexcept;
-    static Entry* first_;  // of a list; without a destructor, since the last file may go after other objects
+    static Entry* first_;  // head of a list; without a destructor, since the last file may be destroyed after other
+                           // objects
     Entry* entry_;
 };
 
 /// Kills the programs that write unfinished files and removes the files. Safe in a signal handler. The process has to
-/// end right afterwards: whoever writes such a file does not know that it is gone, and whoever begins or ends one
-/// waits.
+/// end right afterwards: writers do not know that their files are gone, and threads that begin or end such a file wait
+/// forever.
 void remove_unfinished_files() noexcept;
 
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-/// A point, direction or velocity in world coordinates. Plain data; components in the unit of what it holds.
+/// A point, direction or velocity. The components have the unit of the quantity.
 struct Vec3 {
     double x = 0.0;
     double y = 0.0;
@@ -55,7 +55,7 @@ struct Vec3 {
 }
 [[nodiscard]] constexpr double length_squared(const Vec3& a) { return dot(a, a); }
 [[nodiscard]] inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-/// Unit vector along a. Undefined for the zero vector: callers rule that out.
+/// Returns the unit vector along a. Undefined for the zero vector, which callers must exclude.
 [[nodiscard]] inline Vec3 normalized(const Vec3& a) { return a / length(a); }
 /// Componentwise minimum and maximum.
 [[nodiscard]] constexpr Vec3 min(const Vec3& a, const Vec3& b) {
@@ -74,7 +74,7 @@ struct Vec3 {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// Two unit vectors that complete the unit vector n to a right-handed orthonormal frame (first, second, n).
+/// Returns two unit vectors that complete the unit vector n to a right-handed orthonormal frame (first, second, n).
 /// Method: T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017.
 [[nodiscard]] inline std::array<Vec3, 2> tangent_frame(const Vec3& n) {
     const double sign = std::copysign(1.0, n.z);

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// Columns are eliminated together with those that follow while zeros are no more than this part of what they then
-/// hold: larger dense matrices are worth some zeros.
+/// Largest fraction of zeros in a front. Consecutive columns are eliminated together up to this limit: larger dense
+/// matrices are faster and outweigh the work on some zeros.
 constexpr double kMostZeros = 0.2;
 
 using Pair = BlockCholesky::Pair;
 using Lists = std::vector<std::vector<std::uint32_t>>;
 
-/// The row of blocks that is eliminated as the i-th.
+/// Returns the row of blocks that is eliminated as the i-th, in an order that keeps L sparse.
 std::vector<std::uint32_t> thin_order(std::size_t rows, std::span<const Pair> pairs) {
     using Pattern = Eigen::SparseMatrix<double>;
     std::vector<Eigen::Triplet<double>> places;
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> thin_order(std::size_t rows, std::span<const Pair> pa
     return result;
 }
 
-/// Of every row, in the order of elimination, those that it is coupled to and that come later.
+/// Returns, for every row in elimination order, the coupled rows that are eliminated later.
 Lists later_neighbours(std::span<const std::uint32_t> order, std::span<const Pair> pairs) {
     Lists later(order.size());
     for (const Pair& pair : pairs) {
@@ -62,7 +62,7 @@ std::vector<std::uint32_t> united(const std::vector<std::uint32_t>& a, const std
     return result;
 }
 
-/// Of every row the first that its column of L reaches: its parent in the tree of elimination.
+/// Returns, for every row, the first row that its column of L reaches: its parent in the elimination tree.
 std::vector<std::uint32_t> parents_of(const Lists& later) {
     std::vector<std::uint32_t> parent(later.size(), kNone);
     std::vector<std::uint32_t> ancestor(later.size(), kNone);
@@ -82,14 +82,14 @@ std::vector<std::uint32_t> parents_of(const Lists& later) {
     return parent;
 }
 
-/// When each row comes where all below one in the tree follow each other.
+/// Returns the position of each row in a postorder, in which every subtree is contiguous.
 std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
     const auto count = static_cast<std::uint32_t>(parent.size());
-    std::vector<std::uint32_t> below(count, 1);  // rows below each, with itself
+    std::vector<std::uint32_t> below(count, 1);  // rows in the subtree of each, itself included
     for (std::uint32_t k = 0; k < count; ++k) {
         if (parent[k] != kNone) below[parent[k]] += below[k];
     }
-    std::vector<std::uint32_t> free(count, 0);  // first place for the next child of each
+    std::vector<std::uint32_t> free(count, 0);  // first free position for the next child of each
     std::vector<std::uint32_t> place(count, 0);
     std::uint32_t of_roots = 0;
     for (std::uint32_t k = count; k-- > 0;) {
@@ -103,10 +103,10 @@ std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
 
 }  // namespace
 
-/// The places of L.
+/// Nonzero structure of L.
 struct BlockCholesky::Structure {
     std::vector<std::uint32_t> parent;
-    Lists below;  // of every column the rows below its diagonal, ascending
+    Lists below;  // for every column, the rows below its diagonal, ascending
 };
 
 BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
@@ -128,14 +128,14 @@ BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
     place_entries(pairs);
 }
 
-/// Columns go together with the next where that one reaches almost the same rows.
+/// Merges a column with the next one if that reaches almost the same rows.
 void BlockCholesky::make_fronts(const Structure& structure) {
     const auto rows = static_cast<std::uint32_t>(structure.below.size());
     front_of_.assign(rows, 0);
     for (std::uint32_t k = 0; k < rows;) {
         Front front;
         front.begin = k;
-        double filled = 0.0;  // blocks
+        double filled = 0.0;  // number of nonzero blocks
         for (;; ++k) {
             const auto count = static_cast<double>(k + 1 - front.begin);
             filled += 1.0 + static_cast<double>(structure.below[k].size());
@@ -163,7 +163,7 @@ void BlockCholesky::make_fronts(const Structure& structure) {
     values_.resize(values);
 }
 
-/// Of a row of blocks in a front.
+/// Returns the index of a row of blocks in a front.
 std::uint32_t BlockCholesky::place_in(const Front& front, std::uint32_t row) {
     if (row < front.begin + front.count) return row - front.begin;
     const auto found = std::lower_bound(front.below.begin(), front.below.end(), row);
@@ -202,7 +202,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     return true;
 }
 
-/// The front's own part of the matrix, and what its children have left.
+/// Adds the front's own part of the matrix and the updates of its children.
 void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     const std::size_t rows = front.rows();
     dense_.assign(rows * rows, 0.0);
@@ -226,7 +226,7 @@ void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     }
 }
 
-/// The last update on the stack.
+/// Adds the last update on the stack.
 void BlockCholesky::add_update(const Front& child, std::size_t rows) {
     const std::size_t blocks = child.places.size();
     const std::size_t size = 3 * blocks;
@@ -240,7 +240,7 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
     updates_.resize(updates_.size() - size * size);
 }
 
-/// The columns of L, and what is left for the parent.
+/// Stores the columns of L, and pushes the update for the parent.
 void BlockCholesky::keep(const Front& front) {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();
@@ -264,7 +264,7 @@ void BlockCholesky::solve(std::span<double> values) const {
     }
 }
 
-/// x becomes L^-1 x, in the front's columns.
+/// Replaces x by L^-1 x in the front's columns.
 void BlockCholesky::solve_forwards(const Front& front, std::vector<double>& x) const {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();
@@ -279,7 +279,7 @@ void BlockCholesky::solve_forwards(const Front& front, std::vector<double>& x) c
     }
 }
 
-/// x becomes L^-T x, in the front's columns.
+/// Replaces x by L^-T x in the front's columns.
 void BlockCholesky::solve_backwards(const Front& front, std::vector<double>& x) const {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();

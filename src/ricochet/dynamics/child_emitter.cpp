@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint32_t kCountPurpose = 0x08;
 constexpr std::uint32_t kLifeRatePurpose = 0x09;
 constexpr std::uint32_t kChildStream = 0x0A000000;
-constexpr double kMostChildren = 1e9;  // of one event, so that whole numbers stay exact
+constexpr double kMostChildren = 1e9;  // limit per event; it keeps whole numbers exact
 
-// Key of the random numbers of a parent's draws and of its children.
+// Returns the key of the random numbers of a parent's draws and of its children.
 std::uint64_t mixed_key(std::uint64_t lineage, std::uint32_t stream, std::uint32_t ordinal) {
     const auto bits = philox4x32({ordinal, kChildStream | stream, 0, 0},
                                  {static_cast<std::uint32_t>(lineage), static_cast<std::uint32_t>(lineage >> 32)});
@@ -35,15 +35,15 @@ void inherit_attributes(const Emitter& emitter, const Particle& parent, Particle
     }
 }
 
-// Shares in the proportion of the weights, as whole multiples of a unit of which the mass is one too: sums are exact.
-// The mass must suffice for as many of the smallest.
+// Returns shares proportional to the weights, as whole multiples of a unit that also divides the mass, so that sums are
+// exact. The mass must suffice for the smallest share of every weight.
 std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     int exponent = 0;
     (void)std::frexp(mass, &exponent);
     const double unit = std::ldexp(1.0, exponent - std::numeric_limits<double>::digits);
-    // Units; rounded down, so that where each gets just that it is there for all.
+    // The least share, in units, is rounded down so that the mass suffices even if every share is the least.
     const double least = std::max(1.0, std::floor(kSmallestMass / unit));
-    // Where that is more than rounding every share is so much, and only the rest goes by the weights.
+    // If the least share exceeds rounding, every share starts with it, and only the rest is divided by the weights.
     const double kept = least > 1.0 ? least : 0.0;
     const double shared = mass / unit - kept * static_cast<double>(weights.size());
     double sum = 0.0;
@@ -59,7 +59,7 @@ std::vector<double> shares_of(double mass, const std::vector<double>& weights) {
     return shares;
 }
 
-// Launches relative to the common centre of mass, on top of the parent's velocity.
+// Makes launches relative to the common centre of mass and adds the parent's velocity.
 void share_momentum(const Vec3& velocity, double mass, std::vector<Particle>& fragments) {
     Vec3 momentum;
     for (const Particle& fragment : fragments) momentum += fragment.mass * fragment.velocity;
@@ -75,7 +75,7 @@ LifeBirths births_in_life(const Emitter& emitter, const Particle& parent, double
     LifeBirths births;
     if (!(rate > 0.0)) return births;
     const auto time_of = [&](double ordinal) { return parent.birth_time + (ordinal + 0.5) / rate; };
-    // The first birth at or after a time: estimated, then corrected for rounding, since a birth's own time decides.
+    // The first birth at or after a time is estimated, then corrected for rounding, because a birth's own time decides.
     const double last = std::min(kMostChildren, static_cast<double>(emitter.description().limit));
     const auto first_from = [&](double time) {
         double ordinal = std::clamp(std::floor((time - parent.birth_time) * rate - 0.5), 0.0, last);

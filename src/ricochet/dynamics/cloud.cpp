@@ -11,20 +11,20 @@ namespace {
 
 constexpr double kTwoPi = 6.28318530717958647692;
 
-/// Decay of what is pulled back and damped: d(t) = c d0 + s (v0 + g d0) and d'(t) = c v0 - s (g v0 + pull d0), with g
-/// half of the damping.
+/// Coefficients of a damped oscillator: d(t) = c d0 + s (v0 + g d0) and d'(t) = c v0 - s (g v0 + pull d0), with g half
+/// of the damping.
 struct Decay {
     double c = 1.0;
     double s = 0.0;
 };
 
-/// sin(x) / x or sinh(x) / x near 0, by x^2 with its sign; the next term is below rounding.
+/// Returns sin(x) / x or sinh(x) / x near 0, from x^2 with its sign; the next term is below rounding.
 double near_zero(double square) { return 1.0 + square / 6.0 * (1.0 + square / 20.0); }
 
 Decay decay_of(const CloudRule& rule, double t) {
     constexpr double kSmallSquare = 1e-6;
     const double half = 0.5 * rule.damping;
-    const double square = half * half - rule.pull;  // of the rate, where it is overdamped
+    const double square = half * half - rule.pull;  // square of the rate if the oscillator is overdamped
     const double fading = portable_exp(-half * t);
     if (square < 0.0) {
         const double turns = std::sqrt(-square) * t / kTwoPi;

@@ -1,5 +1,5 @@
 /// \file
-/// Particles that go with their parent: their places about it, and how they move relative to these.
+/// Particles of a cloud: their positions about the parent, and their motion relative to these positions.
 #pragma once
 
 #include "ricochet/dynamics/emitter.h"
@@ -9,24 +9,26 @@
 
 namespace ricochet {
 
-/// Where a place about the parent is after a time, s, relative to the parent: it turns steadily about it.
+/// Returns the motion of a position about the parent after `age` seconds, relative to the parent. The position turns
+/// about the parent at a constant rate.
 [[nodiscard]] PhaseState turned_place(const CloudRule& rule, const Vec3& place, double age);
 
-/// rad, by which a cloud turns or swings in a time, s.
+/// Returns the angle, in rad, by which a cloud turns or swings in `duration` seconds.
 [[nodiscard]] double cloud_turn(const CloudRule& rule, double duration);
 
-/// What a child of a cloud does while its parent flies along one path, and what is done to it: the acceleration of its
-/// place in the world, with what pulls it there. With d its distance from that place, d'' = -pull d - damping d', which
-/// is solved in closed form.
+/// Motion of a child of a cloud while its parent flies along one path. As a coupling, it gives the acceleration of the
+/// child's moving target position in the world, plus the pull towards it. With d the offset from the target, d'' =
+/// -pull d - damping d', which is solved in closed form.
 class CloudMember final : public Coupling {
 public:
-    /// parent: its path, which begins at `begin`, s. place: about the parent, at the child's birth.
+    /// parent: path of the parent, which begins at `begin`, in s. place: target position about the parent at the
+    /// child's birth.
     CloudMember(const CloudRule& rule, const Path& parent, double begin, const Vec3& place, double birth_time)
         : rule_(rule), parent_(parent), begin_(begin), place_(place), birth_time_(birth_time) {}
 
-    /// Its place in the world at a time, s.
+    /// Returns the target position, with its velocity, in the world at a time, in s.
     [[nodiscard]] PhaseState place_at(double time) const;
-    /// Its state at `to` where it has this one at `from`, s, and nothing is in its way.
+    /// Returns the state at `to`, in s, of a child that has `state` at `from` and hits nothing.
     [[nodiscard]] PhaseState after(const PhaseState& state, double from, double to) const;
 
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override;

@@ -11,7 +11,7 @@ namespace {
 /// Springs per unit of parallel work.
 constexpr std::size_t kBlock = 64;
 
-/// A point of a rule of quadrature on [0, 1].
+/// A node of a quadrature rule on [0, 1].
 struct Node {
     double at;
     double weight;
@@ -22,21 +22,21 @@ constexpr std::array<Node, 3> kGauss{{{0.11270166537925831, 5.0 / 18.0},  // (1 
                                       {0.88729833462074169, 5.0 / 18.0}}};
 constexpr std::array<Node, 2> kTrapezoid{{{0.0, 0.5}, {1.0, 0.5}}};
 
-/// That of the method: velocity Verlet's kicks are forces at the ends of its paths, and with any other rule a bounce
-/// costs it energy (docs/decisions/2026-11-24-springs-that-bounce.md).
+/// Returns the quadrature rule of the method. velocity_verlet kicks with the forces at the ends of its paths. Any other
+/// rule would make a bounce cost energy (docs/decisions/2026-11-24-springs-that-bounce.md).
 std::span<const Node> rule_of(IntegratorKind kind) {
     const bool is_verlet = kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::ballistic;
     return is_verlet ? std::span<const Node>(kTrapezoid) : std::span<const Node>(kGauss);
 }
 
-/// The piece that is flown at a time.
+/// Returns the piece that is flown at a time.
 const FlownPiece& piece_at(std::span<const FlownPiece> pieces, double time) {
     const auto next = std::upper_bound(pieces.begin() + 1, pieces.end(), time,
                                        [](double t, const FlownPiece& piece) { return t < piece.begin; });
     return *(next - 1);
 }
 
-/// The state s seconds into a path that is followed for a duration, to the velocity `arrival`.
+/// Returns the state `s` seconds into a path that is followed for `duration` seconds up to the velocity `arrival`.
 PhaseState state_along(const Path& path, double s, double duration, const Vec3& arrival) {
     if (duration == 0.0) return {path.position(0.0), arrival};
     s = std::clamp(s, 0.0, duration);
@@ -44,14 +44,14 @@ PhaseState state_along(const Path& path, double s, double duration, const Vec3& 
     return {path.position(s), path.velocity(s) + (part * part) * (arrival - path.velocity(duration))};
 }
 
-/// A time within a step, s.
+/// Time interval within a step, in s.
 struct TimeInterval {
     double begin;
     double end;
     [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
 };
 
-/// The step cut where any of the pieces begins: in each part all paths and forces are smooth.
+/// Splits the step at the start of every piece: all paths and forces are smooth within each interval.
 std::vector<TimeInterval> parts_between(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
                                         const FlownPiece& step) {
     std::vector<double> times{step.begin + step.duration};
@@ -128,10 +128,11 @@ void Departures::correct(const ParticleSystem& system, const std::vector<Flight>
     }
 }
 
-/// m/s by member; empty where no forces act between members. Where positions alone matter the forces are those at the
-/// end of the paths for half of the step, as velocity Verlet has them: a departure grows from a bounce to the end, and
-/// what counts of it is no more than what it is there. Velocities leave the plan at once, and so that their mean is not
-/// exceeded the forces are those of the mean for the whole step.
+/// Returns the velocity changes by forces between members, in m/s by member; empty if there are no such forces. Forces
+/// that depend on positions only are evaluated at the end of the paths. They act for half of the step, as in velocity
+/// Verlet. A departure in position grows from the bounce to the end, so twice its mean is at most its final value. A
+/// departure in velocity is complete at once. If the forces depend on velocities, the mean departure therefore acts for
+/// the whole step.
 std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
     const double duration = plans.front().path.duration;
     const double weight = (system.has_mutual_damping() ? 1.0 : 0.5) * duration;
@@ -155,19 +156,19 @@ std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const
     return changes;
 }
 
-/// In pieces; the plan itself where nothing else is noted.
+/// Returns the flown pieces of a member; the plan itself if nothing else is recorded.
 std::span<const FlownPiece> Departures::flown_by(std::size_t member, const FlownPiece& plan) const {
     return entries_[member].flown.empty() ? std::span<const FlownPiece>(&plan, 1) : entries_[member].flown;
 }
 
-/// As forces see it at a time, s, on a piece that it has flown.
+/// Returns the state, at a time in s, that forces see on a flown piece.
 PhaseState Departures::state_of(std::size_t member, const FlownPiece& piece, const Flight& plan, double time) const {
     if (entries_[member].keeps_start) return {plan.start.position, plan.start.velocity};
     return piece.at(time);
 }
 
-/// The integrals, over the step, of what a member's position and velocity are beyond its plan, m s and m. Of what stays
-/// at its start as much as takes away the second half of the forces' change along a plan.
+/// Returns the integrals over the step of a member's deviation from its plan in position and velocity, in m s and m. If
+/// its forces keep their start values, the integrals cancel the second half of the force change along the plan.
 PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
     if (entries_[member].keeps_start) {
@@ -185,7 +186,8 @@ PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) 
     return sum;
 }
 
-/// N s by member. Every spring's is found for itself by any thread; they are added in the order of the springs.
+/// Returns the momentum changes by springs, in N s by member. Threads compute the impulses of single springs; the sums
+/// are in the order of the springs.
 std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
     std::vector<Vec3> sums(system.size());
     std::vector<ParticleSystem::Bond> changed;
@@ -203,7 +205,7 @@ std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, con
     return sums;
 }
 
-/// What a spring has given its first end, N s, beyond what it would have given it between the planned paths.
+/// Returns the impulse of a spring on its first end, in N s, in excess of its impulse between the planned paths.
 Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
                                 const std::vector<Flight>& plans) const {
     const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
@@ -226,7 +228,8 @@ Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSyst
     return sum;
 }
 
-/// What forces on single particles have done to a member, m/s, beyond what they would have done on its planned path.
+/// Returns the velocity change of a member by forces on single particles, in m/s, in excess of that on its planned
+/// path.
 Vec3 Departures::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
     if (system.has_uniform_forces()) return {};
     const FlownPiece planned = piece_of(plan);

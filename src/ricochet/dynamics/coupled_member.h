@@ -1,6 +1,6 @@
 /// \file
-/// Members of a system of particles that act on each other: what the others do to one that leaves the plan of a step,
-/// and what it does to them.
+/// Members of a system of interacting particles: the action of the others on a member that leaves the plan of a step,
+/// and its reaction on them.
 #pragma once
 
 #include <cstdint>
@@ -12,38 +12,39 @@
 
 namespace ricochet {
 
-/// A part of what a particle has flown in a step, or would fly.
+/// Piece of the path that a particle has flown in a step, or would fly.
 struct FlownPiece {
     Path path;
-    double begin = 0.0;     ///< s, when it begins
-    double duration = 0.0;  ///< s that it is followed, at most the path's own
-    Vec3 departure;         ///< velocity at its begin, m/s
-    Vec3 arrival;           ///< velocity at its end, m/s
-    bool is_free = false;   ///< in free flight; false in contact
+    double begin = 0.0;     ///< start time, in s
+    double duration = 0.0;  ///< followed duration, in s, at most that of the path
+    Vec3 departure;         ///< velocity at the start, in m/s
+    Vec3 arrival;           ///< velocity at the end, in m/s
+    bool is_free = false;   ///< true in free flight, false in contact
 
-    /// The state at a time, s, within it. The velocity is the path's derivative with what it lacks at the end, where a
-    /// method's velocity is better than its path, put in by the square of the time.
+    /// Returns the state at a time, in s, within the piece. The velocity is the path's derivative plus a correction
+    /// that grows with the square of the time. At the end it reaches `arrival`, which is more accurate than the path's
+    /// derivative.
     [[nodiscard]] PhaseState at(double time) const;
 };
 
-/// A whole flight as one piece.
+/// Returns a whole flight as one piece.
 [[nodiscard]] FlownPiece piece_of(const Flight& flight);
 
-/// What forces between members do to one of them in the course of a step: as on its planned path.
+/// Acceleration of a member by the forces between members during a step, as on its planned path.
 struct MutualPull {
-    Vec3 start;          ///< m/s^2, at the step's start
-    Vec3 slope;          ///< m/s^3
-    double begin = 0.0;  ///< s, when the step starts
+    Vec3 start;          ///< in m/s^2, at the step's start
+    Vec3 slope;          ///< in m/s^3
+    double begin = 0.0;  ///< start time of the step, in s
 };
 
-/// What the springs of a member do to it in a step: held, or as they are between where it is and where the others are
-/// on their planned flights at the time.
+/// Action of a member's springs on it in a step. It is constant, or computed from the member's position and the
+/// positions of the others on their planned flights.
 class CoupledMember final : public Coupling {
 public:
     CoupledMember() = default;
-    /// Held at an acceleration, m/s^2.
+    /// Uses a constant acceleration, in m/s^2.
     explicit CoupledMember(const Vec3& held) : held_(held) {}
-    /// As the others fly; both must outlive it. plans: of all members.
+    /// Follows the planned flights of all members (`plans`). Both references must outlive the object.
     CoupledMember(const ParticleSystem& system, const std::vector<Flight>& plans, std::size_t member,
                   const MutualPull& mutual = {})
         : system_(&system), plans_(&plans), member_(member), mutual_(mutual) {}
@@ -59,36 +60,37 @@ private:
     MutualPull mutual_;
 };
 
-/// The members that have left the plan of a step, by an impact or in contact, and what follows for the velocities at
-/// its end.
+/// Members that have left the plan of a step, by an impact or in contact, and the resulting velocity corrections at its
+/// end.
 ///
-/// The plan gives both ends of a spring opposite impulses, for the planned paths. Where an end has flown another path
-/// the difference, the integral of the force between the paths that were flown less that between the planned ones,
-/// goes to both ends with opposite signs: momentum is kept to rounding, and what the bounce of one does to the other
-/// is there, of third order in the step. It does not matter whether an end flies, slides or rests. Positions stay: they
-/// are at the ends of certified segments.
+/// The plan gives both ends of a spring opposite impulses along the planned paths. If an end flies another path, the
+/// impulse changes by the difference of two integrals: the force between the flown paths less that between the planned
+/// paths. Both ends receive this change with opposite signs, so momentum is conserved to rounding. The bounce of one
+/// end thus acts on the other, with an effect of third order in the step. It does not matter whether an end flies,
+/// slides or rests. Positions stay, because they are the ends of certified segments.
 ///
-/// Forces between members that know no pairs do the same all at once: they are evaluated where the plan ends, and with
-/// each member that has left it moved by the mean of its departure; the difference goes to all. In it momentum is kept
-/// as well as the forces keep it, and it is exact to first order in the departures, so that it is of third order too.
+/// Forces between members that are not split into pairs are corrected together. They are evaluated at the end of the
+/// plan, and again with each departed member moved by its mean departure. The difference is applied to all members.
+/// Momentum is conserved as well as the forces conserve it. The correction is exact to first order in the departures,
+/// so its error is of third order too.
 ///
-/// Members whose forces have been balanced by contacts as both were at the step's start keep them as they were there,
-/// in what others are given too: forces that turn with a pair that rolls on itself, beside pushes that do not, would
-/// brake it. That is of first order in the step.
+/// If contacts balanced a member's forces at the start of the step, its forces are kept at their start values. This
+/// applies to the reactions on other members too. Otherwise the forces would turn with a pair that rolls on itself
+/// while the contact loads do not, which would brake the pair. The error is of first order in the step.
 class Departures {
 public:
-    /// Forgets all. members: how many there are; kind: the method that has planned.
+    /// Clears all records. members: number of members; kind: the method that made the plan.
     void reset(std::size_t members, IntegratorKind kind);
-    /// Notes what a member has flown instead of its plan, and what surfaces have given it meanwhile, m/s; several
-    /// threads may do so for different members.
+    /// Records the path that a member has flown instead of its plan, and the velocity change by surfaces meanwhile, in
+    /// m/s. Several threads may call it for different members.
     void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed);
-    /// The same of a member whose forces are those of the step's start.
+    /// Records a member whose forces keep their values at the start of the step.
     void record_at_start(std::size_t member, const Vec3& pushed);
-    /// Makes of the velocities of the members at the end of the step, m/s, those that all forces and surfaces have
-    /// given them. moves: those that forces move; others keep theirs.
+    /// Corrects the velocities of the members at the end of the step, in m/s, for all recorded departures. moves: flags
+    /// of the members that forces move; others keep their velocities.
     void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
                  std::vector<Vec3>& velocities) const;
-    /// True when something else than the plan is noted of it.
+    /// Returns true if the member has a record that differs from the plan.
     [[nodiscard]] bool has_left(std::size_t member) const {
         return entries_[member].keeps_start || !entries_[member].flown.empty();
     }
@@ -108,10 +110,10 @@ private:
 
     struct Entry {
         std::vector<FlownPiece> flown;  // empty: as planned
-        Vec3 pushed;                    // m/s
-        bool keeps_start = false;       // its forces are those of the start
+        Vec3 pushed;                    // velocity change by surfaces, m/s
+        bool keeps_start = false;       // its forces keep their values at the start
     };
-    std::vector<Entry> entries_;  // of every member
+    std::vector<Entry> entries_;  // one per member
     IntegratorKind kind_ = IntegratorKind::ballistic;
 };
 

@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-/// Columns that are eliminated before what follows them is brought up to date.
+/// Columns that are eliminated before the columns after them are updated.
 constexpr std::size_t kPanel = 24;
 
 /// The lower half of a matrix, by columns.
@@ -16,8 +16,8 @@ struct Lower {
     [[nodiscard]] double* column(std::size_t j) const { return values + j * rows; }
 };
 
-/// Takes from two columns, from row `from` on, what the columns k to `end` of L have in them. Four at a time: that many
-/// products to each number that is read and written again.
+/// Subtracts the contributions of columns k to `end` of L from columns j and j + 1, from row j on. It handles four
+/// columns of L at a time, because each loaded and stored number then serves four products.
 void update_two(const Lower& m, std::size_t j, std::size_t k, std::size_t end) {
     double* const c0 = m.column(j);
     double* const c1 = m.column(j + 1);
@@ -64,7 +64,7 @@ void update_one(const Lower& m, std::size_t j, std::size_t k, std::size_t end) {
     }
 }
 
-/// Eliminates the columns from `begin` to `end`, into which what comes before has been put.
+/// Eliminates the columns from `begin` to `end`, which already contain the updates of earlier panels.
 bool eliminate_panel(const Lower& m, std::size_t begin, std::size_t end) {
     for (std::size_t j = begin; j < end; ++j) {
         update_one(m, j, begin, j);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kStages = kDormandPrinceStages;
 
-// The published tableau; the last row of kA is the fifth order's weights too.
+// The published tableau; the last row of kA also gives the weights of fifth order.
 constexpr std::array<double, kStages> kC{0.0, 1.0 / 5.0, 3.0 / 10.0, 4.0 / 5.0, 8.0 / 9.0, 1.0, 1.0};
 constexpr std::array<std::array<double, kStages - 1>, kStages> kA{{
     {},
@@ -21,7 +21,7 @@ constexpr std::array<std::array<double, kStages - 1>, kStages> kA{{
     {9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0},
     {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0},
 }};
-/// Fifth order's weights less the fourth's.
+/// Weights of fifth order minus the weights of fourth order.
 constexpr std::array<double, kStages> kError{71.0 / 57600.0,      0.0,          -71.0 / 16695.0, 71.0 / 1920.0,
                                              -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
 
@@ -31,7 +31,7 @@ constexpr std::array<double, kStages> kMiddle{6025192743.0 / 30085553152.0,     
                                               187940372067.0 / 1594534317056.0, -1776094331.0 / 19743644256.0,
                                               11237099.0 / 235043384.0};
 
-/// Second derivative over the step, times its length squared, from values at 0, c and 1.
+/// Returns the second derivative over the step, times its length squared, from values at 0, c and 1.
 Vec3 second_difference(const Vec3& at_0, const Vec3& at_c, const Vec3& at_1, double c) {
     const Vec3 first = (at_c - at_0) / c;
     const Vec3 second = (at_1 - at_c) / (1.0 - c);
@@ -80,7 +80,7 @@ EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& sta
         input.time = state.time + kC[i] * h;
         v[i] = stage.velocity;
         a[i] = forces.acceleration(input);
-        step.end = stage;  // the last stage stands at the end
+        step.end = stage;  // the last stage is evaluated at the end state
     }
     step.acceleration = a[0];
     step.errors = estimated_errors(v, a, h);
@@ -91,7 +91,7 @@ EmbeddedFlowStep dormand_prince_step(const FlowField& flow, const Vec3& position
     std::array<Vec3, kStages> g;
     EmbeddedFlowStep step;
     for (std::size_t i = 0; i < kStages; ++i) {
-        step.end = position;  // the last stage stands at the end
+        step.end = position;  // the last stage is evaluated at the end state
         for (std::size_t j = 0; j < i; ++j) step.end += (h * kA[i][j]) * g[j];
         g[i] = flow.velocity(step.end, time + kC[i] * h);
     }

@@ -15,48 +15,48 @@ namespace ricochet {
 
 inline constexpr std::size_t kDormandPrinceStages = 7;
 
-/// An error, relative to the tolerance, after which twice the step will do: the fifth order makes it 32 times as large,
-/// the path's fourth 16 times.
+/// Error, relative to the tolerance, below which a step of twice the length is expected to pass. Doubling the step
+/// makes the error of the fifth order 32 times as large, and that of the path (fourth order) 16 times.
 inline constexpr double kErrorToDouble = 1.0 / 64.0;
 
-/// The published tableau: weight of stage j's derivative in stage i, and the stages' times as parts of the step. The
-/// last stage stands at the end of the fifth order.
+/// Return the published tableau: the weight of stage j's derivative in stage i, and the stage times as fractions of the
+/// step. The last stage is evaluated at the fifth-order end state.
 [[nodiscard]] double dormand_prince_weight(std::size_t i, std::size_t j);
 [[nodiscard]] double dormand_prince_node(std::size_t i);
 
-/// What a step may be wrong by.
+/// Error estimates of a step.
 struct StepErrors {
-    double position = 0.0;  ///< m, by the embedded fourth order
-    double velocity = 0.0;  ///< m/s
-    /// Estimated largest distance, m, between the trajectory and the cubic through its end states: h^4 / 384 times the
-    /// fourth derivative of the position, from a divided difference of the stages' accelerations.
+    double position = 0.0;  ///< in m, by the embedded fourth order
+    double velocity = 0.0;  ///< in m/s
+    /// Estimated largest distance, in m, between the trajectory and the cubic through its end states. It is h^4 / 384
+    /// times the fourth derivative of the position, from a divided difference of the stages' accelerations.
     double path = 0.0;
 };
-/// From the velocities and accelerations of all stages of one particle.
+/// Estimates the errors from the velocities and accelerations of all stages of one particle.
 [[nodiscard]] StepErrors estimated_errors(const std::array<Vec3, kDormandPrinceStages>& v,
                                           const std::array<Vec3, kDormandPrinceStages>& a, double h);
-/// The tolerance, but no less than the rounding of the state: what is added to it below that is lost.
+/// Returns the tolerance, or the rounding of the state if that is larger. Smaller increments are lost in rounding.
 [[nodiscard]] ErrorTolerance attainable(const ErrorTolerance& tolerance, const Vec3& position, const Vec3& velocity);
 
-/// The largest of them, each as a part of its tolerance.
+/// Returns the largest of the errors, each relative to its tolerance.
 [[nodiscard]] double relative_error(const StepErrors& errors, const ErrorTolerance& tolerance);
 
-/// A step with what it may be wrong by.
+/// Step with its error estimates.
 struct EmbeddedStep {
-    PhaseState end;     ///< of the fifth order
-    Vec3 acceleration;  ///< at the start, m/s^2
+    PhaseState end;     ///< of fifth order
+    Vec3 acceleration;  ///< at the start, in m/s^2
     StepErrors errors;
 };
 
 [[nodiscard]] EmbeddedStep dormand_prince_step(const ForceField& forces, const ForceInput& state, double h);
 
-/// The same of first order, x' = g(x, t).
+/// Step of first-order motion, x' = g(x, t), with its error estimates.
 struct EmbeddedFlowStep {
-    Vec3 end;             ///< m, of the fifth order
-    Vec3 start_velocity;  ///< of the flow at both ends, m/s
+    Vec3 end;             ///< in m, of fifth order
+    Vec3 start_velocity;  ///< of the flow at both ends, in m/s
     Vec3 end_velocity;
-    double position_error = 0.0;  ///< m, by the embedded fourth order
-    /// Distance, m, between the cubic through the ends and the method's interpolant of fourth order in the middle of
+    double position_error = 0.0;  ///< in m, by the embedded fourth order
+    /// Distance, in m, between the cubic through the ends and the method's interpolant of fourth order in the middle of
     /// the step (L. F. Shampine, "Some practical Runge-Kutta formulas", Mathematics of Computation 46, 1986).
     double path_error = 0.0;
 };

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// Whether all principal minors are at least `least` times the trace's power (Sylvester).
+/// Returns true if all principal minors are at least `least` times the trace's power (Sylvester).
 bool is_definite(const SymmetricMatrix& a, double least) {
     const double size = a.trace();
     const auto is_good = [&](double minor, int power) { return minor >= least * std::pow(size, power); };
@@ -25,8 +25,8 @@ bool is_definite(const SymmetricMatrix& a, double least) {
            is_good(a.determinant(), 3);
 }
 
-/// That of some matter: its moments are above 0, and so is what is left of half their sum (of x x^T over the mass), or
-/// 0 for what is flat.
+/// Returns true for the inertia of a distribution of mass. The moments are above 0. Half the trace minus the tensor,
+/// which is the sum of m x x^T, has no negative eigenvalue; flat bodies have a zero one.
 bool is_inertia(const SymmetricMatrix& a) {
     constexpr double kRounding = 1e-12;
     const SymmetricMatrix spread = diagonal_matrix(0.5 * a.trace()) + (-1.0) * a;
@@ -34,15 +34,15 @@ bool is_inertia(const SymmetricMatrix& a) {
            a.determinant() > 0.0 && is_definite(spread, -kRounding);
 }
 
-/// A coordinate, from where the spring is at rest, and its rate.
+/// A coordinate, relative to the rest position of the spring, and its rate.
 struct JointState {
     double coordinate;
     double rate;
 };
 
-/// By how much x'' = n - stiffness x - damping x' leads beside where the rate would lead in h, s, and how much of the
-/// rate comes to it, with n from n[0] to n[1] in equal steps; 1/s^2, 1/s. By the power series in time, which ends by
-/// itself, in parts in which it does so soon.
+/// Returns the additional displacement and rate of x'' = n - stiffness x - damping x' after h seconds, relative to
+/// motion at the start rate. stiffness in 1/s^2, damping in 1/s; n changes linearly from n[0] to n[1]. The solution is
+/// a power series in time, in intervals short enough for fast convergence.
 JointState oscillated(const JointState& start, double stiffness, double damping, const std::array<double, 2>& n,
                       double h) {
     constexpr int kMostTerms = 40;
@@ -52,7 +52,7 @@ JointState oscillated(const JointState& start, double stiffness, double damping,
     JointState gained{0.0, 0.0};
     for (int part = 0; part < parts; ++part) {
         double forcing = n[0] + part * s * slope;
-        // Terms of the series of the coordinate: derivatives times s^k / k!.
+        // Terms of the coordinate's series: derivatives times s^k / k!.
         double x = start.coordinate + part * s * start.rate + gained.coordinate;
         double v = s * (start.rate + gained.rate);
         gained.coordinate += s * gained.rate;
@@ -67,14 +67,15 @@ JointState oscillated(const JointState& start, double stiffness, double damping,
     return gained;
 }
 
-// Dry friction and a motor hold a rate, which has to be hit by what is planned.
+// Returns true if spring and damper can be integrated in closed form. Dry friction and a motor exclude this, because
+// the plan must reach their rates exactly.
 bool is_oscillator(const JointSettings& joint) {
     const bool is_steady = joint.friction == 0.0 && joint.motor_most == 0.0;
     return is_steady && (joint.spring > 0.0 || joint.damping > 0.0);
 }
 
-/// The cubic through where spring and damper lead in h, s: the factors of t, t^2 and t^3. now, predicted: at the begin,
-/// and as far as is known at the end, with the acceleration by all that acts there.
+/// Returns the coefficients of t, t^2 and t^3 of the cubic through the state reached by spring and damper in h seconds.
+/// now: state at the start; predicted: estimated state at the end; accelerations: of all forces in these two states.
 std::array<double, 3> oscillation(const JointSettings& joint, double inertia, const JointState& now,
                                   const JointState& predicted, const std::array<double, 2>& accelerations, double h) {
     const double stiffness = joint.spring / inertia;
@@ -109,8 +110,8 @@ void check(const BodyDescription& body) {
     }
     if (!is_inertia(body.inertia)) {
         throw InputError(
-            of_body("the inertia is that of no body with a volume (moments above 0, none above the sum of "
-                    "the others, products that go with them)"));
+            of_body("the inertia is impossible for a body with a volume (moments above 0, none above the sum of "
+                    "the others, consistent products)"));
     }
 }
 
@@ -152,7 +153,7 @@ BodyPath DrivenBody::plan_free(const ForceField& forces, const Wrench& load, dou
     BodyPath path{begin, end, map_, description_.center};
     path.way = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
     const Vec3 now = inverse_inertia(map_) * angular_momentum_;
-    // The middle's angular velocity, by half a turn with that of the start.
+    // The angular velocity of the middle follows from half a turn with that of the start.
     const auto turned = [&](const Vec3& spin, double duration) {
         BodyPath turning{0.0, duration, map_, {}};
         if (spin == Vec3{}) return turning;
@@ -172,7 +173,7 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, do
     const double h = end - begin;
     const double by_load = along_joint(load) / inertia_;
     const double first = joint_acceleration(forces, coordinate_, rate_, begin) + by_load;
-    // What friction and motor will do is part of the prediction: damping sees the rate with it.
+    // The prediction includes friction and motor, so that damping sees the resulting rate.
     const auto held_at = [&](double rate) { return h > 0.0 ? held_change(rate, h) / h : 0.0; };
     const double predicted = first + held_at(rate_ + h * first);
     const double reached = coordinate_ + h * (rate_ + 0.5 * h * predicted);
@@ -195,12 +196,12 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, do
     return path;
 }
 
-/// What of a wrench a joint lets through.
+/// Returns the component of a wrench along the joint.
 double DrivenBody::along_joint(const Wrench& wrench) const {
     return dot(axis_, description_.joint == JointKind::hinge ? wrench.moment : wrench.impulse);
 }
 
-/// rad/s^2 or m/s^2, by all that is no friction and no motor.
+/// Returns the acceleration, in rad/s^2 or m/s^2, without friction and motor.
 double DrivenBody::joint_acceleration(const ForceField& forces, double coordinate, double rate, double time) const {
     const JointSettings& joint = description_.settings;
     const bool turns = description_.joint == JointKind::hinge;
@@ -212,8 +213,8 @@ double DrivenBody::joint_acceleration(const ForceField& forces, double coordinat
     return (of_forces + of_joint) / inertia_;
 }
 
-/// By how much motor and dry friction change the rate that there would be without them: the motor aims at its rate
-/// against friction, which opposes the motion that is left, or holds.
+/// Returns the change of a rate by motor and dry friction. The motor drives towards its rate against friction. Friction
+/// opposes the remaining motion, or stops it.
 double DrivenBody::held_change(double rate, double duration) const {
     const JointSettings& joint = description_.settings;
     const double motor = joint.motor_most * duration / inertia_;
@@ -251,14 +252,15 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& 
     const double h = path.end - path.begin;
     const auto moved = [h](const auto& c) { return h * (c[0] + h * (c[1] + h * c[2])); };
     const auto rate = [h](const auto& c) { return c[0] + h * (2.0 * c[1] + (3.0 * h) * c[2]); };
-    // What the path has taken already.
+    // Impulses that the path does not include yet.
     const Wrench rest{wrench.impulse - h * load.impulse, wrench.moment - h * load.moment};
     const Vec3 before = center_;
     map_ = path.at(path.end).world_from_frame;
     center_ = map_.point(description_.center);
     if (description_.joint == JointKind::free) {
         velocity_ = rate(path.way);
-        // Moments were taken about where the centre was. The load has acted all the way, the rest acts at its end.
+        // Moments refer to the start position of the centre. The load acted during the whole step; the rest acts at the
+        // end.
         const Vec3 mean = h * (path.way[0] / 2.0 + h * (path.way[1] / 3.0 + (0.25 * h) * path.way[2]));
         angular_momentum_ += h * load.moment - cross(mean, h * load.impulse);
         take({rest.impulse, rest.moment - cross(center_ - before, rest.impulse)});
@@ -302,7 +304,7 @@ Mobility DrivenBody::mobility() const {
 }
 
 double DrivenBody::quadratic_energy(const Wrench& wrench) const {
-    return std::max(0.0, mobility().seen_by(map_).energy_by(wrench));  // rounding may leave it below
+    return std::max(0.0, mobility().seen_by(map_).energy_by(wrench));  // rounding can make it negative
 }
 
 Vec3 DrivenBody::velocity_change(const Wrench& wrench, const Vec3& where) const {

@@ -1,10 +1,11 @@
 /// \file
 /// A rigid body that forces and impulses move: free, or on an axis or a straight guide that is fixed in the world.
 ///
-/// On a joint a spring and a damper are followed in closed form, all else with a linear acceleration between the ends
-/// (N. M. Newmark, "A method of computation for structural dynamics", J. Eng. Mech. Div. ASCE 85, 1959): of second
-/// order. A free body keeps its angular momentum to rounding, and turns by the angular velocity of the step's middle
-/// (S. R. Buss, "Accurate and efficient simulation of rigid-body rotations", J. Comput. Phys. 164, 2000).
+/// The spring and damper of a joint are integrated in closed form. All other forces use an acceleration that varies
+/// linearly over the step (N. M. Newmark, "A method of computation for structural dynamics", J. Eng. Mech. Div. ASCE
+/// 85, 1959), which is of second order. A free body keeps its angular momentum to rounding. It turns with the angular
+/// velocity of the middle of the step (S. R. Buss, "Accurate and efficient simulation of rigid-body rotations", J.
+/// Comput. Phys. 164, 2000).
 #pragma once
 
 #include <optional>
@@ -18,81 +19,81 @@
 
 namespace ricochet {
 
-/// What holds a body.
+/// Kind of joint between a body and the world.
 enum class JointKind {
-    free,    ///< nothing
-    hinge,   ///< it turns about an axis through the frame's origin
-    slider,  ///< it moves along an axis, without turning
+    free,    ///< no joint
+    hinge,   ///< the body turns about an axis through the frame's origin
+    slider,  ///< the body moves along an axis without turning
 };
 
-/// What acts between a body on a joint and the world. Units of a hinge (of a slider): the coordinate is an angle, rad
-/// (a way, m), 0 where the body starts.
+/// Forces between a body on a joint and the world. Units are for a hinge, with those for a slider in parentheses. The
+/// coordinate is an angle in rad (a displacement in m), 0 at the start position of the body.
 struct JointSettings {
-    double spring = 0.0;       ///< N m/rad (N/m), >= 0, towards `spring_rest`
-    double spring_rest = 0.0;  ///< rad (m)
-    double damping = 0.0;      ///< N m s/rad (N s/m), >= 0
-    double drive = 0.0;        ///< N m (N), constant
-    double friction = 0.0;     ///< N m (N), >= 0, against the motion: dry friction
-    double motor_rate = 0.0;   ///< rad/s (m/s) that a motor aims at
-    double motor_most = 0.0;   ///< N m (N), >= 0, with which it does at most; 0: there is none
+    double spring = 0.0;       ///< in N m/rad (N/m), >= 0, towards `spring_rest`
+    double spring_rest = 0.0;  ///< in rad (m)
+    double damping = 0.0;      ///< in N m s/rad (N s/m), >= 0
+    double drive = 0.0;        ///< constant torque in N m (force in N)
+    double friction = 0.0;     ///< dry friction against the motion, in N m (N), >= 0
+    double motor_rate = 0.0;   ///< target rate of the motor, in rad/s (m/s)
+    double motor_most = 0.0;   ///< largest torque (force) of the motor, in N m (N), >= 0; 0: no motor
 };
 
-/// A body as a scene describes it.
+/// Body as described by a scene.
 struct BodyDescription {
-    std::string frame;        ///< that it is, and that its colliders stand in; driven
-    double mass = 1.0;        ///< kg, > 0
-    Vec3 center;              ///< of mass, m, in the frame's coordinates
-    SymmetricMatrix inertia;  ///< about that, kg m^2, in the frame's axes; positive definite
+    std::string frame;        ///< name of the body's frame, which carries its colliders; driven
+    double mass = 1.0;        ///< in kg, > 0
+    Vec3 center;              ///< centre of mass, in m, in the frame's coordinates
+    SymmetricMatrix inertia;  ///< about the centre of mass, in kg m^2, in the frame's axes; positive definite
     JointKind joint = JointKind::free;
-    Vec3 axis{0, 0, 1};     ///< of a joint, in the frame's axes as it starts; of any length but zero
-    Vec3 velocity;          ///< of the centre at first, m/s; free
-    Vec3 angular_velocity;  ///< at first, rad/s; free
-    double rate = 0.0;      ///< at first, rad/s of a hinge, m/s of a slider
+    Vec3 axis{0, 0, 1};     ///< of the joint, in the frame's axes at the start; any nonzero length
+    Vec3 velocity;          ///< initial velocity of the centre, in m/s; free bodies
+    Vec3 angular_velocity;  ///< initial angular velocity, in rad/s; free bodies
+    double rate = 0.0;      ///< initial rate, in rad/s for a hinge, in m/s for a slider
     JointSettings settings = {};
-    /// The scene's forces act on it, as on a particle of its mass and without a radius at its centre of mass.
+    /// True if the scene's forces act on the body, as on a point particle of its mass at its centre of mass.
     bool feels_forces = true;
 };
 
-/// One body: where it is, how it moves, and its plan for the part of a step that comes.
+/// State of one body, and its planned motion over the next part of a step.
 class DrivenBody {
 public:
-    /// world_from_frame: where its frame starts. Throws InputError, naming the frame, for numbers that cannot be.
+    /// world_from_frame: start transform of its frame. Throws InputError, naming the frame, for invalid numbers.
     DrivenBody(BodyDescription description, const AffineMap& world_from_frame);
 
     [[nodiscard]] const BodyDescription& description() const { return description_; }
 
-    /// The path over [begin, end], s, under what acts on it but impulses, and under a steady load: a force, N, and its
-    /// moment about moment_center(), N m.
+    /// Returns the path over [begin, end], in s, under all forces except impulses, and under a steady load. The load is
+    /// a force, in N, with its moment about moment_center(), in N m.
     [[nodiscard]] BodyPath plan(const ForceField& forces, const Wrench& load, double begin, double end) const;
-    /// Goes along a path that was planned with a load to its end, and takes the impulses of that time there. wrench:
-    /// all of them, with those of the load, about moment_center(); the particles' own arms are from the places of their
-    /// hits.
+    /// Moves the body to the end of a path that was planned with `load`, and applies the impulses of that time there.
+    /// wrench: sum of all impulses, the load included, about moment_center(). The lever arms of particles
+    /// start at their impact positions.
     void follow(const BodyPath& path, const Wrench& load, const Wrench& wrench);
-    /// Takes impulses where it is.
+    /// Applies impulses at the current position.
     void take(const Wrench& wrench);
-    /// The point that moments of impulses are about, m, in the world.
+    /// Returns the reference point for moments of impulses, in m, in the world.
     [[nodiscard]] Vec3 moment_center() const { return description_.joint == JointKind::hinge ? pivot_ : center_; }
 
-    /// How it yields, in the frame's coordinates, at all times.
+    /// Returns the response of the body to impulses, in the frame's coordinates; it is constant in time.
     [[nodiscard]] Mobility mobility() const;
 
-    /// Kinetic energy, J, that a wrench about moment_center() would give it, were it at rest.
+    /// Returns the kinetic energy, in J, that a wrench about moment_center() would give the body at rest.
     [[nodiscard]] double quadratic_energy(const Wrench& wrench) const;
-    /// By how much it would change the velocity, m/s, of its point at `where` in the world.
+    /// Returns the velocity change, in m/s, of the body's point at `where` in the world by a wrench.
     [[nodiscard]] Vec3 velocity_change(const Wrench& wrench, const Vec3& where) const;
 
-    [[nodiscard]] double kinetic_energy() const;                                    ///< J
-    [[nodiscard]] const AffineMap& world_from_frame() const { return map_; }        ///< where its frame is
-    [[nodiscard]] const Vec3& center() const { return center_; }                    ///< of mass, m
-    [[nodiscard]] Vec3 velocity() const;                                            ///< of that, m/s
-    [[nodiscard]] Vec3 angular_velocity() const;                                    ///< rad/s
-    [[nodiscard]] double coordinate() const { return coordinate_; }                 ///< of a joint, rad or m
-    [[nodiscard]] double rate() const { return rate_; }                             ///< of that, per s
-    [[nodiscard]] Vec3 momentum() const { return description_.mass * velocity(); }  ///< kg m/s
-    /// About the centre of mass, kg m^2/s.
+    [[nodiscard]] double kinetic_energy() const;                                    ///< in J
+    [[nodiscard]] const AffineMap& world_from_frame() const { return map_; }        ///< current transform of its frame
+    [[nodiscard]] const Vec3& center() const { return center_; }                    ///< centre of mass, in m
+    [[nodiscard]] Vec3 velocity() const;                                            ///< of the centre of mass, in m/s
+    [[nodiscard]] Vec3 angular_velocity() const;                                    ///< in rad/s
+    [[nodiscard]] double coordinate() const { return coordinate_; }                 ///< of the joint, in rad or m
+    [[nodiscard]] double rate() const { return rate_; }                             ///< of the coordinate, per s
+    [[nodiscard]] Vec3 momentum() const { return description_.mass * velocity(); }  ///< in kg m/s
+    /// Returns the angular momentum about the centre of mass, in kg m^2/s.
     [[nodiscard]] Vec3 angular_momentum() const;
 
-    /// Saves or restores how it moves; a: an archive, which takes members one by one.
+    /// Saves or restores the state of motion. a: an archive, which takes members one by one.
     template <class Archive>
     void archive(Archive& a) {
         map_.archive(a);
@@ -113,15 +114,15 @@ private:
 
     BodyDescription description_;
     SymmetricMatrix inverse_inertia_;  // in the frame's axes
-    AffineMap start_;                  // where the frame started
+    AffineMap start_;                  // start transform of the frame
     Vec3 axis_;                        // of the joint, in the world
-    Vec3 pivot_;                       // a point of a hinge's axis
-    double inertia_ = 0.0;             // of the joint's coordinate: kg m^2, or kg
-    AffineMap map_;                    // where the frame is
-    Vec3 center_;                      // m
-    Vec3 velocity_;                    // of that, m/s; free
-    Vec3 angular_momentum_;            // about that; free
-    double degrees_ = 0.0;             // of a hinge; the path's own sum, so that paths leave no gap
+    Vec3 pivot_;                       // a point on a hinge's axis
+    double inertia_ = 0.0;             // of the joint's coordinate, in kg m^2 or kg
+    AffineMap map_;                    // current transform of the frame
+    Vec3 center_;                      // in m
+    Vec3 velocity_;                    // of the centre, in m/s; free bodies
+    Vec3 angular_momentum_;            // about the centre; free bodies
+    double degrees_ = 0.0;             // angle of a hinge, summed along the paths so that paths leave no gap
     double coordinate_ = 0.0;          // of a joint
     double rate_ = 0.0;
 };

@@ -35,7 +35,7 @@ Particle launched_from(const FrameTree& frames, std::size_t frame, Particle part
 
 namespace {
 
-// Streams of random numbers: the high byte says what is drawn, the rest is the emitter's number.
+// Streams of random numbers: the high byte is the purpose, the rest is the emitter's number.
 constexpr std::uint32_t kBirthStream = 0x01000000;
 constexpr std::uint32_t kRateStream = 0x02000000;
 constexpr std::uint32_t kRadiusStream = 0x03000000;
@@ -53,7 +53,7 @@ bool is_spread(const MeanSpread& pair) { return std::isfinite(pair.spread) && pa
 void check_cloud(const EmitterDescription& emitter, const ParentRule& rule) {
     const CloudRule& cloud = *rule.cloud;
     require(!rule.share && rule.on != BirthEvent::death, emitter, "a cloud needs a parent that lives on");
-    require(rule.inherit_velocity == 1.0, emitter, "what goes with its parent has all of its velocity");
+    require(rule.inherit_velocity == 1.0, emitter, "the children of a cloud inherit all of their parent's velocity");
     require(is_finite(cloud.turning), emitter, "the turning of the cloud must be finite");
     require(std::isfinite(cloud.pull) && cloud.pull >= 0.0, emitter, "the pull of the cloud must be finite and >= 0");
     require(std::isfinite(cloud.damping) && cloud.damping >= 0.0, emitter,
@@ -94,7 +94,7 @@ void check(const EmitterDescription& emitter) {
                 emitter.radius.mean >= emitter.radius.spread &&
                 emitter.radius.mean + emitter.radius.spread <= kLargestCoordinate,
             emitter, "every radius must be >= 0 and at most 1e75 m");
-    const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;  // none: the world alone
+    const std::size_t frames = emitter.frames ? emitter.frames->size() : 1;  // without frames: the world only
     require(emitter.frame < frames, emitter, "there is no such frame");
     require(!emitter.frames || !emitter.frames->is_scaled(emitter.frame), emitter,
             "its frame is scaled, expected one that keeps its size");
@@ -119,7 +119,8 @@ ShapeSampler sampler_of(const EmitterDescription& emitter) {
     }
 }
 
-// Where the draws of an attribute begin: its name decides, so that other attributes change nothing about it.
+// Returns the first draw of an attribute. It depends on the attribute's name, so other attributes do not change the
+// values.
 std::uint32_t first_draw_of(std::string_view name) {
     std::uint32_t hash = 2166136261U;  // FNV-1a
     for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
@@ -133,7 +134,7 @@ Vec3 clamped(const std::string& name, Vec3 value) {
     return value;
 }
 
-// 1 - cos(angle) without cancellation at small angles.
+// Returns 1 - cos(angle) without cancellation at small angles.
 double one_minus_cosine(double degrees) {
     if (degrees == 0.0) return 0.0;
     const double half_sine = std::sin(degrees * (3.14159265358979323846 / 360.0));
@@ -201,10 +202,10 @@ bool Emitter::sets(std::size_t column) const {
 }
 
 std::vector<Particle> Emitter::births(double from, double to, std::uint64_t most, const BirthTest& test) {
-    require(std::isfinite(from) && std::isfinite(to), description_, "births are asked for finite times only");
+    require(std::isfinite(from) && std::isfinite(to), description_, "the times of births must be finite");
     std::vector<Particle> made;
     if (!(from < to)) return made;
-    constexpr std::uint64_t kAtOnce = 65536;  // due births are small beside particles
+    constexpr std::uint64_t kAtOnce = 65536;  // a due birth needs far less memory than a particle
     while (made.size() < most) {
         const std::vector<DueBirth> due = take_due(to, std::min(kAtOnce, most - made.size()));
         if (due.empty()) return made;
@@ -233,7 +234,7 @@ void Emitter::skip_due(double to) {
 }
 
 void Emitter::take(double to, Taken& taken) {
-    require(std::isfinite(to), description_, "births are asked for finite times only");
+    require(std::isfinite(to), description_, "the times of births must be finite");
     if (description_.parent) return;
     if (description_.start < to) {
         const std::uint64_t left = description_.burst - burst_born_;
@@ -247,7 +248,7 @@ void Emitter::take(double to, Taken& taken) {
     }
 }
 
-// Returns how many there was room for.
+// Takes up to `count` births at the given time, as far as the limits allow. Returns the number taken.
 std::uint64_t Emitter::take_at(double time, std::uint64_t count, Taken& taken) {
     const std::uint64_t allowed = std::min({count, description_.limit - born_, taken.most - taken.count});
     if (taken.is_listed) {
@@ -258,7 +259,7 @@ std::uint64_t Emitter::take_at(double time, std::uint64_t count, Taken& taken) {
     return allowed;
 }
 
-// A steady rate in closed form.
+// Takes births at a constant rate, in closed form.
 void Emitter::take_steady(double to, Taken& taken) {
     const double rate = period_rate_.mean * periods_per_second_;
     if (!(rate > 0.0)) return;
@@ -269,7 +270,8 @@ void Emitter::take_steady(double to, Taken& taken) {
     }
 }
 
-// Period by period (seconds or frames); the state is left in the one in which the next birth, or the next call, falls.
+// Takes births period by period (seconds or frames). The state stays in the period of the next birth or of the next
+// call.
 void Emitter::take_redrawn(double to, Taken& taken) {
     if (!(period_rate_.mean + period_rate_.spread > 0.0)) return;
     while (born_ < description_.limit && taken.count < taken.most) {
@@ -313,7 +315,7 @@ std::optional<Particle> Emitter::make(const DueBirth& birth, const BirthTest& te
     });
 }
 
-// made(particle): what the test sees and what is born.
+// made(particle): returns the particle that is tested and born.
 template <class Made>
 std::optional<Particle> Emitter::place_by(const BirthTest& test, RandomSequence& random, Draw& drawn,
                                           const Made& made) const {
@@ -340,7 +342,7 @@ Particle Emitter::draw(std::uint64_t seed, std::uint64_t number) const {
 Emitter::Draw Emitter::draw(RandomSequence& random, std::uint64_t seed, std::uint64_t number) const {
     Draw drawn;
     Particle& particle = drawn.particle;
-    // Radii have a stream of their own: giving particles a size changes nothing else about their birth.
+    // Radii have their own stream, so giving particles a size does not change anything else about their birth.
     particle.radius = RandomSequence(seed, kRadiusStream | stream_, number)
                           .uniform_around(description_.radius.mean, description_.radius.spread);
     const Vec3 direction = draw_place(random, particle);
@@ -352,13 +354,13 @@ Emitter::Draw Emitter::draw(RandomSequence& random, std::uint64_t seed, std::uin
     return drawn;
 }
 
-// Another position, with its direction; the speed along it stays.
+// Draws another position with its direction; the speed along it stays.
 void Emitter::place(RandomSequence& random, Draw& drawn) const {
     const Vec3 direction = draw_place(random, drawn.particle);
     drawn.particle.velocity = direction * drawn.speed + description_.velocity;
 }
 
-// Sets the position. Returns the direction of the launch.
+// Draws and sets the position. Returns the launch direction.
 Vec3 Emitter::draw_place(RandomSequence& random, Particle& particle) const {
     const LaunchPlace launch = shape_.draw(particle.radius, random);
     particle.position = launch.position;
@@ -381,7 +383,7 @@ std::vector<AttributeValue> Emitter::draw_attributes(std::uint64_t seed, std::ui
     return values;
 }
 
-// Uniform in solid angle: by Archimedes' hat-box theorem the height along the axis is uniform.
+// Returns a direction uniform in solid angle. By Archimedes' hat-box theorem the height along the axis is uniform.
 Vec3 Emitter::in_cone(const Vec3& axis, RandomSequence& random) const {
     if (cone_height_ == 0.0) return axis;
     const double height = random.uniform() * cone_height_;

@@ -23,7 +23,7 @@ bool is_position(const Vec3& p) { return is_finite(p) && max_abs(p) <= kLargestC
 
 bool is_length(double x) { return x > 0.0 && x <= kLargestCoordinate; }
 
-/// Can be made a unit vector.
+/// Returns true if the vector can be normalized.
 bool is_direction(const Vec3& v) { return length(v) > 0.0 && std::isfinite(length(v)); }
 
 void require_mesh(const TriangleMesh* mesh) {
@@ -62,8 +62,8 @@ struct CheckShape {
     void operator()(const MeshVolumeShape& volume) const { require_mesh(volume.mesh.get()); }
 };
 
-// Running sum of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate triangles,
-// which have no normal, add nothing even where rounding gives them an area.
+// Returns running sums of the triangle areas, so that a uniform draw finds its triangle by binary search. Degenerate
+// triangles have no normal and add nothing, even if rounding gives them an area.
 std::vector<double> cumulative_areas(const TriangleMesh& mesh) {
     std::vector<double> sums;
     sums.reserve(mesh.triangles.size());
@@ -130,7 +130,7 @@ struct OutlinePoints {
         }
         return points;
     }
-    // The circle in which lines from the eye touch the ball.
+    // Returns points on the circle where lines of sight are tangent to the ball.
     std::vector<Vec3> operator()(const SphereShape& sphere) const {
         const Vec3 away = sphere.center - seen_from;
         const double distance = length(away);
@@ -199,7 +199,7 @@ LaunchPlace ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random)
     return {disk.center + disk.radius * (first * p.x + second * p.y), normal};
 }
 
-// The largest of three uniform numbers has the distribution x^3, which is that of the height in a cone.
+// The largest of three uniform numbers has the distribution x^3, like the height in a cone.
 LaunchPlace ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random) const {
     const double first_draw = random.uniform();
     const double second_draw = random.uniform();
@@ -211,7 +211,8 @@ LaunchPlace ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random)
     return {cone.apex + height * line, normalized(line)};
 }
 
-// The point's rounding error is a few ulp of the corners, not of the point; a gap taken from the corners is larger.
+// Rounding moves the point by a few ulp of the corners, not of the point. The contact offset therefore uses the
+// corners.
 LaunchPlace ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
     const double area = random.uniform() * cumulative_area_.back();
     const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
@@ -269,8 +270,8 @@ constexpr int kSegments = 256;
 
 bool is_left(const Point2& a, const Point2& b) { return a.u != b.u ? a.u < b.u : a.v < b.v; }
 
-// Upper or lower half of the hull. Method: A. M. Andrew, "Another efficient algorithm for convex hulls in two
-// dimensions", Information Processing Letters 9(5), 1979.
+// Appends the upper or lower half of the hull. Method: A. M. Andrew, "Another efficient algorithm for convex hulls in
+// two dimensions", Information Processing Letters 9(5), 1979.
 template <class Iterator>
 void append_half_hull(Iterator begin, Iterator end, std::vector<Point2>& hull) {
     const std::size_t first = hull.size();
@@ -305,7 +306,7 @@ double screen_area(const EmitterShape& shape, const ReferenceCamera& camera) {
     require(camera.image_height > 0.0 && std::isfinite(camera.image_height),
             "the reference camera's image height must be > 0 pixels");
     const Vec3 forward = normalized(camera.target - camera.position);
-    const auto [right, up] = tangent_frame(forward);                // turning the picture does not change areas
+    const auto [right, up] = tangent_frame(forward);                // turning the image does not change areas
     const double half_view = camera.field_of_view_degrees / 720.0;  // in turns
     const double scale = 0.5 * camera.image_height * sine_of_turns(half_view + 0.25) / sine_of_turns(half_view);
     std::vector<Point2> seen;

@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// As for the second-order methods, see integrator.cpp.
 constexpr int kMostHalvings = 48;
+/// Same value as for second-order motion, see dormand_prince.h.
 constexpr double kErrorToDouble = 1.0 / 64.0;
 
 FlowPath through(const FlowField& flow, const Vec3& x0, const Vec3& g0, const Vec3& x1, double time, double h) {
@@ -34,7 +34,8 @@ FlowPath rk4_path(const FlowField& flow, const Vec3& x, double time, double h) {
     return through(flow, x, g1, x + (h / 6.0) * (g1 + 2.0 * (g2 + g3) + g4), time, h);
 }
 
-// Halving, not a formula of the error: its powers would differ between systems in their last bits.
+// Halves the step instead of using a formula of the error, whose powers would differ between systems in their last
+// bits.
 FlowPath adaptive_path(double tolerance, const FlowField& flow, const Vec3& x, double time, double duration,
                        double first, double shortest) {
     tolerance = attainable({tolerance, 0.0}, x, Vec3{}).position;

@@ -43,7 +43,7 @@ private:
     Gust gust_;
 };
 
-// Both profiles are a turn about the axis whose rate depends on the square of the distance alone.
+// Both profiles rotate about the axis with a rate that depends only on the square of the distance.
 class RankineVortex final : public FlowField {
 public:
     explicit RankineVortex(const VortexSettings& settings)
@@ -79,9 +79,9 @@ public:
     [[nodiscard]] bool is_steady() const override { return true; }
 
 private:
-    // (1 - exp(-q)) / q; near the axis its series, where the difference would cancel.
+    // Returns (1 - exp(-q)) / q. Near the axis it uses the series, because the difference would cancel.
     static double turned(double q) {
-        constexpr double kNearAxis = 1e-2;  // the first term left out is q^6 / 5040
+        constexpr double kNearAxis = 1e-2;  // the first omitted term is q^6 / 5040
         if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
         return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));
     }
@@ -275,11 +275,11 @@ FlowPointer make_scaled_flow(FlowPointer flow, double factor) {
 
 namespace {
 
-// Position along one axis: between two samples.
+// Position between two samples along one axis.
 struct Cell {
     std::size_t first = 0;
     std::size_t second = 0;
-    double part = 0.0;  // of the second
+    double part = 0.0;  // weight of the second sample
     bool inside = true;
 };
 
@@ -288,7 +288,7 @@ Cell cell_of(double x, double origin, double spacing, std::uint32_t count) {
     const double cell = (x - origin) / spacing;
     const double last = count - 1;
     const bool inside = cell >= 0.0 && cell <= last;
-    if (!(cell > 0.0)) return {0, 0, 0.0, inside};  // and what is no number
+    if (!(cell > 0.0)) return {0, 0, 0.0, inside};  // also for NaN
     if (cell >= last) return {count - std::size_t{1}, count - std::size_t{1}, 0.0, inside};
     const double below = std::floor(cell);
     const auto first = static_cast<std::size_t>(below);
@@ -326,7 +326,7 @@ void check(const VectorGrid& grid) {
     detail::require_finite(grid.origin, "grid: the origin", "m");
     for (int axis = 0; axis < 3; ++axis) detail::require_positive(grid.spacing[axis], "grid: the spacing", "m");
     const auto& n = grid.counts;
-    // As a quotient, since the product may overflow.
+    // The test divides, because the product may overflow.
     const bool fits = n[0] > 0 && n[1] > 0 && n[2] > 0 && grid.values.size() % n[0] == 0 &&
                       grid.values.size() / n[0] == std::uint64_t{n[1]} * n[2];
     if (!fits) {

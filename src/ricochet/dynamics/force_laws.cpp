@@ -28,7 +28,7 @@ public:
         }
         return sum;
     }
-    // Zero infinitely far away.
+    // The potential is zero at infinity.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
         double sum = 0.0;
         for (const Attractor& attractor : attractors_) {
@@ -61,7 +61,7 @@ std::unique_ptr<Force> make_point_gravity(std::vector<Attractor> attractors) {
 
 namespace {
 
-// x^exponent for x > 0: whole exponents, the usual ones, by multiplication.
+// Returns x^exponent for x > 0. Integer exponents, the usual ones, use multiplication.
 double power(double x, double exponent) {
     if (exponent != std::floor(exponent)) return portable_pow(x, exponent);
     const double base = exponent < 0.0 ? 1.0 / x : x;
@@ -94,7 +94,7 @@ public:
     }
 
 private:
-    // Softened, in units of the reference.
+    // Returns the softened distance, in units of the reference.
     [[nodiscard]] double distance(const Vec3& d) const {
         const double softening = settings_.softening / settings_.reference;
         return std::sqrt(length_squared(d) + softening * softening);
@@ -147,7 +147,7 @@ private:
         return ids.empty() || std::binary_search(ids.begin(), ids.end(), id);
     }
 
-    AnchorSettings settings_;  // particles in order
+    AnchorSettings settings_;  // particles are sorted
 };
 
 }  // namespace
@@ -178,7 +178,7 @@ public:
     [[nodiscard]] bool is_conservative() const override { return true; }
 
 private:
-    // Only here is it known whose charge it is.
+    // The only function that knows the charge of a particle.
     [[nodiscard]] double charge_of(const ForceInput&) const { return settings_.charge; }
 
     LorentzSettings settings_;
@@ -201,7 +201,7 @@ public:
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
         return gravity_ * (-displaced_mass(input) / input.mass);
     }
-    // Zero at the world's origin.
+    // The potential is zero at the world's origin.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
         return displaced_mass(input) * dot(gravity_, input.position);
     }
@@ -223,7 +223,7 @@ public:
     [[nodiscard]] Vec3 acceleration(const ForceInput& input) const override {
         return gravity_ * (-input.temperature / ambient_);
     }
-    // The lift at a place changes with the temperature, so no energy is stored there.
+    // The lift at a position changes with the temperature, so it stores no energy.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& /*input*/) const override {
         return std::nullopt;
     }
@@ -280,7 +280,7 @@ std::unique_ptr<Force> make_swirl(const Vec3& point, const Vec3& axis, double ac
     detail::require_finite(point, "swirl: the point on the axis", "m");
     detail::require_finite(acceleration, "swirl: the acceleration", "m/s^2");
     detail::require_positive(core_radius, "swirl: the core radius", "m");
-    // A Rankine vortex whose speed at the rim of its core is that number.
+    // A Rankine vortex whose speed at the edge of its core equals the acceleration.
     const double circulation = 2.0 * std::numbers::pi * core_radius * acceleration;
     return make_field_force(
         make_vortex({point, detail::unit_direction(axis, "swirl: the axis"), circulation, core_radius}),
@@ -292,16 +292,16 @@ namespace {
 using detail::require_not_negative;
 using detail::require_positive;
 
-constexpr double kNewtonReynolds = 1000.0;  // from here on the coefficient is constant
+constexpr double kNewtonReynolds = 1000.0;  // the coefficient is constant from here on
 constexpr double kNewtonCoefficient = 0.44;
 
-// The 0.15 Re^0.687 by which drag exceeds Stokes's.
+// Returns 0.15 Re^0.687, the relative excess of drag over Stokes's law.
 double schiller_naumann_excess(double reynolds) { return 0.15 * portable_pow(reynolds, 0.687); }
 
 class AnyDrag : public Force {};
 
-// Law: factor(speed, input) in kg/s, the force over the velocity relative to the medium; with kNeedsSpeed it is told
-// the speed. A template, so that a law costs no call of its own.
+// Drag with a law that provides factor(speed, input) in kg/s: the force over the velocity relative to the medium. The
+// speed is computed only with kNeedsSpeed. The template avoids a virtual call per law.
 template <class Law>
 class Drag final : public AnyDrag {
 public:

@@ -17,7 +17,7 @@ class Gravity final : public Force {
 public:
     explicit Gravity(const Vec3& acceleration) : acceleration_(acceleration) {}
     [[nodiscard]] Vec3 acceleration(const ForceInput&) const override { return acceleration_; }
-    // Zero at the world's origin.
+    // The potential is zero at the world's origin.
     [[nodiscard]] std::optional<double> potential_energy(const ForceInput& input) const override {
         return -input.mass * dot(acceleration_, input.position);
     }
@@ -52,7 +52,7 @@ private:
     CallableTraits traits_;
 };
 
-// Not uniform even where the other is: it differs from particle to particle.
+// Force on selected particles. It is never uniform, because it differs between particles.
 class ForceOnSome final : public Force {
 public:
     ForceOnSome(std::vector<std::uint64_t> ids, std::unique_ptr<Force> force)
@@ -73,7 +73,7 @@ public:
 private:
     [[nodiscard]] bool holds(std::uint64_t id) const { return std::binary_search(ids_.begin(), ids_.end(), id); }
 
-    std::vector<std::uint64_t> ids_;  // in order
+    std::vector<std::uint64_t> ids_;  // sorted
     std::unique_ptr<Force> force_;
 };
 
@@ -117,7 +117,8 @@ ForceInput whole(ForceInput input) {
     return input;
 }
 
-/// A method may try states that are out of range; what comes of those is dealt with where the particle gets there.
+/// Returns true if a non-finite force is an error. Methods may try states that are out of range. These are handled when
+/// the particle reaches them.
 bool is_in_range(const ForceInput& input) {
     return is_finite(input.position) && is_finite(input.velocity) && max_abs(input.position) <= kLargestJudged &&
            max_abs(input.velocity) <= kLargestJudged;
@@ -126,7 +127,7 @@ bool is_in_range(const ForceInput& input) {
 void refuse_if_not_finite(const std::vector<std::unique_ptr<Force>>& forces, const ForceInput& input) {
     for (std::size_t k = 0; k < forces.size() && is_in_range(input); ++k) {
         const std::optional<EnergyLaw> law = energy_law_of(*forces[k]);
-        if (law && law->varies) continue;  // a sound one that has grown beyond all numbers, as next to its centre
+        if (law && law->varies) continue;  // a valid force can overflow, for example next to its centre
         const Vec3 a = forces[k]->acceleration(input);
         if (is_finite(a)) continue;
         const Vec3& x = input.position;

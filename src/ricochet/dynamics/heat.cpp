@@ -9,28 +9,28 @@
 namespace ricochet {
 namespace {
 
-/// Stefan and Boltzmann's constant, W/(m^2 K^4) (exact by the SI of 2019).
+/// Stefan-Boltzmann constant, in W/(m^2 K^4) (exact by the SI of 2019).
 constexpr double kStefanBoltzmann = 5.670374419e-8;
 
-/// The hottest body is below (3 b t)^(-1/3) above the ambient temperature after a time t: what is so many times as hot
-/// forgets how hot it was, to the last digit.
+/// Start temperatures above ambient are clamped to this multiple of (3 b t)^(-1/3). Even the hottest body is less than
+/// (3 b t)^(-1/3) above the ambient temperature after a time t, so the clamp does not change the result in any digit.
 constexpr double kForgotten = 1e6;
 
-/// Largest error of a step of the logarithm of T - Ta. More would be seen where steps of a run are added up; less comes
-/// near to rounding, which halving does not make smaller.
+/// Largest error of a step of the logarithm of T - Ta. A larger one would show in the sum over the steps of a run. A
+/// smaller one would come near to rounding, which halving does not reduce.
 constexpr double kCoolingError = 1e-11;
 
-/// e^-x is 0 beyond.
+/// e^-x is 0 beyond this value.
 constexpr double kGone = 750.0;
 
-/// How fast d = T - Ta dies away: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The logarithm w = log(d(0) / d) grows
-/// by g, which is smooth and never negative: no step is too long for it, only inexact.
+/// Decay of d = T - Ta: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The logarithm w = log(d(0) / d) grows by g,
+/// which is smooth and never negative. A long step is therefore never unstable, only inaccurate.
 class Decay {
 public:
     Decay(double difference, double ambient, const CoolingRates& rates)
         : difference_(difference), ambient_(ambient), rates_(rates) {}
 
-    /// w at a time.
+    /// Returns w at a time.
     [[nodiscard]] double after(double duration) const {
         double w = 0.0;
         double done = 0.0;
@@ -39,7 +39,7 @@ public:
             h = std::min(h, duration - done);
             const double once = step(w, h);
             const double twice = step(step(w, 0.5 * h), 0.5 * h);
-            const double error = std::fabs(twice - once) / 15.0;  // of a method of order four
+            const double error = std::fabs(twice - once) / 15.0;  // of a method of fourth order
             const double most = kCoolingError * (1.0 + twice);
             if (error <= most) {
                 w = twice + (twice - once) / 15.0;
@@ -66,12 +66,12 @@ private:
         return w + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
     }
 
-    double difference_;  // K, at the start
-    double ambient_;     // K
+    double difference_;  // in K, at the start
+    double ambient_;     // in K
     CoolingRates rates_;
 };
 
-/// The ambient temperature and what is left of the difference; rounding leads out of neither.
+/// Returns the ambient temperature plus the remaining difference, clamped against rounding.
 double between(double start, double ambient, double left) {
     return std::clamp(ambient + left, std::min(start, ambient), std::max(start, ambient));
 }
@@ -98,7 +98,7 @@ double cooled(double temperature, double ambient, const CoolingRates& rates, dou
     if (rates.radiation == 0.0) {
         return between(temperature, ambient, difference * portable_exp(-rates.convection * duration));
     }
-    const double lasting = portable_pow(3.0 * rates.radiation * duration, -1.0 / 3.0);  // K
+    const double lasting = portable_pow(3.0 * rates.radiation * duration, -1.0 / 3.0);  // in K
     difference = std::min(difference, kForgotten * lasting);
     if (ambient == 0.0 && rates.convection == 0.0) {
         const double ratio = difference / lasting;
@@ -106,7 +106,7 @@ double cooled(double temperature, double ambient, const CoolingRates& rates, dou
     }
     const Decay decay(difference, ambient, rates);
     const double slowest = std::min(decay.rate(0.0), decay.rate(kGone));
-    // Nothing would be left, and sums of rates of very light bodies could leave the range of doubles.
+    // Nothing would be left, and the sums of rates of very light bodies could overflow.
     if (!std::isfinite(decay.rate(0.0)) || slowest * duration >= kGone) return ambient;
     return between(temperature, ambient, difference * portable_exp(-decay.after(duration)));
 }

@@ -9,8 +9,8 @@ namespace ricochet {
 
 namespace {
 
-/// Finite differences: steps as parts of the speed, and of the coordinates per step. The square root of a double's
-/// rounding for the first; the second keeps a step visible next to large coordinates.
+/// Steps of finite differences, relative to the speed and to the coordinates per step. The first is the square root of
+/// a double's rounding. The second keeps a step visible next to large coordinates.
 constexpr double kSpeedStep = 0x1p-26;
 constexpr double kPlaceStep = 0x1p-38;
 
@@ -22,7 +22,7 @@ ForceInput at_end(const ForceInput& state, const Vec3& v1, double h) {
     return end;
 }
 
-/// Solution of the system with these columns (Cramer's rule); the right side itself where it is singular.
+/// Returns the solution of the system with these columns (Cramer's rule); the right side itself if it is singular.
 Vec3 solved(const Columns3& m, const Vec3& right) {
     const double determinant = dot(m[0], cross(m[1], m[2]));
     if (determinant == 0.0 || !std::isfinite(determinant)) return right;

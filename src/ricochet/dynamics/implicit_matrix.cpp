@@ -56,9 +56,9 @@ public:
 private:
     [[nodiscard]] bool is_held(std::size_t i) const { return !state_.held.empty() && state_.held[i].count > 0; }
 
-    /// Mass, and what the forces on one particle add: its symmetric part where the matrix has to be symmetric. A pinned
-    /// member's rows are those of the unit matrix. In the directions in which the velocity is given the matrix is the
-    /// mass: the residual is zero there.
+    /// Returns the mass plus the contribution of the forces on one particle. If the matrix must be symmetric, only the
+    /// symmetric part of that contribution is used. A pinned member has the rows of the unit matrix. In directions with
+    /// a given velocity the matrix is the mass, because the residual is zero there.
     [[nodiscard]] Block3 own_block(std::size_t i) const {
         Block3 block{};
         const bool is_pinned = state_.system.is_pinned(i);
@@ -90,7 +90,8 @@ private:
         return block;
     }
 
-    /// Across what holds it: against a change of the slip where that is slow, and else of its direction.
+    /// Adds friction across the constraints: against any change of a slow slip, otherwise against a change of its
+    /// direction.
     void add_friction(Block3& block, std::size_t i) const {
         const HeldMotion& held = state_.held[i];
         const Vec3 slip = held.slip_of(state_.v1[i]);
@@ -106,7 +107,7 @@ private:
         }
     }
 
-    /// What a spring adds to its ends and between them; so far the matrix holds the spring's block there.
+    /// Adds a spring's block to its ends and between them. On entry, `between` contains the spring's block itself.
     void add_bond(BlockMatrix& matrix, std::size_t k) const {
         const ParticleSystem::Bond& bond = state_.system.bonds()[k];
         Block3& between = matrix.between[k];
@@ -120,7 +121,8 @@ private:
         }
     }
 
-    /// h^2 times a spring's stiffness along and across, and h times its damper's; zero where its ends coincide.
+    /// Returns h^2 times a spring's stiffness along and across, plus h times that of its damper; zero if its ends
+    /// coincide.
     [[nodiscard]] Block3 spring_block(const ParticleSystem::Bond& bond) const {
         const Spring& spring = state_.system.spring_of(bond);
         const Vec3 apart = state_.x1[bond.first] - state_.x1[bond.second];
@@ -144,7 +146,7 @@ private:
         return block;
     }
 
-    /// What is left of a block between what holds its rows' member and what holds its columns'.
+    /// Returns a block projected across the constraints of its rows' member and of its columns' member.
     [[nodiscard]] Block3 across(const Block3& block, std::size_t of_rows, std::size_t of_columns) const {
         if (!is_held(of_rows) && !is_held(of_columns)) return block;
         const HeldMotion& row = state_.held[of_rows];

@@ -12,31 +12,32 @@
 
 namespace ricochet {
 
-/// What of the derivative a matrix holds.
+/// Selection of the terms of the derivative in a matrix.
 struct MatrixKind {
-    double pressure = 1.0;      ///< the part of what compressed springs do across, from 0 (definite) to 1 (all)
-    bool is_symmetric = false;  ///< of forces on single members the symmetric part
+    /// Fraction of the transverse stiffness of compressed springs, from 0 (the matrix is definite) to 1 (exact).
+    double pressure = 1.0;
+    bool is_symmetric = false;  ///< use only the symmetric part of forces on single members
 };
 
-/// A state at the end of a backward Euler step of `duration` seconds. All must outlive it.
+/// State at the end of a backward Euler step of `duration` seconds. All references must outlive it.
 struct ImplicitState {
     const ParticleSystem& system;
-    double duration;                   ///< s
-    std::span<const HeldMotion> held;  ///< by member; empty: nothing is held
-    const std::vector<Vec3>& x1;       ///< m
-    const std::vector<Vec3>& v1;       ///< m/s
+    double duration;                   ///< in s
+    std::span<const HeldMotion> held;  ///< by member; empty: no surface constraints
+    const std::vector<Vec3>& x1;       ///< in m
+    const std::vector<Vec3>& v1;       ///< in m/s
 };
 
-/// The negative derivative of the equations' residuals by the velocities at the end, a row of blocks for every member
-/// and a pair for every bond, kg. Where forces on single members have no symmetric derivative and it shall be exact,
-/// its blocks on the diagonal are not symmetric, and all of them counts.
+/// Returns the negative derivative of the equations' residuals with respect to the end velocities, in kg: a row of
+/// blocks per member and a pair per bond. The diagonal blocks are not symmetric if the exact matrix is requested and
+/// the forces on single members have no symmetric derivative. All their entries then count.
 [[nodiscard]] BlockMatrix implicit_matrix(const ImplicitState& state, const MatrixKind& kind);
 
-/// The product of such a matrix with a vector of three numbers a member.
+/// Returns the product of such a matrix with a vector of three numbers per member.
 [[nodiscard]] Eigen::VectorXd product(const BlockMatrix& matrix, const ParticleSystem& system,
                                       const Eigen::VectorXd& vector);
 
-/// The same matrix by its numbers.
+/// Returns the same matrix in sparse form.
 [[nodiscard]] Eigen::SparseMatrix<double> sparse(const BlockMatrix& matrix, const ParticleSystem& system);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// The backward Euler step of a whole system: Newton's method, downhill in energy.
+// The backward Euler step of a whole system: Newton's method with descent in energy.
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -18,41 +18,42 @@ using Vector = Eigen::VectorXd;
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Halvings of a step whose equations are not solved; then the whole step's last iterate is taken, and counted.
+/// Largest number of halvings of a step whose equations are not solved. After that the last iterate of the whole step
+/// is used and counted.
 constexpr int kMostHalvedSteps = 10;
 
-/// Halvings of a correction that leads too far.
+/// Largest number of halvings of a correction that is too long.
 constexpr int kMostCuts = 12;
 
-/// Newton's steps before the last iterate is taken.
+/// Largest number of Newton steps before the last iterate is used.
 constexpr int kMostSteps = 80;
 
-/// The least part of the pressure in springs with which it is worth to try.
+/// Smallest fraction of the pressure in springs that is tried before 0.
 constexpr double kLeastPressure = 0.2;
 
-/// A correction, relative to the largest speed, from which on the equations' own method leads to their solution.
+/// Correction, relative to the largest speed, below which Newton's method on the equations converges.
 constexpr double kNear = 1e-4;
 
-/// The part of the slope of the energy that a correction has to reach at least (L. Armijo, 1966).
+/// Smallest energy decrease of a correction, as a fraction of that predicted by the slope (L. Armijo, 1966).
 constexpr double kLeastDescent = 1e-4;
 
-/// Rounding of a sum of energies, relative to their sum.
+/// Rounding of a sum of energies, relative to the sum.
 constexpr double kEnergyRounding = 1e-13;
 
-/// Solutions with one factorization that make a symmetric matrix's correction the exact one's, the part of the residual
-/// that they leave, and that by which each has to be better than the last.
+/// Iterative refinement of a symmetric matrix's correction towards the exact one, with one factorization: the largest
+/// number of solutions, the final residual relative to the first, and the reduction that each solution must achieve.
 constexpr int kMostRefinements = 20;
 constexpr double kRefined = 1e-3;
 constexpr double kRefinesBy = 0.7;
 
-/// Rounding of a stretch, in parts of the coordinates of its ends, with that of a few sums.
+/// Rounding of a stretch, relative to the coordinates of its ends, including that of a few sums.
 constexpr double kPositionRounding = 0x1p-49;
 
-/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and the way to their solution. Dampers
-/// resist the mean rate of the length over the step.
+/// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and their solution. Dampers resist the
+/// mean rate of the length over the step.
 class BackwardEuler {
 public:
-    /// guess: velocities to begin with; empty: those of the start.
+    /// guess: initial velocities; empty: those at the start.
     BackwardEuler(const ParticleSystem& system, double h, std::span<const HeldMotion> held, std::span<const Vec3> guess,
                   const ImplicitOptions& options)
         : system_(system),
@@ -98,9 +99,10 @@ private:
 
     [[nodiscard]] bool is_held(std::size_t i) const { return !held_.empty() && held_[i].count > 0; }
 
-    /// Newton's method. The residual is the slope of an energy: the kinetic one, relative to the motion without
-    /// springs, that of springs, what dampers take, and the work of forces. Definite matrices lead downhill from any
-    /// start, past the saddles, to where it is least. Returns whether it converged.
+    /// Solves the equations by Newton's method. The residual is the gradient of an energy. It is the sum of the kinetic
+    /// energy relative to the motion without springs, the spring energy, the dissipation, and the work of forces.
+    /// Definite matrices descend from any start, past the saddles, to the minimum. Returns true if the method
+    /// converged.
     bool solve() {
         for (int iteration = 0; iteration < kMostSteps; ++iteration) {
             if (is_solved()) return true;
@@ -114,7 +116,7 @@ private:
         return false;
     }
 
-    /// With as much of the pressure in springs as leaves the matrix definite: more next time where it was.
+    /// Factorizes the matrix with as much of the pressure in springs as leaves it definite. The next matrix tries more.
     bool factorize_definite() {
         for (;;) {
             if (solver_.factorize(matrix({pressure_, true}))) break;
@@ -125,7 +127,7 @@ private:
         return true;
     }
 
-    /// Solves with the matrix itself, by the symmetric one that was factorized where that is near enough.
+    /// Solves with the exact matrix. It refines with the factorized symmetric matrix if that is close enough.
     Vector exact_correction() const {
         const BlockMatrix exact = matrix({1.0, false});
         Vector correction = solved(right_);
@@ -147,7 +149,7 @@ private:
         return solver.solve(right_);
     }
 
-    /// By the matrix that was factorized.
+    /// Solves with the factorized matrix.
     [[nodiscard]] Vector solved(Vector right) const {
         solver_.solve({right.data(), static_cast<std::size_t>(right.size())});
         return right;
@@ -160,8 +162,8 @@ private:
         }
     }
 
-    /// Goes along the correction as far as the energy falls; near the solution, where energies differ by rounding, as
-    /// far as the residual does. False where neither does.
+    /// Moves along the correction while the energy falls. Near the solution, where energies differ by rounding, the
+    /// residual must fall instead. Returns false if neither falls.
     bool follow(const Vector& correction, bool is_near) {
         const std::vector<Vec3> v_before = v1_;
         const std::vector<Vec3> own_before = own_;
@@ -190,15 +192,15 @@ private:
         for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
     }
 
-    /// What all forces give member i in the step, m/s.
+    /// Returns the velocity gain of member i by all forces in the step, in m/s.
     [[nodiscard]] Vec3 gain(std::size_t i) const {
         return system_.is_pinned(i) ? Vec3{} : (h_ / system_.mass(i)) * forces_[i];
     }
 
-    /// What they and friction have to have given it, m/s.
+    /// Returns the velocity change of member i in the step, in m/s.
     [[nodiscard]] Vec3 change_of(std::size_t i) const { return v1_[i] - system_.velocities()[i]; }
 
-    /// Of the velocities: positions, forces, the energy and the negative residuals.
+    /// Computes positions, forces, the energy and the negative residuals from the velocities.
     void evaluate() {
         const std::size_t count = v1_.size();
         own_.resize(count);
@@ -235,10 +237,10 @@ private:
         forces_[bond.second] -= pull;
     }
 
-    /// What is left is rounding of the positions, which stiff springs magnify.
+    /// Returns true if the residual is within the rounding of the positions, which stiff springs magnify.
     [[nodiscard]] bool is_solved() const {
         if (right_.size() == 0) return true;
-        double stiffest = 0.0;  // N
+        double stiffest = 0.0;  // in N
         for (const ParticleSystem::Bond& bond : system_.bonds()) {
             const double largest_coordinate = std::max(max_abs(x1_[bond.first]), max_abs(x1_[bond.second]));
             stiffest = std::max(stiffest, system_.spring_of(bond).stiffness * largest_coordinate);
@@ -264,17 +266,17 @@ private:
     double h_;
     std::span<const HeldMotion> held_;
     const ImplicitOptions& options_;
-    std::vector<double> lengths_;  // m, of the springs at the start, by bond
+    std::vector<double> lengths_;  // of the springs at the start, by bond, in m
     std::vector<Vec3> v1_;
     std::vector<Vec3> x1_;
-    std::vector<Vec3> own_;     // N, of forces on single members
-    std::vector<Vec3> forces_;  // N, all
+    std::vector<Vec3> own_;     // of forces on single members, in N
+    std::vector<Vec3> forces_;  // all forces, in N
     BlockCholesky solver_;
     Vector right_;
-    double energy_ = 0.0;    // J
-    double pressure_ = 1.0;  // the part of it that the next matrix is to hold
+    double energy_ = 0.0;    // in J
+    double pressure_ = 1.0;  // fraction of the pressure in the next matrix
 
-    bool is_symmetric_;  // the exact matrix
+    bool is_symmetric_;  // true if the exact matrix is symmetric
 };
 
 }  // namespace

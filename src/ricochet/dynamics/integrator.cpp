@@ -91,8 +91,9 @@ Flight verlet_flight(const ForceField& forces, const ForceInput& state, double h
     return {parabola_path(state.position, state.velocity, a, h), a, 0.0, state, end_velocity, 0.0, true};
 }
 
-/// Tries `first` seconds, then half of it, until the errors are small enough. Halving, not a formula of the error: its
-/// powers would differ between systems in their last bits, and so would the result.
+/// Tries the step `before.next_duration`, then half of it, until the errors are small enough. It halves instead of
+/// using a formula of the error. Powers of the error would differ between systems in their last bits, and so would the
+/// result.
 Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state, double duration,
                        const Flight& before) {
     const double first = before.next_duration;
@@ -114,7 +115,7 @@ Flight adaptive_flight(const Integrator& integrator, const ForceField& forces, c
     return flight;
 }
 
-/// The first of a step.
+/// Returns the first adaptive flight of a step.
 Flight first_adaptive_flight(const Integrator& integrator, const ForceField& forces, const ForceInput& state,
                              double duration) {
     Flight before;
@@ -165,7 +166,7 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
         case IntegratorKind::velocity_verlet:
             if (!forces.is_uniform_for(state)) return verlet_flight(forces, state, duration);
             break;
-        case IntegratorKind::ballistic:  // what couples particles is not held
+        case IntegratorKind::ballistic:  // the coupling between particles is not kept constant
             if (state.coupling != nullptr && state.coupling->varies()) return verlet_flight(forces, state, duration);
             break;
         case IntegratorKind::midpoint:
@@ -191,7 +192,8 @@ Flight resume_flight(const Integrator& integrator, const ForceField& forces, con
     return begin_flight(integrator, forces, state, duration);
 }
 
-// Kicking first is to fly the parabola with half a kick more at its start, kicking last with half a kick less.
+// Kicking first is equivalent to the parabola with an extra half kick at its start. Kicking last is equivalent to the
+// parabola with half a kick less.
 Path look_ahead_path(const Integrator& integrator, const Flight& flight, double time_step, double duration) {
     const Vec3& a = flight.acceleration;
     const double h = flight.path.duration;

@@ -7,22 +7,22 @@
 
 namespace ricochet {
 
-/// Methods a scene can name.
+/// Methods that a scene can name.
 enum class IntegratorKind {
     forward_euler,     ///< order 1: straight lines, the velocity changes afterwards
-    symplectic_euler,  ///< order 1: kick, then drift in straight lines; a bounce turns the drift
-    implicit_euler,    ///< order 1, stable however stiff the forces: kick with the end's force, then drift
+    symplectic_euler,  ///< order 1: kick, then drift in straight lines; a bounce reflects the drift
+    implicit_euler,    ///< order 1, stable for stiff forces: kick with the force at the end, then drift
     midpoint,          ///< order 2: explicit midpoint (Runge 1895)
     velocity_verlet,   ///< order 2, symplectic for forces of position: parabola, mean of the forces at both ends
     rk4,               ///< order 4: the classical Runge-Kutta method (Kutta 1901)
-    dormand_prince,    ///< order 5(4), adaptive: each particle chooses its sub-steps by its own error
-    ballistic,         ///< acceleration held over the step: a parabola, exact for constant acceleration
+    dormand_prince,    ///< order 5(4), adaptive: each particle chooses its substeps by its own error
+    ballistic,         ///< constant acceleration over the step: a parabola, exact for constant acceleration
 };
 
-/// What one adaptive sub-step may be wrong by.
+/// Error tolerance of one adaptive substep.
 struct ErrorTolerance {
-    double position = 1e-6;  ///< m, > 0; also for the path between a sub-step's ends
-    double velocity = 1e-6;  ///< m/s, > 0
+    double position = 1e-6;  ///< in m, > 0; also for the path between a substep's ends
+    double velocity = 1e-6;  ///< in m/s, > 0
 
     friend bool operator==(const ErrorTolerance&, const ErrorTolerance&) = default;
 };
@@ -39,11 +39,12 @@ struct Integrator {
 };
 
 [[nodiscard]] std::string_view name_of(IntegratorKind kind);
-/// True for the methods that put the whole step's force into the velocity first and drift in a straight line then.
+/// Returns true for the methods that first add the whole step's force to the velocity and then drift in a straight
+/// line.
 [[nodiscard]] constexpr bool kicks_first(IntegratorKind kind) {
     return kind == IntegratorKind::symplectic_euler || kind == IntegratorKind::implicit_euler;
 }
-/// All names, in the order of the enumeration.
+/// Returns all names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string_view> integrator_names();
 
 }  // namespace ricochet

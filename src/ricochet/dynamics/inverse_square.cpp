@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Points that a leaf has at most, where they do not all lie at one place.
+/// Largest number of points in a leaf, unless they coincide.
 constexpr std::size_t kLeaf = 32;
 /// Leaves and points per unit of parallel work.
 constexpr std::size_t kLeafBlock = 16;
@@ -65,8 +65,8 @@ SourceTree::SourceTree(const Sources& sources)
     find_moments();
 }
 
-/// Sorts a node's points along the Z-order curve through a cube around them and splits it by the cells of that; outer:
-/// of the cube in which they could not be told apart. Points at one place stay together.
+/// Sorts a node's points along the Z-order curve through a cube around them, and splits the node by the curve's cells.
+/// outer_side: edge of the cube that could not separate the points. Coincident points stay together.
 void SourceTree::refine(std::size_t node, double outer_side) {
     const std::size_t begin = nodes_[node].begin;
     const std::size_t count = nodes_[node].end - begin;
@@ -167,7 +167,7 @@ void SourceTree::take_children(Node& node) const {
         node.second = node.second + child.second + mixed_product(child.first, arm) + child.weight * outer_product(arm);
         reach = std::max(reach, length(arm) + child.reach);
     }
-    // No farther than the farthest corner of its box either.
+    // The reach is also limited by the farthest corner of the box.
     node.reach = std::min(reach, length(max(node.box.upper - node.center, node.center - node.box.lower)));
 }
 

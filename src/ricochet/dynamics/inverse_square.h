@@ -12,69 +12,69 @@
 
 namespace ricochet {
 
-/// Points with weights (masses or charges), all of which act on each other: softened by the length e, the field at
-/// point i is
+/// Points with weights (masses or charges) that all act on each other. The softening length is e. The field g and
+/// potential f at point i are:
 ///
-///     g_i = sum over j of w_j (x_j - x_i) / (|x_j - x_i|^2 + e^2)^(3/2),   f_i = sum of w_j / (|x_j - x_i|^2 +
-///     e^2)^(1/2)
+///     g_i = sum over j of w_j (x_j - x_i) / (|x_j - x_i|^2 + e^2)^(3/2);
+///     f_i = sum over j of w_j / (|x_j - x_i|^2 + e^2)^(1/2).
 ///
-/// without j = i and without points at the same place where e = 0. Lists have the same length.
+/// The sums exclude j = i, and coincident points if e = 0. Lists have the same length.
 struct Sources {
-    std::span<const Vec3> positions;  ///< m
+    std::span<const Vec3> positions;  ///< in m
     std::span<const double> weights;
-    double softening = 0.0;  ///< m
+    double softening = 0.0;  ///< in m
 };
 
-/// g, every pair by itself. Each point adds up its own sum in the order of the points: the bits do not depend on
+/// Computes g by all pairs. Each point accumulates its own sum in the order of the points, so the bits do not depend on
 /// threads.
 void direct_field(const Sources& sources, std::span<Vec3> field);
-/// f in the same way.
+/// Computes f in the same way.
 void direct_potential(const Sources& sources, std::span<double> potential);
 
-/// Interactions that a sum by a tree has taken.
+/// Numbers of interactions in a sum by a tree.
 struct TreeWork {
     std::uint64_t with_points = 0;
     std::uint64_t with_groups = 0;
 };
 
-/// The sources as an octree: points that lie together are groups, and what a distant group does follows from its weight
-/// and its first and second moments about its centre. Source: J. Barnes, P. Hut, Nature 324, 1986; the criterion, by
-/// the farthest point of a group, is that of J. K. Salmon, M. S. Warren, J. Comput. Phys. 111, 1994. Its shape depends
-/// on the positions and their order only.
+/// The sources as an octree. Nearby points form groups. The effect of a distant group follows from its weight and its
+/// first and second moments about its centre. Its shape depends only on the positions and their order. Source: J.
+/// Barnes, P. Hut, Nature 324, 1986; the criterion, by the farthest point of a group, is that of J. K. Salmon, M. S.
+/// Warren, J. Comput. Phys. 111, 1994.
 class SourceTree {
 public:
-    /// What sources spans must outlive it.
+    /// The data behind the spans of `sources` must outlive the tree.
     explicit SourceTree(const Sources& sources);
 
-    /// g; opening: see InverseSquareSettings. Adds to `work` where it is not null.
+    /// Computes g. opening: see InverseSquareSettings. Adds to `work` unless it is null.
     void field(double opening, std::span<Vec3> field, TreeWork* work = nullptr) const;
-    /// f.
+    /// Computes f.
     void potential(double opening, std::span<double> potential) const;
 
 private:
     struct Node {
-        Vec3 center;              // of the absolute weights, m
-        double reach = 0.0;       // m, no point is farther from it
+        Vec3 center;              // centre of the absolute weights, in m
+        double reach = 0.0;       // upper bound of the distance of its points from the centre, in m
         double weight = 0.0;      // zeroth moment
         Vec3 first;               // first moment about the centre
-        SymmetricMatrix second;   // second moment about it
-        Box3 box;                 // of the points
+        SymmetricMatrix second;   // second moment about the centre
+        Box3 box;                 // bounds of the points
         double magnitude = 0.0;   // sum of absolute weights
-        std::uint32_t begin = 0;  // its points in sorted order
+        std::uint32_t begin = 0;  // range of its points in sorted order
         std::uint32_t end = 0;
-        std::uint32_t child = 0;     // the first of its children, which stand together
+        std::uint32_t child = 0;     // the first of its children, which are contiguous
         std::uint32_t children = 0;  // 0: a leaf
     };
-    /// What acts on the points of a leaf.
+    /// Nodes that act on the points of a leaf.
     struct Interactions {
-        std::vector<std::uint32_t> groups;  // nodes by their moments
-        std::vector<std::uint32_t> leaves;  // nodes by their points
+        std::vector<std::uint32_t> groups;  // nodes used through their moments
+        std::vector<std::uint32_t> leaves;  // nodes used through their points
     };
-    /// The cells that keys of sorted points name.
+    /// Cells encoded in the keys of sorted points.
     struct Cells {
-        std::size_t first = 0;    // number of the point of the first key
-        unsigned index_bits = 0;  // of a key that name no cell
-        double side = 0.0;        // m, of the cube
+        std::size_t first = 0;    // index of the point of the first key
+        unsigned index_bits = 0;  // low bits of a key that do not encode a cell
+        double side = 0.0;        // edge of the cube, in m
     };
 
     void refine(std::size_t node, double outer_side);
@@ -85,7 +85,7 @@ private:
     [[nodiscard]] Interactions interactions_of(const Node& leaf, double opening) const;
 
     Sources sources_;
-    std::vector<std::uint32_t> order_;  // number of each sorted point
+    std::vector<std::uint32_t> order_;  // original index of each sorted point
     std::vector<Vec3> position_;        // sorted
     std::vector<double> weight_;        // sorted
     std::vector<Node> nodes_;           // parents before their children

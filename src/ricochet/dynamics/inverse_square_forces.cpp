@@ -1,4 +1,4 @@
-// Gravity and charge of all on all.
+// Gravity and charge between all particles.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ bool takes_tree(const InverseSquareSettings& settings, std::size_t particles) {
     return settings.method == SumMethod::tree;
 }
 
-/// What both have in common: sources of one kind with one law of distance.
+/// Common part of both forces: sources of one kind with one law of distance.
 class InverseSquareForce : public ParticlesForce {
 public:
     explicit InverseSquareForce(const InverseSquareSettings& settings) : settings_(settings) {}
@@ -64,7 +64,7 @@ public:
 
 protected:
     [[nodiscard]] virtual std::span<const double> weights_of(const ParticlesView& particles) const = 0;
-    /// Acceleration of particle k over the field there.
+    /// Returns the acceleration of particle k divided by the field there.
     [[nodiscard]] virtual double factor(const ParticlesView& particles, std::size_t k) const = 0;
 
 private:

@@ -1,6 +1,6 @@
 /// \file
-/// Private to inverse_square.cpp: the innermost loops, written so that compilers make vector instructions of them. Each
-/// lane adds up its own sum in the order of the calls.
+/// Private to inverse_square.cpp: the innermost loops, written so that compilers vectorize them. Each lane accumulates
+/// its own sum in the order of the calls.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace ricochet {
 
-/// Points whose sums are made side by side.
+/// Number of points whose sums are computed in parallel lanes.
 inline constexpr std::size_t kLanes = 8;
 
-/// A group by its moments about its centre.
+/// A group given by its moments about its centre.
 struct GroupMoments {
     Vec3 center;
     double weight;
@@ -25,7 +25,7 @@ struct GroupMoments {
     SymmetricMatrix second;
 };
 
-/// The fields at up to kLanes points.
+/// Fields at up to kLanes points.
 class FieldLanes {
 public:
     explicit FieldLanes(std::span<const Vec3> points) {
@@ -37,7 +37,7 @@ public:
         }
     }
 
-    /// softening: the length's square.
+    /// Adds the fields of points. softening: square of the softening length.
     void add_points(std::span<const Vec3> positions, std::span<const double> weights, double softening) {
         for (std::size_t j = 0; j < positions.size(); ++j) {
             const Vec3 p = positions[j];
@@ -57,12 +57,12 @@ public:
         }
     }
 
-    /// The expansion of the softened potential to second order in the points' distances from the centre: with
-    /// d = x - centre and u = |d|^2 + e^2, weight W and moments D and M it is
+    /// Adds the field of a group by expanding the softened potential to second order in the points' distances from the
+    /// centre. With d = x - centre, u = |d|^2 + e^2, weight W and moments D and M, the potential is:
     ///
-    ///     f = W u^(-1/2) + D.d u^(-3/2) + (3 d.M d u^(-5/2) - tr M u^(-3/2)) / 2,
+    ///     f = W u^(-1/2) + D.d u^(-3/2) + (3 d.M d u^(-5/2) - tr M u^(-3/2)) / 2.
     ///
-    /// and the field its gradient by x.
+    /// The field is its gradient with respect to x.
     void add_group(const GroupMoments& group, double softening) {
         const SymmetricMatrix& m = group.second;
         const double trace = m.trace();
@@ -98,7 +98,7 @@ private:
     std::array<double, kLanes> gz_{};
 };
 
-/// What points do to the potential at another one.
+/// Returns the potential of points at another point.
 inline double point_potential(const Vec3& at, std::span<const Vec3> positions, std::span<const double> weights,
                               double softening) {
     double sum = 0.0;
@@ -109,7 +109,7 @@ inline double point_potential(const Vec3& at, std::span<const Vec3> positions, s
     return sum;
 }
 
-/// What a group does to the potential at a point outside.
+/// Returns the potential of a group at a point outside.
 inline double group_potential(const GroupMoments& group, const Vec3& at, double softening) {
     const Vec3 d = at - group.center;
     const double inverse = 1.0 / (length_squared(d) + softening);

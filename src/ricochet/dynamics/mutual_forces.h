@@ -1,6 +1,6 @@
 /// \file
-/// Private to the library: the forces between particles of a simulation, each with the members of a system that it
-/// acts on.
+/// Private to the library: the forces between particles of a simulation, each with the members of a system that it acts
+/// on.
 #pragma once
 
 #include <cstdint>
@@ -20,31 +20,31 @@ public:
     explicit MutualForces(std::vector<ParticlesForceEntry> entries);
 
     [[nodiscard]] bool empty() const { return entries_.empty(); }
-    /// True when one of them acts on particle i.
+    /// Returns true if one of the forces acts on particle i.
     [[nodiscard]] bool act_on(const Particles& particles, std::size_t i) const;
     [[nodiscard]] bool depend_on_velocity() const;
 
-    /// Takes these particles, by index and ascending, as the members of a system; those that are frozen are passed
-    /// over. Throws InputError for an attribute that particles do not have.
+    /// Sets the members of a system: ascending indices of particles; frozen particles are skipped. Throws InputError
+    /// for an attribute that particles do not have.
     void assign(const Particles& particles, std::span<const std::uint32_t> members);
-    /// What all of them together do to every member in this state, m/s^2: added up in their order.
+    /// Computes the acceleration of every member in this state, in m/s^2, as the sum of all forces in their order.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
                        std::span<Vec3> result) const;
-    /// Their energy in a state of the members, J; nothing where one has no potential.
+    /// Returns the potential energy in a state of the members, in J; nothing if one force has no potential.
     [[nodiscard]] std::optional<double> potential_energy(double time, std::span<const Vec3> positions,
                                                          std::span<const Vec3> velocities) const;
 
 private:
-    /// What a force sees of its members, but for their state.
+    /// View of a force on its members, except for their state.
     struct Seen {
-        std::vector<std::uint32_t> slots;  // numbers among the members, ascending
-        bool is_all = false;               // slots are all members
+        std::vector<std::uint32_t> slots;  // indices among the members, ascending
+        bool is_all = false;               // true if slots lists all members
         std::vector<std::uint64_t> ids;
         std::vector<double> masses;
         std::vector<double> radii;
         std::vector<std::vector<double>> attributes;
     };
-    /// A state of some members, gathered where they are not all.
+    /// State of some members, gathered if they are not all members.
     struct Gathered {
         std::vector<Vec3> positions;
         std::vector<Vec3> velocities;
@@ -55,7 +55,7 @@ private:
     [[nodiscard]] static ParticlesView view_of(const Seen& seen, double time, std::span<const Vec3> positions,
                                                std::span<const Vec3> velocities, Gathered& gathered);
 
-    std::vector<ParticlesForceEntry> entries_;  // lists of ids and emitters in order
+    std::vector<ParticlesForceEntry> entries_;  // lists of ids and emitters are sorted
     std::vector<Seen> seen_;                    // by entry
 };
 

@@ -15,10 +15,10 @@ namespace {
 
 /// Boxes per unit of parallel work.
 constexpr std::size_t kBlock = 4096;
-/// Cells along an axis, and levels, at most: a key has 3 * 19 + 5 bits.
+/// Largest numbers of bits per axis and of levels: a key has 3 * 19 + 5 bits.
 constexpr unsigned kMostAxisBits = 19;
 constexpr unsigned kFinestLevel = 31;
-/// Boxes whose places say where most are.
+/// Number of boxes in the sample that locates the region of most boxes.
 constexpr std::size_t kSample = 1024;
 constexpr std::memory_order kUnordered = std::memory_order_relaxed;
 
@@ -29,13 +29,13 @@ double extent_of(const Box3& box) {
 
 }  // namespace
 
-/// Pairs of the boxes of one row with all that come after them, and with those of coarser levels.
+/// Finds the pairs of one row's boxes with all later boxes and with the boxes of coarser levels.
 class NeighbourGrid::Search {
 public:
     Search(const NeighbourGrid& grid, std::vector<NeighbourPair>& found)
         : grid_(grid), mask_((std::uint64_t{1} << grid.bits_[0]) - 1), found_(found) {}
 
-    /// Of all rows that begin among the boxes from begin to end.
+    /// Searches all rows that begin among the boxes from `begin` to `end`.
     void search_rows(std::size_t begin, std::size_t end) {
         const std::vector<Row>& rows = grid_.rows_;
         auto row =
@@ -45,7 +45,7 @@ public:
     }
 
 private:
-    /// Cells from first to last.
+    /// Cells from `first` to `last`.
     struct Range {
         std::uint32_t first;
         std::uint32_t last;
@@ -66,7 +66,8 @@ private:
         }
     }
 
-    /// Along an axis: where the lower corners of coarser boxes lie that one may meet whose own lies in cell `at`.
+    /// Returns, along one axis, the coarse cells of lower corners of boxes that may overlap a box whose corner is in
+    /// cell `at`.
     [[nodiscard]] static Range coarse(std::uint32_t at, unsigned shift) {
         const std::uint32_t own = at >> shift;
         return {own == 0 ? 0 : own - 1, (at + 1) >> shift};
@@ -75,7 +76,7 @@ private:
         return static_cast<std::uint32_t>(grid_.sorted_[k].key & mask_);
     }
 
-    /// Writes every pair, and keeps those that overlap: which ones do is chance, and a branch would guess it.
+    /// Writes every pair, and keeps the overlapping ones. A branch would be mispredicted, because overlaps are random.
     void test(std::size_t a, std::size_t b) {
         if (count_ == found_.size()) found_.resize(std::max(kBlock, 2 * count_));
         const std::uint32_t i = grid_.sorted_[a].index;
@@ -105,7 +106,7 @@ private:
         }
     }
 
-    /// Both rows are sorted by x.
+    /// Tests the pairs of two rows, which are both sorted by x.
     void merge(unsigned shift, Block target) {
         for (std::size_t a = source_.begin; a < source_.end && target.begin < target.end; ++a) {
             const Range x = coarse(x_of(a), shift);
@@ -117,14 +118,14 @@ private:
     const NeighbourGrid& grid_;
     std::uint64_t mask_;
     std::vector<NeighbourPair>& found_;
-    std::size_t count_ = 0;  // of found_, pairs that overlap
+    std::size_t count_ = 0;  // of found_, the overlapping pairs
     Block source_{};
 };
 
 const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3> boxes) {
     pairs_.clear();
     if (!choose_cells(boxes)) {
-        sorted_.clear();  // what was there before is not found near anything either
+        sorted_.clear();  // find_near() must not find boxes of an earlier search either
         return pairs_;
     }
     sort(boxes);
@@ -135,7 +136,7 @@ const std::vector<NeighbourPair>& NeighbourGrid::find_pairs(std::span<const Box3
     return pairs_;
 }
 
-/// False where there are no boxes.
+/// Chooses the cell sizes. Returns false if there are no boxes.
 bool NeighbourGrid::choose_cells(std::span<const Box3> boxes) {
     double largest = -1.0;
     double smallest = std::numeric_limits<double>::infinity();
@@ -151,8 +152,8 @@ bool NeighbourGrid::choose_cells(std::span<const Box3> boxes) {
     return true;
 }
 
-/// The finest level, and the cells of it: so that most boxes lie in cells of their own size. Boxes outside are put into
-/// the outermost cells, which leaves neighbours neighbours.
+/// Chooses the finest level and its cells so that most boxes lie in cells of their own size. Boxes outside are put into
+/// the outermost cells, which keeps neighbours adjacent.
 void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) {
     std::array<std::vector<double>, 3> sample;
     Box3 all;
@@ -165,7 +166,7 @@ void NeighbourGrid::choose_window(std::span<const Box3> boxes, double smallest) 
         for (int axis = 0; axis < 3; ++axis) sample[static_cast<std::size_t>(axis)].push_back(boxes[k].lower[axis]);
     }
     std::array<double, 3> middle{};
-    double span = 0.0;  // m, in which most are
+    double span = 0.0;  // extent of the region of most boxes, in m
     for (std::size_t axis = 0; axis < 3; ++axis) {
         std::vector<double>& x = sample[axis];
         if (x.empty()) x.push_back(all.lower[static_cast<int>(axis)]);
@@ -266,7 +267,7 @@ std::size_t NeighbourGrid::row_end(std::size_t row) const {
     return row + 1 < rows_.size() ? rows_[row + 1].begin : sorted_.size();
 }
 
-// A block takes the rows that begin in it.
+// A block searches the rows that begin in it.
 void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
     found.resize((sorted_.size() + kBlock - 1) / kBlock);
     parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
@@ -274,8 +275,8 @@ void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
     });
 }
 
-/// The pairs of all blocks, ascending. Each box has a place for the pairs in which it is the first; where in that place
-/// a pair lands depends on the threads, until each place is sorted.
+/// Writes the pairs of all blocks, ascending. Each box has a range for the pairs in which it is the first. The order
+/// within a range depends on the threads until the range is sorted.
 void NeighbourGrid::arrange(const std::vector<std::vector<NeighbourPair>>& found, std::size_t boxes) {
     ends_.assign(boxes + 1, 0);
     const auto for_all_pairs = [&](auto&& visit) {
@@ -319,7 +320,7 @@ void NeighbourGrid::find_near(const Box3& box, std::vector<std::uint32_t>& found
     }
 }
 
-/// cells: the first and the last of the row in which they may be.
+/// Appends the boxes of a row that overlap `box`. cells: the first and the last cell of the row to search.
 void NeighbourGrid::find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
                                 std::vector<std::uint32_t>& found) const {
     const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(row_end(row));

@@ -1,11 +1,14 @@
 /// \file
-/// Which boxes overlap: the neighbour search of particles, by a sorted grid.
+/// Neighbour search: finds overlapping boxes by a sorted grid.
 ///
-/// Every box lies in one cell, that of its lower corner, of a grid whose cells are not smaller than the box; cells have
-/// the size of the largest box divided by powers of two (levels), so a few boulders among sand cost little. Boxes are
-/// sorted by level and cell, rows of cells along x being contiguous; neighbouring rows are merged, without any table
-/// of cells. Work grows with the boxes and the pairs, wherever the boxes are, but for boxes that are far smaller than
-/// most, and those that lie far outside of where most are: cells near them may be larger.
+/// Every box lies in the cell of its lower corner, in a grid whose cells are not smaller than the box. Cells have the
+/// size of the largest box divided by powers of two (levels), so a few boulders among sand cost little. Boxes are
+/// sorted by level and cell, so rows of cells along x are contiguous. Neighbouring rows are merged, without any table
+/// of cells.
+///
+/// Work is proportional to the boxes and the pairs, for any distribution of the boxes. Exceptions are boxes far smaller
+/// than most, and boxes far outside the region of most: cells near them may be larger.
+///
 /// Source of sorting instead of tables: S. Green, "Particle Simulation using CUDA", NVIDIA, 2010; of levels: H. Mio et
 /// al., Powder Technology 169 (2006).
 #pragma once
@@ -21,7 +24,7 @@
 
 namespace ricochet {
 
-/// Two boxes by their numbers, first < second.
+/// Two boxes by their indices, first < second.
 struct NeighbourPair {
     std::uint32_t first = 0;
     std::uint32_t second = 0;
@@ -29,37 +32,37 @@ struct NeighbourPair {
     friend bool operator==(const NeighbourPair&, const NeighbourPair&) = default;
 };
 
-/// Finds pairs; keeps its memory for the next time. The same pairs for any number of threads.
+/// Finds pairs and reuses its memory in the next search. The pairs do not depend on the number of threads.
 class NeighbourGrid {
 public:
-    /// Bytes that a search takes at most for each box, besides kBytesPerPair for each pair that it finds.
+    /// Largest memory of a search, in bytes per box, in addition to kBytesPerPair for each pair found.
     static constexpr double kBytesPerBox = 108.0;
     static constexpr double kBytesPerPair = 24.0;
 
-    /// All pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty (lower >
-    /// upper); an empty box meets none. At most 2^32 - 1 boxes. Valid until the next call.
+    /// Returns all pairs of boxes that have a point in common, ascending by (first, second). Boxes are finite or empty
+    /// (lower > upper); an empty box overlaps none. At most 2^32 - 1 boxes. The result is valid until the next call.
     const std::vector<NeighbourPair>& find_pairs(std::span<const Box3> boxes);
-    /// The same again.
+    /// Returns the pairs of the last search.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
 
-    /// Appends the numbers of all boxes of the last search that have a point in common with a box, in the order of the
-    /// cells. From any number of threads.
+    /// Appends the indices of all boxes of the last search that have a point in common with a box, in the order of the
+    /// cells. It is thread-safe.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
 
-    /// Bytes held now.
+    /// Returns the allocated memory, in bytes.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     /// Boxes of one level and one row of cells along x.
     struct Row {
-        std::uint64_t key;    ///< level, z and y as in the boxes' keys
-        std::uint32_t begin;  ///< the first of its boxes in sorted order
+        std::uint64_t key;    ///< level, z and y, as in the boxes' keys
+        std::uint32_t begin;  ///< first of its boxes in sorted order
     };
     struct Block {
         std::size_t begin;
         std::size_t end;
     };
-    /// Integers that a key is made of.
+    /// Integers encoded in a key.
     struct Cell {
         unsigned level;
         std::array<std::uint32_t, 3> at;
@@ -81,18 +84,18 @@ private:
     void find_in_row(std::size_t row, const std::array<std::uint32_t, 2>& cells, const Box3& box,
                      std::vector<std::uint32_t>& found) const;
 
-    double largest_cell_ = 0.0;                 // m, of level 0
+    double largest_cell_ = 0.0;                 // edge of a cell of level 0, in m
     unsigned finest_ = 0;                       // the level with the smallest cells
-    Vec3 origin_;                               // m, lower corner of the cells
+    Vec3 origin_;                               // lower corner of the cells, in m
     std::array<std::uint32_t, 3> last_cell_{};  // of the finest level, along each axis
-    std::array<unsigned, 3> bits_{};            // of a key, for each axis
+    std::array<unsigned, 3> bits_{};            // bits of a key, for each axis
     std::vector<KeyedIndex> sorted_;
     std::vector<KeyedIndex> spare_;
     std::vector<Box3> boxes_;  // in sorted order
     std::vector<Row> rows_;
     std::vector<std::uint32_t> level_begin_;  // the first row of each level, and the end
     std::vector<NeighbourPair> pairs_;
-    std::vector<std::size_t> ends_;  // of each box, where in pairs_ those end in which it is the first
+    std::vector<std::size_t> ends_;  // for each box, the end of the pairs in pairs_ in which it is first
 };
 
 }  // namespace ricochet

@@ -9,20 +9,22 @@
 namespace ricochet {
 namespace {
 
-/// Where more than such a part of the boxes have changed all are looked for anew.
+/// Everything is searched again if more than 1 / kFew of the boxes have changed.
 constexpr std::size_t kFew = 8;
 
-/// The same of those that have left the boxes that are kept: to look for one costs as much as for several in a row.
+/// Limit, as 1 / kFewLeft, for boxes that have left their kept boxes. The search for one box costs as much as for
+/// several in sequence.
 constexpr std::size_t kFewLeft = 32;
 
-/// Parts of its size by which a box is kept larger on each side: a twentieth of the spheres of a pile that settles, of
-/// 1e-3 of their size a step, leave it in ten steps. Twice as much costs a tenth more pairs to test.
+/// Enlargement of a kept box on each side, relative to its size. In a settling pile whose spheres move by 1e-3 of their
+/// size per step, a twentieth of the spheres leave their kept boxes in ten steps. Twice the enlargement adds a tenth to
+/// the pairs to test.
 constexpr double kLarger = 0.02;
 
-/// Fewer are not worth it.
+/// Smallest number of boxes for which the cache pays off.
 constexpr std::size_t kMany = 512;
 
-/// Searches as boxes are, after larger ones have been of no use.
+/// Searches without enlargement after enlarged boxes were not reused.
 constexpr int kSearchesAsTheyAre = 16;
 
 /// Boxes or pairs per unit of parallel work.
@@ -32,7 +34,7 @@ bool comes_before(const NeighbourPair& a, const NeighbourPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// One that overlaps nothing where it is empty.
+/// Returns the box, or one that overlaps nothing if it is empty.
 Box3 as_asked(const Box3& box) { return box.empty() ? Box3{} : box; }
 
 Box3 larger(const Box3& box) {
@@ -44,11 +46,12 @@ bool contains(const Box3& outer, const Box3& inner) {
     return inner.empty() || (outer.contains(inner.lower) && outer.contains(inner.upper));
 }
 
-/// Adds pairs to others; both ascending.
+/// Merges pairs into others; both lists are ascending.
 void merge_into(std::vector<NeighbourPair>& pairs, const std::vector<NeighbourPair>& news) {
     auto end = static_cast<std::ptrdiff_t>(pairs.size());
     pairs.resize(pairs.size() + news.size());
-    for (auto k = static_cast<std::ptrdiff_t>(news.size()) - 1; k >= 0; --k) {  // from the last, with all behind it
+    for (auto k = static_cast<std::ptrdiff_t>(news.size()) - 1; k >= 0;
+         --k) {  // from the last pair on, shifting all pairs behind it
         const NeighbourPair& pair = news[static_cast<std::size_t>(k)];
         const auto at = std::upper_bound(pairs.begin(), pairs.begin() + end, pair, comes_before);
         std::move_backward(at, pairs.begin() + end, pairs.begin() + end + k + 1);
@@ -57,7 +60,7 @@ void merge_into(std::vector<NeighbourPair>& pairs, const std::vector<NeighbourPa
     }
 }
 
-/// Moves what blocks have left at their begins together; returns how much there is.
+/// Moves the items at the start of each block together. Returns their number.
 template <class T>
 std::size_t close_gaps(std::vector<T>& items, const std::vector<std::size_t>& left) {
     std::size_t count = 0;
@@ -91,7 +94,7 @@ void NeighbourPairs::take(std::span<const Box3> boxes) {
     std::transform(boxes.begin(), boxes.end(), boxes_.begin(), as_asked);
 }
 
-/// Those that have left the boxes that are kept. False where they are too many.
+/// Collects the boxes that have left their kept boxes. Returns false if there are too many.
 bool NeighbourPairs::take_later(std::span<const Box3> boxes) {
     if (boxes.size() != kept_.size() || boxes.size() < kMany) return false;
     const std::size_t most = boxes.size() / kFewLeft;
@@ -122,7 +125,7 @@ void NeighbourPairs::find_anew(std::span<const Box3> boxes) {
     }
 }
 
-/// Of the pairs that are kept those that overlap, but for those that have changed.
+/// Selects the kept pairs that overlap, except pairs with a box in later_.
 void NeighbourPairs::take_kept() {
     is_later_.assign(boxes_.size(), 0);
     for (const std::uint32_t k : later_) is_later_[k] = 1;
@@ -131,7 +134,7 @@ void NeighbourPairs::take_kept() {
     std::vector<std::size_t> left(blocks_of(kept.size()));
     parallel_for_blocks(kept.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         std::size_t at = begin;
-        for (std::size_t n = begin; n < end; ++n) {  // without branches: which pairs overlap is chance
+        for (std::size_t n = begin; n < end; ++n) {  // without branches, because overlaps are random
             const NeighbourPair& pair = kept[n];
             const unsigned is_later = is_later_[pair.first] | is_later_[pair.second];
             pairs_[at] = pair;
@@ -160,7 +163,7 @@ const std::vector<NeighbourPair>& NeighbourPairs::update(std::span<const Box3> b
     return pairs_;
 }
 
-/// some: of those that have changed, ascending; their pairs are not there yet.
+/// Adds the pairs of some of the changed boxes, ascending, whose pairs have been removed.
 void NeighbourPairs::add_pairs_of(std::span<const std::uint32_t> some) {
     std::vector<Box3> later_boxes;
     for (const std::uint32_t k : later_) later_boxes.push_back(boxes_[k]);

@@ -17,7 +17,7 @@ namespace {
 /// Pairs and particles per unit of parallel work.
 constexpr std::size_t kBlock = 1024;
 
-/// A law of pairs: force and potential of two particles that are nearer than the cutoff.
+/// Law of pairs: force and potential of two particles that are nearer than the cutoff.
 template <class Law>
 concept PairLawLike = requires(const Law& law, const PairState& pair) {
     { law.force(pair) } -> std::convertible_to<Vec3>;
@@ -25,9 +25,10 @@ concept PairLawLike = requires(const Law& law, const PairState& pair) {
     { law.cutoff() } -> std::convertible_to<double>;
 };
 
-/// Cubes that meet where two particles may be nearer than the cutoff. Those of particles that are not finite are empty.
+/// Returns cubes that overlap if two particles may be nearer than the cutoff. Particles that are not finite get empty
+/// cubes.
 std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bool between_surfaces) {
-    // Half of the cutoff for each, and a little for rounding.
+    // Half of the cutoff for each, plus a margin for rounding.
     constexpr double kRounding = 1.0 + 0x1p-40;
     std::vector<Box3> boxes(particles.size());
     parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -51,7 +52,7 @@ public:
           has_potential_(has_potential),
           depends_on_velocity_(depends_on_velocity) {}
 
-    // Each pair's force is found once by any thread; they are added in the order of the pairs.
+    // Threads compute each pair's force once; forces are added in the order of the pairs.
     void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const override {
         NeighbourGrid grid;
         const std::vector<NeighbourPair>& pairs = pairs_of(particles, grid);
@@ -105,7 +106,7 @@ private:
         return grid.find_pairs(boxes_around(particles, law_.cutoff(), between_surfaces_));
     }
 
-    /// False for pairs beyond the cutoff, and for those at one place.
+    /// Sets the state of a pair. Returns false for pairs beyond the cutoff and for coincident particles.
     [[nodiscard]] bool find_state(const ParticlesView& particles, const NeighbourPair& pair, PairState& state) const {
         const std::size_t i = pair.first;
         const std::size_t j = pair.second;
@@ -155,7 +156,7 @@ public:
         return bare_potential(pair.distance) - potential_at_cutoff_ + (pair.distance - cutoff_) * force_at_cutoff_;
     }
     [[nodiscard]] double cutoff() const { return cutoff_; }
-    /// The second derivative at the least potential, r^6 = 2 diameter^6.
+    /// Returns the second derivative at the minimum of the potential, r^6 = 2 diameter^6.
     [[nodiscard]] PairSteepness steepness() const {
         return {72.0 / std::cbrt(2.0) * (depth_ / (diameter_ * diameter_)), 0.0};
     }

@@ -12,50 +12,52 @@
 
 namespace ricochet {
 
-// Short-range pairs: every two particles within a distance, found by a grid.
+// Short-range pairs: all pairs of particles within a distance, found by a grid.
 
-/// Two particles, as a law of pairs sees them.
+/// Two particles, as seen by a law of pairs.
 struct PairState {
-    double distance = 0.0;           ///< of the centres, m, > 0
-    Vec3 direction;                  ///< unit, from the second to the first
-    Vec3 relative_velocity;          ///< of the first against the second, m/s
-    std::array<double, 2> masses{};  ///< kg
-    std::array<double, 2> radii{};   ///< m
+    double distance = 0.0;           ///< of the centres, in m, > 0
+    Vec3 direction;                  ///< unit vector from the second to the first
+    Vec3 relative_velocity;          ///< of the first against the second, in m/s
+    std::array<double, 2> masses{};  ///< in kg
+    std::array<double, 2> radii{};   ///< in m
     std::array<std::uint64_t, 2> ids{};
 };
 
-/// A law of pairs as functions of the user's own. They must be pure.
+/// Law of pairs as user functions, which must be pure.
 struct PairLaw {
-    double cutoff = 0.0;  ///< m, > 0: beyond it the force is zero
-    /// The cutoff is that of the gap between the surfaces, not of the distance of the centres.
+    double cutoff = 0.0;  ///< in m, > 0: the force is zero beyond it
+    /// True if the cutoff limits the gap between the surfaces instead of the distance of the centres.
     bool between_surfaces = false;
-    std::function<Vec3(const PairState&)> force;             ///< on the first, N; the second gets the opposite
-    std::function<double(const PairState&)> potential = {};  ///< of the pair, J; empty: it has none
+    std::function<Vec3(const PairState&)> force;             ///< on the first, in N; the second gets the opposite
+    std::function<double(const PairState&)> potential = {};  ///< of the pair, in J; empty: no potential
     bool depends_on_velocity = false;
 };
-/// Every pair is evaluated once, and its force given to both with opposite signs. Pairs are added in the order of the
-/// particles. Particles at one place (distance 0) do nothing to each other.
+/// Makes a force from a law of pairs. Every pair is evaluated once, and its force acts on both particles with opposite
+/// signs. Pairs are added in the order of the particles. Particles at the same position (distance 0) do not interact.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_pair_force(PairLaw law);
 
 struct LennardJonesSettings {
-    double depth = 1.0;     ///< epsilon, J, > 0: of the well
-    double diameter = 1.0;  ///< sigma, m, > 0: the distance of zero potential
+    double depth = 1.0;     ///< depth of the well, epsilon, in J, > 0
+    double diameter = 1.0;  ///< distance of zero potential, sigma, in m, > 0
     double cutoff = 2.5;    ///< in diameters, > 1
 };
-/// U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6), cut off smoothly: the force at the cutoff is taken off everywhere, so
-/// that force and potential end there without a step. Sources: J. E. Lennard-Jones, Proc. R. Soc. A 106, 1924; shifted
-/// force: S. Toxvaerd, J. C. Dyre, J. Chem. Phys. 134, 2011.
+/// Returns the Lennard-Jones force with U = 4 epsilon ((sigma/r)^12 - (sigma/r)^6). The force at the cutoff is
+/// subtracted everywhere, so force and potential end there without a step. Sources: J. E. Lennard-Jones, Proc. R. Soc.
+/// A 106, 1924; shifted force: S. Toxvaerd, J. C. Dyre, J. Chem. Phys. 134, 2011.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_lennard_jones(const LennardJonesSettings& settings);
 
 struct CohesionSettings {
-    double stiffness = 0.0;  ///< N/m, >= 0, near contact
-    double range = 0.0;      ///< m, > 0: the gap between the surfaces at which they let go
-    double damping = 0.0;    ///< N s/m, >= 0, along the line of the centres, within the range
+    double stiffness = 0.0;  ///< near contact, in N/m, >= 0
+    double range = 0.0;      ///< gap between the surfaces at which the attraction ends, in m, > 0
+    double damping = 0.0;    ///< along the line of the centres, within the range, in N s/m, >= 0
 };
-/// With the gap g between the surfaces of two particles: they attract each other by k g (1 - g / R)^2 for 0 < g < R
-/// (at most 4/27 k R, at R/3) and push each other away by -k g where they overlap; damping is c times the speed along
-/// the line, weakened by (1 - g / R)^2 too. Potential k g^2 / 2 in overlap, k R^2 (s^2/2 - 2 s^3/3 + s^4/4) with
-/// s = g / R in the gap, so that all is smooth; taken from its value beyond.
+/// Returns a cohesion force with the gap g between the surfaces of two particles. They attract each other by k g (1 - g
+/// / R)^2 for 0 < g < R. The maximum is 4/27 k R, at R/3. In overlap they repel each other by -k g. Damping is c times
+/// the speed along the line, also weakened by (1 - g / R)^2.
+///
+/// The potential is k g^2 / 2 in overlap. In the gap it is k R^2 (s^2/2 - 2 s^3/3 + s^4/4) with s = g / R. Both are
+/// measured from the value beyond the range, so that force and potential are continuous.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_cohesion(const CohesionSettings& settings);
 
 }  // namespace ricochet

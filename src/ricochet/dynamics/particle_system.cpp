@@ -59,7 +59,7 @@ void ParticleSystem::expect_pushes(std::span<const Vec3> pushes) {
     for (std::size_t k = 0; k < size(); ++k) constants_[k].push = pushes[k];
 }
 
-// Springs whose ends are not both members act through the forces that the caller holds on for them.
+// Collects the springs between members. The caller must account for springs with only one member.
 void ParticleSystem::link(std::size_t particle_count) {
     std::vector<std::uint32_t> member_of(particle_count, kNoMember);
     for (std::size_t k = 0; k < size(); ++k) member_of[members_[k]] = static_cast<std::uint32_t>(k);

@@ -1,5 +1,5 @@
 /// \file
-/// Forces between particles: what one is, and gravity and charge of all on all.
+/// Forces between particles: the ParticlesForce interface, and gravity and charge between all particles.
 #pragma once
 
 #include <cstdint>
@@ -14,81 +14,81 @@
 
 namespace ricochet {
 
-/// The particles that a force acts between, in the order of the simulation; all lists have the same length. Those that
-/// are pinned are there too: they act on others and do not move.
+/// Particles between which a force acts, in the order of the simulation. All lists have the same length. Pinned
+/// particles are included: they act on others and do not move.
 struct ParticlesView {
-    double time = 0.0;                   ///< s
-    std::span<const std::uint64_t> ids;  ///< which particles they are
-    std::span<const Vec3> positions;     ///< m
-    std::span<const Vec3> velocities;    ///< m/s
-    std::span<const double> masses;      ///< kg
-    std::span<const double> radii;       ///< m
-    /// One list for each name of ParticlesForce::attributes(), in that order; a vector's components side by side.
+    double time = 0.0;                   ///< in s
+    std::span<const std::uint64_t> ids;  ///< ids of the particles
+    std::span<const Vec3> positions;     ///< in m
+    std::span<const Vec3> velocities;    ///< in m/s
+    std::span<const double> masses;      ///< in kg
+    std::span<const double> radii;       ///< in m
+    /// One list for each name of ParticlesForce::attributes(), in that order; vector components are interleaved.
     std::vector<std::span<const double>> attributes = {};
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
-/// A force on a set of particles by each other, or by anything that looks at all of them. Implementations are pure:
-/// same input, same bits, for any number of threads (core/parallel.h), also when two simulations share one.
+/// Force on a set of particles that may depend on all of them. Implementations are pure: the same input gives the same
+/// bits for any number of threads (core/parallel.h), even if two simulations share one.
 class ParticlesForce {
 public:
     virtual ~ParticlesForce() = default;
-    /// Adds to each entry of `result` what the force does to that particle, divided by its mass, m/s^2. result is as
-    /// long as the lists.
+    /// Adds the acceleration of each particle by the force, in m/s^2, to its entry of `result`. result has the length
+    /// of the lists.
     virtual void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const = 0;
-    /// Potential energy of all together, J. Dissipative forces store none and return 0; a force without a potential
-    /// returns nothing.
+    /// Returns the total potential energy, in J. Dissipative forces store no energy and return 0; a force without a
+    /// potential returns nothing.
     [[nodiscard]] virtual std::optional<double> potential_energy(const ParticlesView& particles) const = 0;
-    /// False when the accelerations do not depend on velocities.
+    /// Returns false if the accelerations do not depend on velocities.
     [[nodiscard]] virtual bool depends_on_velocity() const { return true; }
-    /// Names of the particles' attributes that it wants to see.
+    /// Returns the names of the particle attributes that the force reads.
     [[nodiscard]] virtual std::vector<std::string> attributes() const { return {}; }
-    /// How messages name it; empty: as a force between particles, by its number.
+    /// Returns the name for messages. If it is empty, messages name a force between particles by its index.
     [[nodiscard]] virtual std::string name() const { return {}; }
 };
 
-/// A force of a simulation, and the particles between which it acts: those of these ids and those born of these
-/// emitters (numbers in the setup); all where both are empty.
+/// Force of a simulation, and the particles between which it acts: those with these ids, and the particles of these
+/// emitters (numbers in the setup). It acts on all particles if both lists are empty.
 struct ParticlesForceEntry {
     std::shared_ptr<const ParticlesForce> force;
     std::vector<std::uint64_t> particles = {};
     std::vector<std::uint32_t> emitters = {};
 };
 
-// All on all, falling with the square of the distance.
+// Inverse-square forces between all particles.
 
-/// How the sum over all others is made.
+/// Method for the sum over all other particles.
 enum class SumMethod {
-    automatic,  ///< direct up to kMostDirect particles, by a tree beyond
-    direct,     ///< every pair
-    tree        ///< distant groups of particles by their moments
+    automatic,  ///< direct up to kMostDirect particles, by a tree above
+    direct,     ///< all pairs
+    tree        ///< distant groups of particles through their moments
 };
 inline constexpr std::size_t kMostDirect = 1500;
 [[nodiscard]] std::string_view name_of(SumMethod method);
 
-/// Settings that gravity and charge share.
+/// Settings shared by gravity and charge.
 struct InverseSquareSettings {
-    double softening = 0.0;  ///< m, >= 0: the force is that of balls smeared out over this length (Plummer's law)
+    double softening = 0.0;  ///< in m, >= 0: the force is that of balls smeared out over this length (Plummer's law)
     SumMethod method = SumMethod::automatic;
-    /// Of a tree, 0 < opening <= 1: groups are taken by their moments from where they look smaller than this (the
-    /// farthest of their particles from their centre over the distance of the centre). docs/particle-forces.md says
-    /// what error follows.
+    /// Opening criterion of the tree, 0 < opening <= 1. A group is used through its moments if its relative size is
+    /// below this value. The size is the distance from its centre to its farthest particle, divided by the distance of
+    /// the centre. The resulting error is described in docs/particle-forces.md.
     double opening = 0.5;
 };
 
 struct GravitySettings : InverseSquareSettings {
-    double constant = 6.6743e-11;  ///< G, m^3/(kg s^2), CODATA 2018; negative repels
+    double constant = 6.6743e-11;  ///< G, in m^3/(kg s^2), CODATA 2018; negative repels
 };
-/// a_i = G sum_j m_j (x_j - x_i) / (|x_j - x_i|^2 + softening^2)^(3/2). Particles at one place do nothing to each
-/// other. Potential -G m_i m_j / (|x_j - x_i|^2 + softening^2)^(1/2) a pair.
+/// Returns gravity a_i = G sum_j m_j (x_j - x_i) / (|x_j - x_i|^2 + softening^2)^(3/2). Particles at the same position
+/// do not interact. The potential is -G m_i m_j / (|x_j - x_i|^2 + softening^2)^(1/2) per pair.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_mutual_gravity(const GravitySettings& settings);
 
 struct ChargeSettings : InverseSquareSettings {
-    double constant = 8.9875517862e9;  ///< Coulomb's, N m^2/C^2, CODATA 2018
-    std::string attribute = "charge";  ///< the particles' attribute, of one component, that holds the charge, C
+    double constant = 8.9875517862e9;  ///< Coulomb's constant, in N m^2/C^2, CODATA 2018
+    std::string attribute = "charge";  ///< particle attribute with one component: the charge, in C
 };
-/// F_i = k q_i sum_j q_j (x_i - x_j) / (|x_i - x_j|^2 + softening^2)^(3/2): Coulomb's law; like charges repel.
+/// Returns Coulomb's law F_i = k q_i sum_j q_j (x_i - x_j) / (|x_i - x_j|^2 + softening^2)^(3/2). Like charges repel.
 [[nodiscard]] std::shared_ptr<const ParticlesForce> make_coulomb_force(const ChargeSettings& settings);
 
 }  // namespace ricochet

@@ -22,7 +22,7 @@ double asinh_of(double t) {
     return std::copysign(portable_log(magnitude + std::sqrt(magnitude * magnitude + 1.0)), t);
 }
 
-/// The x > 0 with sinh(x) / x = ratio > 1, by bisection: the function grows from 1.
+/// Returns the x > 0 with sinh(x) / x = ratio > 1, by bisection; the function increases from 1.
 double solve_sinh_ratio(double ratio) {
     double high = 1.0;
     while (sinh_of(high) < ratio * high) high *= 2.0;
@@ -33,9 +33,9 @@ double solve_sinh_ratio(double ratio) {
 
 }  // namespace
 
-// With the parameter a, arc length s from the lowest point lies at a asinh(s / a) across and sqrt(a^2 + s^2) up. The
-// ends are at asinh(s / a) = middle -+ x with sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise / L and
-// a = across / (2 x).
+// With the parameter a, the point at arc length s from the lowest point lies a asinh(s / a) across and sqrt(a^2 + s^2)
+// up. The ends are at asinh(s / a) = middle -+ x with sinh(x) / x = sqrt(L^2 - rise^2) / across, tanh(middle) = rise /
+// L and a = across / (2 x).
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_rope, const Vec3& up, std::size_t count) {
     const Vec3 chord = to - from;
     const double rise = dot(chord, up);
@@ -211,7 +211,7 @@ SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings) {
     const auto distance = [&](std::uint32_t a, std::uint32_t b) { return length(mesh.vertices[b] - mesh.vertices[a]); };
     for (const MeshEdge& edge : edges) {
         const double rest_length = distance(edge.first, edge.second);
-        // Without a length there is no stretch to break at.
+        // A spring without a length has no relative stretch and cannot break.
         const double limit = rest_length > 0.0 ? settings.breaking_stretch : std::numeric_limits<double>::infinity();
         cloth.springs.push_back({edge.first, edge.second, rest_length, settings.stiffness, settings.damping, limit});
     }

@@ -71,12 +71,12 @@ private:
     }
 
     std::span<const std::uint64_t> ids_;
-    std::vector<std::uint32_t> order_;  // of ids; empty when they are in order
+    std::vector<std::uint32_t> order_;  // of ids; empty if they are sorted
 };
 
 }  // namespace
 
-// Swapping the ends changes the sign of every difference and of nothing else: the forces are exactly opposite.
+// Swapping the ends only changes the signs of all differences, so the forces are exactly opposite.
 Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
                   const Vec3& v_second) {
     const Vec3 d = x_second - x_first;
@@ -90,7 +90,7 @@ Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first
 SpringNetwork::SpringNetwork(std::vector<Spring> springs)
     : springs_(std::move(springs)), states_(springs_.size(), State::intact) {
     if (springs_.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
-        throw InputError(fmt::format("{} springs are too many, at most 2^31 - 1 can be", springs_.size()));
+        throw InputError(fmt::format("found {} springs, expected at most 2^31 - 1", springs_.size()));
     }
     for (std::size_t i = 0; i < springs_.size(); ++i) check(springs_[i], i);
     link_begin_.assign(1, 0);
@@ -114,7 +114,7 @@ void SpringNetwork::bind(std::span<const std::uint64_t> ids) {
     compile_links();
 }
 
-// Bonds stand in the order of spring numbers, and a counting sort keeps that order for every particle.
+// Bonds are in the order of spring numbers, and a counting sort keeps that order for every particle.
 void SpringNetwork::compile_links() {
     link_begin_.assign(particle_count_ + 1, 0);
     for (const Bond& bond : bonds_) {
@@ -134,7 +134,7 @@ void SpringNetwork::compile_links() {
     }
 }
 
-// Without springs there is nothing to bind.
+// Nothing is bound if there are no springs.
 void SpringNetwork::require_entries(std::span<const Vec3> values) const {
     if (!empty()) require_same_length(values.size(), particle_count_, "positions and velocities of springs' particles");
 }
@@ -196,8 +196,8 @@ namespace {
 
 /// Largest sums of stiffness and damping over mass of one particle.
 struct Rates {
-    double stiffness = 0.0;  // 1/s^2
-    double damping = 0.0;    // 1/s
+    double stiffness = 0.0;  // in 1/s^2
+    double damping = 0.0;    // in 1/s
 };
 
 Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>& particles) {
@@ -218,7 +218,7 @@ Rates largest_rates(std::span<const Spring> springs, const std::vector<Particle>
     return largest;
 }
 
-/// forward_euler: every spring's own damper has to take out what its step puts in.
+/// Returns the bound for forward_euler: every spring's own damper must remove the energy that a step adds.
 double damper_bound(std::span<const Spring> springs) {
     double bound = std::numeric_limits<double>::infinity();
     for (const Spring& spring : springs) {

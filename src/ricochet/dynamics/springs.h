@@ -1,5 +1,5 @@
 /// \file
-/// Springs between particles: the network that they make, its forces, how it tears, and makers of ropes and cloth.
+/// Springs between particles: their network, its forces, its breaking, and makers of ropes and cloth.
 #pragma once
 
 #include <array>
@@ -21,83 +21,81 @@ namespace ricochet {
 /// One damped spring between two particles.
 struct Spring {
     std::uint64_t first = 0;   ///< particle id
-    std::uint64_t second = 0;  ///< particle id, another one
-    double rest_length = 0.0;  ///< m, >= 0
-    double stiffness = 0.0;    ///< N/m, >= 0
-    double damping = 0.0;      ///< N s/m along the spring, >= 0
-    /// Stretch, relative to the rest length, beyond which it breaks for good: > 0; infinite where it never does. A
-    /// spring without a rest length has no relative stretch and cannot break.
+    std::uint64_t second = 0;  ///< particle id, different from the first
+    double rest_length = 0.0;  ///< in m, >= 0
+    double stiffness = 0.0;    ///< in N/m, >= 0
+    double damping = 0.0;      ///< along the spring, in N s/m, >= 0
+    /// Stretch, relative to the rest length, above which the spring breaks permanently: > 0; infinite if it never
+    /// breaks. A spring without a rest length has no relative stretch and cannot break.
     double breaking_stretch = std::numeric_limits<double>::infinity();
-    bool resists_bending = false;  ///< lies across an edge of cloth: a force like the others, but no thread to be shown
+    /// True if the spring crosses an edge of cloth. It exerts a force like the others but is not shown as a thread.
+    bool resists_bending = false;
 };
 
-/// Force on the first end of a spring, N: (k (l - l0) + c l') along the unit vector towards the second end, with l the
-/// distance of the ends and l' its rate of change. Where the ends coincide a spring has no direction: zero. The force
-/// on the second end is exactly the opposite. Source: A. Witkin, D. Baraff, M. Kass, "Physically Based Modeling",
-/// SIGGRAPH 2001 course notes, "Particle System Dynamics", damped spring.
+/// Returns the force on the first end of a spring, in N: (k (l - l0) + c l') along the unit vector towards the second
+/// end. l is the distance of the ends and l' its rate of change. If the ends coincide, the spring has no direction and
+/// the force is zero. The force on the second end is exactly the opposite. Source: A. Witkin, D. Baraff, M. Kass,
+/// "Physically Based Modeling", SIGGRAPH 2001 course notes, "Particle System Dynamics", damped spring.
 [[nodiscard]] Vec3 spring_force(const Spring& spring, const Vec3& x_first, const Vec3& v_first, const Vec3& x_second,
                                 const Vec3& v_second);
 
-/// Springs over particles that are known by their ids. `bind` says in which order the particles stand; what is asked
-/// about positions afterwards means that order: one entry a particle. Asking is free of side effects and may happen
-/// from any thread. Numbers past the end and lists of another length are InputErrors.
+/// Springs over particles that are identified by their ids. `bind` sets the order of the particles. Lists of positions
+/// and velocities then follow that order, with one entry per particle. Queries have no side effects and are
+/// thread-safe. Indices past the end and lists of another length cause an InputError.
 class SpringNetwork {
 public:
     SpringNetwork() = default;
-    /// Every spring is intact at first; call bind before asking for forces. Throws InputError, naming the spring by its
-    /// number, for values out of range and for a spring from a particle to itself.
+    /// Creates the network with all springs intact; call bind before computing forces. Throws InputError, naming the
+    /// spring by its index, for values out of range and for a spring from a particle to itself.
     explicit SpringNetwork(std::vector<Spring> springs);
 
-    /// True when there never was a spring.
+    /// Returns true if the network was created without springs.
     [[nodiscard]] bool empty() const { return springs_.empty(); }
-    /// All springs ever, in their order.
+    /// Returns all springs, broken and lost ones included, in their order.
     [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
-    /// True while spring number `spring` has neither broken nor lost an end.
+    /// Returns true if spring number `spring` has neither broken nor lost an end.
     [[nodiscard]] bool is_intact(std::size_t spring) const {
         require_index(spring, states_.size(), "spring");
         return states_[spring] == State::intact;
     }
 
-    /// Compiles the intact springs for particles that stand in this order: entry i has the id ids[i]. Throws InputError
-    /// for an id that is there twice.
-    /// Springs one end of which is missing are removed for good and counted as lost. To be called whenever particles
-    /// were added, removed or reordered.
+    /// Compiles the intact springs for particles in this order: entry i has the id ids[i]. Call it whenever particles
+    /// were added, removed or reordered. Springs with a missing end are removed permanently and counted as lost. Throws
+    /// InputError for a duplicate id.
     void bind(std::span<const std::uint64_t> ids);
 
-    /// An intact spring and its ends, as indices of bind's order: `a` is the first end, `b` the second.
+    /// An intact spring and its ends, as indices in bind's order: `a` is the first end, `b` the second.
     struct Bond {
         std::uint32_t spring;
         std::uint32_t a;
         std::uint32_t b;
     };
-    /// The intact springs, in the order of their numbers.
+    /// Returns the intact springs, in the order of their numbers.
     [[nodiscard]] const std::vector<Bond>& bonds() const { return bonds_; }
 
-    /// A spring as one of its ends sees it.
+    /// A spring as seen from one of its ends.
     struct Link {
         std::uint32_t spring;
-        std::uint32_t other;  ///< the other end, an index of bind's order
+        std::uint32_t other;  ///< the other end, an index in bind's order
     };
-    /// The intact springs of particle i, in the order of their numbers.
+    /// Returns the intact springs of particle i, in the order of their numbers.
     [[nodiscard]] std::span<const Link> links(std::uint32_t i) const {
         require_index(i, particle_count_, "particle of a spring");
         return {links_.data() + link_begin_[i], link_begin_[i + 1] - link_begin_[i]};
     }
-    /// Particles with at least one intact spring, indices of bind's order, ascending.
+    /// Returns the particles with at least one intact spring, as ascending indices in bind's order.
     [[nodiscard]] const std::vector<std::uint32_t>& coupled() const { return coupled_; }
 
-    /// Sum of the spring forces on particle i, N. Springs are added in the order of their numbers, so that the bits
-    /// depend neither on threads nor on the order of the particles.
+    /// Returns the sum of the spring forces on particle i, in N. Springs are added in the order of their numbers, so
+    /// the bits depend neither on threads nor on the order of the particles.
     [[nodiscard]] Vec3 force_on(std::uint32_t i, std::span<const Vec3> position, std::span<const Vec3> velocity) const;
-    /// Energy stored in the intact springs, J: the sum of k/2 (l - l0)^2. Dampers store none.
+    /// Returns the energy stored in the intact springs, in J: the sum of k/2 (l - l0)^2. Dampers store no energy.
     [[nodiscard]] double potential_energy(std::span<const Vec3> position) const;
 
-    /// Breaks the springs that are longer than (1 + breaking_stretch) * rest_length; they stay broken. Returns how
-    /// many.
+    /// Breaks the springs that are longer than (1 + breaking_stretch) * rest_length, permanently. Returns their number.
     std::size_t break_overstretched(std::span<const Vec3> position);
 
-    /// Saves or restores which springs are broken or lost; a: what a simulation saves to or restores from. Call bind
-    /// after it.
+    /// Saves or restores the sets of broken and lost springs. a: the archive of a simulation state. Call bind after it.
     template <class Archive>
     void archive(Archive& a) {
         a(states_, springs_.size());
@@ -106,9 +104,9 @@ public:
         if constexpr (Archive::kReads) require_states();
     }
 
-    /// Springs that have broken so far.
+    /// Returns the number of springs that have broken so far.
     [[nodiscard]] std::size_t broken() const { return broken_; }
-    /// Springs that have been removed so far because a particle at an end was gone.
+    /// Returns the number of springs removed so far because a particle at an end was gone.
     [[nodiscard]] std::size_t lost() const { return lost_; }
 
 private:
@@ -122,91 +120,92 @@ private:
     std::vector<State> states_;  // per spring
     std::vector<Bond> bonds_;
     std::size_t particle_count_ = 0;         // of bind
-    std::vector<std::uint32_t> link_begin_;  // per particle: its part of links_, and the end
+    std::vector<std::uint32_t> link_begin_;  // per particle: the offset of its part of links_; then the end
     std::vector<Link> links_;
     std::vector<std::uint32_t> coupled_;
     std::size_t broken_ = 0;
     std::size_t lost_ = 0;
 };
 
-// Makes ropes, chains and cloth: particles and the springs between them.
+// Makers of ropes, chains and cloth: particles and the springs between them.
 
-/// A triangle of cloth between three particles, there as long as its three springs are. It is shown, and exerts no
-/// force of its own.
+/// Triangle of cloth between three particles, which exists as long as its three springs do. It is shown, but exerts no
+/// force.
 struct SpringFace {
     std::array<std::uint64_t, 3> corners;  ///< particle ids, in the mesh's winding
     std::array<std::uint32_t, 3> springs;  ///< numbers of the springs along its edges
 };
 
-/// Particles with springs between them. Ids are positions in `particles`; entries of `springs` refer to these.
+/// Particles with springs between them. Ids are indices into `particles`; entries of `springs` refer to these ids.
 struct SpringBody {
     std::vector<Particle> particles;
     std::vector<Spring> springs;
     std::vector<SpringFace> faces;  ///< empty for ropes
 
-    /// Adds another body behind this one; its ids and spring numbers are moved up.
+    /// Appends another body; its ids and spring numbers are shifted.
     void append(const SpringBody& body);
 };
 
-/// A rope: nodes at equal distances along it, a spring between neighbours.
+/// Rope: nodes at equal distances along it, with springs between neighbours.
 struct RopeSettings {
-    Vec3 from;              ///< m, first node
-    Vec3 to;                ///< m, last node, not where the first is
+    Vec3 from;              ///< first node, in m
+    Vec3 to;                ///< last node, in m, different from the first
     std::size_t nodes = 2;  ///< >= 2
-    /// Length at rest, m, > 0; default: the distance of the ends. A longer rope starts as a catenary that hangs in the
+    /// Rest length, in m, > 0; default: the distance of the ends. A longer rope starts as a catenary that hangs in the
     /// direction `sag`, a shorter one as a straight line under tension.
     std::optional<double> length = {};
-    Vec3 sag{0, 0, -1};   ///< direction in which a slack rope hangs at first, of any length but zero
-    double mass = 1.0;    ///< kg in all, > 0; every segment gives half of its mass to each of its nodes
-    double radius = 0.0;  ///< m, >= 0, of every node
-    /// Exactly one of the two: stiffness of every segment, N/m, or that of the material, E A (modulus times cross
-    /// section), N, from which a segment of rest length l has the stiffness E A / l.
+    Vec3 sag{0, 0, -1};   ///< initial direction of hanging for a slack rope; any nonzero length
+    double mass = 1.0;    ///< total mass, in kg, > 0; every segment gives half of its mass to each of its nodes
+    double radius = 0.0;  ///< of every node, in m, >= 0
+    /// Stiffness: exactly one of the two members is set. `stiffness` applies to every segment, in N/m.
+    /// `axial_stiffness` is E A (modulus times cross section), in N; a segment of rest length l then has the stiffness
+    /// E A / l.
     std::optional<double> stiffness = {};
     std::optional<double> axial_stiffness = {};
-    double damping = 0.0;                                               ///< N s/m, >= 0, of every segment
+    double damping = 0.0;                                               ///< of every segment, in N s/m, >= 0
     double breaking_stretch = std::numeric_limits<double>::infinity();  ///< of every segment, see Spring
     bool pin_from = false;                                              ///< the first node never moves
     bool pin_to = false;                                                ///< the last node never moves
 };
-/// Nodes in order, spring i between nodes i and i + 1. Throws InputError for values out of range.
+/// Makes a rope with its nodes in order; spring i joins nodes i and i + 1. Throws InputError for values out of range.
 [[nodiscard]] SpringBody make_rope(const RopeSettings& settings);
 
 /// Cloth: a particle for every vertex of a triangle mesh, a spring along every edge.
 struct ClothSettings {
-    double mass_per_area = 1.0;  ///< kg/m^2, > 0; a vertex has a third of the mass of each triangle around it
-    double radius = 0.0;         ///< m, >= 0, of every particle
-    double stiffness = 0.0;      ///< N/m, >= 0, of the springs along edges
-    double damping = 0.0;        ///< N s/m, >= 0, of all springs
-    /// N/m, >= 0, of springs across every edge between two triangles, which join the corners that are not on the edge
-    /// and so resist bending; 0: none are made.
+    double mass_per_area = 1.0;  ///< in kg/m^2, > 0; a vertex has a third of the mass of each adjacent triangle
+    double radius = 0.0;         ///< of every particle, in m, >= 0
+    double stiffness = 0.0;      ///< of the springs along edges, in N/m, >= 0
+    double damping = 0.0;        ///< of all springs, in N s/m, >= 0
+    /// Stiffness, in N/m, >= 0, of springs across every edge between two triangles. These springs join the corners
+    /// opposite to the edge and so resist bending. With 0 none are made.
     double bending_stiffness = 0.0;
     double breaking_stretch = std::numeric_limits<double>::infinity();  ///< of the springs along edges, see Spring
     std::vector<std::uint32_t> pinned = {};                             ///< vertices that never move
 };
-/// Particles in the order of the vertices; springs along edges in the order of their ends' numbers, then those across
-/// edges. At rest as the mesh is. Across an edge at which the surface is not manifold there is no bending spring.
-/// Throws InputError for values out of range, a mesh without triangles, and vertices that no triangle with an area
-/// uses. Springs along edges and across them as resistance to stretching and bending: X. Provot, "Deformation
-/// constraints in a mass-spring model to describe rigid cloth behavior", Graphics Interface 1995.
+/// Makes a cloth at rest in the shape of the mesh. Particles are in the order of the vertices. Springs along edges come
+/// first, in the order of their ends' indices, then the springs across edges. A non-manifold edge has no bending
+/// spring. Throws InputError for values out of range, a mesh without triangles, and vertices without an adjacent
+/// triangle of nonzero area. Source of springs along and across edges for stretching and bending: X. Provot,
+/// "Deformation constraints in a mass-spring model to describe rigid cloth behavior", Graphics Interface 1995.
 [[nodiscard]] SpringBody make_cloth(const TriangleMesh& mesh, const ClothSettings& settings);
 
-/// A flat parallelogram as a mesh for make_cloth: cells_u by cells_v cells of two triangles each, whose diagonals
-/// alternate so that no direction is stiffer. Vertex (i, j), which stands at corner + i/cells_u u + j/cells_v v, has
-/// the number j * (cells_u + 1) + i. Throws InputError without a cell or for parallel sides.
+/// Returns a flat parallelogram as a mesh for make_cloth: cells_u by cells_v cells of two triangles each. Diagonals
+/// alternate, so no direction is stiffer. Vertex (i, j) is at corner + i/cells_u u + j/cells_v v and has the index j *
+/// (cells_u + 1) + i. Throws InputError for zero cells or parallel sides.
 [[nodiscard]] TriangleMesh sheet_mesh(const Vec3& corner, const Vec3& u, const Vec3& v, std::size_t cells_u,
                                       std::size_t cells_v);
 
 // The longest steps that explicit methods can make with springs.
 
-/// A step, s, that is short enough for every oscillation that these springs can make; longer ones may explode.
-/// Infinite for the methods that need none (implicit_euler; dormand_prince chooses its own) and without springs.
-/// particles: those that the springs name by their index as id; throws InputError for one that is not there, and for a
-/// kind that does not exist.
+/// Returns a step, in s, that is short enough for every oscillation of these springs; longer steps may diverge. It is
+/// infinite without springs, and for implicit_euler and dormand_prince, which chooses its own steps. particles: the
+/// springs refer to them by index. Throws InputError for a particle that does not exist and for an unknown kind.
 ///
-/// By Gershgorin's theorem no oscillation is faster than omega^2 = 2 max sum(k) / m, nor damped faster than
-/// gamma = 2 max sum(c) / m, sums over the springs of a particle. symplectic_euler, velocity_verlet and ballistic
-/// (which becomes velocity_verlet) are stable while h^2 omega^2 + 2 h gamma < 4; the Runge-Kutta methods while h times
-/// the largest eigenvalue stays within their region of stability; forward_euler needs dampers, h < c / k.
+/// By Gershgorin's theorem the largest squared frequency is omega^2 = 2 max sum(k) / m, and the largest damping rate is
+/// gamma = 2 max sum(c) / m. The sums are over the springs of a particle. The stability limits of the methods are:
+/// - symplectic_euler, velocity_verlet and ballistic (which becomes velocity_verlet): h^2 omega^2 + 2 h gamma < 4.
+/// - Runge-Kutta methods: h times the largest eigenvalue must lie in their region of stability.
+/// - forward_euler: it needs dampers, h < c / k.
 [[nodiscard]] double longest_stable_step(IntegratorKind kind, std::span<const Spring> springs,
                                          const std::vector<Particle>& particles);
 

@@ -12,16 +12,19 @@ namespace {
 
 constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
-/// Radii of discs around 0 whose left halves lie in the regions of stability, along the imaginary axis almost.
+/// Radii of discs around 0 whose left halves lie in the regions of stability. Close to the imaginary axis this holds
+/// only approximately.
 constexpr double kReachOfMidpoint = 1.0;
 constexpr double kReachOfRk4 = 2.6;
 
-/// Of the speed, or of kSlow: wide, so that the leap in Schiller and Naumann's coefficient (0.4 %) is no steep slope;
-/// the differences of linear and quadratic drags are exact.
+/// Step of the velocity differences, relative to the speed or to kSlow. The step is wide, so that the jump of 0.4 % in
+/// Schiller and Naumann's coefficient does not give a steep slope. The differences of linear and quadratic drags are
+/// exact.
 constexpr double kDifference = 1e-2;
-constexpr double kSlow = 1e-3;  ///< m/s
+constexpr double kSlow = 1e-3;  ///< in m/s
 
-/// E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", section IV.2.
+/// Returns the stability polynomial of a method. Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations
+/// II", section IV.2.
 std::complex<double> stability_polynomial(IntegratorKind kind, const std::complex<double>& z) {
     switch (kind) {
         case IntegratorKind::forward_euler:
@@ -42,7 +45,7 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
     const double gamma = rates.gamma;
     const double root = std::sqrt(gamma * gamma + 4.0 * rates.omega_squared);
     if (!(root > 0.0)) return kAnyStep;
-    const double fastest = 0.5 * (gamma + root);  // no eigenvalue is larger
+    const double fastest = 0.5 * (gamma + root);  // upper bound of all eigenvalues
     switch (kind) {
         case IntegratorKind::implicit_euler:
         case IntegratorKind::dormand_prince:
@@ -59,7 +62,7 @@ double longest_stable_step(IntegratorKind kind, const OscillationRates& rates) {
 }
 
 double energy_factor(IntegratorKind kind, double omega_squared, double gamma, double h) {
-    // Of both eigenvalues the one that is amplified more; they are conjugate, or real and negative.
+    // The eigenvalue that is amplified more counts. Both are conjugate, or real and negative.
     const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * gamma * gamma - omega_squared));
     double most = 0.0;
     for (const double sign : {1.0, -1.0}) {

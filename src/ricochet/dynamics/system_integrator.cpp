@@ -11,17 +11,17 @@ namespace {
 
 using Vectors = std::vector<Vec3>;
 
-/// a + h b, entry by entry.
+/// Returns a + h b, entry by entry.
 Vectors along(const Vectors& a, double h, const Vectors& b) {
     Vectors result(a.size());
     for (std::size_t i = 0; i < a.size(); ++i) result[i] = a[i] + h * b[i];
     return result;
 }
 
-/// Of all members in a state, m/s^2.
+/// Accelerations of all members in a state, in m/s^2.
 struct Accelerations {
     Vectors all;
-    Vectors mutual;  // of all what the forces between members do; empty where there are none
+    Vectors mutual;  // part of `all` by the forces between members; empty without such forces
 };
 
 Accelerations accelerations(const ParticleSystem& system, double time, const Vectors& x, const Vectors& v) {
@@ -30,7 +30,7 @@ Accelerations accelerations(const ParticleSystem& system, double time, const Vec
     return result;
 }
 
-/// The step of a method that ends in these states.
+/// Returns the step of a method that ends in these states.
 SystemStep step_to(Vectors positions, Vectors velocities, Accelerations start, double h) {
     SystemStep step{std::move(positions), std::move(velocities), std::move(start.all), h, h};
     step.mutual_start = std::move(start.mutual);
@@ -95,7 +95,7 @@ SystemStep rk4_step(const ParticleSystem& system, double h) {
     return step;
 }
 
-/// A step of Dormand and Prince, and the largest of its errors relative to the tolerance.
+/// A step of dormand_prince, with its largest error relative to the tolerance.
 struct TriedStep {
     SystemStep step;
     double error = 0.0;
@@ -147,7 +147,7 @@ SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& sys
     for (;; h *= 0.5) {
         TriedStep tried = dormand_prince_system(system, h, integrator.tolerance);
         if (tried.error > 1.0 && 0.5 * h >= shortest) continue;
-        const bool ended_here = h >= duration;  // the step ended, not the method
+        const bool ended_here = h >= duration;  // the step ended here, not the method
         tried.step.next_duration = ended_here ? first_try : (tried.error < kErrorToDouble ? 2.0 * h : h);
         tried.step.solved = !(tried.error > 1.0);
         return std::move(tried.step);
@@ -168,7 +168,7 @@ double HeldMotion::friction_energy_at(const Vec3& mean) const {
     return slip <= yield ? 0.5 * grip / yield * slip * slip : grip * (slip - 0.5 * yield);
 }
 
-// Where the slip is in proportion what is taken is grip / yield of what is left.
+// In the proportional range, friction removes grip / yield of the remaining slip.
 Vec3 HeldMotion::mean_of(const Vec3& free) const {
     if (count == 0) return free;
     Vec3 along = across(free);

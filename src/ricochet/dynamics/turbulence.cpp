@@ -15,15 +15,15 @@ namespace ricochet {
 namespace {
 
 constexpr std::uint32_t kTable = 256;  // entries; the lattice repeats after as many points
-// Streams of the random numbers: emitters count theirs from 0.
+// Streams of the random numbers; emitters use streams from 0 on.
 constexpr std::uint32_t kGradientStream = 0xF1040001U;
 constexpr std::uint32_t kOrderStream = 0xF1040002U;
 constexpr std::uint32_t kOffsetStream = 0xF1040003U;
-// Mean square of the curl of three noises with unit gradients and the fade below, lattice distance 1: twice the mean
-// square of one noise's gradient, whose integrals over a cell are rational.
+// Mean square of the curl of three noises with unit gradients, the fade below and lattice spacing 1. It is twice the
+// mean square of one noise's gradient, whose integrals over a cell are rational.
 constexpr double kMeanSquareCurl = 238536280.0 / 160243083.0;
 
-// Fade with vanishing first and second derivatives at both ends (Perlin 2002), and its derivative.
+// Fade with zero first and second derivatives at both ends (Perlin 2002), and its derivative.
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 double fade_slope(double t) { return 30.0 * t * t * (t - 1.0) * (t - 1.0); }
 
@@ -39,8 +39,8 @@ LatticePlace place_of(double x) {
     return {static_cast<std::uint32_t>(wrapped), x - below};
 }
 
-// The curl of three gradient noises on a lattice of distance 1. Around a lattice point each noise is a linear function
-// times a weight, so that curl(w p) = w curl p + grad w x p.
+// Curl of three gradient noises on a lattice of spacing 1. Around a lattice point each noise is a linear function times
+// a weight, so curl(w p) = w curl p + grad w x p.
 class CurlNoise {
 public:
     explicit CurlNoise(std::uint64_t seed) {
@@ -58,7 +58,7 @@ public:
         }
     }
 
-    // slice: which of many independent noises.
+    // slice: index of one of many independent noises.
     [[nodiscard]] Vec3 curl(const Vec3& position, std::uint32_t slice) const {
         const LatticePlace at[3] = {place_of(position.x), place_of(position.y), place_of(position.z)};
         double weight[3][2];
@@ -71,8 +71,8 @@ public:
         }
         Vec3 sum;
         for (std::uint32_t i = 0; i < 2; ++i) {
-            // The slice is hashed first: a sum of slice and position would make the next slice this one, moved by a
-            // point.
+            // The slice is hashed first. If slice and position were added, the next slice would be this one shifted by
+            // a point.
             const std::uint32_t row = hashed(hashed(0, slice), at[0].point + i);
             for (std::uint32_t j = 0; j < 2; ++j) {
                 const std::uint32_t column = hashed(row, at[1].point + j);
@@ -107,7 +107,7 @@ class Turbulence final : public FlowField {
 public:
     explicit Turbulence(const TurbulenceSettings& settings) : noise_(settings.seed), frozen_(settings.rate == 0.0) {
         double squares = 0.0;
-        double factor = 1.0;  // of the octave's speed, and of its frequency in space
+        double factor = 1.0;  // speed of the octave relative to that of the first
         double finer = 1.0;
         for (std::uint32_t k = 0; k < settings.octaves; ++k) {
             RandomSequence random(settings.seed, kOffsetStream, k);
@@ -131,10 +131,10 @@ public:
 
 private:
     struct Octave {
-        double frequency;  // 1/m
-        double speed;      // m/s for a curl of 1
-        double rate;       // 1/s
-        Vec3 offset;       // of the lattice, so that those of the octaves do not coincide
+        double frequency;  // in 1/m
+        double speed;      // in m/s for a curl of 1
+        double rate;       // in 1/s
+        Vec3 offset;       // of the lattice, so that the lattices of the octaves do not coincide
         std::uint32_t first_slice;
     };
 

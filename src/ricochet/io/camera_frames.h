@@ -1,5 +1,5 @@
 /// \file
-/// A camera that moves: where it is at a frame of the run, and how the frame's file says so.
+/// Moving cameras: position and direction of view at a frame, and their fields in the frame's file.
 #pragma once
 
 #include <optional>
@@ -11,20 +11,21 @@
 
 namespace ricochet {
 
-/// Where a camera is at a moment, in the world.
+/// Position and orientation of a camera at one time, in world coordinates.
 struct CameraPlace {
     Vec3 position;  ///< m
     Vec3 target;    ///< m
     Vec3 up{0, 0, 1};
 };
 
-/// The camera at the simulation's time. frames: those of the scene; only needed by a camera that stands in one.
+/// Returns the camera's position and orientation at the simulation's time.
+/// frames: reference frames of the scene; may be null if the camera is not attached to a frame.
 [[nodiscard]] CameraPlace camera_place(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
                                        const Simulation& simulation);
 
-/// Adds it to a frame of particles as the fields camera_position, camera_target and camera_up.
+/// Adds the camera to a frame of particles as the fields camera_position, camera_target and camera_up.
 void add_camera(VtkPolyData& frame, const CameraPlace& place);
-/// What add_camera() added; nothing where there is none.
+/// Reads the fields that add_camera() wrote. Returns nothing if one of them is missing or malformed.
 [[nodiscard]] std::optional<CameraPlace> camera_of_frame(const VtkPolyData& frame);
 
 }  // namespace ricochet

@@ -22,9 +22,10 @@
 namespace ricochet {
 namespace {
 
-/// Begins every checkpoint; the last byte changes with the layout. The whole file's checksum ends it.
+/// Format number at the start of every checkpoint; the last byte changes with the layout. The file ends with its
+/// checksum.
 constexpr std::uint64_t kCheckpointFormat = 0x5249434f43484b38ULL;
-/// Begins every part of one, which is ended likewise.
+/// Format number at the start of every checkpoint part, which also ends with its checksum.
 constexpr std::uint64_t kPartFormat = 0x5249434f50415230ULL;
 constexpr std::uint64_t kAnyLayout = ~std::uint64_t{0xFF};
 
@@ -46,7 +47,7 @@ void archive_checkpoint(Archive& a, Checkpoint& checkpoint) {
     archive_entries(a, loads.totals, [&](ColliderTotals& t) { a(t.hits), a(t.impulse), a(t.moment), a(t.work); });
 }
 
-/// Series name files of the run and nothing else: they are listed again.
+/// Throws InputError unless the series refer only to files of a run, because a resumed run lists them again.
 void require_sound_series(const Checkpoint& checkpoint) {
     const auto require = [](const std::vector<PvdEntry>& series, const auto& is_file) {
         const auto is_sound = [&](const PvdEntry& entry) { return std::isfinite(entry.time) && is_file(entry.file); };
@@ -79,7 +80,7 @@ using OpenFile = std::unique_ptr<std::FILE, Close>;
 OpenFile open_checkpoint(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
-    // A pipe would be waited for.
+    // A pipe is refused, because reading it would block.
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
         refuse(file, "found no regular file, expected a checkpoint");
     }
@@ -93,14 +94,15 @@ OpenFile open_checkpoint(const std::filesystem::path& file) {
                     file.string()));
 }
 
-/// As fread(), but what cannot be read is not taken for a file that has ended: a whole checkpoint may be there.
+/// Reads like fread(), but throws if reading fails. A read error is not the end of the file: the checkpoint may be
+/// intact.
 std::size_t read_bytes(std::span<std::byte> bytes, std::FILE* file, const std::filesystem::path& name) {
     const std::size_t count = std::fread(bytes.data(), 1, bytes.size(), file);
     if (std::ferror(file) != 0) fail_to_read(name);
     return count;
 }
 
-/// Before anything is believed: what kind of file it is, and that no byte of it has changed. Returns its checksum.
+/// Checks the format number and the checksum before any content is used. Returns the checksum.
 std::uint64_t require_whole_file(std::FILE* file, const std::filesystem::path& name, std::uint64_t expected) {
     std::uint64_t format = 0;
     if (read_bytes(std::as_writable_bytes(std::span(&format, 1)), file, name) != sizeof(format)) {
@@ -113,7 +115,7 @@ std::uint64_t require_whole_file(std::FILE* file, const std::filesystem::path& n
     }
     StateHash checksum;
     checksum.add(std::as_bytes(std::span(&format, 1)));
-    // The last eight bytes are always kept back.
+    // The last eight bytes can be the checksum, so they are never added to it.
     std::vector<std::byte> piece(sizeof(std::uint64_t) + (std::size_t{1} << 16));
     std::size_t kept = 0;
     while (const std::size_t got = read_bytes(std::span(piece).subspan(kept), file, name)) {
@@ -131,7 +133,7 @@ std::uint64_t require_whole_file(std::FILE* file, const std::filesystem::path& n
     return found;
 }
 
-/// A file that ends with the checksum of what `write` has put into it, which is returned.
+/// Writes a file that ends with the checksum of the data from `write`. Returns the checksum.
 std::uint64_t write_checked_file(const std::filesystem::path& file, const std::function<void(const ByteSink&)>& write) {
     AtomicFile target(file);
     StateHash checksum;
@@ -157,7 +159,7 @@ void read_part(const std::filesystem::path& folder, const CheckpointPart& part, 
     const auto refuse_part = [&](const std::string& why) {
         throw InputError(fmt::format("its part {} {}", part.file, why));
     };
-    // Its name comes from a file: nothing beside the checkpoint is opened.
+    // The name comes from a file, so only checkpoint parts beside the checkpoint are opened.
     if (!set_of_checkpoint_part(part.file)) refuse_part("is no part of a checkpoint");
     const std::filesystem::path file = folder / part.file;
     require_own_file(file);

@@ -1,5 +1,5 @@
 /// \file
-/// Checkpoints: an interrupted run as one file, from which it goes on to the same bits.
+/// Checkpoints: one file from which an interrupted run continues with bit-identical results.
 #pragma once
 
 #include <cstdint>
@@ -13,37 +13,39 @@
 
 namespace ricochet {
 
-/// A file with the particles that one of several processes had, beside the checkpoint that names it.
+/// One process's file of particles, stored beside the checkpoint that refers to it.
 struct CheckpointPart {
-    std::string file;            ///< its name
+    std::string file;            ///< file name, without a folder
     std::uint64_t checksum = 0;  ///< of the whole file
 };
 
 [[nodiscard]] std::vector<std::string> names_of(const std::vector<CheckpointPart>& parts);
 
-/// What a run's folder holds besides the simulation's state.
+/// State of a run's output folder, stored together with the simulation's state.
 struct Checkpoint {
-    std::uint64_t scene = 0;              ///< SceneDescription::fingerprint
-    double wall_seconds = 0.0;            ///< spent so far
-    double output_seconds = 0.0;          ///< of it on output, see RunWriter::output_seconds()
-    std::vector<PvdEntry> frames;         ///< written so far
-    std::vector<PvdEntry> contacts;       ///< the same of the contact log
-    std::vector<PvdEntry> moving;         ///< and of the colliders that move
-    LoadRows loads;                       ///< of the tables
-    std::vector<CheckpointPart> parts{};  ///< empty: the state has the particles itself
+    std::uint64_t scene = 0;       ///< SceneDescription::fingerprint
+    double wall_seconds = 0.0;     ///< wall-clock time spent so far
+    double output_seconds = 0.0;   ///< time spent on output, contained in wall_seconds; see RunWriter::output_seconds()
+    std::vector<PvdEntry> frames;  ///< particle frames written so far
+    std::vector<PvdEntry> contacts;       ///< contact files written so far
+    std::vector<PvdEntry> moving;         ///< files of moving colliders written so far
+    LoadRows loads;                       ///< rows of the load tables
+    std::vector<CheckpointPart> parts{};  ///< empty if the state itself contains the particles
 };
 
-/// Writes state and checkpoint; an older file stays until the new one is complete. Throws RunError when the disk does
-/// not take it.
+/// Writes the checkpoint and the simulation's state. An older file stays until the new one is complete. Throws
+/// RunError if writing fails.
 void write_checkpoint(const std::filesystem::path& file, const Checkpoint& checkpoint, const Simulation& simulation);
 
-/// Writes the particles that the simulation has here; returns the file's checksum. Throws like write_checkpoint().
+/// Writes the particles of this process and returns the file's checksum. Throws like write_checkpoint().
 [[nodiscard]] std::uint64_t write_checkpoint_part(const std::filesystem::path& file, const Simulation& simulation);
 
-/// Puts a simulation, which has not made a step yet, where the checkpoint was made. scene: the fingerprint of the scene
-/// that it was made from. Parts are read from the folder of the file, one after the other, by any number of processes,
-/// each of which keeps what is to live there. Throws InputError, naming the file and what to do, when there is no such
-/// file, when it is damaged, of another version, or of another scene; RunError when the system does not let it be read.
+/// Restores a simulation that has not made a step to the state of the checkpoint.
+/// scene: fingerprint of the scene that the simulation was built from.
+/// Any number of processes may read the parts, which lie in the checkpoint's folder. Each process reads the parts one
+/// after the other and keeps only its own particles.
+/// Throws InputError if the file is missing, damaged, or of another version or scene. The message names the file and a
+/// remedy. Throws RunError if the system refuses to read the file.
 [[nodiscard]] Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scene,
                                          Simulation& simulation);
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: tables as comma-separated values (RFC 4180), whose numbers read back as the same doubles.
+/// Private to the library: tables of comma-separated values (RFC 4180) whose numbers read back as the same doubles.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,27 @@
 
 namespace ricochet {
 
-/// Returns a text as a field of a table: in quotes where it needs them.
+/// Returns a text as a field of a table, quoted if necessary.
 [[nodiscard]] std::string csv_field(std::string_view text);
 
-/// A table that is written row by row. The file has its name when it is complete.
+/// A table that is written row by row. The file appears under its name only when it is complete.
 class CsvFile {
 public:
-    /// header: names of the columns, quoted where they need it. Throws like AtomicFile.
+    /// header: names of the columns, already quoted if necessary. Throws like AtomicFile.
     CsvFile(const std::filesystem::path& path, std::string_view header);
 
-    // Each adds one field to the row; a vector adds three.
+    // Each overload adds one field to the row; a vector adds three.
     void add(double value);
     void add(const Vec3& value);
     void add(std::int64_t value);
     void add(std::uint32_t value) { add(std::int64_t{value}); }
     void add(std::uint8_t value) { add(std::int64_t{value}); }
     void add(std::string_view text);
-    /// Adds fields without a value.
+    /// Adds empty fields.
     void skip(int fields);
-    /// Ends the row. Throws RunError when the disk does not take it.
+    /// Ends the row. Throws RunError if writing fails.
     void end_row();
-    /// Gives the file its name. Throws RunError when that fails. To be called once, at the end.
+    /// Gives the file its name. Call it once, at the end. Throws RunError if that fails.
     void commit();
 
 private:

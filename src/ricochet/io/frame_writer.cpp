@@ -75,7 +75,7 @@ void WriterThread::work() {
     while (true) {
         changed_.wait(lock, [this] { return !jobs_.empty() || closing_; });
         if (closing_ || error_) return;
-        std::function<void()>& job = jobs_.front();  // stays put: only this thread takes it away
+        std::function<void()>& job = jobs_.front();  // the reference stays valid, because only this thread removes jobs
         lock.unlock();
         std::exception_ptr error;
         try {
@@ -83,7 +83,7 @@ void WriterThread::work() {
         } catch (...) {
             error = std::current_exception();
         }
-        job = nullptr;  // what it holds is freed without the lock, and before anyone is told that there is room
+        job = nullptr;  // releases the captured frame without the lock, before other threads learn of the free space
         lock.lock();
         jobs_.pop_front();
         error_ = error;
@@ -96,14 +96,15 @@ void WriterThread::work() {
 
 namespace {
 
-// Up to this many frames the series file is rewritten after each; later only when the frames written since weigh as
-// much as the series file, so that its upkeep never dominates.
+// Number of frames up to which the series file is rewritten after each frame. Afterwards it is rewritten when the new
+// frames have as many bytes as the series file, so that its cost never dominates.
 constexpr std::size_t kAlwaysListed = 1000;
 
 }  // namespace
 
-/// The files of a series and their list. Used by the writer's thread, and by others only while that has no job; frames
-/// to be filled again are handed over under a lock.
+/// Files of a series and their list.
+/// The writer's thread uses it; other threads use it only while that thread has no job. A mutex protects the frames
+/// that are reused.
 class FrameWriter::Series {
 public:
     Series(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier)
@@ -122,7 +123,7 @@ public:
         list(time, name, text.size());
     }
 
-    // A checkpoint names the frames in the list, so the list must be complete before it is written.
+    // A checkpoint refers to the frames in the list, so the list must be complete before the checkpoint is written.
     const std::vector<PvdEntry>& bring_up_to_date() {
         if (listed_ != entries_.size()) write_list();
         return entries_;
@@ -159,8 +160,8 @@ private:
     std::uint64_t bytes_since_list_ = 0;
     std::size_t listed_ = 0;  // entries that are in the series file
     std::mutex mutex_;
-    bool keeps_frames_ = false;         // from the first blank_frame() on
-    std::vector<VtkPolyData> written_;  // to be filled again
+    bool keeps_frames_ = false;         // true after the first blank_frame()
+    std::vector<VtkPolyData> written_;  // frames to be reused
 };
 
 FrameWriter::FrameWriter(std::filesystem::path folder, FileSeries files, std::vector<PvdEntry> earlier,
@@ -190,7 +191,7 @@ std::vector<PvdEntry> FrameWriter::drain() {
     return series_->bring_up_to_date();
 }
 
-// The contact log.
+// Contact log.
 
 namespace {
 
@@ -231,16 +232,17 @@ ContactColumns no_rows(const Simulation& simulation) {
 
 namespace {
 
-/// Of rows that name no collider.
+/// Collider number of rows without a collider.
 constexpr std::uint32_t kNoCollider = 0xFFFFFFFFU;
 
-/// An entry of one of the two lists of a step.
+/// Entry of one of the two lists of a step.
 struct LogRow {
     std::size_t number = 0;
     bool is_pair = false;
 };
 
-/// Both lists are in the order of (time, particle); surfaces first where these are the same.
+/// Merges the two lists, which are both ordered by (time, particle). Surface contacts precede pair impacts with equal
+/// keys.
 std::vector<LogRow> rows_in_order(const std::vector<ContactRecord>& records,
                                   const std::vector<PairImpactRecord>& pairs) {
     std::vector<LogRow> order;
@@ -283,7 +285,7 @@ ContactLog::ContactLog(const std::filesystem::path& folder, const Simulation& si
     : files_(folder, kContactSeries, std::move(earlier), std::move(thread)),
       most_rows_(most_rows),
       step_(simulation.step_index()) {
-    if (step_ > 0) written_ = step_;  // an interrupted run has written all of its steps
+    if (step_ > 0) written_ = step_;  // the interrupted run has written the rows of all its steps
     if (!simulation.options().record_contacts) {
         throw std::logic_error("a contact log needs a simulation that records its contacts");
     }

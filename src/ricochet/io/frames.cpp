@@ -14,12 +14,12 @@ namespace {
 /// Particles per unit of parallel work.
 constexpr std::size_t kBlock = 1 << 14;
 
-// The arrays of a frame that is filled, each with the memory of the one that it replaces.
+// Arrays of a frame to be filled. Each array reuses the memory of the previous frame's array.
 class ArrayList {
 public:
     ArrayList(std::vector<VtkArray>& arrays, std::size_t length) : arrays_(arrays), length_(length) {}
 
-    // The values of the next array, to be set.
+    // Returns storage for the values of the next array.
     template <typename T>
     T* next(std::string_view name) {
         if (used_ == arrays_.size()) arrays_.emplace_back();
@@ -38,7 +38,7 @@ private:
     std::size_t used_ = 0;
 };
 
-// Copies entries of the particles into the order of their ids, the entries [begin, end) of that order.
+// Copies the entries [begin, end) of the order by id from the particles' arrays.
 struct Gather {
     const std::vector<std::uint32_t>& order;
     std::size_t begin;
@@ -50,7 +50,7 @@ struct Gather {
     }
 };
 
-// The arrays that every frame has.
+// Arrays that every frame has.
 class OwnArrays {
 public:
     OwnArrays(VtkPolyData& frame, ArrayList& list, bool has_spheres)
@@ -82,7 +82,7 @@ public:
     }
 
 private:
-    // In the order of the file.
+    // Pointers in the order of the file.
     Vec3* points_;
     std::int64_t* id_;
     Vec3* velocity_;
@@ -139,7 +139,7 @@ std::vector<const SpringFace*> intact_faces(const SpringNetwork& springs, const 
     return intact;
 }
 
-// Its particles are there, since its springs are.
+// Returns the triangle of a face. Its particles exist, because its springs are intact.
 Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
     const VtkArray* array = find_array(frame.point_arrays, "id");
     if (array == nullptr || !std::holds_alternative<std::vector<std::int64_t>>(array->values)) {
@@ -155,7 +155,7 @@ Triangle triangle_of(const SpringFace& face, const VtkPolyData& frame) {
     return triangle;
 }
 
-// A simulation that keeps no totals per triangle gives none.
+// Returns the arrays of the totals; none if the simulation records no totals for triangles.
 std::vector<VtkArray> total_arrays(const TriangleTotals& totals) {
     if (totals.hits.empty()) return {};
     std::vector<VtkArray> arrays =
@@ -170,7 +170,7 @@ void require_lengths(const TriangleTotals& totals) {
     require_same_length(totals.lasting_impulse.size(), totals.hits.size(), "lasting impulses of a collider");
 }
 
-// A shape with a formula is one surface: every triangle that shows it has the whole surface's totals.
+// Returns the totals of the whole surface for each of its triangles. Planes, balls and cylinders are a single surface.
 TriangleTotals repeated(const TriangleTotals& totals, std::size_t count) {
     const std::size_t lasting = totals.lasting_impulse.empty() ? 0 : count;
     return {std::vector<std::uint64_t>(count, totals.hits[0]), std::vector<Vec3>(count, totals.impulse[0]),
@@ -223,7 +223,7 @@ void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNet
     const std::vector<std::uint32_t> order = particles.order_by_id();
     require_same_length(particles.position.size(), order.size(), "positions of the particles");
     require_same_length(frame.points.size(), order.size(), "points of the particles' frame");
-    std::vector<std::uint32_t> row(order.size());  // in the frame
+    std::vector<std::uint32_t> row(order.size());  // row in the frame, by particle
     for (std::uint32_t k = 0; k < order.size(); ++k) row[order[k]] = k;
     std::vector<double> stretch(springs.springs().size(), 0.0);
     for (const SpringNetwork::Bond& bond : springs.bonds()) {

@@ -1,5 +1,5 @@
 /// \file
-/// What a run's frames hold: particles and colliders as VTK data.
+/// Frames of a run: particles and colliders as VTK data.
 #pragma once
 
 #include "ricochet/collision/collider.h"
@@ -10,43 +10,48 @@
 
 namespace ricochet {
 
-// Where lists that belong together have other lengths, or name what is not there: InputError.
+// All functions throw InputError if related lists differ in length or refer to missing entries.
 
-/// The particles at a time, in the order of their ids, with the arrays id, velocity, mass, radius, age, contacts,
-/// resting, frozen and unsimulated_time, and with spin where `has_spheres` says so: all frames of a series must agree
-/// on it, see Simulation::has_spheres().
+/// Returns the particles at a time, in the order of their ids.
+/// Arrays: id, velocity, mass, radius, age, contacts, resting, frozen and unsimulated_time, and also spin if
+/// `has_spheres` is true. All frames of a series must use the same value; see Simulation::has_spheres().
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, double time, bool has_spheres = false);
-/// The same with an array for every attribute, as it is shown (Simulation::shown_attributes()).
+/// Returns the same frame with an additional array for every attribute.
+/// attributes: see Simulation::shown_attributes().
 [[nodiscard]] VtkPolyData particle_frame(const Particles& particles, const AttributeTable& attributes, double time,
                                          bool has_spheres = false);
-/// The same, reusing the memory of a frame that is no longer needed: allocation is most of the cost of a frame.
+/// Fills a frame and reuses its memory, because allocation is most of the cost of a frame.
 void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
                          bool has_spheres);
 
-/// Adds the array cloud_parent to a frame of these particles: Simulation::cloud_parents().
+/// Adds the array cloud_parent to a frame of these particles.
+/// parents: see Simulation::cloud_parents().
 void add_cloud_parents(VtkPolyData& frame, const Particles& particles, const std::vector<std::int64_t>& parents);
 
-/// Adds the intact springs to a frame of these particles: as triangles where all three springs of a piece of cloth are
-/// intact, as lines otherwise; springs that only resist bending are not shown. Cell arrays: spring (its number, -1 for
-/// triangles and points) and stretch (length over rest length minus 1; of a triangle the largest of its springs; 0
-/// where there is no rest length).
+/// Adds the intact springs to a frame of these particles.
+/// A piece of cloth becomes a triangle if its three springs are intact; all other springs become lines. Springs that
+/// only resist bending are left out. Cell arrays:
+/// - spring: number of the spring; -1 for triangles and points.
+/// - stretch: length over rest length minus 1; for a triangle the largest value of its springs; 0 without a rest
+///   length.
 void add_springs(VtkPolyData& frame, const Particles& particles, const SpringNetwork& springs,
                  const std::vector<SpringFace>& faces);
 
-/// A mesh in world coordinates with the cell arrays hits, impulse and lasting_impulse (N s); without them when the
-/// totals are empty.
+/// Returns a mesh in world coordinates with the cell arrays hits, impulse and lasting_impulse (N s). The arrays are
+/// left out if the totals are empty.
 [[nodiscard]] VtkPolyData mesh_collider_frame(const TriangleMesh& mesh, const TriangleTotals& totals, double time);
 
-/// A plane as a square of two triangles around the foot point of the region's centre, its edge four times the region's
-/// diagonal (at least 2 m), with the fields plane_point and plane_normal (of unit length). Both triangles carry the
-/// plane's totals; there are no arrays when the totals are empty.
+/// Returns a plane as a square of two triangles, with the fields plane_point and plane_normal (unit length).
+/// The square is centred at the projection of the region's centre onto the plane. Its edge is four times the region's
+/// diagonal, at least 2 m. Both triangles carry the plane's totals; the arrays are left out if the totals are empty.
 [[nodiscard]] VtkPolyData plane_collider_frame(const PlaneShape& plane, const Box3& region,
                                                const TriangleTotals& totals, double time);
 
-/// The colliders that move as they stand now, as one mesh; the array `collider` of its triangles says which each
-/// belongs to. region: as of plane_collider_frame().
+/// Returns the moving colliders at their current positions, as one mesh. The cell array `collider` gives the collider
+/// index of each triangle.
+/// region: see plane_collider_frame().
 [[nodiscard]] VtkPolyData moving_collider_frame(const Simulation& simulation, const Box3& region);
-/// True for a collider that stands in a frame, or deforms.
+/// Returns true if the collider is attached to a reference frame or deforms.
 [[nodiscard]] bool is_moving(const ColliderDescription& collider);
 
 }  // namespace ricochet

@@ -20,8 +20,9 @@ void append(std::string& text, const Vec3& v) {
     fmt::format_to(std::back_inserter(text), ",{:.17g},{:.17g},{:.17g}", v.x, v.y, v.z);
 }
 
-/// The rotation as a unit quaternion (w, x, y, z), w >= 0. Source: S. W. Shepperd, "Quaternion from Rotation Matrix",
-/// J. Guidance and Control 1, 1978: from the largest of the components, so that nothing cancels.
+/// Returns the rotation as a unit quaternion (w, x, y, z) with w >= 0.
+/// The computation starts from the largest component, which avoids cancellation. Source: S. W. Shepperd, "Quaternion
+/// from Rotation Matrix", J. Guidance and Control 1, 1978.
 std::array<double, 4> quaternion_of(const AffineMap& map) {
     const double xx = map.row_x.x;
     const double yy = map.row_y.y;
@@ -44,7 +45,7 @@ std::array<double, 4> quaternion_of(const AffineMap& map) {
     return q;
 }
 
-/// s from the begin of an interval, which may be empty, as a factor of rates.
+/// Returns the reciprocal of a duration in s, or 0 for an empty interval.
 double per_second(double duration) { return duration > 0.0 ? 1.0 / duration : 0.0; }
 
 }  // namespace

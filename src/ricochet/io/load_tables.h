@@ -1,5 +1,5 @@
 /// \file
-/// Tables over time of what particles do to colliders that move, and of how the bodies that they push move.
+/// Tables over time: loads on moving colliders, and the motion of dynamic bodies.
 #pragma once
 
 #include <filesystem>
@@ -10,25 +10,25 @@
 
 namespace ricochet {
 
-/// The rows of colliders.csv and bodies.csv so far, and where the next ones begin; part of a checkpoint.
+/// Rows of colliders.csv and bodies.csv so far, and the start of the next rows; part of a checkpoint.
 struct LoadRows {
     std::string colliders;               ///< lines of text, without the header
-    std::string bodies;                  ///< the same
-    double since = 0.0;                  ///< s, of the last rows
-    std::vector<ColliderTotals> totals;  ///< then
+    std::string bodies;                  ///< lines of text, without the header
+    double since = 0.0;                  ///< time of the last rows, in s
+    std::vector<ColliderTotals> totals;  ///< totals at the time `since`
 };
 
-/// One row a collider and one a body at each output time. Colliders have rows where some of them move, or their
-/// material does: each of those that do.
+/// Builds one row for each collider and each body at every output time. Only colliders that move, or whose material
+/// moves, have rows.
 class LoadTables {
 public:
-    /// rows: of the interrupted run that goes on.
+    /// rows: rows of the interrupted run that continues here.
     explicit LoadTables(std::filesystem::path folder, LoadRows rows = {})
         : folder_(std::move(folder)), rows_(std::move(rows)) {}
 
-    /// At an output time.
+    /// Appends the rows of the current output time.
     void add(const Simulation& simulation);
-    /// Writes the files that have a meaning for this simulation. Throws RunError when the disk does not take them.
+    /// Writes the tables that apply to this simulation. Throws RunError if writing fails.
     void write(const Simulation& simulation) const;
     [[nodiscard]] const LoadRows& rows() const { return rows_; }
 
@@ -37,7 +37,7 @@ private:
     LoadRows rows_;
 };
 
-/// True where the table of colliders has rows of collider i.
+/// Returns true if the table of colliders has rows for collider i.
 [[nodiscard]] bool has_loads(const Simulation& simulation, std::size_t i);
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@ namespace ricochet {
 namespace {
 
 std::string obj_text(const TriangleMesh& mesh) {
-    std::string text = "# What ricochet draws particles as.\n";
+    std::string text = "# Mesh of a drawn particle, written by ricochet.\n";
     for (const Vec3& v : mesh.vertices) {
         fmt::format_to(std::back_inserter(text), "v {:.17g} {:.17g} {:.17g}\n", v.x, v.y, v.z);
     }

@@ -1,6 +1,6 @@
 /// \file
-/// Files of a scene's pictures: what particles are drawn with. A run keeps copies of them beside its run.json, so that
-/// its folder can be drawn wherever it is taken.
+/// Files that a scene's pictures need: sprites and meshes of particles. A run keeps copies beside its run.json, so
+/// that the folder can be drawn on any machine.
 #pragma once
 
 #include <cstddef>
@@ -14,26 +14,28 @@
 
 namespace ricochet {
 
-inline constexpr const char* kParticleSpriteFile = "particle_sprite.png";  ///< what sprites show
-inline constexpr const char* kParticleMeshFile = "particle_mesh.obj";      ///< what particles are copies of
+inline constexpr const char* kParticleSpriteFile = "particle_sprite.png";  ///< image of a sprite
+inline constexpr const char* kParticleMeshFile = "particle_mesh.obj";      ///< mesh of a particle
 
-/// The column that says by which of the scene's drawings a particle is drawn, from 1 on; 0: as all others.
+/// Column that selects the scene's drawing for a particle, counted from 1; 0 selects the default drawing.
 inline constexpr std::string_view kDrawingAttribute = "drawing";
 
-/// Largest PNG file that sprites may have, bytes.
+/// Largest PNG file of a sprite, in bytes.
 inline constexpr std::uint64_t kLargestSpriteFile = std::uint64_t{64} << 20;
 
-/// What keeps a file from being a PNG image by its first bytes; nothing when it is one.
+/// Returns the reason why a file does not start like a PNG image, or nothing if it does.
 /// Source: W3C, "Portable Network Graphics (PNG) Specification", 5.2 and 11.2.2.
 [[nodiscard]] std::optional<std::string> png_problem(const std::filesystem::path& path);
 
-/// Returns true for the names that keep_picture_files() gives the copies of one kind. file: kParticleSpriteFile or
-/// kParticleMeshFile.
+/// Returns true for the names that keep_picture_files() gives to the copies of one kind.
+/// file: kParticleSpriteFile or kParticleMeshFile.
 [[nodiscard]] bool is_picture_file(std::string_view name, const std::filesystem::path& file);
 
-/// Copies the files that the picture names into a run's folder, and names the copies instead. Meshes become OBJ files.
-/// Throws InputError where one cannot be read, RunError where the disk does not take it.
-/// number: of one of the scene's drawings, from 1 on, which is put into the names; 0: of the picture itself.
+/// Copies the files of a drawing into a run's folder and makes the drawing refer to the copies. Meshes become OBJ
+/// files.
+/// number: index of one of the scene's drawings, counted from 1, which becomes part of the names; 0 for the picture
+/// itself.
+/// Throws InputError if a file cannot be read, RunError if writing fails.
 void keep_picture_files(const std::filesystem::path& folder, ParticleDrawingDescription& drawing,
                         std::size_t number = 0);
 

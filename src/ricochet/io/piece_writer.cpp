@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Arrays without values.
+/// Returns the frame's time and its arrays without values.
 VtkPolyData shape_of(const VtkPolyData& frame) {
     VtkPolyData shape;
     shape.time = frame.time;

@@ -1,5 +1,5 @@
 /// \file
-/// What a process of a shared run writes by itself: its piece of each frame, its part of each checkpoint.
+/// Output of one process of a shared run: its piece of each frame and its part of each checkpoint.
 #pragma once
 
 #include <cstddef>
@@ -17,21 +17,21 @@
 
 namespace ricochet {
 
-/// All processes of a run make the same calls. Pieces are written by a thread of their own; what it throws comes with
-/// the next call.
+/// Writes pieces on a thread of its own; the next call rethrows an exception of that thread.
+/// All processes of a run must make the same calls.
 class PieceWriter {
 public:
-    /// ranks: null for one process, which writes the only piece. resumed: the checkpoint that the run goes on from.
+    /// ranks: null for a single process, which writes the only piece. resumed: checkpoint of the run that continues.
     PieceWriter(std::filesystem::path folder, RunInfo info, std::shared_ptr<Ranks> ranks,
                 const std::optional<Checkpoint>& resumed);
 
-    /// Hands the particles that the simulation has here over as a piece of a frame; the one before must be complete().
+    /// Submits the particles of this process as a piece of a frame. The previous frame must be complete().
     void write(const Simulation& simulation);
-    /// Waits until the pieces of all processes are on disk: what the first one is to list. Nothing where that has been
-    /// asked since the last write().
+    /// Waits until the pieces of all processes are on disk. Returns the index that the first process writes. Returns
+    /// nothing if complete() was already called since the last write().
     [[nodiscard]] std::optional<PieceIndex> complete();
-    /// Writes the particles that the simulation has here as a part of a checkpoint, beside the one that was made last,
-    /// which stays whole: the parts of all, on the first process. Several processes only.
+    /// Writes the particles of this process as a part of a checkpoint. The parts of the previous checkpoint stay
+    /// intact. Returns the parts of all processes on the first process. Only for runs with several processes.
     [[nodiscard]] std::vector<CheckpointPart> write_checkpoint_part(const Simulation& simulation);
 
 private:

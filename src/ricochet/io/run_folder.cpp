@@ -21,7 +21,7 @@
 
 namespace ricochet {
 
-// Names of files.
+// File names.
 
 namespace {
 
@@ -39,7 +39,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_plain(char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '_'; }
 
-// The part of the name between prefix and extension; nothing when they do not match.
+// Returns the part of the name between prefix and extension, or nothing if they do not match.
 std::optional<std::string_view> stem_after(std::string_view name, std::string_view prefix,
                                            std::string_view extension = kExtension) {
     if (!name.starts_with(prefix) || !name.ends_with(extension)) return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<std::uint64_t> number(std::string_view text) {
     return value;
 }
 
-// The name without the ending ".PID-N.partial" of a file that was never finished.
+// Removes the ending ".PID-N.partial" of an unfinished file.
 std::string_view without_partial_ending(std::string_view name) {
     constexpr std::string_view kPartial = ".partial";
     if (!name.ends_with(kPartial)) return name;
@@ -75,7 +75,7 @@ bool is_comparison_file(std::string_view name) {
            std::find(kComparisonPictures.begin(), kComparisonPictures.end(), name) != kComparisonPictures.end();
 }
 
-// N_pK.
+// Parses N_pK.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> numbers_of_part(std::optional<std::string_view> stem) {
     const std::size_t mark = stem ? stem->find(kPieceMark) : std::string_view::npos;
     if (mark == std::string_view::npos) return std::nullopt;
@@ -166,7 +166,7 @@ bool is_run_file(std::string_view name) {
            step_of_contact_file(finished) || step_of_moving_file(finished) || index_of_collider_file(finished);
 }
 
-// The folder while a run writes.
+// Lock and marker of the folder while a run writes.
 
 namespace {
 
@@ -198,7 +198,7 @@ int open_marker(const std::filesystem::path& folder) {
     constexpr int kFlags = O_RDWR | O_CLOEXEC | O_NOFOLLOW;
     int descriptor = ::open(marker.c_str(), kFlags);
     if (descriptor < 0 && errno == ENOENT) {
-        // A folder that is not empty may be one that another run has taken this very moment.
+        // The folder may be non-empty because another run has just created its marker, so the marker is opened again.
         descriptor = ::open(marker.c_str(), is_empty_folder(folder) ? kFlags | O_CREAT : kFlags, 0644);
         if (descriptor < 0 && errno == ENOENT) {
             throw InputError(fmt::format(
@@ -212,7 +212,7 @@ int open_marker(const std::filesystem::path& folder) {
 bool holds_other_text(int descriptor) {
     std::array<char, kMarkerText.size()> start{};
     const ssize_t count = ::pread(descriptor, start.data(), start.size(), 0);
-    if (count <= 0) return count < 0;  // an empty marker is one that is being made
+    if (count <= 0) return count < 0;  // another process is still writing an empty marker
     const std::string_view read{start.data(), static_cast<std::size_t>(count)};
     return !kMarkerText.starts_with(read);
 }
@@ -305,7 +305,7 @@ OutputDirectory::~OutputDirectory() { ::close(marker_); }
 void require_own_file(const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::path real = std::filesystem::canonical(file, error);
-    if (error) return;  // whoever opens it says why it cannot
+    if (error) return;  // the caller's attempt to open the file reports the error
     if (!std::filesystem::is_regular_file(real, error)) {
         throw InputError(fmt::format("{}: is not a regular file, expected a file of a run", file.string()));
     }
@@ -317,7 +317,7 @@ void require_own_file(const std::filesystem::path& file) {
 
 namespace {
 
-/// The files that run.json names for pictures, and those with the names of frames and the like.
+/// Checks the picture files that run.json names, and all files found by their names.
 void require_own_files(const std::filesystem::path& path, const RunFolder& folder) {
     std::vector<ParticleDrawingDescription> drawings = folder.info.drawings;
     if (folder.info.picture) drawings.push_back(*folder.info.picture);
@@ -377,7 +377,7 @@ RunFolder open_run_folder(const std::filesystem::path& path) {
 
 bool are_behind(const RunFolder& folder, double time) {
     if (folder.frames.empty() || folder.frames.back().step == 0) return false;
-    // The last step of a run may be cut short.
+    // The last step of a run can be shorter than the time step.
     const auto steps = static_cast<double>(folder.frames.back().step - 1);
     constexpr double kRounding = 1e-9;
     return time < (1.0 - kRounding) * steps * folder.info.time_step;

@@ -38,7 +38,8 @@ StretchDescription stretch_of(const Json& json) {
             json.at("most").get<double>()};
 }
 
-/// A file of a run is one of those that ricochet puts into its folder: run.json may be a stranger's.
+/// Accepts only the names that ricochet itself gives to picture files, because run.json can come from an untrusted
+/// source.
 std::string picture_file_of(const Json& json, const char* key, const char* file) {
     const std::string name = json.value(key, "");
     if (!name.empty() && !is_picture_file(name, file)) {
@@ -152,7 +153,7 @@ RunInfo run_info_of(const Json& json) {
     return info;
 }
 
-// The axis that points most against the uniform forces; z where there are none.
+// Returns the axis most opposed to the uniform forces, or z without such forces.
 Vec3 upward_axis(const SimulationSetup& setup) {
     const Vec3 fall = uniform_acceleration(setup);
     Vec3 up{0, 0, 1};
@@ -216,7 +217,7 @@ RunInfo read_run_info(const std::filesystem::path& path) {
     try {
         return run_info_of(Json::parse(text));
     } catch (const std::bad_alloc&) {
-        throw;  // the file is not to blame
+        throw;  // not a fault of the file
     } catch (const std::exception& error) {
         throw InputError(fmt::format("{}: not the run.json of a ricochet run ({}); run the scene again", path.string(),
                                      error.what()));
@@ -227,7 +228,7 @@ RunInfo read_run_info(const std::filesystem::path& path) {
 
 namespace {
 
-/// Null where surfaces have got no impulse.
+/// Returns null if the surfaces received no impulse.
 Json share_of(const ImpulseSizes& sizes) { return sizes.any() ? Json(sizes.share_of_impacts()) : Json(nullptr); }
 
 Json json_of(const GroupTotals& group) {
@@ -303,7 +304,7 @@ ColliderSummary collider_summary(const Simulation& simulation, std::size_t i, co
     ColliderSummary summary;
     summary.name = collider.name;
     summary.type = type_name(collider.shape);
-    // A plane and a shape with a formula are one surface, and no triangles that anything collides with.
+    // Planes, balls and cylinders are a single surface; their triangles only serve for display.
     const bool is_mesh =
         std::holds_alternative<MeshShape>(collider.shape) || std::holds_alternative<CuboidShape>(collider.shape);
     if (is_mesh) summary.triangles = simulation.collider_mesh(i)->triangles.size();
@@ -380,7 +381,7 @@ std::string summary_text(const RunSummary& summary) {
         json["overlap_verified"] = is_verified ? Json(summary.statistics.overlap_verified) : Json(nullptr);
         json["pair_violations"] = is_verified ? Json(summary.statistics.pair_violations) : Json(nullptr);
     }
-    // Known only to a run that verifies itself.
+    // Only a verified run knows these counts.
     json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);
     json["energy_violations"] = summary.energy_violations ? Json(*summary.energy_violations) : Json(nullptr);
     json["kinetic_energy"] = summary.kinetic_energy;
@@ -392,7 +393,7 @@ std::string summary_text(const RunSummary& summary) {
     json["colliders"] = Json::array();
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
     for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));
-    // Names come from files and may hold bytes that are no UTF-8: they are replaced, never a reason to lose the run.
+    // Names come from files and can contain invalid UTF-8. Such bytes are replaced, so that the summary is never lost.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -19,11 +19,11 @@
 namespace ricochet {
 namespace {
 
-/// Adds its lifetime to a sum of seconds.
+/// Adds its lifetime, in s, to a sum.
 class SecondsTo {
 public:
     explicit SecondsTo(double& sum) : sum_(sum) {}
-    // A clock that is put back meanwhile counts for nothing.
+    // Clamped, so that a clock that runs backwards adds nothing.
     ~SecondsTo() { sum_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - start_).count()); }
     SecondsTo(const SecondsTo&) = delete;
     SecondsTo& operator=(const SecondsTo&) = delete;

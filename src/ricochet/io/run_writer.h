@@ -1,5 +1,5 @@
 /// \file
-/// Everything that a run leaves in its output folder, from its first step to its summary.
+/// Writer of a run's output folder, from the first step to the summary.
 #pragma once
 
 #include <cstdint>
@@ -17,67 +17,74 @@
 
 namespace ricochet {
 
-/// Where particles are at the start, are born, and are kept: what a picture of a scene without meshes should show.
+/// Returns the box of the particles' starts, emitters and bounds. A picture of a scene without meshes should show it.
 [[nodiscard]] Box3 particle_region(const SimulationSetup& setup);
 
-/// Returns the region of the colliders that are not planes, where they are now.
+/// Returns the box of all colliders except planes, at their current positions.
 [[nodiscard]] Box3 collider_region(const Simulation& simulation);
 
-/// Lists the files that a run to be resumed keeps, in place of all that it had: to be called before others are removed.
+/// Writes the series files for a resumed run with only the files that it keeps. Call it before other files are
+/// removed.
 void list_kept_files(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// Fills in what a frame of the run holds: the particles that the simulation has, springs between them, the camera's
-/// place.
+/// Fills a frame of the run with the simulation's particles, the springs between them, and a moving camera.
 void fill_run_frame(VtkPolyData& frame, const RunInfo& info, const Simulation& simulation);
 
-/// A frame whose pieces are on disk, see PieceWriter.
+/// Frame whose pieces are on disk; see PieceWriter.
 struct PieceIndex {
     std::uint64_t step = 0;
     VtkPolyData shape{};               ///< time and arrays, without values
-    std::vector<std::string> files{};  ///< of the pieces
+    std::vector<std::string> files{};  ///< names of the pieces
 };
 
-/// Writes a run: first run.json and the colliders, then frames, at the end the colliders with their totals and the
-/// summary. What is on disk at any moment can be opened, however the run ends. Frames and contact files are written by
-/// a thread of their own; at most two of them are in memory, then the simulation waits. The next call throws what that
-/// thread threw.
+/// Writes a run: first run.json and the colliders, then frames, finally the summary and the colliders with their
+/// totals.
+/// The files on disk can be opened at any moment, however the run ends. A separate thread writes frames and contact
+/// files. At most two of them are in memory; then the simulation waits. The next call rethrows an exception of that
+/// thread.
 class RunWriter {
 public:
-    /// folder: an OutputDirectory's, which must outlive the writer. region: what a plane has to be large enough for,
-    /// besides the meshes. Fills in info.colliders. Throws RunError when the disk does not take it.
-    /// resumed: of the interrupted run that the simulation goes on with. mode: the files are the same in both.
+    /// folder: path of an OutputDirectory, which must outlive the writer.
+    /// region: box that planes must cover, in addition to the meshes.
+    /// resumed: checkpoint of the interrupted run that the simulation continues.
+    /// mode: both modes write the same files.
+    /// Fills in info.colliders. Throws RunError if writing fails.
     RunWriter(std::filesystem::path folder, RunInfo info, const Simulation& simulation, const Box3& region,
               const std::optional<Checkpoint>& resumed = std::nullopt,
               WriterThread::Mode mode = WriterThread::Mode::background);
-    /// Particles are written in pieces, by others: write_frame() leaves them out, and list() lists them.
+    /// Excludes particles from write_frame(), because PieceWriter writes them in pieces. Call list() to write the index
+    /// of such a frame.
     void leave_particles_out() { writes_particles_ = false; }
-    /// Writes the index over a frame's pieces, which are all on disk.
+    /// Writes the index of a frame whose pieces are all on disk.
     void list(const PieceIndex& index);
 
-    /// To be called after every step. Logs its contacts where the simulation records them. Throws like
-    /// ContactLog::add_step(), and what writing an earlier frame threw, so that a run that cannot write ends soon.
+    /// Logs the contacts of a step if the simulation records them. Call it after every step.
+    /// Throws like ContactLog::add_step(). Rethrows the exception of an earlier write, so that a run without disk
+    /// space ends soon.
     void add_step(const Simulation& simulation);
-    /// Hands the present state over as a frame, with the contacts since the one before where the simulation records
-    /// them. Throws what writing an earlier frame threw.
+    /// Submits the current state as a frame, with the contacts since the previous frame if the simulation records
+    /// them. Rethrows the exception of an earlier write.
     void write_frame(const Simulation& simulation);
-    /// Writes a checkpoint of the present state, which must be a frame already (write_frame()), and waits until all
-    /// that it names is on disk. scene: the scene's fingerprint; wall_seconds: spent so far; parts: of the particles,
-    /// where the simulation shows all but them. Throws like write_frame().
+    /// Writes a checkpoint of the current state and waits until all files that it refers to are on disk. The state
+    /// must already be a frame (write_frame()).
+    /// scene: fingerprint of the scene. wall_seconds: time spent so far. parts: files of the particles, if the
+    /// simulation's own state excludes them.
+    /// Throws like write_frame().
     void write_checkpoint(const Simulation& simulation, std::uint64_t scene, double wall_seconds,
                           std::vector<CheckpointPart> parts = {});
-    /// Makes the last checkpoint, if there is one, that from which a finished run can be extended. Throws RunError
-    /// where the system refuses.
+    /// Turns the last checkpoint, if any, into the file from which a finished run can be extended. Throws RunError if
+    /// the system refuses.
     void keep_checkpoint_for_extension() const;
-    /// Writes the present state where it is not yet a frame, waits for all frames, and writes the colliders' totals.
-    /// Returns the summary, without what only the caller knows: version, scene, threads, seconds, interrupted.
+    /// Writes the current state if it is not yet a frame, waits for all frames, and writes the colliders' totals.
+    /// Returns the summary without version, scene, threads, seconds and interrupted, which only the caller knows.
     [[nodiscard]] RunSummary finish(const Simulation& simulation);
-    /// The same for a run that has diverged inside a step: the frames end before it.
+    /// Finishes a run that has diverged inside a step; the frames end before that step.
     [[nodiscard]] RunSummary finish_diverged(const Simulation& simulation, const std::string& message);
     void write_summary(const RunSummary& summary) const;
-    /// s that the simulation's thread has spent in calls of this class, waiting for the disk included; a resumed run
-    /// counts on.
+    /// Returns the time, in s, that the simulation's thread has spent in this class, including waits for the disk. A
+    /// resumed run continues the count.
     [[nodiscard]] double output_seconds() const { return output_seconds_; }
-    /// What it has spent on output beside this class.
+    /// Adds time, in s, spent on output outside of this class.
     void add_output_seconds(double seconds) { output_seconds_ += seconds; }
 
 private:
@@ -94,7 +101,7 @@ private:
     FrameWriter frames_;
     std::optional<ContactLog> contacts_;
     LoadTables loads_;
-    std::optional<FrameWriter> moving_;  ///< of the colliders that move, where some do
+    std::optional<FrameWriter> moving_;  ///< writer of the moving colliders; empty if none move
 };
 
 }  // namespace ricochet

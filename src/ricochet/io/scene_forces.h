@@ -1,5 +1,5 @@
 /// \file
-/// Which forces a scene names: for states that are to go on under the same ones.
+/// Fingerprint of a scene's forces, for states that continue under the same forces.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace ricochet {
 
-/// A hash of the values of "forces", "particle_forces" and "flows" as they stand in a scene after the overrides,
-/// without what is in files that they name; an empty list counts as none. Throws InputError for a text that
-/// parse_scene() refuses for its syntax.
+/// Returns a hash of the values of "forces", "particle_forces" and "flows" in a scene after the overrides. The hash
+/// excludes the contents of files; an empty list equals a missing one.
+/// Throws InputError if parse_scene() refuses the syntax of the text.
 [[nodiscard]] std::uint64_t forces_fingerprint(std::string_view text, const std::vector<std::string>& overrides);
 
 }  // namespace ricochet

@@ -22,28 +22,28 @@
 namespace ricochet {
 namespace {
 
-/// Explicit particles that are looked at.
+/// Largest number of explicit particles that are tested.
 constexpr std::size_t kMostExplicit = 2000;
 
-/// Triangles times starts that are looked at where every triangle counts for every start.
+/// Largest product of triangles and starts for winding numbers, whose cost is proportional to it.
 constexpr double kMostSolidAngles = 2e7;
 
-/// Part of a mesh's size above which an opening is a mouth, which is meant; below, what is closed otherwise leaks.
+/// Size of an opening, relative to the mesh, above which it is an intended mouth. Smaller openings make the mesh leak.
 constexpr double kMouth = 0.25;
 
-/// Part of a mesh's size up to which an opening's width makes it a seam between parts, which nothing is poured through.
+/// Width of an opening, relative to the mesh, up to which it is a seam between parts that passes no particles.
 constexpr double kCrack = 1e-3;
 
-/// Part of the edges' mean length that kCandidateSlack may measure. Beyond it a contact looks at more triangles than
-/// can be hit: at a tenth it costs 1.6 times as much, at a fifth 2.8 times.
+/// Largest product of kCandidateSlack and the largest coordinate, relative to the mean edge length. Beyond it, a
+/// contact tests more triangles than it can hit. A tenth costs 1.6 times as much, a fifth 2.8 times.
 constexpr double kMostSlack = 0.1;
 
-/// Particles that begin for one reason, some of them.
+/// Sample of the particles of one emitter, or of the explicit particles.
 struct Starts {
     std::string where;
     std::vector<Particle> particles;
-    double largest_radius = 0.0;    ///< m, of all
-    std::uint64_t overlapping = 0;  ///< of an emitter: draws besides them that would be refused
+    double largest_radius = 0.0;    ///< largest radius of all particles, in m
+    std::uint64_t overlapping = 0;  ///< number of an emitter's other samples, which overlap a surface
 };
 
 Starts explicit_starts(const Simulation& simulation) {
@@ -55,11 +55,11 @@ Starts explicit_starts(const Simulation& simulation) {
     return starts;
 }
 
-/// A collider by itself, in the coordinates of the frame that it stands in.
+/// A single collider, in the coordinates of its reference frame.
 struct Solid {
     Solid(const Simulation& simulation, std::size_t i) : number(i), queries({in_its_frame(simulation, i)}) {}
 
-    /// With the mesh that the simulation has taken over.
+    /// Returns the collider with the mesh as stored in the simulation.
     static ColliderDescription in_its_frame(const Simulation& simulation, std::size_t i) {
         ColliderDescription collider = simulation.colliders()[i];
         collider.frame.clear();
@@ -73,7 +73,7 @@ struct Solid {
     CollisionQueries queries;
 };
 
-/// Those that move: the simulation's own queries know only what is at rest.
+/// Returns the moving colliders, because the simulation's own queries cover only static ones.
 std::vector<Solid> moving_solids(const Simulation& simulation) {
     std::vector<Solid> solids;
     for (std::size_t i = 0; i < simulation.colliders().size(); ++i) {
@@ -82,7 +82,7 @@ std::vector<Solid> moving_solids(const Simulation& simulation) {
     return solids;
 }
 
-/// Where a particle begins in the frame of a collider.
+/// Returns a particle's start position in the collider's reference frame.
 Vec3 start_in(const Simulation& simulation, std::size_t collider, const Particle& particle) {
     return simulation.collider_pose(collider, particle.birth_time).image(particle.position);
 }
@@ -120,7 +120,7 @@ struct OpenMesh {
     std::string where;
     TriangleMesh mesh;
     Box3 box;
-    std::vector<MeshOpening> openings;  ///< the largest first
+    std::vector<MeshOpening> openings;  ///< largest first
 };
 
 class SceneReview {
@@ -173,7 +173,7 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// Returns the box of all colliders but planes, as they stand in their frames.
+/// Returns the box of all colliders except planes, in the coordinates of their reference frames.
 Box3 SceneReview::surfaces() const {
     Box3 box;
     for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
@@ -184,7 +184,7 @@ Box3 SceneReview::surfaces() const {
     return box;
 }
 
-/// Returns the box of all starts and colliders. A plane counts by its point.
+/// Returns the box of all starts and colliders; a plane contributes its point.
 Box3 SceneReview::extent() const {
     Box3 box = surfaces();
     for (const Starts& starts : starts_) {
@@ -199,7 +199,7 @@ Box3 SceneReview::extent() const {
     return box;
 }
 
-/// Scenes without colliders are common: only what needs them is told.
+/// Scenes without colliders are common, so only settings that need a collider cause a warning.
 void SceneReview::review_surfaces() {
     if (!simulation_.colliders().empty() || starts_.empty()) return;
     const std::string advice = "add colliders, or leave it out";
@@ -260,7 +260,7 @@ void SceneReview::review_area(const TriangleMesh& mesh, const std::string& where
                     mesh.triangles.size()));
 }
 
-/// Open meshes have no inside that an overlap could be missing from.
+/// Open meshes are skipped, because they have no interior.
 void SceneReview::review_shells(const TriangleMesh& mesh, const std::string& where) {
     if (!is_closed(mesh) || !shells_overlap(mesh)) return;
     lines_.push_back(where +
@@ -276,7 +276,7 @@ void SceneReview::review_emitted_volumes() {
     }
 }
 
-/// What coordinates far from the origin leave of small triangles.
+/// Warns if coordinates far from the origin are too coarse for small triangles.
 void SceneReview::review_precision(const TriangleMesh& mesh, const std::string& where) {
     double largest = 0.0;
     for (const Vec3& vertex : mesh.vertices) largest = std::max(largest, max_abs(vertex));
@@ -307,7 +307,7 @@ void SceneReview::review_sides(const Starts& starts, const Solid& solid, const s
                     starts.where, inside, starts.particles.size(), where));
 }
 
-/// Of what is closed but for small holes, so that its maker may think it closed.
+/// Reviews meshes that are closed except for small holes, because the author may think that they are closed.
 void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
     if (starts.particles.empty() || open.openings[0].diameter > kMouth * open.box.diagonal()) return;
     const double affordable = kMostSolidAngles / static_cast<double>(open.mesh.triangles.size());
@@ -320,7 +320,7 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
         if (!open.box.contains(position)) continue;
         inside += std::fabs(winding_number(open.mesh, position)) > 0.5 ? 1 : 0;
     }
-    if (2 * inside < looked_at) return;  // a container holds most of them
+    if (2 * inside < looked_at) return;  // most starts are outside, so the mesh is not meant as a container
     lines_.push_back(
         fmt::format("{}: {} of {} begin inside {}, which is open: {} {}, the largest {:.3g} m across, let "
                     "them out; close the mesh (`ricochet info` tells more) if that is not meant",
@@ -328,7 +328,7 @@ void SceneReview::review_leaks(const Starts& starts, const OpenMesh& open) {
                     open.openings.size() == 1 ? "hole" : "holes", open.openings[0].diameter));
 }
 
-/// Of what has a mouth and an outlet, such as a funnel.
+/// Reviews meshes with a mouth and an outlet, such as a funnel.
 void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
     if (open.openings.size() < 2 || open.openings[0].diameter < kMouth * open.box.diagonal()) return;
     double narrowest = open.openings[0].width;
@@ -345,7 +345,7 @@ void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
                     starts.where, 2.0 * starts.largest_radius, open.where, narrowest));
 }
 
-/// True when it begins in the box, or above it as things fall.
+/// Returns true if the particle begins in the box of the mesh or falls into it.
 bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const {
     const Box3& box = open.box;
     const MovingPose pose = simulation_.collider_pose(open.number, particle.birth_time);
@@ -368,9 +368,9 @@ bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const
     return begin <= end && fall != Vec3{};
 }
 
-/// Explicit particles in overlap are told by the simulation itself.
+/// Reviews emitters only, because the simulation itself reports overlapping explicit particles.
 void SceneReview::review_positions(const Starts& starts) {
-    // Where one position in twenty is free, one birth in thirty finds none.
+    // If 5 % of the positions are free, one birth in thirty finds no free position.
     if (20 * starts.overlapping < 19 * kDrawnStarts) return;
     lines_.push_back(
         fmt::format("{}: {} of {} positions that were tried overlap a surface: births there are refused; "

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Restitution from which on spheres are meant to keep their energy.
+/// Smallest restitution of spheres that are meant to keep their energy.
 constexpr double kNearlyElastic = 0.9;
 
 }  // namespace
@@ -21,7 +21,7 @@ std::vector<std::string> pair_method_warnings(const Simulation& simulation, cons
     std::vector<std::string> lines;
     if (!pairs) return lines;
     double least = pairs->restitution;
-    double most = pairs->restitution < 1.0 ? pairs->restitution : 0.0;  // of those that lose energy
+    double most = pairs->restitution < 1.0 ? pairs->restitution : 0.0;  // largest restitution below 1
     for (const MaterialPair& pair : pairs->pairs) {
         const double restitution = pair.material.restitution;
         least = std::min(least, restitution);
@@ -29,14 +29,13 @@ std::vector<std::string> pair_method_warnings(const Simulation& simulation, cons
     }
     if (pairs->method == PairMethod::events && fall != Vec3{} && least < 1.0) {
         lines.emplace_back(
-            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, spend "
-            "their impacts of each step and stand still in the air; use auto");
+            "particle_contacts.method: events: spheres that come to rest on each other under gravity rattle, use up "
+            "the impacts of each step and stop in the air; use auto");
     }
     if (pairs->method == PairMethod::contacts && most >= kNearlyElastic) {
         lines.push_back(
-            fmt::format("particle_contacts.method: contacts: impacts that follow each other in a step are one, which "
-                        "loses energy in a gas and shares out that of a cradle, whatever the restitution of {:g}; use "
-                        "auto or events",
+            fmt::format("particle_contacts.method: contacts: successive impacts in a step count as one: a gas loses "
+                        "energy and a Newton's cradle spreads it, whatever the restitution of {:g}; use auto or events",
                         most));
     }
     return lines;
@@ -48,9 +47,8 @@ std::optional<std::string> long_step_warning(const SimulationOptions& options, c
     const double size = scene.empty() ? 0.0 : scene.diagonal();
     if (options.flow || !(size > 0.0) || !(way > size)) return std::nullopt;
     return fmt::format(
-        "simulation.time_step: in one step of {:.3g} s what falls from rest falls {:.3g} m, and all of the scene is "
-        "{:.3g} "
-        "m: times are in s, lengths in m; use a step of {:.1g} s, in which it falls a hundredth of that, or less",
+        "simulation.time_step: in one step of {:.3g} s, a free fall from rest covers {:.3g} m, and the whole scene is "
+        "{:.3g} m: times are in s, lengths in m; use a step of {:.1g} s or less, in which it covers a hundredth of it",
         step, way, size, 0.1 * std::sqrt(2.0 * size / length(fall)));
 }
 

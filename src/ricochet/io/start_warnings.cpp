@@ -17,14 +17,14 @@
 namespace ricochet {
 namespace {
 
-/// Units in the last place of the coordinates that a radius should measure: contact keeps 16 of them.
+/// Smallest plausible radius, in units in the last place of the coordinates; contacts keep a gap of 16 such units.
 constexpr double kLeastRadiusUlps = 1e3;
 
-/// Largest plausible distance between starts and colliders, in diagonals of the colliders' box. Rain on one house of a
-/// landscape stays far below.
+/// Largest plausible distance between starts and colliders, in diagonals of the colliders' box. Rain on a single house
+/// of a landscape stays far below this limit.
 constexpr double kFarStarts = 100.0;
 
-/// Axis and distance, m, by which a point lies outside a box.
+/// Axis and distance, in m, of a point outside a box.
 struct Beyond {
     int axis = 0;
     double distance = 0.0;
@@ -39,7 +39,7 @@ Beyond beyond(const Box3& box, const Vec3& p) {
     return farthest;
 }
 
-/// Starts outside the bounds.
+/// Counts of starts outside the bounds.
 class OutsideStarts {
 public:
     explicit OutsideStarts(const Box3& bounds) : bounds_(bounds) {}
@@ -52,7 +52,7 @@ public:
         if (by.distance > farthest_.distance) farthest_ = by;
     }
 
-    /// Returns nothing where there are none.
+    /// Returns nothing if all starts are inside.
     [[nodiscard]] std::optional<std::string> warning(const std::string& where) const {
         if (outside_ == 0) return std::nullopt;
         return fmt::format(
@@ -68,7 +68,7 @@ private:
     Beyond farthest_;
 };
 
-/// Shapes in a frame are placed by drawing.
+/// Shapes in a reference frame need sampling.
 bool is_surely_inside(const EmitterDescription& emitter, const Box3& box) {
     if (emitter.frames) return false;
     const Box3 shape = bounds(emitter.shape);

@@ -1,4 +1,4 @@
-// The final state as text.
+// Writes the final state as a table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::string attribute_names(const AttributeTable& attributes) {
     return names;
 }
 
-/// The lifetime is what is left of it, as a particle that starts here would have it; inf is for ever.
+/// Appends the spin and the remaining lifetime, in s, so that a new run can start from the table; inf means unlimited.
 void append_spin_and_lifetime(const Particles& particles, std::size_t i, double time, std::string& text) {
     const Vec3& spin = particles.spin[i];
     const double left = std::max(0.0, particles.birth_time[i] + particles.lifetime[i] - time);

@@ -23,7 +23,7 @@ inline constexpr const char* kGroupNames = "group_names";
 inline constexpr const char* kMaterialNames = "material_names";
 inline constexpr const char* kNote = "note";
 
-/// The name of a material without one, which colliders get that name none.
+/// Name of materials without a name; colliders that name no material use it.
 inline constexpr const char* kDefaultMaterial = "default";
 
 /// Totals of the triangles of one group.
@@ -32,17 +32,17 @@ struct GroupTotals {
     std::uint64_t triangles = 0;
     std::uint64_t hits = 0;
     Vec3 impulse;          ///< N s
-    Vec3 lasting_impulse;  ///< N s, the part of it that no hit gave
+    Vec3 lasting_impulse;  ///< N s, part of it that is not due to impacts
 };
 
-/// Returns the totals of each group, in the order of the names, summed in the order of the triangles. Empty where the
-/// mesh has no groups, or the simulation keeps no totals.
+/// Returns the totals of each group, in the order of the names, summed in the order of the triangles. Returns nothing
+/// if the mesh has no groups or the simulation records no totals.
 [[nodiscard]] std::vector<GroupTotals> totals_by_group(const TriangleGroups& groups, const TriangleTotals& totals);
 
-/// Impulses on surfaces, by where they come from: the sum over triangles of the size of each triangle's total, N s.
+/// Impulses on surfaces by origin, in N s: sums over triangles of the magnitude of each triangle's total.
 struct ImpulseSizes {
     double of_impacts = 0.0;
-    double lasting = 0.0;  ///< no hit gave it
+    double lasting = 0.0;  ///< not due to impacts
 
     void add(const Vec3& impulse, const Vec3& lasting_impulse) {
         of_impacts += length(impulse - lasting_impulse);
@@ -50,14 +50,15 @@ struct ImpulseSizes {
     }
     void add(const TriangleTotals& totals);
     void add(const ImpulseSizes& other) { of_impacts += other.of_impacts, lasting += other.lasting; }
-    /// True where surfaces have got any impulse.
+    /// Returns true if surfaces received any impulse.
     [[nodiscard]] bool any() const { return of_impacts + lasting > 0.0; }
-    /// The part that impacts gave, 0 to 1; only where any().
+    /// Returns the share of impacts, from 0 to 1. Requires any().
     [[nodiscard]] double share_of_impacts() const { return of_impacts / (of_impacts + lasting); }
 };
 
-/// Adds the number of the group and of the material of each triangle to a collider's file, with their names as texts.
-/// A mesh without groups gets no groups. Adds a note where the totals hold lasting contact, which hits leave out.
+/// Adds the group number and the material number of each triangle to a collider's file, with their names as texts.
+/// A mesh without groups gets no groups. A note is added if the totals include lasting contact, which hits do not
+/// count.
 void add_surfaces(VtkPolyData& frame, const ColliderDescription& collider, std::span<const Material> materials,
                   const TriangleGroups& groups, const TriangleTotals& totals);
 

@@ -25,7 +25,7 @@ using detail::VtkSource;
 using detail::XmlTag;
 using detail::XmlTags;
 
-// One array as its tag says it.
+// Tag of one array.
 struct ArrayTag {
     std::string section;
     std::string name;
@@ -33,7 +33,7 @@ struct ArrayTag {
     XmlTag tag;
 };
 
-// The next number of a text; nothing at its end or where there is none.
+// Parses the next number of a text. Returns nothing at the end or if the text is not a number.
 template <typename T>
 std::optional<T> next_number(std::string_view& text) {
     text.remove_prefix(std::min(text.size(), text.find_first_not_of(" \t\r\n")));
@@ -52,8 +52,8 @@ int base64_digit(char c) {
     return c == '/' ? 63 : -1;
 }
 
-// The first `wanted` bytes of a base64 text, or what there is up to its end. Padding may stand inside: some writers
-// encode the size and the data one after the other.
+// Decodes the first `wanted` bytes of a base64 text, or less if the text ends. Padding may occur inside the text,
+// because some writers encode size and data separately.
 std::string base64_bytes(std::string_view text, std::uint64_t wanted) {
     std::string bytes;
     std::uint32_t bits = 0;
@@ -84,7 +84,7 @@ public:
         XmlTags tags(source_, bytes_);
         while (const std::optional<XmlTag> tag = tags.next()) {
             take(*tag);
-            if (tag->name == "AppendedData") break;  // what follows is no text
+            if (tag->name == "AppendedData") break;  // the rest of the file may be binary
         }
         if (!has_piece_) source_.refuse("no <Piece>");
         const ArrayTag& array = chosen(name);
@@ -187,7 +187,7 @@ private:
     }
 
     std::array<std::int64_t, 6> extent_of(const XmlTag& tag, std::string_view name) const {
-        // As 32 bits, so that differences do not overflow.
+        // Parsed as 32 bits, so that differences in 64 bits do not overflow.
         const std::vector<std::int32_t> numbers = numbers_of<std::int32_t>(tag, name, 6);
         std::array<std::int64_t, 6> extent{};
         std::copy(numbers.begin(), numbers.end(), extent.begin());
@@ -220,7 +220,7 @@ private:
         expect(array.tag, "type", {"Float32", "Float64"});
         expect(array.tag, "format", {"ascii", "binary", "appended"});
         const std::string& format = attribute_of(source_, array.tag, "format");
-        // The values, and twice the bytes that they are made from.
+        // Memory for the values, and for two copies of their bytes.
         require_memory(3.0 * static_cast<double>(points_) * sizeof(Vec3), source_.path.string());
         std::vector<Vec3> values = format == "ascii" ? ascii_values(array)
                                    : attribute_of(source_, array.tag, "type") == "Float32"
@@ -266,7 +266,7 @@ private:
         return values;
     }
 
-    // The data of an array without the size that stands before them.
+    // Returns the data of an array without the preceding size.
     std::string block_of(const ArrayTag& array, std::uint64_t expected) const {
         const bool appended = attribute_of(source_, array.tag, "format") == "appended";
         std::string_view text = array.tag.text;
@@ -297,7 +297,7 @@ private:
     std::vector<ArrayTag> arrays_;
     std::array<std::int64_t, 6> whole_{};
     std::string section_;
-    std::string_view appended_;  // after the underscore
+    std::string_view appended_;  // begins after the underscore
     std::size_t size_bytes_ = 4;
     std::uint64_t points_ = 1;
     bool appended_raw_ = false;

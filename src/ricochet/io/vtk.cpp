@@ -17,7 +17,8 @@
 namespace ricochet {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the files are written as the memory stands: little endian");
+static_assert(std::endian::native == std::endian::little,
+              "the files are little endian and are written without conversion");
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 
 template <typename T>
@@ -60,7 +61,7 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
-// Lays out the header text and remembers which bytes follow it.
+// Builds the header text and records the data blocks that follow it.
 class Layout {
 public:
     void text(std::string_view line) { header_ += line; }
@@ -79,7 +80,8 @@ public:
               std::holds_alternative<std::vector<Vec3>>(array.values) ? 3 : 1, bytes_of(array.values));
     }
 
-    /// Texts end with a byte 0 each. Source of the format: vtkXMLDataReader, which reads them from appended data.
+    /// Appends texts that end with a zero byte each. Source of the format: vtkXMLDataReader, which reads them from
+    /// appended data.
     void texts(const VtkTexts& list) {
         std::string& bytes = own_bytes_.emplace_back();
         for (const std::string& value : list.values) (bytes += value.substr(0, value.find('\0'))) += '\0';
@@ -105,18 +107,18 @@ public:
 
 private:
     std::string header_;
-    std::deque<std::string> own_bytes_;  // of blocks that are not in the data; they stay where they are
+    std::deque<std::string> own_bytes_;  // bytes of text blocks; a deque, so that addresses stay valid
     std::vector<std::string_view> blocks_;
     std::uint64_t offset_ = 0;
 };
 
-// Connectivity and offsets of the cells of one kind.
+// Connectivity and offsets of cells of one kind.
 template <typename Index>
 struct CellList {
     std::vector<Index> corners, offsets;
 };
 
-// The cells of all kinds, kept alive until they are written.
+// Cells of all kinds, stored until they are written.
 template <typename Index>
 struct CellLists {
     CellList<Index> verts, lines, polys;

@@ -26,7 +26,7 @@ detail::VtkSource source_of(const std::filesystem::path& path) {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) { source_of(path).refuse(what); }
 
-// The bytes of a regular file, by position.
+// Random access to the bytes of a regular file.
 class FileBytes {
 public:
     explicit FileBytes(const std::filesystem::path& path) : path_(path) {
@@ -57,12 +57,12 @@ private:
     std::unique_ptr<std::FILE, Close> file_;
 };
 
-// Where one array is in the file, as the header says it.
+// Position and type of one array, from the header.
 struct ArrayHeader {
     std::string section;
     std::string type;
     std::string name;
-    std::uint64_t components = 1;  ///< of texts: how many there are
+    std::uint64_t components = 1;  ///< number of texts, if the array is a list of texts
     std::uint64_t offset = 0;
 };
 
@@ -72,7 +72,7 @@ struct Header {
     std::vector<VtkField> fields;
     std::vector<ArrayHeader> arrays;
     std::vector<ArrayHeader> texts;
-    std::uint64_t data_start = 0;  // first byte after the underscore
+    std::uint64_t data_start = 0;  // position of the first byte after the underscore
 };
 
 class HeaderParser {
@@ -190,7 +190,7 @@ Header read_header(const std::filesystem::path& path, FileBytes& file) {
     return header;
 }
 
-// Reads the blocks that a header announces.
+// Reads the data blocks that the header describes.
 class BlockReader {
 public:
     BlockReader(std::filesystem::path path, FileBytes& file, std::uint64_t data_start)
@@ -237,7 +237,7 @@ public:
         refuse(path_, fmt::format("array {} has type {} and {} components", array.name, array.type, array.components));
     }
 
-    /// Integers that name points or ends of cells.
+    /// Returns integers that are indices of points or ends of cells.
     std::vector<std::int64_t> indices(const ArrayHeader& array, std::uint64_t count) {
         if (array.type == "Int64") return read<std::int64_t>(array, count);
         if (array.type != "Int32") refuse(path_, fmt::format("{} has type {}", array.name, array.type));
@@ -246,7 +246,7 @@ public:
     }
 
 private:
-    // Of a block, as it says itself.
+    // Returns the size of a block, in bytes, from the number at its start.
     std::uint64_t size_of(const ArrayHeader& array) {
         std::uint64_t bytes = 0;
         if (array.offset > file_.size()) refuse(path_, fmt::format("array {} starts past the end", array.name));
@@ -254,7 +254,7 @@ private:
         return bytes;
     }
 
-    // Refuses a block that the file does not hold, before there is memory for it.
+    // Throws if the file is too short for a block, before memory is allocated.
     void take(const ArrayHeader& array, std::uint64_t bytes) {
         const std::uint64_t position = data_start_ + array.offset;
         if (bytes > file_.size() - position - sizeof bytes) {
@@ -267,7 +267,7 @@ private:
     std::filesystem::path path_;
     FileBytes& file_;
     std::uint64_t data_start_;
-    std::uint64_t read_ = 0;  // bytes of all arrays so far: what many of them share would fill memory many times
+    std::uint64_t read_ = 0;  // bytes of all arrays so far; limited, because overlapping arrays could fill memory
 };
 
 const ArrayHeader& only_array(const std::filesystem::path& path, const Header& header, std::string_view section,
@@ -279,7 +279,7 @@ const ArrayHeader& only_array(const std::filesystem::path& path, const Header& h
     return *found;
 }
 
-// Cells of one kind that all have the same number of corners.
+// Returns cells that all have the same number of corners.
 template <std::size_t kCorners>
 std::vector<std::array<std::uint32_t, kCorners>> read_cells(const std::filesystem::path& path, const Header& header,
                                                             BlockReader& blocks, const char* section,

@@ -1,5 +1,5 @@
 /// \file
-/// Tags of VTK's XML files, as far as their readers need them.
+/// Parser for the tags of VTK's XML files, limited to the needs of their readers.
 #pragma once
 
 #include <cstddef>
@@ -12,30 +12,30 @@
 
 namespace ricochet::detail {
 
-/// Whose file it is, for messages.
+/// File to be read, for error messages.
 struct VtkSource {
     std::filesystem::path path;
-    std::string_view expected;  ///< `expected a .vtp file ...`
+    std::string_view expected;  ///< such as `expected a .vtp file ...`
 
-    /// Throws InputError: `PATH: WHAT; EXPECTED`.
+    /// Throws InputError with the message `PATH: WHAT; EXPECTED`.
     [[noreturn]] void refuse(const std::string& what) const;
 };
 
 struct XmlTag {
-    std::string name;  ///< with a leading slash when it closes
+    std::string name;  ///< with a leading slash if it is a closing tag
     std::map<std::string, std::string, std::less<>> attributes;
-    bool closed = false;    ///< <name/>
-    std::string_view text;  ///< between this tag and the next
-    std::size_t begin = 0;  ///< where the tag begins in the text, bytes
-    std::size_t end = 0;    ///< the byte after it
+    bool closed = false;    ///< true for <name/>
+    std::string_view text;  ///< text between this tag and the next
+    std::size_t begin = 0;  ///< position of the tag in the text, in bytes
+    std::size_t end = 0;    ///< position of the byte after the tag
 };
 
-/// Cuts a text into tags. The text must outlive it and its tags.
+/// Splits a text into tags. The text must outlive the object and its tags.
 class XmlTags {
 public:
     XmlTags(VtkSource source, std::string_view text) : source_(std::move(source)), text_(text) {}
 
-    /// The next tag; nothing at the end. Comments are left out.
+    /// Returns the next tag, or nothing at the end. Comments are skipped.
     [[nodiscard]] std::optional<XmlTag> next();
 
 private:
@@ -46,9 +46,9 @@ private:
     std::size_t at_ = 0;
 };
 
-/// The attribute of a tag that must have it.
+/// Returns an attribute. Throws if the tag does not have it.
 [[nodiscard]] const std::string& attribute_of(const VtkSource& source, const XmlTag& tag, std::string_view name);
-/// The same as a whole number >= 0.
+/// Returns an attribute as a whole number >= 0. Throws if the tag does not have it.
 [[nodiscard]] std::uint64_t count_of(const VtkSource& source, const XmlTag& tag, std::string_view name);
 
 }  // namespace ricochet::detail

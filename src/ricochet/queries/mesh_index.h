@@ -1,5 +1,6 @@
 /// \file
-/// Private: a mesh with what its questions need. What only some of them need is made when the first of them is asked.
+/// Private: a mesh with the data structures that its queries need. Structures for only some queries are built on first
+/// use.
 #pragma once
 
 #include <cstdint>
@@ -19,15 +20,15 @@
 
 namespace ricochet {
 
-/// Questions are answered in blocks of so many.
+/// Number of queries per block of parallel work.
 inline constexpr std::size_t kQuestionBlock = 256;
 
-/// Safe from any number of threads.
+/// Mesh with its data structures. Safe from any number of threads.
 class MeshIndex {
 public:
-    /// Throws as MeshQueries does.
+    /// Throws like MeshQueries.
     explicit MeshIndex(TriangleMesh mesh);
-    /// The same triangles elsewhere, the hierarchy's shape kept.
+    /// Takes the triangles of another index with new vertices, and keeps the shape of its hierarchy.
     MeshIndex(const MeshIndex& other, std::span<const Vec3> vertices);
 
     struct Corners {
@@ -39,13 +40,13 @@ public:
         const Triangle& t = mesh_->triangles[triangle];
         return {mesh_->vertices[t[0]], mesh_->vertices[t[1]], mesh_->vertices[t[2]]};
     }
-    /// True for triangles without area.
+    /// Returns true for triangles without area.
     [[nodiscard]] bool is_degenerate(std::uint32_t triangle) const {
         return !degenerate_.empty() && degenerate_[triangle] != 0;
     }
     [[nodiscard]] const TriangleMesh& mesh() const { return *mesh_; }
     [[nodiscard]] const Box3& box() const { return box_; }
-    /// For spheres up to that radius, m; there is one for each power of two.
+    /// Returns the hierarchy for spheres up to a radius, in m. There is one for each power of two.
     [[nodiscard]] const TriangleBvh& hierarchy(double radius = 0.0) const;
     [[nodiscard]] bool is_closed() const;
     /// Throws InputError if the mesh is open, or if the rule needs a consistent winding and there is none.
@@ -56,18 +57,18 @@ private:
     void finish();
 
     std::shared_ptr<const TriangleMesh> mesh_;
-    std::vector<std::uint8_t> degenerate_;  ///< empty where none is
+    std::vector<std::uint8_t> degenerate_;  ///< empty if there are none
     Box3 box_;
     TriangleBvh::Clusters clusters_;
     std::unique_ptr<TriangleBvh> for_points_;
     mutable std::mutex making_;
-    mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the radius' exponent
+    mutable std::map<int, std::unique_ptr<TriangleBvh>> for_spheres_;  ///< by the exponent of the radius
     mutable std::optional<ClosedSurface> closed_;
     mutable std::unique_ptr<MeshInterior> interior_;
     mutable std::optional<std::vector<BoundaryEdge>> boundary_;
 };
 
-/// Throws InputError "name[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.
+/// Throws InputError "NAME[i]: found ..., expected ..." for the first point that is not finite or beyond 1e75.
 void require_positions(std::span<const Vec3> points, const char* name);
 
 }  // namespace ricochet

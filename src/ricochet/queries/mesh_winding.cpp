@@ -17,20 +17,21 @@
 namespace ricochet {
 namespace {
 
-/// Directions of rays, against which half-strips go. They have few bits, and lie in no plane of symmetry of a grid.
+/// Directions of rays, against which the half-strips extend. They have few bits, and lie in no plane of symmetry of a
+/// grid.
 constexpr std::array<Vec3, 3> kDirections{
     {{0.4375, 0.6171875, 1.0}, {-0.8046875, 1.0, 0.3671875}, {1.0, -0.5703125, -0.7421875}}};
 
-/// Rounding of a determinant of two differences of points and a direction, as a part of the product of their lengths:
-/// some 2^-50, with room to spare.
+/// Rounding of a determinant of two differences of points and a direction, relative to the product of their lengths:
+/// some 2^-50, with a margin.
 constexpr double kDeterminantRounding = 0x1p-47;
 
 /// Sine and cosine of a half angle, times a length of some 1, below which rounding would lose more than some 2^-30 of
-/// the angle: where the ray passes so near to a vertex of the boundary.
+/// the angle. This happens if the ray passes very near to a vertex of the boundary.
 constexpr double kSmallestSine = 0x1p-20;
 
-/// All directed edges, sorted by their ends: the smaller number in the upper half of the key. index: 1 if the edge goes
-/// from the smaller to the larger number. Edges between equal positions are left out.
+/// Returns all directed edges, sorted by their ends, with the smaller number in the upper half of the key. index: 1 if
+/// the edge goes from the smaller to the larger number. Edges between equal positions are omitted.
 std::vector<KeyedIndex> directed_edges(const TriangleMesh& mesh, std::vector<Vec3>& positions) {
     VertexWelder welder(positions);
     welder.reserve(mesh.vertices.size());
@@ -50,9 +51,9 @@ std::vector<KeyedIndex> directed_edges(const TriangleMesh& mesh, std::vector<Vec
     return edges;
 }
 
-/// Returns half the solid angle of the half-strip from an edge, seen from the ray's origin, positive where the edge
-/// turns to the left about the ray; nothing if the ray passes too near to one of its ends. The formula is that of A.
-/// van Oosterom and J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30, 1983.
+/// Returns half the solid angle of the half-strip from an edge, seen from the ray's origin. It is positive if the edge
+/// turns to the left about the ray. Returns nothing if the ray passes too near to one of its ends. Formula: A. van
+/// Oosterom and J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30, 1983.
 std::optional<double> half_angle(const BoundaryEdge& edge, const Ray& ray) {
     const Vec3 a = edge.from - ray.origin;
     const Vec3 b = edge.to - ray.origin;
@@ -107,7 +108,7 @@ double winding_number(const MeshIndex& mesh, const Vec3& point) {
     for (const Vec3& direction : kDirections) {
         if (const auto number = winding_number(mesh, Ray(point, direction))) return *number;
     }
-    return winding_number(mesh.mesh(), point);  // triangle by triangle
+    return winding_number(mesh.mesh(), point);  // fallback: sum over all triangles
 }
 
 }  // namespace ricochet

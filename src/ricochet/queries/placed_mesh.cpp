@@ -11,10 +11,10 @@
 namespace ricochet {
 namespace {
 
-/// Part of the scale by which a similarity's columns may differ from it, as PlacedMesh says.
+/// Largest relative deviation of a similarity's columns from its scale, see PlacedMesh.
 constexpr double kSimilarity = 1e-9;
 
-/// Returns the scale of a similarity, or 0 if the map is none.
+/// Returns the scale of a similarity, or 0 for any other map.
 double scale_of(const AffineMap& map) {
     const double volume = std::fabs(map.determinant());
     const double scale = std::cbrt(volume);
@@ -36,7 +36,7 @@ struct PlacedMesh::LocalRays {
         : origins(placed.local_points(rays.origins, "origins")),
           directions(rays.directions.size()),
           most(placed.local_lengths(rays.most)) {
-        // A direction's length has no meaning, so that the scale is left out.
+        // The length of a direction has no meaning, so the scale is omitted.
         std::transform(rays.directions.begin(), rays.directions.end(), directions.begin(), [&](const Vec3& d) {
             const double largest = max_abs(d);
             return is_finite(d) && largest > 0.0 ? placed.world_from_mesh_.direction_back(d / largest) / placed.scale_
@@ -114,7 +114,7 @@ std::vector<std::uint8_t> PlacedMesh::inside(std::span<const Vec3> points, Insid
 std::vector<double> PlacedMesh::winding_numbers(std::span<const Vec3> points) const {
     std::vector<double> numbers = mesh_.winding_numbers(local_points(points, "points"));
     if (world_from_mesh_.mirrors()) {
-        for (double& number : numbers) number = 0.0 - number;  // not -0
+        for (double& number : numbers) number = 0.0 - number;  // avoids -0
     }
     return numbers;
 }

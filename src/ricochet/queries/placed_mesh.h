@@ -1,5 +1,5 @@
 /// \file
-/// Questions about a mesh where a map places it, without a copy of the mesh.
+/// Queries on a mesh that is placed by a map, without a copy of the mesh.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@ namespace ricochet {
 
 /// A mesh that a similarity places: a rotation or reflection, one scale for all axes, and a translation.
 ///
-/// Questions are mapped into the mesh's own coordinates, asked there, and the answers are mapped back. Each answer is
-/// exact for the mapped and rounded question, as MeshQueries says. The mapping rounds each coordinate by a few units in
-/// the last place of the largest number that takes part. Triangles keep their corners in their order, so that a
-/// reflection turns their normals, and crossings and winding numbers change their sign.
+/// Queries are mapped into the mesh's own coordinates, and the results are mapped back. Each result is exact for the
+/// mapped and rounded query, as in MeshQueries. The mapping rounds each coordinate by a few units in the last place of
+/// the largest number involved. Triangles keep the order of their corners. So a reflection turns their normals, and
+/// crossings and winding numbers change their sign.
 class PlacedMesh {
 public:
-    /// Shares the mesh. Throws InputError if the map is not finite or no similarity: scales that differ, or axes that
-    /// are not perpendicular, by more than 1e-9 of the scale. That admits rotations written with ten digits.
+    /// Shares the mesh. Throws InputError if the map is not finite or not a similarity. Scales may differ, and axes may
+    /// deviate from perpendicular, by at most 1e-9 of the scale. That admits rotations written with ten digits.
     PlacedMesh(const MeshQueries& mesh, const AffineMap& world_from_mesh);
 
-    // The questions of MeshQueries, in world coordinates and lengths.
+    // The queries of MeshQueries, in world coordinates and lengths.
     [[nodiscard]] MeshHits first_hits(const RayBatch& rays) const;
     [[nodiscard]] AllMeshHits all_hits(const RayBatch& rays) const;
     [[nodiscard]] std::vector<std::uint64_t> count_hits(const RayBatch& rays) const;

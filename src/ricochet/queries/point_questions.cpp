@@ -1,4 +1,4 @@
-// What is inside, and what is nearest.
+// Queries for points: inside tests, winding numbers, nearest points and signed distances.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Nearest {
     ClosestPointOnTriangle point;
 };
 
-/// The order that makes one of several triangles the nearest: that of SignedDistance.
+/// Order that selects the nearest of several triangles; the same as in SignedDistance.
 bool comes_before(const Nearest& x, const Nearest& y) {
     if (x.point.distance_squared != y.point.distance_squared) {
         return x.point.distance_squared < y.point.distance_squared;
@@ -43,14 +43,14 @@ std::optional<Nearest> nearest(const MeshIndex& mesh, const Vec3& p, double with
         const Nearest found{triangle, closest_point_on_triangle(p, a, b, c)};
         if (best && !comes_before(found, *best)) return within;
         best = found;
-        // Rounded up, so that what is as near is still visited.
+        // Rounded up, so that equally near triangles are still visited.
         within = std::min(within, std::sqrt(found.point.distance_squared) * (1.0 + 0x1p-40));
         return within;
     });
     return best;
 }
 
-/// Over a face the distance from its plane is the accurate one.
+/// Returns the distance of a point from its nearest point. Over a face the distance from the plane is more accurate.
 double distance(const MeshIndex& mesh, const Nearest& nearest, const Vec3& p) {
     if (nearest.point.feature != TriangleFeature::kFace) return length(nearest.point.offset);
     const auto [a, b, c] = mesh.corners(nearest.triangle);

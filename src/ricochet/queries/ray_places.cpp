@@ -12,14 +12,14 @@
 namespace ricochet {
 namespace {
 
-/// Part by which the segment for the broad phase is longer than the ray inside the mesh's box, so that rounding cuts
-/// nothing off.
+/// Relative excess of the segment for the broad phase over the ray inside the mesh's box, so that rounding cuts nothing
+/// off.
 constexpr double kBeyond = 0x1p-20;
 
-/// Rounding of the segment's ends, in parts of their coordinates.
+/// Rounding of the segment's ends, relative to their coordinates.
 constexpr double kEndRounding = 0x1p-48;
 
-/// Rounding of a fraction of the segment, with room to spare.
+/// Rounding of a fraction of the segment, with a margin.
 constexpr double kFractionRounding = 0x1p-40;
 
 struct Candidate {
@@ -27,9 +27,9 @@ struct Candidate {
     MetTriangle met;
 };
 
-/// The ray as far as the mesh reaches, for the broad phase.
+/// Part of the ray within reach of the mesh, for the broad phase.
 struct Reach {
-    double t = 0.0;  ///< of the ray at the tube's end
+    double t = 0.0;  ///< parameter of the ray at the end of the tube
     Tube tube;
 
     Reach(const MeshIndex& mesh, const RayQuestion& question) {
@@ -42,7 +42,7 @@ struct Reach {
         const Vec3 end = ray.origin + t * ray.direction;
         tube = Tube(ray.origin, end, kEndRounding * (max_abs(ray.origin) + max_abs(end)));
     }
-    /// Of the tube, just beyond that place.
+    /// Returns the fraction of the tube just beyond that parameter of the ray.
     [[nodiscard]] double fraction(double place) const { return std::min(1.0, place / t * (1.0 + kFractionRounding)); }
 };
 
@@ -58,9 +58,9 @@ bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
     return order != 0 ? order < 0 : x.triangle < y.triangle;
 }
 
-// All places: triangles that share what the ray passes through are joined.
+// All places: triangles that share the feature that the ray passes through are joined.
 
-/// A part of a triangle that the ray passes through, and whose it is.
+/// Feature of a triangle that the ray passes through, and the candidate that it belongs to.
 struct Passed {
     FeatureKey key;
     std::uint32_t candidate;
@@ -96,9 +96,10 @@ DisjointSets join(const std::vector<Candidate>& candidates) {
     return joined;
 }
 
-/// Which way the ray crosses a triangle, +1 along its normal, when its origin is moved by an infinitesimal amount along
-/// x, a still smaller one along y and z (H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM Transactions on
-/// Graphics 9, 1990), so that it meets neither edges nor vertices; 0: it passes beside.
+/// Returns the direction in which the ray crosses a triangle (+1 along its normal), or 0 if it passes beside it. The
+/// ray's origin is moved by an infinitesimal amount along x, and by still smaller ones along y and z. Then the ray
+/// meets neither edges nor vertices. Method: H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM
+/// Transactions on Graphics 9, 1990.
 int moved_crossing(const Ray& ray, const MetTriangle& met) {
     const RayMeeting& meeting = met.meeting;
     if (meeting.speed == 0) return 0;
@@ -121,7 +122,7 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
     std::vector<std::size_t> place_of(candidates.size(), kNone);
     for (std::uint32_t k = 0; k < candidates.size(); ++k) {
         const auto& [triangle, met] = candidates[k];
-        if (mesh.is_degenerate(triangle)) continue;  // it has only joined others
+        if (mesh.is_degenerate(triangle)) continue;  // a degenerate triangle only joins others
         std::size_t& number = place_of[joined.find(k)];
         if (number == kNone) {
             number = places.size();
@@ -136,7 +137,8 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
 }  // namespace
 
 int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
-    // o, p, q and the direction: (p - o) x (q - o) . d, and where that is 0 its change with o, -(q - p) x d.
+    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the sign of its change with o,
+    // -(q - p) x d.
     const ExactDifference u(p, ray.origin);
     const ExactDifference v(q, ray.origin);
     const ExactDifference d(ray.direction, Vec3{});

@@ -1,5 +1,5 @@
 /// \file
-/// Private: where one ray meets a mesh.
+/// Private: hits of one ray on a mesh.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +13,34 @@ namespace ricochet {
 
 class MeshIndex;
 
-/// A ray that reaches so far.
+/// Ray with a limited range.
 struct RayQuestion {
     Ray ray;
-    double most = 0.0;  ///< m, may be infinite
+    double most = 0.0;  ///< range in m, may be infinite
 
-    /// True for places that it reaches.
+    /// Returns true if the ray reaches that parameter.
     [[nodiscard]] bool reaches(const DoubleDouble& t) const {
         return most == std::numeric_limits<double>::infinity() || ray.distance(t) <= most;
     }
 };
 
-/// A place of the surface on a ray.
+/// Hit of the surface on a ray.
 struct RayPlace {
-    DoubleDouble t;              ///< of the ray
-    std::uint32_t triangle = 0;  ///< the smallest of those that are first there
+    DoubleDouble t;              ///< parameter of the ray
+    std::uint32_t triangle = 0;  ///< the smallest index of the triangles that are first there
     std::int8_t crossing = 0;    ///< see AllMeshHits
-    bool is_in_plane = false;    ///< the ray runs in the planes of all triangles there
+    bool is_in_plane = false;    ///< the ray lies in the planes of all triangles there
 };
 
-/// The first one.
+/// Returns the first hit.
 [[nodiscard]] std::optional<RayPlace> first_place(const MeshIndex& mesh, const RayQuestion& question);
-/// Sign of the determinant of p and q, both as seen from the ray's origin, and its direction: +1 where the edge from p
-/// to q turns to the left about the ray. Never 0 for an edge across the ray: the origin counts as moved by an
-/// infinitesimal amount, as for crossings.
+/// Returns the sign of the determinant of p and q, both relative to the ray's origin, and its direction. It is +1 if
+/// the edge from p to q turns to the left about the ray. Never 0 for an edge across the ray, because the origin counts
+/// as moved by an infinitesimal amount, as for crossings.
 [[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
-/// True when there is one.
+/// Returns true if there is a hit.
 [[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);
-/// All of them in the order along the ray: MeshQueries::all_hits().
+/// Finds all hits in the order along the ray, for MeshQueries::all_hits().
 void all_places(const MeshIndex& mesh, const RayQuestion& question, std::vector<RayPlace>& places);
 
 }  // namespace ricochet

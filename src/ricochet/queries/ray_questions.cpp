@@ -1,4 +1,4 @@
-// What rays hit: first, everywhere, how often, at all.
+// Queries for rays: first hits, all hits, numbers of hits, and occlusion.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Rays between two looks at a request to stop, which costs as much as a short ray.
+/// Number of rays between two polls of the stop request, because a poll costs as much as a short ray.
 constexpr std::size_t kPollEvery = 16;
 
 void require_rays(const RayBatch& rays) {

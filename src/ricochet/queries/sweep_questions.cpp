@@ -1,4 +1,4 @@
-// What moving points and spheres meet first, the mesh at rest or moving.
+// Sweeps of moving points and spheres, with the mesh at rest or moving.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Ways of points and spheres.
+/// Straight paths of points and spheres.
 struct Ways {
     std::span<const Vec3> from;
     std::span<const Vec3> to;
@@ -52,7 +52,7 @@ struct Ways {
     }
 };
 
-/// The first contact of one way.
+/// First contact of one path.
 struct Contact {
     std::uint32_t triangle = 0;
     double fraction = 0.0;
@@ -93,12 +93,12 @@ Path straight(const Vec3& from, const Vec3& to) {
     return path;
 }
 
-/// For the broad phase: everything within the radius of the way, and rounding.
+/// Returns the tube for the broad phase: all points within the radius of the path, plus rounding.
 Tube tube_of(const Vec3& from, const Vec3& to, double radius) {
     return {from, to, radius * (1.0 + kCandidateSlack) + 0x1p-48 * (max_abs(from) + max_abs(to))};
 }
 
-/// Beyond what is found so far, as a fraction of the way.
+/// Returns the fraction of the path just beyond the contacts found so far.
 double limit_of(const std::optional<Contact>& best) {
     return best ? std::min(1.0, best->fraction * (1.0 + 0x1p-40) + 0x1p-60) : 1.0;
 }
@@ -133,13 +133,13 @@ std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& 
     return best;
 }
 
-/// Steps of the way in which a sphere that overlaps a moving triangle is looked for off it.
+/// Number of steps of the path in which an overlapping sphere is tested for separation from a moving triangle.
 constexpr int kLooksForTheWayOut = 64;
 
-/// The rest of a way from a time on, rounded.
+/// Returns the rest of a path from a time on, rounded.
 MovingPoint rest_of(const MovingPoint& way, double from) { return {way.at(from), way.to}; }
 
-/// The first contact after the sphere has come off the triangle.
+/// Returns the first contact after the sphere has separated from the triangle.
 std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, double radius,
                                                    const MovingTriangle& triangle) {
     for (int k = 1; k < kLooksForTheWayOut; ++k) {
@@ -149,16 +149,16 @@ std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, dou
         auto contact =
             first_contact(rest_of(point, from), radius, {{rest_of(a, from), rest_of(b, from), rest_of(c, from)}});
         if (!contact) return std::nullopt;
-        if (contact->time == 0.0) continue;  // off by less than the rounding of the rest
+        if (contact->time == 0.0) continue;  // separated by less than the rounding of the rest
         contact->time = std::min(1.0, from + (1.0 - from) * contact->time);
         return contact;
     }
     return std::nullopt;
 }
 
-/// Of a sphere that touches or overlaps the triangle from the start, `at_start` being that contact: as beside a
-/// triangle at rest (SphereSweep) it is stopped at once when the distance shrinks. Else it is free until it comes
-/// nearer than at the start, which beside a triangle that moves as a whole it never does, or comes back.
+/// Returns the contact of a sphere that touches or overlaps the triangle from the start, in the contact `at_start`. The
+/// sphere is stopped at once if the distance shrinks, as beside a triangle at rest (SphereSweep). Otherwise it is free
+/// until it comes nearer than at the start, or comes back. It never comes nearer to a triangle that moves as a whole.
 std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
                                                   const MovingTriangle& triangle, const MovingContact& at_start) {
     const auto& [a, b, c] = triangle.corners;
@@ -179,14 +179,14 @@ std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, doub
     return sunk;
 }
 
-/// The first contact of a point or a sphere with a triangle when both move.
+/// Returns the first contact of a point or a sphere with a triangle if both move.
 std::optional<MovingContact> meeting_of(const MovingPoint& point, double radius, const MovingTriangle& triangle) {
     const auto contact = first_contact(point, radius, triangle);
     if (!contact || contact->time > 0.0 || radius == 0.0) return contact;
     return contact_from_overlap(point, radius, triangle, *contact);
 }
 
-/// The mesh on its way from where it is to where it will be.
+/// Mesh whose vertices move from their present to their later positions.
 class MovingMesh {
 public:
     MovingMesh(const MeshIndex& mesh, std::span<const Vec3> after) : mesh_(mesh), after_(after) {

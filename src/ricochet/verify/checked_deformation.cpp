@@ -20,7 +20,7 @@ void require(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
-/// Returns the smallest vertex that is at the same positions at all keys, for each vertex.
+/// Returns, for each vertex, the smallest vertex that has the same positions at all keys.
 std::vector<std::uint32_t> joined_vertices(const std::vector<std::vector<Vec3>>& keys) {
     std::vector<std::uint32_t> order(keys.front().size());
     std::iota(order.begin(), order.end(), 0U);
@@ -40,7 +40,8 @@ std::vector<std::uint32_t> joined_vertices(const std::vector<std::vector<Vec3>>&
     return joined;
 }
 
-/// Every edge belongs to an even number of sides. Vertices that are never apart are one.
+/// Returns true if every edge belongs to an even number of triangle sides. Vertices that have equal positions at all
+/// keys count as one.
 bool encloses(const VerifiedDeformation& surface) {
     const std::vector<std::uint32_t> joined = joined_vertices(surface.vertices);
     std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_odd;
@@ -75,7 +76,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     }
     require(!surface_.triangles.empty(), "verified mesh that deforms: expected triangles");
     is_closed_ = encloses(surface_);
-    // What names a vertex twice never has an area.
+    // A triangle that names a vertex twice never has an area.
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
         if (std::set(surface_.triangles[t].begin(), surface_.triangles[t].end()).size() == 3) order_.push_back(t);
     }
@@ -84,7 +85,7 @@ CheckedDeformation::CheckedDeformation(std::uint32_t collider, VerifiedDeformati
     for (std::size_t key = 0; key < surface_.times.size(); ++key) fit(key);
 }
 
-/// Halves by the places at the first key.
+/// Builds the tree. Splits the triangles in halves by their positions at the first key.
 void CheckedDeformation::build(std::uint32_t begin, std::uint32_t end) {
     const std::size_t index = nodes_.size();
     nodes_.push_back({begin, end - begin});
@@ -126,7 +127,8 @@ void CheckedDeformation::fit(std::size_t key) {
     }
 }
 
-/// A round of keys that repeat begins with its first key, in place of the last one of the round before.
+/// Returns the keys around a time. If keys repeat, a period begins with its first key, which replaces the last key of
+/// the period before.
 CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
     const std::vector<double>& times = surface_.times;
     const std::size_t last = times.size() - 1;
@@ -140,7 +142,7 @@ CheckedDeformation::Moment CheckedDeformation::moment_at(double time) const {
         while (begin_of(0, round) > time) round -= 1.0;
         while (begin_of(0, round + 1.0) <= time) round += 1.0;
     }
-    // Bisection: colliders that are scaled in time have thousands of keys.
+    // Uses bisection, because colliders that are scaled in time have thousands of keys.
     std::size_t key = 0;
     for (std::size_t after = last; after - key > 1;) {
         const std::size_t middle = key + (after - key) / 2;
@@ -168,7 +170,7 @@ Corners CheckedDeformation::corners_at(std::uint32_t triangle, const Moment& mom
     return {position(a, moment), position(b, moment), position(c, moment)};
 }
 
-/// At its ends and at keys.
+/// Returns the moments at the ends of a span and at the keys within it.
 std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Span& span) const {
     std::vector<Moment> moments{moment_at(span.begin)};
     while (moments.back().next_key < span.end) moments.push_back(moment_at(moments.back().next_key));
@@ -176,7 +178,7 @@ std::vector<CheckedDeformation::Moment> CheckedDeformation::moments_of(const Spa
     return moments;
 }
 
-/// Ends of boxes move no further out than the vertices in them.
+/// Returns the box of a node at a moment. Interpolated box faces enclose the interpolated vertices.
 Box3 CheckedDeformation::box_at(std::size_t node, const Moment& moment) const {
     const Box3& a = boxes_[moment.from * nodes_.size() + node];
     const Box3& b = boxes_[moment.to * nodes_.size() + node];

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the verifier: a mesh that deforms, in the world.
+/// Private to the verifier: a deforming mesh, in world coordinates.
 #pragma once
 
 #include <array>
@@ -20,21 +20,22 @@
 
 namespace ricochet::verify {
 
-/// Where a vertex is between two keys is fl(a + fl(part fl(b - a))), as MeshMoment says, evaluated by code of its own.
-/// Safe from any number of threads.
+/// A deforming mesh that the verifier checks. Between two keys a vertex is at fl(a + fl(part fl(b - a))), the
+/// definition of MeshMoment. This class evaluates it with its own code. Safe from any number of threads.
 class CheckedDeformation {
 public:
-    /// Throws InputError for corners that are not there and what is no motion.
+    /// Throws InputError for indices of missing corners and for invalid motions.
     CheckedDeformation(std::uint32_t collider, VerifiedDeformation surface);
 
     [[nodiscard]] std::uint32_t collider() const { return collider_; }
-    /// True where it encloses something: it has sides then.
+    /// Returns true if the mesh encloses a volume. Only such meshes have sides.
     [[nodiscard]] bool is_closed() const { return is_closed_; }
     [[nodiscard]] Side side(const Vec3& p, double time) const;
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
-    /// Appends the crossings of a segment that was travelled. Each has to be free of all triangles in space and time,
-    /// and to end where the mesh has a key, unless it is far from it. One that is late, because the particle's clock
-    /// has stood still, may lead over keys: its corners go straight all the same.
+    /// Appends the crossings of a segment that a particle has travelled. The segment must be free of all triangles in
+    /// space and time. It must also end at each key of the mesh, unless it is far from the mesh. A late segment
+    /// (`is_late`) belongs to a particle whose clock was stalled. It may extend over keys; its corners still move in
+    /// straight lines.
     void find_crossings(const Segment& segment, bool is_late, std::vector<CheckedFrame::Crossing>& crossings) const;
     /// Calls found(collider, triangle) for every triangle that a sphere about a point overlaps; see CheckedFrame.
     template <class Found>
@@ -51,20 +52,20 @@ public:
     }
 
 private:
-    /// Between two keys.
+    /// A time between two keys.
     struct Moment {
-        std::size_t from = 0;  ///< keys
+        std::size_t from = 0;  ///< indices of keys
         std::size_t to = 0;
         double part = 0.0;
-        double next_key = 0.0;  ///< s; infinite after the last
+        double next_key = 0.0;  ///< in s; infinite after the last key
     };
     struct Span {
         double begin = 0.0;
         double end = 0.0;
     };
     struct Node {
-        std::uint32_t first = 0;  ///< a leaf's first triangle in order_; else the second child
-        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for others
+        std::uint32_t first = 0;  ///< a leaf's first triangle in order_; otherwise the second child
+        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for other nodes
     };
     struct Oracles {
         std::mutex mutex;
@@ -81,7 +82,7 @@ private:
     void build(std::uint32_t begin, std::uint32_t end);
     void fit(std::size_t key);
 
-    /// Calls visit(triangle) for all that come into a box in a span of time, and perhaps for others.
+    /// Calls visit(triangle) for all triangles that enter a box in a span of time, and possibly for more.
     template <class Visit>
     void visit_near(const Box3& box, const Span& span, const Visit& visit) const {
         const std::vector<Moment> moments = moments_of(span);
@@ -105,10 +106,10 @@ private:
     std::uint32_t collider_;
     VerifiedDeformation surface_;
     bool is_closed_ = false;
-    double largest_ = 0.0;  ///< m, coordinate
+    double largest_ = 0.0;  ///< largest coordinate, in m
     std::vector<std::uint32_t> order_;
-    std::vector<Node> nodes_;  ///< depth first
-    std::vector<Box3> boxes_;  ///< of each node at each key
+    std::vector<Node> nodes_;  ///< in depth-first order
+    std::vector<Box3> boxes_;  ///< one per node and key
     std::unique_ptr<Oracles> oracles_ = std::make_unique<Oracles>();
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the verifier: the colliders that stand in one frame, at rest or moving, in its coordinates.
+/// Private to the verifier: the colliders of one frame, at rest or moving, in its coordinates.
 #pragma once
 
 #include <algorithm>
@@ -19,22 +19,23 @@
 
 namespace ricochet::verify {
 
-/// Immutable once it is built; safe from any number of threads. Points are given in the world, with their times, s.
+/// The colliders of one frame. Immutable after build(); safe from any number of threads. Points are in world
+/// coordinates, with times in s.
 class CheckedFrame {
 public:
-    /// frame: null tree and no number for what is at rest.
+    /// For colliders at rest `frames` is null and `frame` is empty.
     CheckedFrame(std::shared_ptr<const FrameTree> frames, std::optional<std::size_t> frame)
         : frames_(std::move(frames)), frame_(frame) {}
 
-    /// Throws InputError for what cannot be a surface. build() has to follow the last.
+    /// Adds a collider. Throws InputError for invalid surfaces. build() must be called after the last one.
     void add(std::uint32_t collider, const VerifiedSurface& surface);
     void build();
 
     [[nodiscard]] const std::optional<std::size_t>& frame() const { return frame_; }
     [[nodiscard]] std::size_t side_count() const { return planes_.size() + shapes_.size() + bodies_.size(); }
-    /// Appends the sides of a point: of planes, shapes, closed meshes.
+    /// Appends the sides that a point is on, for planes, shapes and closed meshes.
     void append_sides(const Vec3& p, double time, std::vector<Side>& sides) const;
-    /// Calls found(k, collider) for each of those, in the same order.
+    /// Calls found(k, collider) for each of those surfaces, in the same order.
     template <class Found>
     void visit_sides(const Found& found) const {
         std::size_t k = 0;
@@ -44,18 +45,20 @@ public:
     }
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
 
-    /// A crossing of a segment that was travelled.
+    /// A crossing of a travelled segment.
     struct Crossing {
-        Vec3 position;  ///< m, in the world
+        Vec3 position;  ///< in m, in the world
         std::uint32_t collider;
         std::optional<std::uint32_t> triangle;
     };
-    /// Appends those of a segment. A particle that stands on surfaces at its start may leave them to either side.
+    /// Appends the crossings of a segment. If a particle is on surfaces at its start, the segment may leave them to
+    /// either side.
     void find_crossings(const Segment& segment, bool starts_on_surface, std::vector<Crossing>& crossings) const;
 
-    /// Calls found(collider, triangle or nothing) for every surface that a sphere about a point overlaps by more than
-    /// 1e-12 of its radius and coordinates; in no fixed order. largest: of its coordinates in the world on its way
-    /// there, whose length is `way`, m; of a frame's own coordinates the largest is no more than that beyond the last.
+    /// Calls found(collider, triangle or nothing) for every surface that a sphere about a point overlaps. Overlaps of
+    /// up to 1e-12 of its radius and coordinates are ignored. The order is unspecified. `largest` is the largest of its
+    /// world coordinates along its path to the point, and `way` is the length of that path, in m. The largest
+    /// coordinate in a frame exceeds the last one by at most that length.
     template <class Found>
     void visit_overlapped(const Vec3& world, double time, double radius, double largest, double way,
                           const Found& found) const {
@@ -93,7 +96,7 @@ private:
     std::vector<OfCollider<ParityOracle>> bodies_;  ///< closed meshes
     std::vector<NamedTriangle> to_build_;
     TriangleTree triangles_;
-    Box3 box_;  ///< of triangles and shapes
+    Box3 box_;  ///< box of triangles and shapes
 };
 
 }  // namespace ricochet::verify

@@ -13,22 +13,23 @@ namespace {
 
 using Digits = boost::multiprecision::cpp_bin_float_50;
 
-/// Half axes closer than this, relative, are equal: a rotation rounds the columns of a uniform scale by about 2^-52.
+/// Relative difference of half axes up to which they count as equal. A rotation rounds the columns of a uniform scale
+/// by about 2^-52.
 constexpr double kEqualAxes = 0x1p-49;
 
-/// Error of a local coordinate in doubles relative to the distance from the centre, and of a sum relative to its terms:
-/// some 6 roundings of 2^-53.
+/// Relative error of doubles: of a local coordinate, relative to the distance from the centre, and of a sum, relative
+/// to its terms. It covers some 6 roundings of 2^-53.
 constexpr double kRoughError = 0x1p-49;
 
 /// Margin for rounding around the box of a shape, relative to its size and position.
 constexpr double kBoxSlack = 1e-12;
 
-/// Halvings in search of the multiplier: more would not change a double.
+/// Bisection steps for the multiplier. More steps would not change a double.
 constexpr int kHalvings = 120;
 
-/// Values (1 is the size of the shape) below which a point counts as on the surface: far above the errors of fifty
-/// digits, far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than that: segments that
-/// are free would be reported. Smaller than 1e-45: rounding would decide.
+/// Value (1 is the size of the shape) below which a point counts as on the surface. It is far above the errors of fifty
+/// digits and far below the 2^-96 that the sweep keeps between a particle and a surface. Larger than 2^-96: free
+/// segments would be reported. Smaller than 1e-45: rounding would decide.
 const Digits kOnSurface("1e-36");
 
 template <class Real>
@@ -71,11 +72,11 @@ struct CheckedShape::Impl {
     [[nodiscard]] Digits square_distance(const VectorOf<Digits>& y) const;
 
     Vec3 center;
-    std::size_t round_axes;           ///< 3, or 2 where there are caps
-    VectorOf<double> half{};          ///< half axes, m
-    VectorOf<VectorOf<Digits>> axes;  ///< unit
+    std::size_t round_axes;           ///< 3, or 2 for a cylinder with caps
+    VectorOf<double> half{};          ///< half axes, in m
+    VectorOf<VectorOf<Digits>> axes;  ///< unit vectors
     VectorOf<Vec3> rough_axes;
-    double smallest = 0.0;  ///< round half axis
+    double smallest = 0.0;  ///< smallest round half axis
     Box3 box;
 };
 
@@ -119,14 +120,14 @@ VectorOf<Digits> CheckedShape::Impl::local(const Vec3& p) const {
     return {product(axes[0], w), product(axes[1], w), product(axes[2], w)};
 }
 
-/// Zero on the round part of the surface, negative inside.
+/// Returns a value that is zero on the round part of the surface and negative inside.
 Digits CheckedShape::Impl::round_value(const VectorOf<Digits>& y) const {
     Digits value = -1;
     for (std::size_t i = 0; i < round_axes; ++i) value += square(Digits(y[i] / half[i]));
     return value;
 }
 
-/// 0 when doubles leave doubt.
+/// Returns the side computed in doubles, or 0 if they leave doubt.
 int CheckedShape::Impl::rough_side(const Vec3& p) const {
     const VectorOf<double> y = rough_local(p);
     const double error = kRoughError * length(p - center);
@@ -157,8 +158,8 @@ bool CheckedShape::Impl::box_misses(const Vec3& p, const Vec3& q) const {
            lower.z > box.upper.z || upper.z < box.lower.z;
 }
 
-/// False when doubles leave doubt that the whole segment is outside. The value along it is a parabola of t: its terms
-/// err by a few roundings of theirs, and by what the coordinates err by.
+/// Returns true if doubles prove that the whole segment is outside. The value along the segment is a parabola of t. The
+/// error bound of its terms covers a few roundings and the errors of the coordinates.
 bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
     const VectorOf<double> from = rough_local(p);
     const VectorOf<double> to = rough_local(q);
@@ -183,7 +184,8 @@ bool CheckedShape::Impl::is_roughly_apart(const Vec3& p, const Vec3& q) const {
     return value + lowest * (2.0 * slope + lowest * curvature) > 8.0 * bound;
 }
 
-/// Is the whole segment outside? Its ends are. Between the planes of the caps the value has its least at one point.
+/// Returns true if the whole segment is outside, given that its ends are. Between the planes of the caps the value has
+/// its minimum at one point.
 bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<Digits>& to) const {
     const VectorOf<Digits> step = minus(to, from);
     Digits first = 0;
@@ -209,7 +211,8 @@ bool CheckedShape::Impl::is_apart(const VectorOf<Digits>& from, const VectorOf<D
     return round_value(nearest) > kOnSurface;
 }
 
-/// The map to the unit ball (or cylinder) stretches nothing by more than 1 / smallest half axis.
+/// Returns true if doubles prove that p is farther than `least` from the surface. The map to the unit ball (or
+/// cylinder) stretches lengths by at most 1 / smallest half axis.
 bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
     const VectorOf<double> y = rough_local(p);
     double from_axis = 0.0;
@@ -220,9 +223,10 @@ bool CheckedShape::Impl::is_certainly_clear(const Vec3& p, double least) const {
     return std::max(beside, above) > least + room || std::max(beside, above) < -least - room;
 }
 
-/// For every multiplier m > -smallest^2 the squared distance from the ellipsoid (or the cylinder's side) is at least
-/// sum y_i^2 m / (a_i^2 + m) - m, and equal to it for the best one (Lagrange duality of one quadratic constraint, which
-/// leaves no gap). An error of the multiplier, which is sought in doubles, counts by its square.
+/// Returns the squared distance from the ellipsoid, or from the cylinder's side. For every multiplier m > -smallest^2,
+/// sum y_i^2 m / (a_i^2 + m) - m is a lower bound of it. The best multiplier gives equality (Lagrange duality of one
+/// quadratic constraint, which leaves no gap). The multiplier is found in doubles. Its error affects the result by its
+/// square only.
 Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y) const {
     VectorOf<double> rough{};
     double sum = 0.0;
@@ -230,7 +234,7 @@ Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y)
         rough[i] = static_cast<double>(y[i]);
         sum += square(rough[i] * half[i]);
     }
-    // u = m + smallest^2; the bound rises while sum (y_i a_i / (a_i^2 - smallest^2 + u))^2 > 1.
+    // u = m + smallest^2. The bound rises while sum (y_i a_i / (a_i^2 - smallest^2 + u))^2 > 1.
     double low = 0.0;
     double high = std::sqrt(sum);
     const auto rises = [&](double u) {
@@ -256,7 +260,8 @@ Digits CheckedShape::Impl::square_distance_from_round(const VectorOf<Digits>& y)
     return bound;
 }
 
-/// Of a cylinder outside: across the nearer parts of side and cap; inside: from the nearer one.
+/// Returns the squared distance from the surface. Outside a cylinder it combines the distances from side and cap.
+/// Inside it is the smaller one.
 Digits CheckedShape::Impl::square_distance(const VectorOf<Digits>& y) const {
     Digits around = square_distance_from_round(y);
     if (round_axes == 3) return around;
@@ -286,8 +291,9 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
     return !impl_->is_apart(impl_->local(p), impl_->local(q));
 }
 
-/// The body is convex: a segment from its surface to an inner point is inside; one to an outer point is outside unless
-/// it dips in, and then it does so at once, also in the first 2^-40 of its length (or by less than that).
+/// The body is convex. A segment from its surface to an inner point is therefore inside. A segment to an outer point is
+/// outside unless it enters the body. It then enters at once, also within the first 2^-40 of its length (or by less
+/// than that).
 bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;

@@ -7,26 +7,26 @@
 namespace ricochet::verify {
 namespace {
 
-/// More digits than doubles have (where the machine has such numbers), so that what is judged is their rounding alone.
+/// A type with more digits than double, if the machine has one. Only rounding in the simulation is then judged.
 using Long = long double;
 
 Long product(const Vec3& a, const Vec3& b) {
     return static_cast<Long>(a.x) * b.x + static_cast<Long>(a.y) * b.y + static_cast<Long>(a.z) * b.z;
 }
 
-/// Kinetic energy over the mass, m^2/s^2.
+/// Returns the kinetic energy per mass, in m^2/s^2.
 Long kinetic(const RecordedMotion& motion, double radius) {
     const Long inertia = static_cast<Long>(radius) * radius * 2 / 5;
     return (product(motion.velocity, motion.velocity) + inertia * product(motion.spin, motion.spin)) / 2;
 }
 
-/// The work of a force over the way between both ends, over the mass.
+/// Returns the work of a force between both ends, per mass.
 Long work(const Vec3& force, const MotionPart& part) {
     return product(force, part.end.position) - product(force, part.begin.position);
 }
 
-/// The largest length of a way between both ends: of what is nowhere faster than both ends, and all that the forces may
-/// add.
+/// Returns the largest possible length of the path between both ends. The bound assumes that the speed exceeds both end
+/// speeds only by the effect of the forces.
 double longest_way(const MotionPart& part, double largest_force) {
     const double speed = std::max(length(part.begin.velocity), length(part.end.velocity));
     return part.duration * (speed + part.duration * largest_force);

@@ -1,14 +1,14 @@
 /// \file
-/// Private to the verifier: whether surfaces at rest have given a particle energy.
+/// Private to the verifier: test for energy that a particle gains from surfaces at rest.
 #pragma once
 
 #include "ricochet/core/motion_part.h"
 
 namespace ricochet::verify {
 
-/// True for an impact or an interval of contact after which a solid sphere, or a point, has more energy than before, by
-/// more than rounding: more kinetic energy than forces have done work. Work is computed from both ends where forces are
-/// steady, and bounded by what the recorded forces allow where they are not.
+/// Returns true if a solid sphere, or a point, gains energy in an impact or an interval of contact. A gain is an
+/// increase of kinetic energy beyond the work of the forces and rounding. For steady forces the work is computed from
+/// both ends. For other forces it is bounded by means of the recorded forces.
 [[nodiscard]] bool gains_energy(const MotionPart& part);
 
 }  // namespace ricochet::verify

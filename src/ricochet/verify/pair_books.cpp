@@ -9,7 +9,7 @@
 namespace ricochet::verify {
 namespace {
 
-/// More digits than doubles have (where the machine has such numbers), so that what is judged is their rounding alone.
+/// A type with more digits than double, if the machine has one. Only rounding in the simulation is then judged.
 using Long = long double;
 
 struct LongVec {
@@ -50,7 +50,7 @@ public:
 private:
     [[nodiscard]] const MetSphere& first(const MetContact& contact) const { return meeting_.spheres[contact.first]; }
     [[nodiscard]] const MetSphere& second(const MetContact& contact) const { return meeting_.spheres[contact.second]; }
-    /// From the first to the second.
+    /// Returns the offset from the first centre to the second.
     [[nodiscard]] LongVec between(const MetContact& contact) const {
         return wide(second(contact).before.position) - wide(first(contact).before.position);
     }
@@ -58,7 +58,7 @@ private:
         const LongVec apart = between(contact);
         return (1 / size(apart)) * apart;
     }
-    /// Sum of speeds, to which approaches are rounded.
+    /// Returns the sum of both speeds. Rounding of approach speeds is relative to it.
     [[nodiscard]] Long speeds(const MetContact& contact) const {
         return size(wide(first(contact).before.velocity)) + size(wide(second(contact).before.velocity));
     }
@@ -89,7 +89,7 @@ private:
         return !(distance - a.radius - b.radius <= reach);
     }
 
-    /// It pushes along the line of centres, and drags no more than friction does.
+    /// Returns true if an impulse pulls along the line of centres, or if its tangential part exceeds the friction.
     [[nodiscard]] bool pulls_or_drags(const MetContact& contact) const {
         const LongVec impulse = wide(contact.impulse);
         const LongVec n = normal(contact);
@@ -111,7 +111,8 @@ private:
         return !holds_for_all([](const PairBooks::Pair& pair) { return pair.rolling_friction == 0.0; });
     }
 
-    /// One by itself parts with the restitution's speed, one of several that do not rub with no less.
+    /// Returns true if a contact has a wrong rebound. A single contact must rebound with the speed that its restitution
+    /// gives. One of several contacts without friction must rebound with at least that speed.
     [[nodiscard]] bool rebounds_otherwise(const MetContact& contact) const {
         const Long approach = -departure(contact, false);
         const Long rounding = kPairBooks * speeds(contact);
@@ -157,11 +158,12 @@ private:
             turning = turning + off;
             turning_scale += off_scale;
         }
-        // Moments that resist rolling are opposite; what is fixed takes some.
+        // Moments of rolling resistance are opposite and cancel, but fixed spheres absorb some.
         return !has_fixed && !(size(turning) <= kPairAngularBooks * turning_scale);
     }
 
-    /// J, that a sphere which does not move gives the other one: it may turn, and rubs.
+    /// Returns the work, in J, that fixed spheres do on the other one. A fixed sphere may rotate, so friction at its
+    /// surface does work.
     [[nodiscard]] Long work_of_fixed(const MetContact& contact) const {
         const auto surface_speed = [&](const MetSphere& sphere, Long side) {
             const LongVec arm = (side * sphere.radius) * normal(contact);

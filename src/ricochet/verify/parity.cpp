@@ -14,7 +14,8 @@ namespace {
 using verify::planar_sign;
 using verify::spatial_sign;
 
-/// The sign of planar_sign when p moves by (e, e^2), e positive and infinitesimal, and was on the line of a and b.
+/// Returns the limit of planar_sign for p on the line of a and b, when p moves by (e, e^2). e is positive and
+/// infinitesimal.
 int perturbed_sign(const Vec3& a, const Vec3& b) {
     if (b.y != a.y) return b.y > a.y ? -1 : 1;
     return b.x > a.x ? 1 : -1;
@@ -76,8 +77,8 @@ void ParityOracle::add_faces(const TriangleMesh& mesh) {
     }
 }
 
-/// Columns a coordinate range covers. Every step of the computation is monotone also when rounded, so a point within
-/// the range lies in one of them.
+/// Returns the columns that a range of coordinates covers. Every step of the computation is monotone, also with
+/// rounding. A point within the range therefore lies in one of these columns.
 ParityOracle::CellRange ParityOracle::cells(double lower, double upper, double origin, double per_length) const {
     const auto cell = [&](double x) {
         const double scaled = std::floor((x - origin) * per_length);
@@ -96,7 +97,7 @@ std::size_t ParityOracle::count_entries() const {
     return entries;
 }
 
-/// About one column a triangle; fewer when long triangles would stand in too many of them.
+/// Chooses about one column per triangle, or fewer if long triangles would cover too many of them.
 void ParityOracle::choose_resolution() {
     if (faces_.empty()) return;
     resolution_ = 1 + static_cast<std::size_t>(std::sqrt(static_cast<double>(faces_.size())));
@@ -138,14 +139,14 @@ ParityOracle::Crossing ParityOracle::crossing(const Face& face, const Vec3& poin
     const std::array<int, 3> sides{planar_sign(0, 1, a, b, point), planar_sign(0, 1, b, c, point),
                                    planar_sign(0, 1, c, a, point)};
     if (face.area_sign == 0) {
-        // Parallel to the ray: the perturbed ray passes beside it, but the point may lie on it.
+        // The triangle is parallel to the ray. The perturbed ray passes beside it, but the point may lie on it.
         if (sides != std::array<int, 3>{0, 0, 0}) return Crossing::none;
         return verify::intersects(point, point, {a, b, c}) ? Crossing::touches : Crossing::none;
     }
     for (const int side : sides) {
         if (side * face.area_sign < 0) return Crossing::none;
     }
-    const int height = spatial_sign(a, b, c, point) * face.area_sign;  // of the point over the triangle
+    const int height = spatial_sign(a, b, c, point) * face.area_sign;  // sign of the point's height above the triangle
     if (height == 0) return Crossing::touches;
     if (height > 0) return Crossing::none;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -164,7 +165,7 @@ Side ParityOracle::side(const Vec3& point) const {
     bool is_inside = false;
     for (std::uint32_t i = column_begin_[column]; i < column_begin_[column + 1]; ++i) {
         const Face& face = faces_[column_faces_[i]];
-        if (face.box.upper.z < p.z) break;  // and so are all that follow
+        if (face.box.upper.z < p.z) break;  // all following faces are below the point too
         if (p.x < face.box.lower.x || p.x > face.box.upper.x || p.y < face.box.lower.y || p.y > face.box.upper.y)
             continue;
         switch (crossing(face, p)) {

@@ -1,11 +1,11 @@
 /// \file
-/// Inside or outside of a closed mesh, exactly, and independently of the sweep's predicates: the reference for every
-/// "nothing leaked".
+/// Exact test whether a point is inside a closed mesh, independent of the sweep's predicates. It is the reference for
+/// every claim that no particle leaked.
 ///
-/// Method: crossings of an axis-parallel ray with the triangles of its column are counted. The ray's two fixed
-/// coordinates are taken as moved by infinitesimal amounts (symbolic perturbation: H. Edelsbrunner, E. P. Muecke,
-/// "Simulation of Simplicity", ACM Transactions on Graphics 9, 1990), so it hits no edge and no vertex, and the parity
-/// is right for every point that is not on the surface itself.
+/// Method: count the crossings of an axis-parallel ray with the triangles of its column. The ray's two fixed
+/// coordinates are moved by infinitesimal amounts (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of
+/// Simplicity", ACM Transactions on Graphics 9, 1990). The ray then hits no edge and no vertex, and the parity is right
+/// for every point that is not on the surface itself.
 #pragma once
 
 #include <array>
@@ -20,26 +20,28 @@
 
 namespace ricochet {
 
-/// Edges (pairs of different positions) that belong to an odd number of triangle sides; 0 for a mesh that encloses.
+/// Returns the number of edges (pairs of different positions) that belong to an odd number of triangle sides. It is 0
+/// for a closed mesh.
 [[nodiscard]] std::size_t count_open_edges(const TriangleMesh& mesh);
 
-/// Answers for one closed mesh. A point inside an even number of nested shells is outside. Triangles without area take
-/// no part, as in collisions: their neighbours cover them.
+/// Inside test for one closed mesh. A point inside an even number of nested shells is outside. Triangles without area
+/// are ignored, as in collisions, because their neighbours cover them.
 class ParityOracle {
 public:
-    /// Throws std::invalid_argument when the mesh has open edges: parity would mean nothing.
+    /// Throws std::invalid_argument if the mesh has open edges, because parity has no meaning then.
     explicit ParityOracle(const TriangleMesh& mesh);
 
-    /// Exact. May be called from several threads at once. A point that is not finite is outside.
+    /// Returns the exact side of a point. Can be called from several threads at once. A point that is not finite is
+    /// outside.
     [[nodiscard]] Side side(const Vec3& point) const;
     [[nodiscard]] bool inside(const Vec3& point) const { return side(point) == Side::inside; }
 
 private:
-    /// A triangle whose coordinates are permuted so that the ray runs along +z.
+    /// A triangle with permuted coordinates, so that the ray runs along +z.
     struct Face {
         std::array<Vec3, 3> corners;
         Box3 box;
-        int area_sign = 0;  // of the projection along z; 0 when that has no area
+        int area_sign = 0;  // of the projection along z; 0 if that has no area
     };
     enum class Crossing { none, above, touches };
     struct CellRange {
@@ -59,10 +61,10 @@ private:
     Box3 box_;
     std::vector<Face> faces_;
     std::size_t resolution_ = 1;
-    double per_x_ = 0.0;  // columns per length
+    double per_x_ = 0.0;  // columns per metre
     double per_y_ = 0.0;
     std::vector<std::uint32_t> column_begin_;
-    std::vector<std::uint32_t> column_faces_;  // by descending upper end along the ray
+    std::vector<std::uint32_t> column_faces_;  // in descending order of the upper end along the ray
 };
 
 }  // namespace ricochet

@@ -8,15 +8,16 @@
 namespace ricochet::verify {
 namespace {
 
-/// Relative error of the normal velocities after an impact. Reason: the
-/// equations of an impact are solved to 1e-12, and contact leaves 1e-9 along its surfaces. Smaller: rounding is
-/// reported. Larger: wrong restitutions of slow impacts are not seen.
+/// Relative error of the normal velocities after an impact. Reason: the equations of an impact are solved to 1e-12, and
+/// contact leaves 1e-9 along its surfaces. Smaller: rounding is reported. Larger: wrong restitutions of slow impacts
+/// are not found.
 constexpr double kReboundRounding = 1e-9;
 
-/// The same where friction of several surfaces decides: wedges are solved as nearly as there is an answer.
+/// Relative error if friction of several surfaces decides. Impacts in wedges may have no exact solution and are solved
+/// approximately.
 constexpr double kReboundInWedge = 1e-3;
 
-/// Part of the speeds up to which a surface that holds the particle may seem to be approached or left.
+/// Largest normal speed, relative to all speeds, at which a supporting surface counts as neither approached nor left.
 constexpr double kHeldSpeed = 1e-6;
 
 double restitution_of(const RecordedImpact::Surface& surface, double approach) {
@@ -24,7 +25,7 @@ double restitution_of(const RecordedImpact::Surface& surface, double approach) {
     return approach < threshold ? surface.restitution * approach / threshold : surface.restitution;
 }
 
-/// m/s, along the normal, away from the surface.
+/// Returns the velocity, in m/s, along the normal, away from the surface.
 double before(const RecordedImpact& impact, const RecordedImpact::Surface& surface) {
     return dot(impact.before.velocity - surface.velocity_before, surface.normal);
 }
@@ -47,7 +48,7 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
     const auto moves_along = [&](const RecordedImpact::Surface& surface) {
         return std::fabs(before(impact, surface)) <= kHeldSpeed * scale;
     };
-    // The interval may have touched both sides of a thin body, and may have led away from a surface.
+    // The interval may have touched both sides of a thin body, or may have left a surface.
     const auto holds = [&](const RecordedImpact::Surface& surface) {
         const bool is_listed =
             std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
@@ -57,7 +58,8 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
         return !holds(surface) && before(impact, surface) < 0.0;
     };
     double restitution = 1.0;
-    double held_speed = 0.0;  // m/s: counts as zero in the impact, and changes the rebound off others by as much
+    // In m/s. The impact treats it as zero, and the rebound off other surfaces changes by as much.
+    double held_speed = 0.0;
     std::size_t hit = 0;
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
         if (holds(surface) && !moves_along(surface)) return true;
@@ -70,13 +72,14 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
     const double rounding = part * scale + 2.0 * held_speed;
     double least = std::numeric_limits<double>::infinity();
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
-        // Moreau's law lets it come back to a surface that it left, at most e times as fast. That surface is hit next.
+        // Moreau's law allows a particle to return to a surface that it was leaving, at most e times as fast. The
+        // particle hits that surface next.
         const double rebound = holds(surface) ? 0.0 : -restitution * before(impact, surface);
         const double more = after(impact, surface) - rebound;
         if (more < -rounding) return true;
         if (is_hit(surface)) least = std::min(least, more);
     }
-    // At least one surface pushes, and the particle leaves that one no faster.
+    // At least one surface pushes, and the particle leaves that surface no faster than required.
     return hit > 0 && least > rounding;
 }
 

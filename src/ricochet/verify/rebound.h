@@ -1,15 +1,15 @@
 /// \file
-/// Private to the verifier: whether an impact has the rebound of the surfaces that it has hit.
+/// Private to the verifier: test whether an impact has the rebound that its surfaces require.
 #pragma once
 
 #include "ricochet/core/recorded_impact.h"
 
 namespace ricochet::verify {
 
-/// Returns true if the normal velocities after an impact do not agree with the restitution. Only surfaces that
-/// the particle comes towards, and that do not hold it before the impact, have a say: the smallest restitution of
-/// those counts. Surfaces of the contact interval that the impact ends hold it, whatever the impact took them for, if
-/// they are neither approached nor left.
+/// Returns true if the normal velocities after an impact do not agree with the restitution. The smallest restitution of
+/// the hit surfaces counts. A surface is hit if the particle approaches it and it does not support the particle before
+/// the impact. Surfaces of the contact interval that the impact ends count as supports if they are neither approached
+/// nor left. The flags of the impact do not matter for them.
 [[nodiscard]] bool has_wrong_rebound(const RecordedImpact& impact);
 
 }  // namespace ricochet::verify

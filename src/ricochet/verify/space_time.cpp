@@ -11,23 +11,25 @@
 namespace ricochet::verify {
 namespace {
 
-/// Halvings of the time, and pieces of it, before nothing is said.
+/// Largest number of times that the time interval is halved, and largest number of pieces. Beyond these the test is
+/// undecided.
 constexpr int kDeepest = 50;
 constexpr int kMostPieces = 2000;
 
-/// Numbers of 113 bits tell nearly all that doubles leave in doubt, at a third of what a hundred digits cost.
+/// Numbers of 113 bits decide nearly all cases that doubles leave in doubt. They cost a third of numbers with a hundred
+/// digits.
 using Quad = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_quad::backend_type,
                                            boost::multiprecision::et_off>;
 using Digits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_100::backend_type,
                                              boost::multiprecision::et_off>;
 
-/// What a sum of some hundred rounded products may err by, relative to the sum of magnitudes.
+/// Returns the error bound of a sum of some hundred rounded products, relative to the sum of magnitudes.
 template <class Real>
 Real error_of() {
     return 1024 * std::numeric_limits<Real>::epsilon();
 }
 
-/// What is certain of the signs of some values. What the others are more digits may tell.
+/// Signs of some values that are certain. More digits may decide the others.
 struct Signs {
     bool all_positive = false;
     bool all_negative = false;
@@ -35,12 +37,12 @@ struct Signs {
     bool any_negative = false;
 };
 
-/// Of a factor, and of a product.
+/// Largest degree of a factor, and largest number of values of a product.
 constexpr std::size_t kMostDegree = 3;
 constexpr std::size_t kMostValues = kMostDegree + 2;
 
-/// Values of a polynomial in time that is bounded by them (its Bernstein coefficients), each with the sum of magnitudes
-/// that it was made from.
+/// Bernstein coefficients of a polynomial in time, which bound it. Each is stored with the sum of magnitudes of its
+/// terms.
 template <class Real>
 struct Bounded {
     std::array<Real, kMostValues> values{};
@@ -79,7 +81,8 @@ double choose(std::size_t n, std::size_t k) {
     return value;
 }
 
-/// Of the products of values of two polynomials of degrees m and n, up to kMostDegree, in that of theirs.
+/// Weights of products of Bernstein coefficients. Two polynomials of degrees m and n, up to kMostDegree, give the
+/// coefficients of their product.
 template <class Real>
 class Weights {
 public:
@@ -101,7 +104,8 @@ private:
     std::array<Real, kSize * kSize * kSize * kSize> weights_{};
 };
 
-/// The product: each value is the mean, with weights, of all products of two that it may come from.
+/// Returns the product. Each coefficient is the weighted mean of all products of two coefficients that contribute to
+/// it.
 template <class Real>
 Bounded<Real> operator*(const Bounded<Real>& a, const Bounded<Real>& b) {
     const std::size_t m = a.count - 1;
@@ -142,7 +146,7 @@ Bounded<Real> dot_of(const Offset<Real>& a, const Offset<Real>& b) {
     return combined(combined(a[0] * b[0], a[1] * b[1], 1), a[2] * b[2], 1);
 }
 
-/// From one moving point to another, over a part of the time.
+/// Returns the offset from one moving point to another, over a part of the time.
 template <class Real>
 Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end) {
     Offset<Real> offset;
@@ -158,8 +162,8 @@ Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end)
     return offset;
 }
 
-/// A vector of numbers with more digits than doubles have: beside an edge a direction across it counts by the square of
-/// the distance, which doubles lose where that is small.
+/// A vector of numbers with more digits than doubles. Near an edge, a direction across it depends on the square of the
+/// distance. Doubles lose this if the distance is small.
 template <class Real>
 using Vector = std::array<Real, 3>;
 
@@ -194,7 +198,7 @@ Vector<Real> across(const Vector<Real>& a, const Vector<Real>& b) {
     return {Real(a[1] * b[2] - a[2] * b[1]), Real(a[2] * b[0] - a[0] * b[2]), Real(a[0] * b[1] - a[1] * b[0])};
 }
 
-/// The direction, or the opposite one, that leads to the side on which an offset ends.
+/// Returns the direction or its opposite, so that it points to the side of an offset's end.
 template <class Real>
 Vector<Real> towards(const Vector<Real>& direction, const Vector<Real>& offset) {
     return product(direction, offset) < 0 ? times(Real(-1), direction) : direction;
@@ -203,7 +207,7 @@ Vector<Real> towards(const Vector<Real>& direction, const Vector<Real>& offset) 
 template <class Real>
 using Triple = std::array<Vector<Real>, 3>;
 
-/// The first corner of the longest edge; the edge ends at the next one.
+/// Returns the first corner of the longest edge. The edge ends at the next corner.
 template <class Real>
 std::size_t longest_edge(const Triple<Real>& c) {
     std::size_t longest = 0;
@@ -218,7 +222,7 @@ std::size_t longest_edge(const Triple<Real>& c) {
     return longest;
 }
 
-/// Where the point of an edge nearest to an offset from its begin is: 0 at the begin, 1 at the end.
+/// Returns the parameter of the edge's point nearest to an offset from its start: 0 at the start, 1 at the end.
 template <class Real>
 Real part_of(const Vector<Real>& edge, const Vector<Real>& offset) {
     const Real squared = product(edge, edge);
@@ -245,8 +249,8 @@ public:
     }
 
 private:
-    /// On one side of the plane all the time, beyond one of the edges, or apart along a direction. Where it is none of
-    /// these `is_in_doubt` is set if more digits could tell otherwise.
+    /// Returns true if the point is proven apart: on one side of the plane all the time, beyond one of the edges, or
+    /// apart along a direction. Otherwise sets `is_in_doubt` if more digits could prove it.
     template <class Real>
     [[nodiscard]] bool is_apart_in(double begin, double end, bool& is_in_doubt) const {
         std::array<Offset<Real>, 3> to_point;
@@ -286,8 +290,9 @@ private:
         });
     }
 
-    /// Directions along which the point may be beyond all of the triangle. A triangle that has hardly an area is seen
-    /// as its longest edge: across the edge, towards the point, and across the edge and the way of the point along it.
+    /// Returns directions along which the point may be beyond the whole triangle. A triangle with hardly any area is
+    /// treated as its longest edge. Two directions serve that case: across the edge, towards the point, and across the
+    /// edge and the point's path along it.
     template <class Real>
     [[nodiscard]] std::array<Vector<Real>, 7> directions_at(double middle, double begin, double end) const {
         const Vector<Real> p = at<Real>(point_, middle);

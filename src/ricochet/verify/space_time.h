@@ -1,6 +1,6 @@
 /// \file
-/// Does a point that moves along a line, at constant speed, touch a triangle whose corners do so? With the verifier's
-/// own arithmetic.
+/// Space-time test: does a point that moves along a line at constant speed touch a triangle whose corners move
+/// likewise? It uses the verifier's own arithmetic.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -8,20 +8,20 @@
 
 namespace ricochet::verify {
 
-/// A straight way in a time.
+/// A straight path at constant speed.
 struct Way {
     Vec3 from;
     Vec3 to;
 };
 
-/// A triangle, which may have no area, at the begin and at the end of that time.
+/// A triangle at the start and at the end of the same time interval. It may have no area.
 struct MovingCorners {
     Corners from;
     Corners to;
 };
 
-/// True only when they have no point in common at any time; proved with doubles where their error bound leaves no
-/// doubt, with a hundred digits otherwise. What touches, or comes nearer than that can tell, is not apart.
+/// Returns true only if point and triangle have no common point at any time. The proof uses doubles if their error
+/// bound leaves no doubt, otherwise a hundred digits. The result is false if they touch, or are too close to decide.
 [[nodiscard]] bool are_apart(const Way& point, const MovingCorners& triangle);
 
 }  // namespace ricochet::verify

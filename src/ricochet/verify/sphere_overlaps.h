@@ -1,6 +1,5 @@
 /// \file
-/// Which spheres stand in one another, by a search that shares nothing with the one by which they meet: a tree of
-/// halves.
+/// Finds overlapping spheres with a binary tree. The search shares no code with the one that finds impacts.
 #pragma once
 
 #include <array>
@@ -13,45 +12,44 @@
 
 namespace ricochet {
 
-/// Overlap of two spheres over the smaller radius that the verifier lets pass where spheres may be planned together.
-/// Reason: sweeps over the contacts end before the last digit, and what they leave may grow to half of this while a
-/// heap is filled. Smaller: heaps are reported. Larger: what is lost in the contact problem is not seen.
+/// Largest tolerated overlap of two spheres, over the smaller radius, if spheres may be time-stepped together. Reason:
+/// the sweeps over contacts stop before full precision. The residual may grow to half of this while a heap is filled.
+/// Smaller: heaps are reported. Larger: errors of the contact problem are not found.
 inline constexpr double kMostPlannedOverlap = 0.01;
 
-/// The same where all impacts are worked off one after the other. Reason: roundings of times of impact, and those of
-/// coordinates that are a million radii large. Smaller: rounding is reported. Larger: missed impacts that only graze
-/// are not seen.
+/// Largest tolerated overlap if all impacts are resolved sequentially. Reason: rounding of times of impact, and of
+/// coordinates of a million radii. Smaller: rounding is reported. Larger: missed grazing impacts are not found.
 inline constexpr double kMostMetOverlap = 1e-9;
 
-/// A sphere that meets others, as it stands.
+/// State of a sphere that collides with other spheres.
 struct StandingSphere {
     std::uint64_t particle = 0;  ///< id
-    Vec3 position;               ///< m
-    double radius = 0.0;         ///< m, > 0
-    bool is_new = false;         ///< it was not there before
+    Vec3 position;               ///< in m
+    double radius = 0.0;         ///< in m, > 0
+    bool is_new = false;         ///< true: not present in the last call
 };
 
-/// What is remembered from one step to the next: overlaps that were there.
+/// Search for overlaps. Remembers the overlaps of the last call.
 class SphereOverlaps {
 public:
-    /// Two that overlap more than they may.
+    /// Two spheres that overlap more than they may.
     struct Found {
-        std::uint64_t first = 0;  ///< id, the lower one
+        std::uint64_t first = 0;  ///< the lower id
         std::uint64_t second = 0;
-        Vec3 position;       ///< m, of the first
-        double depth = 0.0;  ///< m
+        Vec3 position;       ///< centre of the first, in m
+        double depth = 0.0;  ///< in m
     };
 
-    /// most: overlap over the smaller radius that is let pass. Returns, ascending by their ids, those that overlap more
-    /// and did not, or less, when it was called last; those of which one is new are taken as they are.
+    /// Returns the new overlaps above `most`, which is relative to the smaller radius, in ascending order of the ids.
+    /// Overlaps that were as large in the last call are left out, and so are those with a new sphere.
     [[nodiscard]] std::vector<Found> check(std::span<const StandingSphere> spheres, double most);
-    /// Of the last call: the largest overlap over the smaller radius; 0 without any.
+    /// Returns the largest overlap over the smaller radius in the last call; 0 without any.
     [[nodiscard]] double largest() const { return largest_; }
 
 private:
     struct Node {
-        Box3 box;             // m, of whole spheres
-        std::uint32_t begin;  // of its spheres in order_
+        Box3 box;             // box of whole spheres, in m
+        std::uint32_t begin;  // range of its spheres in order_
         std::uint32_t end;
         std::uint32_t children;  // the first of two nodes; 0: none
     };
@@ -63,7 +61,7 @@ private:
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;
-    std::vector<Found> before_;  // ascending
+    std::vector<Found> before_;  // in ascending order
     double largest_ = 0.0;
 };
 

@@ -14,14 +14,14 @@ namespace ricochet::verify {
 namespace {
 
 /// Error of a determinant relative to the sum of its terms' magnitudes. Each term passes at most 8 roundings of half an
-/// epsilon, and so does the sum of magnitudes: 8 epsilon are about twice what is needed.
+/// epsilon, and so does the sum of magnitudes. The bound of 8 epsilon is therefore about twice the largest error.
 template <class Real>
 constexpr Real kFilter = 8 * std::numeric_limits<Real>::epsilon();
 
-/// Where products may have been rounded to zero the filter decides nothing.
+/// Smallest error bound at which the filter decides. Below it, products may have been rounded to zero.
 constexpr double kSmallestBound = 0x1p-950;
 
-/// +1 or -1 when the value is certain to have that sign, else 0. Overflow ends in 0 as well.
+/// Returns +1 or -1 if the value certainly has that sign, otherwise 0. Also returns 0 after an overflow.
 template <class Real>
 int certain_sign(Real value, Real magnitude) {
     const Real bound = kFilter<Real> * magnitude;
@@ -51,15 +51,15 @@ int filtered_spatial_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec
     return certain_sign(value, magnitude);
 }
 
-// Fixed-size integers need no memory of their own; what does not fit is left to unlimited ones.
+// Integers of fixed size need no heap memory. Values that do not fit use unlimited integers.
 using SmallInteger = boost::multiprecision::int512_t;
 using LargeInteger = boost::multiprecision::cpp_int;
 constexpr int kSmallBits = 500;
 
-/// Coordinates as whole numbers: all of them times one power of two.
+/// Scale that turns coordinates into integers: multiplication of all of them by one power of two.
 struct Scale {
-    int lowest = std::numeric_limits<int>::max();      ///< exponent of the last place of the smallest coordinate
-    int highest = std::numeric_limits<int>::lowest();  ///< exponent of the largest
+    int lowest = std::numeric_limits<int>::max();      ///< exponent of the last digit of the smallest coordinate
+    int highest = std::numeric_limits<int>::lowest();  ///< exponent of the largest coordinate
 
     template <class... Points>
     explicit Scale(const Points&... points) {
@@ -73,7 +73,7 @@ struct Scale {
             highest = std::max(highest, exponent);
         }
     }
-    /// Do products of `factors` differences and their sums fit?
+    /// Returns true if products of `factors` differences and their sums fit into small integers.
     [[nodiscard]] bool is_small(int factors) const {
         return highest < lowest || factors * (highest - lowest + 2) + 4 <= kSmallBits;
     }
@@ -119,7 +119,7 @@ int exact_planar_sign(std::size_t u, std::size_t v, const Vec3& a, const Vec3& b
     return Integer(ab[u] * ap[v] - ab[v] * ap[u]).sign();
 }
 
-/// n's own scale is another one: its digits say nothing about positions.
+/// The normal has a scale of its own, because its exponents are unrelated to the exponents of positions.
 int exact_height_sign(const Vec3& n, const Vec3& point, const Vec3& p) {
     const Scale of_normal(n), of_places(point, p);
     const auto difference = whole_between<LargeInteger>(point, p, of_places);
@@ -144,7 +144,7 @@ int planar_sign(int u, int v, const Vec3& a, const Vec3& b, const Vec3& p) {
     const double first = (b[u] - a[u]) * (p[v] - a[v]);
     const double second = (b[v] - a[v]) * (p[u] - a[u]);
     if (const int sign = certain_sign(first - second, std::fabs(first) + std::fabs(second)); sign != 0) return sign;
-    // A difference is zero only when it is exactly: axis-parallel edges need no whole numbers.
+    // A difference is zero only if it is exactly zero. Axis-parallel edges therefore need no integers.
     if ((b[u] == a[u] || p[v] == a[v]) && (b[v] == a[v] || p[u] == a[u])) return 0;
     const Scale scale(a, b, p);
     const auto i = static_cast<std::size_t>(u), j = static_cast<std::size_t>(v);
@@ -164,8 +164,8 @@ bool on_one_line(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 namespace {
 
-/// Segment and triangle in one plane, seen along an axis along which the triangle has an area. Two convex figures are
-/// apart when the line of a side of one of them has them strictly on different sides.
+/// Tests a segment and a triangle in one plane, projected along an axis along which the triangle has an area. Two
+/// convex figures are apart if the line of a side of one figure separates them strictly.
 bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
     constexpr std::array<std::array<int, 2>, 3> kViews{{{0, 1}, {1, 2}, {2, 0}}};
     for (const auto& [u, v] : kViews) {
@@ -183,7 +183,8 @@ bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
     return false;  // no area at all
 }
 
-/// The line through p and q, which crosses the triangle's plane in one point, passes the three sides alike.
+/// Returns true if the line through p and q passes all three sides with the same orientation. The line must cross the
+/// triangle's plane in one point.
 bool passes_through(const Vec3& p, const Vec3& q, const Corners& t) {
     const int ab = spatial_sign(p, q, t.a, t.b);
     const int bc = spatial_sign(p, q, t.b, t.c);
@@ -237,8 +238,8 @@ Real product(const VectorOf<Real>& u, const VectorOf<Real>& v) {
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
 }
 
-/// The offset from the nearest point of the triangle to p: the shortest of those from the three sides and, when its
-/// foot lies on the triangle, from the plane.
+/// Returns the offset from the nearest point of the triangle to p. It is the shortest of the offsets from the three
+/// sides and from the plane. The plane counts only if its nearest point lies on the triangle.
 template <class Real>
 VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     VectorOf<Real> best = difference<Real>(p, t.a);
@@ -268,8 +269,9 @@ VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
     return best;
 }
 
-/// A plane across any direction with the whole triangle behind it separates: p is at least as far away as from the
-/// plane. That holds for a direction that is only about that of the nearest point.
+/// Returns true if doubles prove that p is at least `least` away. A plane across any direction separates if the whole
+/// triangle is behind it. p is then at least as far away as from the plane. The direction may differ slightly from that
+/// of the nearest point.
 bool is_certainly_clear(const Vec3& p, const Corners& t, double least) {
     const VectorOf<double> offset = offset_from<double>(p, t);
     const Vec3 direction{offset[0], offset[1], offset[2]};

@@ -1,6 +1,6 @@
 /// \file
-/// Which triangles are near a segment or a point: a hierarchy of boxes in doubles, of the verifier's own. It may name
-/// triangles that are not near, but leaves none out.
+/// The verifier's own hierarchy of boxes, in doubles. It finds all triangles near a segment or a point, and possibly
+/// some others.
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@ namespace ricochet::verify {
 struct NamedTriangle {
     Corners corners;
     std::uint32_t collider = 0;
-    std::uint32_t triangle = 0;  ///< of the collider's mesh
+    std::uint32_t triangle = 0;  ///< index in the collider's mesh
 };
 
-/// Immutable; safe from any number of threads.
+/// Tree of triangles. Immutable; safe from any number of threads.
 class TriangleTree {
 public:
     TriangleTree() = default;
     explicit TriangleTree(std::vector<NamedTriangle> triangles);
 
-    /// Calls visit(triangle) for every triangle whose box the segment [p, q] touches, and perhaps for a few more.
+    /// Calls visit(triangle) for every triangle whose box the segment [p, q] touches, and possibly for a few more.
     template <class Visit>
     void near_segment(const Vec3& p, const Vec3& q, const Visit& visit) const {
         if (!nodes_.empty()) visit_nodes(SegmentTest(p, q, largest_), visit);
@@ -42,31 +42,33 @@ public:
 private:
     struct Node {
         Box3 box;
-        std::uint32_t first = 0;  ///< a leaf's first triangle; else the second child (the first one is the next node)
-        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for others
+        /// First triangle of a leaf. In other nodes, the second child; the first child is the next node.
+        std::uint32_t first = 0;
+        std::uint32_t count = 0;  ///< triangles of a leaf; 0 for other nodes
     };
 
     static bool touches(const Box3& a, const Box3& b) {
-        // Without branches, which are hard to foretell here.
+        // Avoids branches, which are hard to predict here.
         const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
         const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
         const bool z = (a.lower.z <= b.upper.z) & (b.lower.z <= a.upper.z);
         return x & y & z;
     }
 
-    /// Separating axes: those of the boxes, without rounding, and across the segment, with room for it.
+    /// Separating axis test of a segment. The axes of the boxes need no tolerance, because they involve no rounding.
+    /// The axes across the segment have one.
     class SegmentTest {
     public:
         SegmentTest(const Vec3& p, const Vec3& q, double largest) : start_(p), step_(q - p), size_(abs(step_)) {
             box_.include(p);
             box_.include(q);
-            // Each product below passes some 5 roundings of 2^-53 with coordinates of this size.
+            // Each product below has some 5 roundings of 2^-53, relative to coordinates of this size.
             slack_ = 0x1p-48 * std::fmax(largest, std::fmax(max_abs(p), max_abs(q)));
         }
         bool operator()(const Box3& box) const {
             if (!touches(box_, box)) return false;
             const Vec3 half = 0.5 * (box.upper - box.lower);
-            // A segment that is short beside the box seldom passes it by.
+            // A segment that is short beside the box seldom misses it.
             if (max_abs(size_) < max_abs(half)) return true;
             const Vec3 centre = 0.5 * (box.lower + box.upper) - start_;
             return overlaps(step_.x, step_.y, centre.x, centre.y, size_.x, size_.y, half.x, half.y) &&
@@ -108,13 +110,13 @@ private:
 
     void build(std::size_t begin, std::size_t end, const std::vector<Box3>& boxes, std::vector<std::uint32_t>& order);
 
-    /// Halving 2^32 triangles leaves no more levels than this.
+    /// Largest depth. Halving 2^32 triangles gives no more levels than this.
     static constexpr std::size_t kMostDepth = 48;
 
     std::vector<NamedTriangle> triangles_;  ///< in the order of the leaves
-    std::vector<Box3> boxes_;               ///< of each of them
-    std::vector<Node> nodes_;               ///< depth first
-    double largest_ = 0.0;                  ///< coordinate
+    std::vector<Box3> boxes_;               ///< one per triangle
+    std::vector<Node> nodes_;               ///< in depth-first order
+    double largest_ = 0.0;                  ///< largest coordinate
 };
 
 }  // namespace ricochet::verify

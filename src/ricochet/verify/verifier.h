@@ -1,12 +1,12 @@
 /// \file
-/// Checks what particles did, independently of the code that moved them: every segment that was travelled against the
-/// surfaces near it, after every step the side of every closed surface and the distance of spheres, and of every impact
-/// and interval of contact that is recorded that no energy comes from surfaces at rest.
+/// Checks the motion of particles, independently of the code that moved them. It checks every travelled segment against
+/// the surfaces near it. After every step it checks the side of every closed surface and the distance of spheres. For
+/// every recorded impact and interval of contact it checks that no energy comes from surfaces at rest.
 ///
-/// Independent: this folder includes none of the sweep's predicates, trees or distance code (a test checks that).
-/// Its signs come from whole numbers of any length, its parity from counted crossings, its distances from a hundred
-/// digits wherever doubles leave doubt. It is given the surfaces in world coordinates as they collide, so placements
-/// are not checked again.
+/// This folder includes none of the sweep's predicates, trees or distance code (a test checks that). Its signs come
+/// from integers of any length and its parity from counted crossings. Its distances come from a hundred digits if
+/// doubles leave doubt. The surfaces are given in world coordinates, after their placement, so placements are not
+/// checked.
 #pragma once
 
 #include <cstdint>
@@ -25,31 +25,33 @@
 
 namespace ricochet {
 
-// What a verified run finds wrong.
+// Violations found in a verified run.
 
-/// Where a point is.
+/// Side of a surface on which a point is.
 enum class Side : std::uint8_t { inside, outside, on_surface };
 
-/// What is wrong.
+/// Kinds of violations.
 enum class ViolationKind : std::uint8_t {
-    crossing,    ///< a segment that was travelled intersects a surface
-    gap,         ///< the segments do not join the position at which the particle was last seen to its position now
+    crossing,    ///< a travelled segment intersects a surface
+    gap,         ///< segments do not join the particle's last known position to its position now
     wrong_side,  ///< the particle is on another side of a closed surface than at birth
     overlap,     ///< a sphere is nearer to a surface than its radius, by more than 1e-12 of its radius and coordinates
-    energy,      ///< it has gained energy from surfaces, or the recorded parts of its motion do not join
-    pair_overlap,  ///< a sphere stands in another, see verify/sphere_overlaps.h
-    pair_impact,   ///< an impact of spheres on each other that does not add up, see verify/pair_books.h
-    rebound,       ///< an impact whose rebound is not that of the surfaces that it has hit
+    energy,      ///< the particle has gained energy from surfaces, or the recorded parts of its motion do not join
+    pair_overlap,  ///< a sphere overlaps another, see verify/sphere_overlaps.h
+    pair_impact,   ///< an impact between spheres fails the audit, see verify/pair_books.h
+    rebound,       ///< the rebound of an impact does not agree with its surfaces
 };
 
-/// One violation. Each is reported once: what follows from it later is measured from the new state.
+/// One violation. Each is reported once: later steps are checked against the new state.
 struct Violation {
     ViolationKind kind = ViolationKind::crossing;
     std::uint64_t particle = 0;  ///< id
-    Vec3 position;               ///< m: of the crossing (rounded), else of the particle's centre
-    double time = 0.0;  ///< s: a crossing's flight, or what gained energy, began then; for the others the step's end
+    Vec3 position;               ///< in m; of the crossing (rounded), otherwise of the particle's centre
+    /// Time, in s. It is the start of the flight for a crossing and the start of the part for energy. For other kinds
+    /// it is the end of the step.
+    double time = 0.0;
     std::optional<std::uint32_t> collider;  ///< index; nothing for a gap, energy, a rebound and spheres
-    std::optional<std::uint32_t> triangle;  ///< of the collider's mesh; nothing for planes, shapes and sides
+    std::optional<std::uint32_t> triangle;  ///< in the collider's mesh; nothing for planes, shapes and sides
 };
 
 /// An infinite plane.
@@ -64,77 +66,80 @@ struct VerifiedShape {
     bool is_cylinder = false;
 };
 
-/// A mesh that deforms: vertices at keys, and between them each on a straight line at constant speed.
+/// A deforming mesh: vertices at keys. Between keys each vertex moves in a straight line at constant speed.
 struct VerifiedDeformation {
     std::vector<Triangle> triangles;
-    std::vector<double> times;                ///< s, of the keys, ascending
-    std::vector<std::vector<Vec3>> vertices;  ///< m, at each key
-    bool repeats = false;                     ///< the keys again and again; else they are held at both ends
+    std::vector<double> times;                ///< of the keys, in s, ascending
+    std::vector<std::vector<Vec3>> vertices;  ///< at each key, in m
+    /// True if the keys repeat. Otherwise the vertices keep their positions before the first and after the last key.
+    bool repeats = false;
 };
 
-/// A collider in world coordinates. Triangles of a mesh without area take no part, as in collisions.
+/// A collider in world coordinates. Mesh triangles without area are ignored, as in collisions.
 using VerifiedSurface = std::variant<TriangleMesh, VerifiedPlane, VerifiedShape, VerifiedDeformation>;
 
-/// Which surfaces move, and how.
+/// Motion of the surfaces.
 struct VerifiedMotion {
-    std::shared_ptr<const FrameTree> frames;           ///< null where none moves
-    std::vector<std::optional<std::size_t>> frame_of;  ///< of each surface; its coordinates are the frame's
+    std::shared_ptr<const FrameTree> frames;           ///< null if none moves
+    std::vector<std::optional<std::size_t>> frame_of;  ///< one per surface; its coordinates are relative to that frame
 };
 
-/// What the verifier remembers of a particle from one step to the next.
+/// State of a particle that the verifier keeps from one step to the next.
 struct VerifiedParticle {
     Vec3 position;
-    /// Per closed surface (closed meshes, shapes; planes count too: their two sides). on_surface: not decided yet, for
-    /// a particle that was born exactly on the surface and takes the side that it moves to.
+    /// One side per closed surface: closed meshes, shapes and planes, which have two sides. `on_surface` means
+    /// undecided: a particle was born exactly on the surface and takes the side that it moves to.
     std::vector<Side> sides;
-    bool is_on_surface = false;  ///< of any surface, open ones included
-    /// False while it overlaps something from its birth on: its distance is not judged until it has been free once.
+    bool is_on_surface = false;  ///< true on any surface, open ones included
+    /// False from birth until the sphere is first free, if it is born in overlap. Its distance is not checked until
+    /// then.
     bool has_been_free = true;
-    double time = 0.0;           ///< s, at which it stood there
-    double checked_until = 0.0;  ///< s, when the last step ended; after `time` where its clock has stood still
+    double time = 0.0;           ///< time of the position, in s
+    double checked_until = 0.0;  ///< end of the last step, in s; later than `time` if the particle's clock is stalled
 };
 
-/// How a particle's motion changed in a step, where that is recorded.
+/// Recorded changes of a particle's motion in a step.
 struct RecordedParts {
-    RecordedMotion before;                ///< at its begin
-    RecordedMotion after;                 ///< at its end
-    std::span<const MotionPart> parts{};  ///< in the order of time; none where they are not recorded
+    RecordedMotion before;                ///< at the start of the step
+    RecordedMotion after;                 ///< at the end of the step
+    std::span<const MotionPart> parts{};  ///< in the order of time; empty if they are not recorded
 };
 
-/// What a particle did in a step.
+/// Motion of a particle in a step.
 struct VerifiedStep {
     std::uint64_t particle = 0;         ///< id
-    Vec3 from;                          ///< where it stood before, m
-    Vec3 to;                            ///< where it stands now, m
-    double radius = 0.0;                ///< m
-    double time = 0.0;                  ///< s, at the end of the step
+    Vec3 from;                          ///< position before, in m
+    Vec3 to;                            ///< position now, in m
+    double radius = 0.0;                ///< in m
+    double time = 0.0;                  ///< end of the step, in s
     std::span<const Segment> segments;  ///< in the order of time
     RecordedParts motion{};
-    double stored_time = 0.0;  ///< s, of its position now, where colliders move: before `time` for one that is squeezed
+    /// Time of its position now, in s, if colliders move. It is before `time` for a pinched particle.
+    double stored_time = 0.0;
 };
 
-/// Immutable; safe from any number of threads. Copies share what they hold.
+/// The verifier of a run. Immutable; safe from any number of threads. Copies share their data.
 class Verifier {
 public:
-    /// Collider i is surfaces[i]. A mesh is closed when every edge belongs to an even number of triangle sides. Throws
-    /// InputError for numbers that are not finite, corners that are not there, and normals and shapes without extent.
+    /// Collider i is surfaces[i]. A mesh is closed if every edge belongs to an even number of triangle sides. Throws
+    /// InputError for numbers that are not finite, indices of missing corners, and normals and shapes without extent.
     explicit Verifier(const std::vector<VerifiedSurface>& surfaces, const VerifiedMotion& motion = {});
     ~Verifier();
     Verifier(const Verifier&);
     Verifier& operator=(const Verifier&);
 
-    /// Begins to watch a particle at its birth, at a time, s. A position that is not finite has no side and is not
-    /// judged.
+    /// Starts to observe a particle at its birth, at a time, in s. A position that is not finite has no side and is not
+    /// checked.
     [[nodiscard]] VerifiedParticle watch(const Vec3& position, double radius, double time = 0.0) const;
 
-    /// Checks a step and appends what is wrong to `violations`: gaps, then crossings in the order of the segments, then
-    /// sides, then overlaps, each in the order of colliders and triangles, then energies in the order of the parts.
-    /// Updates what is remembered. Throws InputError for a particle that another verifier has watched, with another
-    /// number of sides.
+    /// Checks a step, appends violations to `violations` and updates the state of the particle. The order is: gaps,
+    /// crossings in the order of the segments, sides, overlaps, energies in the order of the parts. Crossings, sides
+    /// and overlaps are each in the order of colliders and triangles. Throws InputError for a particle of another
+    /// verifier with another number of sides.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
 
-    /// Appends the closed surfaces on whose other side a particle ends whose clock stands still: they have passed it
-    /// meanwhile. time: s, now.
+    /// Checks a particle whose clock is stalled, at the end of a run. Appends the closed surfaces that have passed it
+    /// meanwhile, so that it is on their other side. `time` is the current time, in s.
     void check_end(std::uint64_t id, double time, const VerifiedParticle& particle,
                    std::vector<Violation>& violations) const;
 

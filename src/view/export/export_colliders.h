@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: the colliders of a finished run as other programs get them.
+/// Private to the library: colliders of a finished run, prepared for export.
 #pragma once
 
 #include <cstdint>
@@ -14,27 +14,27 @@
 namespace ricochet {
 
 struct ExportCollider {
-    std::string name;          ///< the scene's
-    std::uint32_t number = 0;  ///< in the run
-    bool moves = false;        ///< or deforms
+    std::string name;          ///< name in the scene
+    std::uint32_t number = 0;  ///< index in the run
+    bool moves = false;        ///< true also if it deforms
     ColliderLooks looks{};
-    /// In world coordinates, m; of one that moves as it stands in the first frame. A plane is a square.
+    /// Mesh in world coordinates, in m; of a moving collider as it is in the first frame. A plane is a square.
     TriangleMesh mesh;
 };
 
-/// Reads the colliders, and the frames of the run that hold all of them that move: one that was being written when the
-/// run was killed may not.
+/// Reads the colliders, and lists the frames that contain all moving colliders. The last frame of a killed run can
+/// lack them.
 class ExportColliders {
 public:
-    /// Throws InputError on files that do not fit each other, and where no frame holds the colliders that move.
+    /// Throws InputError if files contradict each other, or if no frame contains the moving colliders.
     explicit ExportColliders(const RunFolder& folder);
 
     [[nodiscard]] const std::vector<ExportCollider>& all() const { return colliders_; }
     [[nodiscard]] bool any_moves() const { return any_moves_; }
-    /// The frames that hold all colliders; never none.
+    /// Returns the frames that contain all colliders; there is at least one.
     [[nodiscard]] const std::vector<FrameFile>& frames() const { return frames_; }
-    /// The colliders that move as they stand in a frame, by their numbers. Throws InputError where one is missing or
-    /// has other triangles than in the first frame.
+    /// Returns the moving colliders at a frame, by their indices, in world coordinates. Throws InputError if one is
+    /// missing or has other triangles than in the first frame.
     [[nodiscard]] std::map<std::uint32_t, TriangleMesh> moving(const FrameFile& frame) const;
 
 private:
@@ -43,17 +43,17 @@ private:
     bool any_moves_ = false;
 };
 
-/// Names of files, each once, also where capital letters do not count.
+/// A generator of file names that are unique even on file systems that ignore case.
 class ExportNames {
 public:
-    /// The stem that belongs to a name: plain_file_name(), with a number where one of its files has its name already.
-    /// endings: of all files that are to begin with the stem.
+    /// Returns the stem for a name: plain_file_name(), with a number if one of its files would reuse a name.
+    /// endings: endings of all files that share the stem.
     [[nodiscard]] std::string take(const std::string& name, const std::vector<std::string>& endings);
-    /// All names that were given, in their order.
+    /// Returns all file names generated so far, in order.
     [[nodiscard]] const std::vector<std::string>& files() const { return files_; }
 
 private:
-    std::set<std::string> used_;  // in small letters
+    std::set<std::string> used_;  // lower-case names
     std::vector<std::string> files_;
 };
 

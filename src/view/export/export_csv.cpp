@@ -1,4 +1,4 @@
-// A finished run as tables of comma-separated values.
+// Exports a finished run as tables of comma-separated values.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kContactTable = "contacts.csv";
 constexpr const char* kTriangleTable = "triangles.csv";
 
-/// Units of arrays, by name.
+/// Units of arrays, by name of the array.
 using Units = std::span<const std::pair<std::string_view, std::string_view>>;
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kParticleUnits = {{{"velocity", "m/s"},
@@ -49,7 +49,7 @@ std::string unit_of(const std::string& array, Units units) {
     return found == units.end() ? "" : fmt::format(" [{}]", found->second);
 }
 
-/// The names of a table's columns, each once.
+/// Names of a table's columns, made unique.
 class Header {
 public:
     void add(const std::string& name) {
@@ -100,7 +100,7 @@ void write_particles(const std::filesystem::path& path, const VtkPolyData& frame
     file.commit();
 }
 
-/// The contact log as one table.
+/// Writes the contact log as one table.
 class ContactTable {
 public:
     ContactTable(std::filesystem::path path, const RunInfo& info) : path_(std::move(path)), info_(info) {}
@@ -129,7 +129,7 @@ private:
         return header.text();
     }
 
-    // Impacts of two particles name no collider.
+    // Collider number and name are -1 and empty for impacts between two particles.
     void add(const VtkPolyData& rows, std::size_t i) {
         for (const VtkArray& array : rows.point_arrays) {
             const auto* const colliders = std::get_if<std::vector<std::uint32_t>>(&array.values);
@@ -152,7 +152,7 @@ private:
     std::optional<CsvFile> file_;
 };
 
-/// Rows of one collider's triangles. Arrays that its file lacks leave their columns empty.
+/// Writes the rows of one collider's triangles. Columns stay empty if the file has no such array.
 class TriangleRows {
 public:
     TriangleRows(const VtkPolyData& data, std::uint32_t number, std::string name, std::string_view type)
@@ -174,7 +174,8 @@ public:
         return header.text();
     }
 
-    // All triangles of a shape with a formula carry the totals of the whole surface, which thus has one row.
+    // Planes, balls and cylinders have one row, because each of their triangles carries the totals of the whole
+    // surface.
     void write(CsvFile& file, ImpulseSizes& sizes) const {
         const std::size_t rows = std::min<std::size_t>(data_.triangles.size(), is_one_surface_ ? 1 : SIZE_MAX);
         for (std::size_t t = 0; t < rows; ++t) {
@@ -207,7 +208,7 @@ private:
         values == nullptr ? file.skip(fields) : file.add((*values)[t]);
     }
 
-    // A number and the name that it stands for.
+    // Adds a number and its name.
     void add_name(CsvFile& file, std::string_view array, std::string_view texts, std::size_t t) const {
         const auto* const numbers = values_of<std::uint32_t>(array);
         const std::vector<std::string>* const names = find_texts(data_, texts);
@@ -242,10 +243,10 @@ private:
     bool is_one_surface_ = false;
 };
 
-/// What the notes say of the triangles.
+/// Sums over all triangles, for the notes of the report.
 struct TriangleSums {
-    ImpulseSizes sizes;         ///< where their impulses came from
-    std::optional<double> end;  ///< s, of sums that end before the last frame
+    ImpulseSizes sizes;         ///< impulses by their origin
+    std::optional<double> end;  ///< end of the totals, in s, if it is before the last frame
 };
 
 TriangleSums write_triangles(const std::filesystem::path& path, const RunFolder& folder) {
@@ -303,7 +304,7 @@ void add_notes(const RunFolder& folder, const TriangleSums& sums, ExportReport& 
 }  // namespace
 
 ExportReport export_csv(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress) {
-    ExportFolder output(target);  // first: a folder that cannot be written is told before the work
+    ExportFolder output(target);  // constructed first, so that an unsuitable folder is reported before the work
     const std::vector<std::string> names = table_names(folder);
     output.begin(names);
     ExportReport report{names.size(), folder.frames.size(), {}};

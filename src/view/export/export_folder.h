@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: the folder that files for other programs go to.
+/// Private to the library: the target folder of an export.
 #pragma once
 
 #include <filesystem>
@@ -8,17 +8,17 @@
 
 namespace ricochet {
 
-inline constexpr const char* kExportMarkerFile = ".ricochet-export";  ///< says which files of a folder are an export's
+inline constexpr const char* kExportMarkerFile = ".ricochet-export";  ///< lists the files of an export
 
-/// A folder that is new, empty, or holds an earlier export, whose files (and nothing else) are replaced. A run's folder
-/// is none: exporting a run into itself is refused.
+/// A folder that is new, empty, or contains an earlier export. Only the files of that export are replaced. The folder
+/// of a run is refused, so that a run is never exported into itself.
 class ExportFolder {
 public:
-    /// Only looks. Throws InputError where the path is no such folder.
+    /// Checks the folder without changing it. Throws InputError if the path cannot be the target of an export.
     explicit ExportFolder(std::filesystem::path path);
 
-    /// Makes the folder, removes the files of an earlier export and notes the names of those that will be written.
-    /// Throws RunError when the system refuses.
+    /// Creates the folder, removes the files of an earlier export, and records the names of the files to be written.
+    /// Throws RunError if the system refuses.
     void begin(const std::vector<std::string>& files);
     [[nodiscard]] std::filesystem::path file(const std::string& name) const { return path_ / name; }
 

@@ -1,4 +1,4 @@
-// A run as meshes with point caches.
+// Exports a run as meshes with point caches.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,8 +22,9 @@ namespace {
 constexpr const char* kObj = ".obj";
 constexpr const char* kPc2 = ".pc2";
 
-/// How far a frame may be from where it should be, over the time between two. Reason: times are sums of time steps,
-/// rounded; the last frame of a run whose steps do not fit its duration is off by far more.
+/// Largest deviation of a frame's time from the even spacing, relative to the spacing.
+/// Reason: times are rounded sums of time steps. The last frame deviates far more if the steps do not fit the run's
+/// duration.
 constexpr double kSameTime = 1e-6;
 
 const std::vector<std::int64_t>& ids_of(const VtkPolyData& frame, const FrameFile& file) {
@@ -33,17 +34,17 @@ const std::vector<std::int64_t>& ids_of(const VtkPolyData& frame, const FrameFil
     return *ids;
 }
 
-/// What has to be known of all frames before the first is written.
+/// Properties of the frames that must be known before the first is written.
 struct Survey {
     std::vector<FrameFile> frames;  ///< evenly spaced in time
-    double start = 0.0;             ///< s
-    double spacing = 0.0;           ///< s
-    std::size_t left_out = 0;       ///< frames between
+    double start = 0.0;             ///< time of the first frame, in s
+    double spacing = 0.0;           ///< time between frames, in s
+    std::size_t left_out = 0;       ///< number of frames at other times
     bool same_particles = true;
-    std::string why_not;  ///< the first frame with other particles
+    std::string why_not;  ///< description of the first frame with other particles
 };
 
-// The distance in time that most frames have to the one before.
+// Returns the median time between two frames.
 double usual_spacing(const std::vector<double>& times) {
     std::vector<double> gaps;
     for (std::size_t k = 1; k < times.size(); ++k) gaps.push_back(times[k] - times[k - 1]);
@@ -52,7 +53,8 @@ double usual_spacing(const std::vector<double>& times) {
     return *middle;
 }
 
-// Samples of a cache are evenly spaced: frames between (of an interruption, or the last of a run) are left out.
+// Selects evenly spaced frames, as the samples of a cache must be. Frames at other times, written at an interruption or
+// at the end of a run, are left out.
 void choose_frames(const std::vector<FrameFile>& files, const std::vector<double>& times, Survey& survey) {
     if (times.size() < 2) {
         throw InputError(
@@ -77,7 +79,7 @@ void choose_frames(const std::vector<FrameFile>& files, const std::vector<double
         }
     }
     survey.left_out = times.size() - survey.frames.size();
-    // Over all of them, so that roundings of single times count nothing.
+    // Computed over the whole range, so that rounding of single times does not matter.
     if (survey.frames.size() > 1)
         survey.spacing = (last - survey.start) / static_cast<double>(survey.frames.size() - 1);
 }
@@ -102,10 +104,10 @@ Survey survey_of(const std::vector<FrameFile>& files) {
     return survey;
 }
 
-/// One thing that moves, with its cache.
+/// A mesh or set of points that moves, with its cache.
 struct Cached {
     std::string stem;
-    std::optional<std::uint32_t> collider;  ///< its number; nothing: the particles
+    std::optional<std::uint32_t> collider;  ///< collider index; nothing: the particles
     std::size_t points = 0;
     std::unique_ptr<PointCacheWriter> cache = nullptr;
 };
@@ -142,7 +144,7 @@ public:
     }
 
 private:
-    // The meshes that the caches move, as they stand in the first sample, and those at rest.
+    // Writes the static meshes, and the moving meshes as they are in the first sample.
     void write_meshes(const ExportFolder& target) {
         if (survey_.same_particles) {
             const TriangleMesh points{read_frame(survey_.frames.front().path).points, {}};
@@ -184,14 +186,14 @@ private:
     Survey survey_;
     ExportNames names_;
     std::string particles_stem_;
-    std::vector<std::string> stems_;  // of the colliders
+    std::vector<std::string> stems_;  // of the colliders, in order
     std::vector<Cached> cached_;
 };
 
 }  // namespace
 
 ExportReport export_pc2(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress) {
-    ExportFolder output(target);  // first: a folder that cannot be written is told before the work
+    ExportFolder output(target);  // constructed first, so that an unsuitable folder is reported before the work
     return Pc2Export(folder).write(output, progress);
 }
 

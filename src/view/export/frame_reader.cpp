@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-/// Bytes: some hundred thousand pieces.
+/// Largest index file, in bytes; sufficient for about 100000 pieces.
 constexpr std::size_t kLargestIndex = std::size_t{1} << 24;
 
 detail::VtkSource source_of(const std::filesystem::path& path) {
@@ -37,7 +37,7 @@ std::vector<std::filesystem::path> pieces_of(const std::filesystem::path& path) 
         is_closed |= tag->name == "/VTKFile";
         if (tag->name != "Piece") continue;
         const std::string& name = detail::attribute_of(source, *tag, "Source");
-        // Nothing beside the run's own files is opened.
+        // Only the run's own files are opened.
         if (!step_of_piece_file(name)) source.refuse(fmt::format("the piece {} is none of a frame", name));
         if (!names.insert(name).second) source.refuse(fmt::format("the piece {} is named twice", name));
         pieces.push_back(path.parent_path() / name);

@@ -1,5 +1,5 @@
 /// \file
-/// Reads the frames of a run, whole ones and those in pieces.
+/// Reader of a run's frames, complete ones and frames in pieces.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// The particles of a frame (FrameFile::path) in the order of their ids: of a .vtp file, or of all pieces that a .pvtp
-/// file lists, as one process would have written them. Throws InputError like read_vtp(), also where pieces do not fit
-/// together.
+/// Returns the particles of a frame (FrameFile::path) in the order of their ids.
+/// A .vtp file contains all particles; a .pvtp file lists the pieces that are merged. The result equals the frame of a
+/// run with one process. Throws InputError like read_vtp(), and if the pieces do not match each other.
 [[nodiscard]] VtkPolyData read_frame(const std::filesystem::path& path);
 
 }  // namespace ricochet

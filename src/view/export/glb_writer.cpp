@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of the format (those of OpenGL).
+// Constants of the format, equal to the OpenGL enums.
 constexpr int kFloat = 5126;
 constexpr int kUint32 = 5125;
 constexpr int kVertexBuffer = 34962;
@@ -32,7 +32,8 @@ constexpr double kGlassAlpha = 0.25;
 Vec3 y_up(const Vec3& p) { return {p.x, p.z, -p.y}; }
 Json list_of(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-// The unit ball that shows particles, wound outward: coarse, since there may be thousands of it.
+// Returns the unit ball that shows a particle, with triangles wound outward. It is coarse, because thousands of copies
+// may be drawn.
 TriangleMesh coarse_ball() {
     constexpr std::uint32_t kSides = 12;
     constexpr std::uint32_t kBelts = 6;
@@ -58,7 +59,8 @@ TriangleMesh coarse_ball() {
     return ball;
 }
 
-// Cloth comes with all particles of its frame: those far away would take the middle, and with it the digits.
+// Removes the vertices without a triangle. Cloth has all particles of its frame as vertices. Distant ones would shift
+// the centre, and the remaining coordinates would lose precision.
 TriangleMesh without_loose_vertices(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> numbers(mesh.vertices.size(), 0);
     for (const Triangle& triangle : mesh.triangles) {
@@ -76,7 +78,7 @@ TriangleMesh without_loose_vertices(const TriangleMesh& mesh) {
     return kept;
 }
 
-// The parts of a file as they come together.
+// Builds the JSON document and the binary data of a file.
 class GlbBuilder {
 public:
     explicit GlbBuilder(const std::filesystem::path& path) : path_(path) {
@@ -111,7 +113,7 @@ public:
         Json primitive;
         const std::size_t points = add_points(ball.vertices, {});
         primitive["attributes"]["POSITION"] = points;
-        primitive["attributes"]["NORMAL"] = points;  // of a unit ball they are the same
+        primitive["attributes"]["NORMAL"] = points;  // equal to the positions, since the ball has unit radius
         primitive["indices"] = add_indices(ball.triangles);
         primitive["material"] = add_material({.name = "particles", .mesh = {}, .color = {}});
         const std::size_t mesh = add_mesh("particle", std::move(primitive));
@@ -121,7 +123,7 @@ public:
         }
     }
 
-    // The header and its two chunks.
+    // Returns the header with the JSON chunk, and the data of the binary chunk.
     [[nodiscard]] std::array<std::string, 2> finish() {
         if (!body_.empty()) document_["buffers"] = Json::array({{{"byteLength", body_.size()}}});
         std::string json = document_.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -191,7 +193,7 @@ private:
         return document_["accessors"].size() - 1;
     }
 
-    // Neither metal nor one-sided, which the format's own defaults are.
+    // Sets a non-metallic, two-sided material, because the format's defaults are metallic and one-sided.
     std::size_t add_material(const GlbMesh& mesh) {
         Json surface = {{"metallicFactor", 0.0}, {"roughnessFactor", mesh.roughness}};
         if (mesh.color || mesh.glass) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: what stands somewhere at one time as a glTF 2.0 file (.glb), for other programs.
+/// Private to the library: one moment of a run as a glTF 2.0 file (.glb), for other programs.
 /// Source of the format: glTF 2.0 Specification, Khronos.
 #pragma once
 
@@ -15,9 +15,9 @@
 
 namespace ricochet {
 
-/// Most spheres that are nodes of their own. Reason: each is an object in the programs that open the file, which are
-/// not made for hundreds of thousands of them. Larger: files that only few programs open. Smaller: points, where
-/// spheres could be seen.
+/// Largest number of spheres that are written as separate nodes; more become points.
+/// Reason: each node is an object in the program that opens the file, and few programs open hundreds of thousands. A
+/// larger limit gives files that few programs open; a smaller limit shows points although spheres were possible.
 inline constexpr std::size_t kMostSphereNodes = 20'000;
 
 struct GlbMesh {
@@ -35,13 +35,14 @@ struct GlbSphere {
 
 struct GlbScene {
     std::vector<GlbMesh> meshes;
-    std::vector<Vec3> points;        ///< one primitive of points, named particles
-    std::vector<GlbSphere> spheres;  ///< a node each, all of them with one mesh
+    std::vector<Vec3> points;        ///< one primitive of points, named "particles"
+    std::vector<GlbSphere> spheres;  ///< one node each, all with the same mesh
 };
 
-/// Writes the file with y up, as the format wants it: (x, y, z) becomes (x, z, -y). Coordinates are single precision
-/// about the middle of each mesh, which stands in its node in double precision. Throws InputError for coordinates that
-/// single precision cannot hold and for more than 4 GB, RunError when the disk does not take it. Returns the bytes.
+/// Writes the file with y up, as the format requires: (x, y, z) becomes (x, z, -y). Returns its size in bytes.
+/// Vertices are single precision relative to the centre of their mesh, and the node stores that centre in double
+/// precision. Throws InputError if coordinates exceed single precision or the file exceeds 4 GB; RunError if writing
+/// fails.
 std::uint64_t write_glb(const std::filesystem::path& path, const GlbScene& scene);
 
 }  // namespace ricochet

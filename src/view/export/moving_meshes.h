@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: the colliders that move, as a run's files hold them.
+/// Private to the library: reader of the moving colliders in a run's files.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// The meshes of FrameFile::moving, by the number of their colliders. Throws InputError where it is no such file.
+/// Returns the meshes of the file FrameFile::moving, by collider index. Throws InputError if the file is not valid.
 [[nodiscard]] std::map<std::uint32_t, TriangleMesh> read_moving_meshes(const FrameFile& file);
 
 }  // namespace ricochet

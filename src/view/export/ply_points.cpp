@@ -18,13 +18,13 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kAxes = {"_x", "_y", "_z"};
 
-// Names of one element's properties, each once.
+// Property names of one element, made unique.
 class PropertyNames {
 public:
-    // The name, as near to the one that is wanted as it can be, with each of the endings.
+    // Reserves a valid name close to the wanted one, together with each of the endings, and returns it.
     std::string take(const std::string& wanted, const std::vector<std::string_view>& endings) {
         std::string base = wanted.empty() ? "attribute" : wanted;
-        // A word of the header is what stands between spaces.
+        // Spaces separate the words of the header, so names must not contain them.
         std::replace_if(
             base.begin(), base.end(), [](char c) { return c <= ' ' || c > '~'; }, '_');
         std::string name = base;
@@ -42,7 +42,7 @@ private:
 struct Column {
     std::string type;
     std::vector<std::string> names;
-    std::size_t offset = 0;  // in the bytes of a point
+    std::size_t offset = 0;  // byte offset within a point
     const VtkArray* array = nullptr;
 };
 
@@ -59,7 +59,7 @@ std::string type_of(const VtkArray& array) {
 
 std::size_t size_of(const std::string& type) { return type == "uchar" ? 1 : type == "uint" ? 4 : 8; }
 
-// The points of a frame as rows of bytes.
+// Converts the points of a frame to rows of bytes.
 class PointTable {
 public:
     explicit PointTable(const VtkPolyData& frame) : frame_(frame) {

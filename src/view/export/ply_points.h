@@ -12,19 +12,22 @@
 
 namespace ricochet {
 
-/// What a file of points came to be.
+/// Result of writing a file of points.
 struct PlyPointsReport {
     std::uint64_t bytes = 0;
-    /// Arrays whose names PLY cannot hold, or that are another's: their names, and those of their first properties.
+    /// Arrays whose names are invalid in PLY or already used: original name, and name of the first property.
     std::vector<std::pair<std::string, std::string>> renamed;
 };
 
-/// Writes the points with all their arrays as a binary little-endian PLY file: x, y, z as doubles, the array velocity
-/// as vx, vy, vz, other vectors as name_x, name_y, name_z; Float64 as double, UInt32 and what fits it of Int64 as uint
-/// (else double, exact below 2^53), UInt8 as uchar. Triangles between the points (cloth) are faces, lines (springs)
-/// edges. The time stands in a comment. PLY takes names of ASCII letters and signs without spaces: what else there is
-/// becomes '_'. Throws InputError when an array has another length than the points, RunError when the disk does not
-/// take it.
+/// Writes the points and their arrays as a binary little-endian PLY file.
+/// - Positions are x, y, z as doubles; the array velocity becomes vx, vy, vz; other vectors become name_x, name_y,
+///   name_z.
+/// - Float64 becomes double, UInt32 becomes uint, and UInt8 becomes uchar.
+/// - Int64 becomes uint if all values fit, otherwise double, which is exact below 2^53.
+/// - Triangles between the points (cloth) become faces, and lines (springs) become edges.
+/// - A comment contains the time.
+/// - PLY names consist of ASCII letters and signs without spaces; other characters become '_'.
+/// Throws InputError if an array differs in length from the points, RunError if writing fails.
 PlyPointsReport write_ply_points(const std::filesystem::path& path, const VtkPolyData& frame);
 
 }  // namespace ricochet

@@ -49,7 +49,8 @@ void add_colliders(const RunFolder& folder, const FrameFile& frame, GlbScene& sc
     if (hidden > 0) report.notes.push_back(fmt::format("colliders that the scene hides are left out: {}", hidden));
 }
 
-// Particles with a radius become spheres, others points; all become points where spheres would be too many.
+// Adds particles with a radius as spheres and all others as points. If the spheres are too many, all particles become
+// points.
 void add_particles(VtkPolyData frame, GlbScene& scene, ExportReport& report) {
     const std::vector<double>* const radii = radii_of(frame);
     std::size_t lost = 0;
@@ -77,7 +78,7 @@ void add_particles(VtkPolyData frame, GlbScene& scene, ExportReport& report) {
     }
 }
 
-// Of one export to PLY: the names of its files, and the work.
+// An export to PLY: names of its files, and the writing.
 class PlyExport {
 public:
     PlyExport(const RunFolder& folder, ExportNumbers numbers) : colliders_(folder) {
@@ -126,14 +127,14 @@ private:
     ExportColliders colliders_;
     ExportNames names_;
     std::vector<std::string> frame_endings_;
-    std::vector<std::string> stems_;  // of the colliders
+    std::vector<std::string> stems_;  // of the colliders, in order
 };
 
 }  // namespace
 
 ExportReport export_ply(const RunFolder& folder, const std::filesystem::path& target, ExportNumbers numbers,
                         const ExportProgress& progress) {
-    ExportFolder output(target);  // first: a folder that cannot be written is told before the work
+    ExportFolder output(target);  // constructed first, so that an unsuitable folder is reported before the work
     PlyExport work(folder, numbers);
     ExportReport report = work.write(output, progress);
     if (report.frames < folder.frames.size()) report.notes.push_back(left_out_note(work.colliders(), folder));

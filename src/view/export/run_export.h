@@ -1,6 +1,6 @@
 /// \file
-/// Private to the library: a finished run as files for other programs. What each format loses stands in
-/// docs/output-files.md.
+/// Private to the library: exports of a finished run for other programs. docs/output-files.md lists the losses of each
+/// format.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,35 @@
 
 namespace ricochet {
 
-/// What an export came to be.
+/// Result of an export.
 struct ExportReport {
     std::size_t files = 0;
     std::size_t frames = 0;
-    std::vector<std::string> notes;  ///< what is not as in the run, and how to play what was written
+    std::vector<std::string> notes;  ///< differences from the run, and instructions for playing the files
 };
 
-/// Told the part that is done.
+/// Receives the completed share of the work, from 0 to 1.
 using ExportProgress = std::function<void(double)>;
 
-// All of them throw InputError for what is no run and for a target that is not what it should be, RunError when the
-// disk does not take it. Files appear under their names when they are complete.
+// All functions throw InputError if the folder is not a run or the target is unsuitable. They throw RunError if
+// writing fails. Files appear under their names only when they are complete.
 
-/// How files of a series are numbered: by the run's steps, or 0, 1, 2, ...
+/// Numbering of files in a series: by the run's steps, or 0, 1, 2, ...
 enum class ExportNumbers : std::uint8_t { steps, consecutive };
 
-/// A PLY file of the particles for every frame, of colliders that move too, and one of each that is at rest.
+/// Writes a PLY file of the particles and moving colliders for every frame, and one of each static collider.
 ExportReport export_ply(const RunFolder& folder, const std::filesystem::path& target, ExportNumbers numbers,
                         const ExportProgress& progress);
 
-/// A mesh (OBJ) for every collider and a point cache (PC2) of each that moves; of the particles too where they are the
-/// same in all frames.
+/// Writes a mesh (OBJ) for every collider, and a point cache (PC2) for each moving collider. Writes a point cache of
+/// the particles if all frames contain the same particles.
 ExportReport export_pc2(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress);
 
-/// A table (CSV) of the particles of every frame, one of the contact log where there is one, and one of all triangles
-/// of the colliders.
+/// Writes a table (CSV) of the particles for every frame, and one of all triangles of the colliders. Adds a table of
+/// the contact log if the run has one.
 ExportReport export_csv(const RunFolder& folder, const std::filesystem::path& target, const ExportProgress& progress);
 
-/// One frame of the run as a glTF file. The frame: one of the folder's.
+/// Writes one frame of the folder as a glTF file.
 ExportReport export_gltf(const RunFolder& folder, const FrameFile& frame, const std::filesystem::path& target);
 
 }  // namespace ricochet

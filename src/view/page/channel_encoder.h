@@ -1,5 +1,6 @@
 /// \file
-/// Numbers of particles (or vertices) over the frames of a run, told as differences to what earlier frames let expect.
+/// Channels of numbers of particles (or vertices) over the frames of a run, encoded as differences to predictions from
+/// earlier frames.
 #pragma once
 
 #include <array>
@@ -11,33 +12,37 @@
 
 namespace ricochet {
 
-/// How the rows of a frame follow those of the frame before.
+/// Relation between the rows of a frame and the rows of the previous frame.
 struct RowHistory {
     static constexpr std::uint32_t kNew = 0xffffffffU;
 
-    std::vector<std::uint32_t> parent;  ///< the row's particle in the frame before; kNew where it was not there
-    std::vector<std::uint8_t> known;    ///< earlier frames without a break in which it was, 3 at most
+    std::vector<std::uint32_t> parent;  ///< row of the same particle in the previous frame; kNew if it did not exist
+                                        ///< there
+    std::vector<std::uint8_t> known;    ///< number of consecutive earlier frames with this particle, at most 3
 
-    /// Goes on to a frame with these parents.
+    /// Advances to a frame with the given parents.
     void follow(std::vector<std::uint32_t> parents);
-    /// Goes on to a frame with as many rows as before, all the same; the first one makes `count` new rows.
+    /// Advances to a frame with the same rows as before. If the count differs, all `count` rows are new.
     void follow_same(std::size_t count);
 };
 
-/// Writes one channel, frame after frame. What is written: a byte, the order (0 to 2) of the polynomial through a row's
-/// last values that is taken as the prediction, as far as the row has so many; then the differences, modulo 2^bits, as
-/// 0, -1, 1, -2, ... are counted: all low bytes, then, of more than 8 bits, all high bytes. A new row's prediction is
-/// the value of the row before it in its own frame, the first row's is 0. Read again in web/blocks.js.
+/// Encoder of one channel, frame after frame.
+/// The output starts with a byte: the order (0 to 2) of the polynomial through a row's last values, which serves as
+/// prediction. Rows with a shorter history use a lower order.
+/// Then follow the differences, modulo 2^bits, with 0, -1, 1, -2, ... numbered 0, 1, 2, 3, .... All low bytes come
+/// first, then all high bytes if there are more than 8 bits.
+/// A new row's prediction is the value of the preceding row of its frame. The first row's prediction is 0. The decoder
+/// is in web/blocks.js.
 class ChannelEncoder {
 public:
     explicit ChannelEncoder(int bits) : bits_(bits) {}
 
-    /// history: of the same frame.
+    /// Encodes the values of a frame. `history` must belong to the same frame.
     void encode(const Levels& values, const RowHistory& history, ByteWriter& out);
 
 private:
     int bits_;
-    std::array<Levels, 3> past_;  // by row of the frame before; the latest first
+    std::array<Levels, 3> past_;  // by row of the previous frame, latest first
 };
 
 }  // namespace ricochet

@@ -18,17 +18,19 @@
 namespace ricochet {
 namespace {
 
-/// Largest distance of a vertex from where a rotation and a shift put it, over the mesh's size, up to which a collider
-/// counts as rigid. Reason: frames hold doubles, so a turned mesh fits to some 1e-15; what deforms less than this is
-/// not seen. Smaller: far from the origin rigid bodies are stored vertex by vertex. Larger: small waves are lost.
+/// Largest distance of a vertex from its rigidly transformed position, relative to the mesh's size, for a rigid
+/// collider. Reason: frames hold doubles, so a rotated mesh fits to about 1e-15, and smaller deformations are
+/// invisible. A smaller tolerance stores rigid bodies far from the origin vertex by vertex. A larger one loses small
+/// waves.
 constexpr double kRigidTolerance = 1e-7;
 
-/// Particles of the probe that are asked whether they are inside, and the winding number from which one is: an open
-/// drum counts, a ground below does not.
+/// Number of particles that are tested for being inside a collider, and the winding number above which a particle is
+/// inside. An open drum counts, a ground below does not.
 constexpr std::size_t kProbes = 24;
 constexpr double kInside = 0.75;
 
-// Totals span orders of magnitude. spread: a value of one part in so many is the smallest that shows.
+// Maps totals to levels. The scale is logarithmic, because totals span orders of magnitude. For impulses, the largest
+// total divided by 999 is the unit.
 PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
     const VtkArray* const totals = find_array(data.cell_arrays, array);
     PartMap map;
@@ -45,11 +47,11 @@ PartMap part_map(const VtkPolyData& data, const char* array, bool is_count) {
     return map;
 }
 
-// Right-handed unit vectors that three of a mesh's vertices span, and the first of them.
+// Three vertices of a mesh that span a right-handed frame of unit vectors.
 struct Tripod {
     std::array<std::uint32_t, 3> corners{};
 
-    // The vertices that lie farthest apart, so that rounding turns the least.
+    // Chooses vertices that are far apart, so that rounding rotates the frame as little as possible.
     explicit Tripod(const std::vector<Vec3>& points) {
         const auto farthest = [&](const auto& distance) {
             std::uint32_t best = 0;
@@ -72,7 +74,7 @@ struct Tripod {
     }
 };
 
-// The rotation and shift that bring the tripod's corners from one list to the other.
+// Returns the rotation and translation that move the tripod's corners from one list of points to the other.
 AffineMap pose_between(const Tripod& tripod, const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     const std::array<Vec3, 3> a = tripod.axes(from);
     const std::array<Vec3, 3> b = tripod.axes(to);
@@ -154,7 +156,7 @@ Box3 ColliderParts::box() const {
     return box;
 }
 
-// Colliders that move stand in their files as in their own frames: where they are, the frames of the run say.
+// The files of moving colliders use local coordinates. The frames of the run give their world coordinates.
 void ColliderParts::add_moving(const FrameFile& first) {
     std::map<std::uint32_t, TriangleMesh> meshes = read_moving_meshes(first);
     for (const std::size_t index : moving_) {
@@ -197,7 +199,7 @@ void ColliderParts::survey_motion(const std::vector<FrameFile>& frames) {
     }
 }
 
-// A collider with most of the particles inside would hide them.
+// Makes a collider transparent if most particles are inside, because it would hide them.
 void ColliderParts::find_glass(const FrameFile& probe) {
     const VtkPolyData frame = read_frame(probe.path);
     std::vector<Vec3> points;

@@ -1,5 +1,5 @@
 /// \file
-/// The colliders of a run as a page shows them: at rest, carried along as they are, or deforming.
+/// Colliders of a run for a page: at rest, rigid or deforming.
 #pragma once
 
 #include <cstdint>
@@ -17,50 +17,50 @@ namespace ricochet {
 
 enum class PartMotion {
     still,
-    rigid,      ///< turned and shifted, to kRigidTolerance of its size
-    deforming,  ///< anything else; every vertex is told in every frame
+    rigid,      ///< rotated and translated, to kRigidTolerance of its size
+    deforming,  ///< any other motion; all vertices are stored in every frame
 };
 
-/// A total of the triangles: 8-bit levels on a logarithmic scale.
+/// Totals of the triangles: 8-bit levels on a logarithmic scale.
 struct PartMap {
     double largest = 0.0;
-    Levels levels;  ///< one a triangle; empty where the run has none
+    Levels levels;  ///< one per triangle; empty if the run has no totals
 };
 
 struct ColliderPart {
     std::string name;
-    std::uint32_t number = 0;  ///< in the run
+    std::uint32_t number = 0;  ///< number in the run
     std::uint32_t material = 0;
     PartMotion motion = PartMotion::still;
-    bool is_glass = false;      ///< of its own looks, or has particles inside: to be seen through
-    bool is_hidden = false;     ///< of its own looks: not shown at first
-    double roughness = 1.0;     ///< of its own looks: 0 (a mirror's gloss) .. 1 (matt)
-    bool has_pattern = true;    ///< of its own looks: a plane's lines
-    std::optional<Vec3> color;  ///< of its own looks, linear light
-    /// World coordinates, of one that moves those in the first frame, m. A plane is a square.
+    bool is_glass = false;      ///< from its appearance settings, or because it has particles inside: transparent
+    bool is_hidden = false;     ///< from its appearance settings: initially invisible
+    double roughness = 1.0;     ///< from its appearance settings: 0 (a mirror's gloss) .. 1 (matt)
+    bool has_pattern = true;    ///< from its appearance settings: a plane's lines
+    std::optional<Vec3> color;  ///< from its appearance settings, in linear light
+    /// World coordinates in m. For a moving collider, coordinates in the first frame. A plane is a square.
     TriangleMesh mesh;
-    std::optional<Vec3> plane_normal;  ///< of a plane at rest
+    std::optional<Vec3> plane_normal;  ///< for a plane at rest
     PartMap hits;
-    PartMap impulse;  ///< N s
-    Box3 reach;       ///< of all its vertices over all frames
+    PartMap impulse;  ///< in N s
+    Box3 reach;       ///< bounding box of all its vertices over all frames
 };
 
-/// How the colliders that move stand in a frame, in the order of the parts.
+/// State of the moving colliders in a frame, in the order of the parts.
 struct MovingFrame {
-    std::vector<AffineMap> poses;           ///< of the rigid ones, from their mesh
-    std::vector<std::vector<Vec3>> points;  ///< of the deforming ones
+    std::vector<AffineMap> poses;           ///< of the rigid colliders, relative to their mesh
+    std::vector<std::vector<Vec3>> points;  ///< of the deforming colliders
 };
 
 class ColliderParts {
 public:
-    /// Reads all colliders' files, and how those that move stand in the frames. Throws InputError on files that do not
-    /// fit each other.
+    /// Reads the files of all colliders, and the motion of the moving colliders over the frames. Throws InputError if
+    /// files do not match each other.
     ColliderParts(const RunFolder& folder, const std::vector<FrameFile>& frames);
 
     [[nodiscard]] const std::vector<ColliderPart>& parts() const { return parts_; }
-    /// Of all of them but planes, over all frames; empty without any.
+    /// Returns the bounding box of all colliders except planes, over all frames. It is empty if there are none.
     [[nodiscard]] Box3 box() const;
-    /// May be called from several threads.
+    /// Returns the state of the moving colliders in a frame. Safe to call from several threads.
     [[nodiscard]] MovingFrame moving_frame(const FrameFile& file) const;
 
 private:
@@ -69,7 +69,7 @@ private:
     void find_glass(const FrameFile& probe);
 
     std::vector<ColliderPart> parts_;
-    std::vector<std::size_t> moving_;  // indices of those that move
+    std::vector<std::size_t> moving_;  // indices of the moving colliders
 };
 
 }  // namespace ricochet

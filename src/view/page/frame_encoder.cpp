@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-constexpr std::uint32_t kThinning = 0x7061'6765;  // names the draws: "page"
+constexpr std::uint32_t kThinning = 0x7061'6765;  // stream of the random numbers: "page"
 
 bool is_kept(std::int64_t id, const RunSurvey& survey, double part) {
     if (part >= 1.0) return true;
@@ -25,7 +25,7 @@ bool is_kept(std::int64_t id, const RunSurvey& survey, double part) {
     return RandomSequence(0, kThinning, static_cast<std::uint64_t>(id)).uniform() < part;
 }
 
-// The rows that go into the page.
+// Returns the rows of a frame that go into the page.
 std::vector<std::uint32_t> kept_rows(const VtkPolyData& frame, const std::vector<std::int64_t>& ids,
                                      const RunSurvey& survey, double part, std::uint64_t& left_out) {
     std::vector<std::uint32_t> rows;
@@ -58,7 +58,7 @@ void add_colors(PageFrame& page, const VtkPolyData& frame, const std::vector<std
     std::array<Levels, 3> levels;
     for (const std::uint32_t row : rows) {
         const Vec3& light = (*colors)[row];
-        // What is brighter than a screen keeps its hue.
+        // Light brighter than the screen is scaled down to keep its hue.
         const double most = std::max({light.x, light.y, light.z, 1.0});
         for (int channel = 0; channel < 3; ++channel) {
             const double part = light[channel] / most;
@@ -68,7 +68,7 @@ void add_colors(PageFrame& page, const VtkPolyData& frame, const std::vector<std
     for (Levels& channel : levels) page.channels.push_back(std::move(channel));
 }
 
-// Coordinates from -1 to 1.
+// Adds the rotations, whose coordinates are in [-1, 1].
 void add_turns(PageFrame& page, const std::vector<std::array<float, 3>>& turns, const std::vector<std::uint32_t>& rows,
                int bits) {
     const LevelScale scale = turn_scale(bits);
@@ -80,7 +80,7 @@ void add_turns(PageFrame& page, const std::vector<std::array<float, 3>>& turns, 
     }
 }
 
-// Springs of which an end is not in the page are not either.
+// Adds the springs. Springs with an end outside the page are left out.
 void add_springs(PageFrame& page, const VtkPolyData& frame, const std::vector<std::uint32_t>& rows) {
     if (frame.lines.empty() && frame.triangles.empty()) return;
     std::vector<std::uint32_t> new_row(frame.points.size(), RowHistory::kNew);
@@ -126,7 +126,7 @@ LevelScale level_scale(const PageAttribute& attribute, int bits) {
     if (!(width > 0.0)) return scale;
     scale.step = width / scale.largest;
     if (!attribute.is_whole || width > scale.largest) return scale;
-    scale.step = 1.0;  // whole numbers as they are
+    scale.step = 1.0;  // integers are stored exactly
     scale.largest = static_cast<std::uint16_t>(width);
     return scale;
 }

@@ -1,5 +1,5 @@
 /// \file
-/// Frames of a run as blocks of bytes for the page.
+/// Frames of a run, encoded as blocks of bytes for the page.
 #pragma once
 
 #include <cstdint>
@@ -16,47 +16,51 @@
 
 namespace ricochet {
 
-/// How much of a run goes into its page.
+/// Level of detail of a run's page.
 struct PageDetail {
-    int position_bits = 16;       ///< of a coordinate, over the longest edge of the box
-    int value_bits = 16;          ///< of an attribute, over its range; 8 or 16, see attribute_bits()
-    std::size_t every_frame = 1;  ///< one frame of so many; the last one always
-    double particles = 1.0;       ///< part of the particles, chosen by chance; those at springs always
+    int position_bits = 16;       ///< bits per coordinate, over the longest edge of the box
+    int value_bits = 16;          ///< bits per attribute, over its range; 8 or 16, see attribute_bits()
+    std::size_t every_frame = 1;  ///< every n-th frame is kept; the last frame is always kept
+    double particles = 1.0;       ///< share of the particles, chosen at random; particles at springs are always kept
 
-    /// Which of `count` frames are taken.
+    /// Returns the indices of the frames that are kept, out of `count`.
     [[nodiscard]] std::vector<std::size_t> chosen_frames(std::size_t count) const;
 };
 
-/// The bits of an attribute: `bits`, but 16 for radii. They rarely change, so that these cost little, and those of
-/// small spheres among large ones would drown in the rounding.
+/// Returns the bits of an attribute: `bits`, but 16 for radii. Radii rarely change, so 16 bits cost little. With fewer
+/// bits, radii of small spheres among large ones would be lost in the rounding.
 [[nodiscard]] int attribute_bits(const PageAttribute& attribute, int bits);
-/// The levels that an attribute is told in, of attribute_bits().
+/// Returns the levels of an attribute with attribute_bits().
 [[nodiscard]] LevelScale level_scale(const PageAttribute& attribute, int bits);
-/// The levels of a coordinate of turns.
+/// Returns the levels of a rotation's coordinate.
 [[nodiscard]] LevelScale turn_scale(int bits);
-/// True where an attribute needs no bytes in the frames: every particle has the same value.
+/// Returns true if every particle has the same value, so that the frames need no bytes for the attribute.
 [[nodiscard]] inline bool is_constant(const PageAttribute& attribute) {
     return attribute.low == attribute.high && !attribute.has_gaps && !attribute.is_cut;
 }
 
-/// One frame, as whole numbers.
+/// One frame in integers.
 struct PageFrame {
     std::vector<std::int64_t> ids;
-    std::vector<Levels> channels;  ///< x, y, z; attributes that are not constant; red, green, blue in sRGB; turns
+    std::vector<Levels> channels;  ///< x, y, z; attributes that vary; red, green, blue in sRGB; rotations
     std::vector<VtkLine> lines;    ///< between rows
     std::vector<Triangle> triangles;
     MovingFrame moving;
-    std::uint64_t left_out = 0;  ///< particles outside the survey's box
+    std::uint64_t left_out = 0;  ///< number of particles outside the survey's box
 };
 
-/// Reads and rounds a frame. May be called from several threads.
+/// Reads and quantizes a frame. Safe to call from several threads.
 [[nodiscard]] PageFrame page_frame(const FrameFile& file, const RunSurvey& survey, const PageDetail& detail,
                                    const ColliderParts& colliders);
 
-/// Writes frames one after the other; each block leans on the ones before. Layout: the rows of the frame before that
-/// are gone, as their number and gaps; the ids that are new, likewise; every channel (ChannelEncoder); springs: a byte
-/// (0 none, 1 as in the frame before, 2 told anew), then their numbers and ends as differences; colliders that move
-/// (ColliderParts). Read again in web/run.js.
+/// Encoder of consecutive frames. Each block depends on the previous blocks. Layout of a block:
+/// - Removed rows of the previous frame: their count and gaps.
+/// - New ids: their count and gaps.
+/// - All channels (ChannelEncoder).
+/// - Springs: a byte (0: none, 1: same as in the previous frame, 2: new list), then their count and ends as
+///   differences.
+/// - Moving colliders (MovingEncoder).
+/// The decoder is in web/run.js.
 class FrameEncoder {
 public:
     FrameEncoder(const RunSurvey& survey, const PageDetail& detail, const ColliderParts& colliders);
@@ -67,7 +71,7 @@ private:
     void write_rows(const PageFrame& frame, ByteWriter& out);
     void write_springs(const PageFrame& frame, ByteWriter& out);
 
-    std::vector<std::int64_t> ids_;  // of the frame before
+    std::vector<std::int64_t> ids_;  // ids of the previous frame
     RowHistory rows_;
     std::vector<ChannelEncoder> channels_;
     std::vector<VtkLine> lines_;

@@ -1,5 +1,5 @@
 /// \file
-/// Numbers rounded to levels, as the page stores them.
+/// Numbers quantized to levels, as stored in the page.
 #pragma once
 
 #include <cmath>
@@ -10,10 +10,10 @@
 
 namespace ricochet {
 
-/// One whole number a row, below 2^bits.
+/// One integer per row, below 2^bits.
 using Levels = std::vector<std::uint16_t>;
 
-/// Numbers of a range as levels 0 to largest; one more level says "not a number" where has_gaps says so.
+/// Quantization of a range to levels 0 to largest. If has_gaps is set, the next level means "not a number".
 struct LevelScale {
     double low = 0.0;
     double step = 1.0;
@@ -23,7 +23,7 @@ struct LevelScale {
     [[nodiscard]] std::uint16_t level(double value) const;
 };
 
-/// Grid of positions: a coordinate is lower + level * step, m.
+/// Grid of positions. A coordinate is lower + level * step, in m.
 struct PositionGrid {
     Vec3 lower;
     double step = 1.0;
@@ -31,12 +31,12 @@ struct PositionGrid {
 
     [[nodiscard]] LevelScale axis(int axis) const { return {lower[axis], step, largest, false}; }
 };
-/// How far rounding to a grid of that step may move a point, m: half the diagonal of a cell.
+/// Returns the largest displacement by rounding to a grid of the given step, in m. It is half the diagonal of a cell.
 [[nodiscard]] inline double rounding_distance(double step) { return 0.5 * std::sqrt(3.0) * step; }
-/// The grid of 2^bits levels along the longest edge of the box.
+/// Returns the grid with 2^bits levels along the longest edge of the box.
 [[nodiscard]] PositionGrid position_grid(const Box3& box, int bits);
 
-/// The levels of points along one axis.
+/// Returns the levels of points along one axis.
 [[nodiscard]] Levels axis_levels(const std::vector<Vec3>& points, const PositionGrid& grid, int axis);
 
 }  // namespace ricochet

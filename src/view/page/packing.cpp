@@ -12,7 +12,7 @@ std::string deflated(std::string_view bytes) {
     z_stream stream{};
     if (deflateInit(&stream, 6) != Z_OK) throw std::bad_alloc();
     std::string packed(deflateBound(&stream, bytes.size()), '\0');
-    // zlib does not write to its input, but its type does not say so.
+    // zlib does not write to its input, but its type is not const.
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
     stream.avail_in = static_cast<uInt>(bytes.size());
     stream.next_out = reinterpret_cast<Bytef*>(packed.data());

@@ -1,5 +1,5 @@
 /// \file
-/// How bytes get into a page: gathered, deflated, and as text.
+/// Packing of bytes for a page: serialization, compression and encoding as text.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace ricochet {
 
-/// Gathers numbers, little endian.
+/// Little-endian serializer of numbers.
 class ByteWriter {
 public:
     void byte(std::uint8_t value) { bytes_.push_back(static_cast<char>(value)); }
-    /// Seven bits a byte, the lowest first; all but the last byte have their top bit set.
+    /// Appends seven bits per byte, lowest first. All bytes except the last have their top bit set.
     void varint(std::uint64_t value) {
         for (; value >= 0x80; value >>= 7) byte(static_cast<std::uint8_t>(value | 0x80U));
         byte(static_cast<std::uint8_t>(value));
     }
-    /// A number of either sign: 0, -1, 1, -2, ... as 0, 1, 2, 3, ...
+    /// Appends a signed number: 0, -1, 1, -2, ... are coded as 0, 1, 2, 3, ...
     void signed_varint(std::int64_t value) {
         varint((static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63));
     }
@@ -38,13 +38,14 @@ private:
     std::string bytes_;
 };
 
-/// The bytes in zlib's format (RFC 1950), which browsers unpack as `deflate`. Throws std::bad_alloc.
+/// Returns the bytes in zlib's format (RFC 1950), which browsers unpack as `deflate`. Throws std::bad_alloc, and
+/// RunError for more than 4 GB.
 [[nodiscard]] std::string deflated(std::string_view bytes);
 
-/// The bytes as text (RFC 4648, with padding).
+/// Returns the bytes as base64 text (RFC 4648, with padding).
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-/// Text between tags: &, <, > and quotes as entities.
+/// Escapes text for HTML: &, <, > and quotes become entities.
 [[nodiscard]] std::string html_text(std::string_view text);
 
 }  // namespace ricochet

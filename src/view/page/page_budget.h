@@ -1,5 +1,5 @@
 /// \file
-/// What a page leaves out so that it fits its budget of bytes.
+/// Reduction of a page's detail to fit a budget of bytes.
 #pragma once
 
 #include <cstddef>
@@ -11,22 +11,22 @@
 
 namespace ricochet {
 
-/// Of positions on any page, and the most of them.
+/// Limits of the bits of positions on any page.
 inline constexpr int kLeastPositionBits = 11;
 inline constexpr int kMostPositionBits = 16;
 
-/// Details from everything to the least that is worth a page, each asking for fewer bytes than the one before: fewer
-/// bits first, then fewer frames, then fewer particles, then frames again. frames, most_particles: of the run;
-/// least_bits: of positions, see needed_position_bits().
+/// Returns levels of detail from full detail to the least useful one, each smaller than the previous one. First the
+/// bits decrease, then the frames, then the particles, then the frames again. `frames` and `most_particles` describe
+/// the run. `least_bits` is the limit for positions, see needed_position_bits().
 [[nodiscard]] std::vector<PageDetail> detail_ladder(std::size_t frames, std::uint64_t most_particles,
                                                     int least_bits = kLeastPositionBits);
 
-/// The bits from which on rounding puts spheres of this radius no more than a tenth of it from their place, where the
-/// box's longest edge is so long; m. Spheres that lie on a wall would be seen to stand off it, or in it. radius 0: any.
+/// Returns the bits of positions at which rounding moves a sphere by at most a tenth of its radius. With fewer bits,
+/// spheres on a wall would visibly float above it or sink into it. Lengths are in m. A radius of 0 sets no limit.
 [[nodiscard]] int needed_position_bits(double radius, double longest_edge);
 
-/// The first index from `begin` of which the bytes fit, where they fall along the ladder; size() when none fits.
-/// Looks at few of them.
+/// Returns the first index from `begin` whose bytes fit into the budget, or size() if none fits. The bytes must
+/// decrease along the ladder. The search is binary, because `bytes` is expensive.
 [[nodiscard]] std::size_t first_fitting(const std::vector<PageDetail>& ladder, std::size_t begin, double budget,
                                         const std::function<double(const PageDetail&)>& bytes);
 

@@ -17,15 +17,16 @@
 namespace ricochet {
 namespace {
 
-constexpr std::size_t kGroup = 8;  // frames that are in memory together
+constexpr std::size_t kGroup = 8;  // frames that are in memory at the same time
 
-// An estimate encodes this many stretches of so many frames; their first frames, which lean on little, do not count.
+// An estimate encodes this many samples of consecutive frames. The first frames of a sample depend on little history
+// and do not count.
 constexpr std::size_t kStretches = 3;
 constexpr std::size_t kStretchFrames = 5;
 constexpr std::size_t kStretchStart = 2;
 constexpr double kEstimateMargin = 1.03;
 
-// With a frame that a run was killed in there may be no file of the colliders that move.
+// Returns the frames whose moving colliders are recorded. A run killed while writing a frame can lack that file.
 std::vector<FrameFile> complete_frames(const RunFolder& folder) {
     std::vector<FrameFile> frames = folder.frames;
     const bool any_moves = std::any_of(folder.info.colliders.begin(), folder.info.colliders.end(),
@@ -55,7 +56,8 @@ Camera page_camera(const RunFolder& folder, const RunSurvey& survey, const Colli
     return automatic_camera(subject, folder.info.up, 16.0 / 9.0);
 }
 
-// Frame by frame: each goes on from the one before.
+// Returns the rotations of the particles per step. Frames are processed in order, because each rotation continues the
+// previous one.
 std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::vector<FrameFile>& frames,
                                                                     const PageShapes& shapes) {
     std::map<std::uint64_t, std::vector<std::array<float, 3>>> all;
@@ -69,7 +71,8 @@ std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns_of(const std::v
     return all;
 }
 
-// By the radii of small spheres, but for those that others dwarf.
+// Returns the least bits of positions from the radii of small spheres. Spheres much smaller than the largest ones are
+// ignored.
 int least_position_bits(const RunSurvey& survey) {
     for (const PageAttribute& attribute : survey.attributes) {
         if (attribute.array != "radius" || survey.box.empty()) continue;
@@ -80,7 +83,7 @@ int least_position_bits(const RunSurvey& survey) {
     return kLeastPositionBits;
 }
 
-// Bytes that frames would take on the page, from a few of them.
+// Estimates the bytes of all frames in the page from a few of them.
 double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     const std::vector<std::size_t> chosen = detail.chosen_frames(source.frames.size());
     const bool is_short = chosen.size() <= kStretches * kStretchFrames;
@@ -107,7 +110,7 @@ double estimated_bytes(const PageSource& source, const PageDetail& detail) {
     return kEstimateMargin * bytes * all / rows;
 }
 
-// All frames; nothing where they take more than the bytes.
+// Returns all frames, or nothing if they need more than `bytes`.
 std::optional<PageFrames> packed_frames(const PageSource& source, const PageDetail& detail, double bytes,
                                         const std::function<void(double)>& progress) {
     PageFrames result;

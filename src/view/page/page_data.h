@@ -1,5 +1,5 @@
 /// \file
-/// The data of a page: the frames of a run as blocks that fit a budget, and what a script needs to read them.
+/// Data of a page: the frames of a run as blocks that fit a budget, and the description for the page's script.
 #pragma once
 
 #include <functional>
@@ -14,10 +14,10 @@
 
 namespace ricochet {
 
-/// A run as read for its page.
+/// A run, loaded for its page.
 struct PageSource {
     const RunFolder& folder;
-    std::vector<FrameFile> frames;  ///< those that can be shown
+    std::vector<FrameFile> frames;  ///< frames that can be shown
     ColliderParts colliders;
     RunSurvey survey;
     Camera camera;
@@ -27,19 +27,21 @@ struct PageSource {
 [[nodiscard]] PageSource page_source(const RunFolder& folder, const PageShapes& shapes,
                                      const std::function<void(double)>& progress);
 
-/// Blocks of frames as the page holds them: packed, as text.
+/// Blocks of frames as stored in the page: compressed, as text.
 struct PageFrames {
     PageDetail detail;
     std::vector<std::size_t> chosen;  ///< indices into PageSource::frames
     std::vector<std::string> blocks;
-    std::vector<std::size_t> counts;  ///< particles of each
-    std::uint64_t left_out = 0;       ///< particles, summed over frames, that are too far from all others
+    std::vector<std::size_t> counts;  ///< number of particles in each frame
+    std::uint64_t left_out = 0;       ///< number of particles that are too far from all others, summed over frames
 };
 
-/// The most detail that fits into so many bytes. Throws InputError, naming the budget, where nothing does.
+/// Returns the frames with the most detail that fits into the given bytes. Throws InputError with the budget if
+/// nothing fits.
 [[nodiscard]] PageFrames fitted_frames(const PageSource& source, double bytes, const PageOptions& options);
 
-/// JSON for the page's script, as it may stand inside a <script>: no character of it is a tag's, all are ASCII.
+/// Returns the description of the run as JSON for the page's script. It is ASCII without tag characters, so that it is
+/// safe inside a <script>.
 [[nodiscard]] std::string page_description(const PageSource& source, const PageFrames& frames,
                                            const PageOptions& options, const std::vector<std::string>& notes);
 

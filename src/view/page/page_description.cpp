@@ -59,7 +59,7 @@ ordered_json part_json(const ColliderPart& part, const Vec3& origin, int bits) {
     return json;
 }
 
-// The radius of a ball around the page's origin that holds all but planes, m.
+// Returns the radius of a ball around the page's origin that contains everything except planes, in m.
 double reach_of(const PageSource& source) {
     Box3 box = source.survey.box;
     const Box3 colliders = source.colliders.box();
@@ -69,7 +69,7 @@ double reach_of(const PageSource& source) {
     return length(max(box.upper - origin, origin - box.lower));
 }
 
-// Null where particles are spheres.
+// Returns the particle shapes as JSON, or null if particles are spheres.
 ordered_json shapes_json(const PageShapes& shapes, int bits) {
     if (shapes.meshes.empty()) return nullptr;
     ordered_json meshes = ordered_json::array();
@@ -88,7 +88,7 @@ ordered_json shapes_json(const PageShapes& shapes, int bits) {
     return {{"of", shapes.of}, {"turnLow", scale.low}, {"turnStep", scale.step}, {"meshes", std::move(meshes)}};
 }
 
-// A map as sRGB bytes in hexadecimal digits.
+// Returns a colour map as sRGB bytes in hexadecimal digits.
 std::string map_text(ColorMap map) {
     static constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text;
@@ -113,7 +113,7 @@ ordered_json frames_json(const PageSource& source, const PageFrames& frames) {
     return {{"step", steps}, {"time", times}, {"count", frames.counts}};
 }
 
-// No text of a stranger may end the script that it stands in.
+// Escapes JSON for a script, so that no text from the run can close the script element.
 std::string script_text(const ordered_json& json) {
     std::string text;
     for (const char c : json.dump(-1, ' ', true, ordered_json::error_handler_t::replace)) {

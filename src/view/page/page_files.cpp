@@ -5,7 +5,7 @@
 
 #include "ricochet/core/error.h"
 
-// Where the assembler has put them (src/view/page/CMakeLists.txt).
+// Symbols defined by the assembler file (src/view/page/CMakeLists.txt).
 extern "C" {
 #define PAGE_FILE(symbol, name) \
     extern const char symbol[]; \

@@ -1,13 +1,13 @@
 /// \file
-/// The files that make a page: three.js and our own, as they stand in the repository, kept in the program.
+/// Files of a page, embedded in the program: three.js and the scripts of this repository.
 #pragma once
 
 #include <string_view>
 
 namespace ricochet {
 
-/// The contents of the file of that name (`three.core.js`, `page.css`). To ask for one that is not kept is a mistake of
-/// the program: RunError.
+/// Returns the contents of an embedded file by name (`three.core.js`, `page.css`). Throws RunError for an unknown
+/// name, which is a programming error.
 [[nodiscard]] std::string_view page_file(std::string_view name);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Meshes that a page draws particles as, and how these are turned.
+/// Meshes that replace spheres on a page, and their rotation.
 #pragma once
 
 #include <functional>
@@ -12,13 +12,13 @@
 
 namespace ricochet {
 
-/// What a page draws particles as instead of spheres.
+/// Meshes that represent particles on a page instead of spheres.
 struct PageShapes {
-    std::vector<int> of;               ///< by the number of a drawing (0: the picture's): which mesh, -1: none
-    std::vector<TriangleMesh> meshes;  ///< all of each is at most 1 away from its origin
-    /// How the particles of a frame are turned; asked for frames in the order of time.
+    std::vector<int> of;               ///< index of the mesh for each drawing (0: the picture's), -1: none
+    std::vector<TriangleMesh> meshes;  ///< all points of a mesh are at most 1 away from its origin
+    /// Returns the rotations of the particles of a frame. Frames must be passed in order of time.
     std::function<std::vector<Turn>(const VtkPolyData& frame)> turns;
-    std::vector<std::string> notes;  ///< what is not drawn so
+    std::vector<std::string> notes;  ///< messages about shapes that the page cannot draw
 };
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Colliders as blocks of bytes for the page.
+/// Colliders, encoded as blocks of bytes for the page.
 #pragma once
 
 #include <string>
@@ -11,20 +11,22 @@
 
 namespace ricochet {
 
-/// Writes a part that a page shows before any frame: vertices (three channels of 16 bits), corners of triangles as
-/// differences, hits and impulse (channels of 8 bits), where there are any. Read again in web/blocks.js.
+/// Encodes a part that a page shows before any frame. The bytes hold vertices (three channels of 16 bits) and corners
+/// of triangles as differences. Channels of 8 bits for hits and impulse follow, if present. The decoder is in
+/// web/blocks.js.
 [[nodiscard]] std::string encoded_part(const ColliderPart& part);
-/// The grid of its vertices.
+/// Returns the grid of a part's vertices.
 [[nodiscard]] PositionGrid part_grid(const ColliderPart& part, int bits);
 
-/// How far the page's vertices are from where they were at most, m. bits: of positions in frames.
+/// Returns the largest displacement of the page's vertices by rounding, in m. `bits` is the number of bits per
+/// coordinate in frames.
 [[nodiscard]] double told_error(const ColliderPart& part, int bits);
 
-/// Writes the part of a frame's block that is about colliders that move: of a rigid one twelve numbers in 32 bits
-/// (three rows of the rotation, each followed by the shift), of a deforming one three channels.
+/// Encoder of the moving colliders in a frame's block. A rigid collider takes twelve 32-bit numbers: three rows of the
+/// rotation, each followed by its translation. A deforming collider takes three channels.
 class MovingEncoder {
 public:
-    /// origin: world coordinates of the page's origin.
+    /// `origin` is the page's origin in world coordinates.
     MovingEncoder(const ColliderParts& colliders, const Vec3& origin, int bits);
 
     void encode(const MovingFrame& frame, ByteWriter& out);

@@ -1,5 +1,5 @@
 /// \file
-/// A run as one file that a browser shows, without a server and without a network.
+/// A run as a single file for a browser, without a server or a network.
 #pragma once
 
 #include <cstdint>
@@ -15,23 +15,23 @@
 namespace ricochet {
 
 struct PageOptions {
-    double budget = 30e6;  ///< bytes of the file
-    std::string color_by;  ///< attribute that colours the particles at first; empty: their own colours, or speed
+    double budget = 30e6;  ///< size limit of the file, in bytes
+    std::string color_by;  ///< attribute that initially colours the particles; empty: their own colours, or speed
     ColorMap map = ColorMap::plasma;
-    std::string version;                                   ///< of the program
-    PageShapes shapes = {};                                ///< none: particles are spheres
-    std::function<void(double)> progress = [](double) {};  ///< told the part that is done, from any thread
+    std::string version;                                   ///< version of the program
+    PageShapes shapes = {};                                ///< empty: particles are spheres
+    std::function<void(double)> progress = [](double) {};  ///< receives the finished share, from any thread
 };
 
-/// What a page came to be.
+/// Result of writing a page.
 struct PageReport {
     std::uint64_t bytes = 0;
-    std::size_t frames = 0;          ///< on the page
-    std::vector<std::string> notes;  ///< what was left out to fit the budget, and what else is not as in the run
+    std::size_t frames = 0;          ///< number of frames on the page
+    std::vector<std::string> notes;  ///< omissions to fit the budget, and other differences from the run
 };
 
-/// Writes the page of a run. Throws InputError for folders and names that are not what they should be and for a budget
-/// that is too small, RunError when the disk does not take it; an older file stays then.
+/// Writes the page of a run. Throws InputError for invalid folders and names and for a budget that is too small.
+/// Throws RunError if the disk rejects the file. An existing file is kept in case of an error.
 PageReport write_run_page(const RunFolder& folder, const std::filesystem::path& target, const PageOptions& options);
 
 }  // namespace ricochet

@@ -18,14 +18,14 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kSampledFrames = 12;
-constexpr std::size_t kSampledParticles = 20'000;  // of a frame
-/// How far beyond the bulk the page reaches, in diagonals of the bulk's box (and in widths of the bulk's values): what
-/// lies further out would cost all others their digits.
+constexpr std::size_t kSampledParticles = 20'000;  // per frame
+/// Extent of the page beyond the bulk, in diagonals of the bulk's box (and in widths of the bulk's values). Outliers
+/// beyond it are cut, because they would cost all other values their precision.
 constexpr double kReach = 4.0;
-/// Bulks of values that are narrower are those of one value: nothing is cut around them.
+/// Width below which the bulk of values counts as a single value, and nothing is cut around it.
 constexpr double kNarrow = 1e-9;
 
-// What one frame says of one array.
+// Facts about one array in one frame.
 struct ArrayFacts {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -105,7 +105,7 @@ FrameFacts frame_facts(const FrameFile& file, const std::vector<PageAttribute>& 
     return facts;
 }
 
-// The box from the 1st to the 99th hundredth of the points along each axis.
+// Returns the box from the 1st to the 99th percentile of the points along each axis.
 Box3 bulk_box(const std::vector<Vec3>& points) {
     Box3 box;
     if (points.empty()) return box;
@@ -124,7 +124,7 @@ Box3 bulk_box(const std::vector<Vec3>& points) {
     return box;
 }
 
-// The box of all particles, less those that are far from the bulk and from the colliders.
+// Returns the box of all particles except outliers far from the bulk and from the colliders.
 Box3 shown_box(const Box3& all, Box3 bulk) {
     if (all.empty()) return all;
     const double reach = kReach * bulk.diagonal();
@@ -145,7 +145,7 @@ void settle(PageAttribute& attribute, ArrayFacts facts) {
         attribute.shown = {attribute.low, attribute.high};
         return;
     }
-    // The colours do not go where no value is, and begin at 0 where values are just above it.
+    // The colour range stays within the actual values. It begins at 0 if the values are just above 0.
     attribute.shown = {std::max(attribute.shown.low, facts.low), std::min(attribute.shown.high, facts.high)};
     if (facts.low >= 0.0 && attribute.shown.low < 0.25 * attribute.shown.high) attribute.shown.low = 0.0;
 }

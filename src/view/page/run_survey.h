@@ -1,5 +1,5 @@
 /// \file
-/// What a run's frames hold, found out before a page is made of them: where, how many, which numbers in which ranges.
+/// Survey of a run's frames before its page is made: extent, counts and ranges of attributes.
 #pragma once
 
 #include <array>
@@ -16,46 +16,47 @@
 
 namespace ricochet {
 
-/// A number of the particles that the page can colour by. Vectors are told by their length, velocity as `speed`.
+/// A numeric attribute of the particles that the page can use for colours. Vectors are stored as their length, and
+/// velocity as `speed`.
 struct PageAttribute {
-    std::string array;      ///< in the frames
-    std::string name;       ///< on the page
-    double low = 0.0;       ///< least value that the page tells apart; lower ones are told as this
-    double high = 0.0;      ///< the largest one; equal to low where all are the same
-    ValueRange shown;       ///< of the colours, unless asked otherwise
-    bool is_whole = false;  ///< whole numbers
-    bool is_cut = false;    ///< some values lie outside low..high
+    std::string array;      ///< name of the array in the frames
+    std::string name;       ///< name on the page
+    double low = 0.0;       ///< least stored value; lower values are clamped to it
+    double high = 0.0;      ///< largest stored value; equal to low if all values are equal
+    ValueRange shown;       ///< default range of the colours
+    bool is_whole = false;  ///< integers
+    bool is_cut = false;    ///< some values are outside low..high
     bool has_gaps = false;  ///< some values are not finite
 };
 
 struct RunSurvey {
-    Box3 box;     ///< of the particles that are shown, m
-    Vec3 origin;  ///< of the page's coordinates, m: small numbers keep their digits in 32 bits
+    Box3 box;     ///< bounding box of the shown particles, in m
+    Vec3 origin;  ///< origin of the page's coordinates, in m; small numbers keep their digits in 32 bits
     std::vector<PageAttribute> attributes;
-    bool has_colors = false;            ///< particles have their own color
-    bool has_springs = false;           ///< some frame has lines or triangles between particles
-    std::vector<double> times;          ///< of the frames, s
-    std::vector<std::uint64_t> counts;  ///< particles of the frames
+    bool has_colors = false;            ///< particles have their own colours
+    bool has_springs = false;           ///< some frames have lines or triangles between particles
+    std::vector<double> times;          ///< times of the frames, in s
+    std::vector<std::uint64_t> counts;  ///< number of particles per frame
     std::int64_t largest_id = 0;
     std::vector<std::int64_t> spring_ids;  ///< particles at the ends of springs, ascending
-    std::vector<Vec3> sample;              ///< some of the particles over the run
-    /// Where particles are copies of meshes, by the step of a frame: the vector part of each particle's turn, whose
-    /// scalar part is not negative. Else empty.
+    std::vector<Vec3> sample;              ///< a sample of the particles over the run
+    /// Rotations of the particles by step, if particles are copies of meshes; otherwise empty. Each entry is the
+    /// vector part of a quaternion whose scalar part is not negative.
     std::map<std::uint64_t, std::vector<std::array<float, 3>>> turns;
 
-    /// Particles over all frames.
+    /// Returns the number of particles, summed over all frames.
     [[nodiscard]] std::uint64_t total() const;
 };
 
-/// Reads every frame. colliders: the box of those at rest, so that particles near them are never too far away.
-/// `progress` is called with the part that is done. Throws InputError for frames that do not belong together or whose
-/// ids are not ascending.
+/// Reads every frame. `colliders` is the bounding box of the colliders, so that particles near them never count as too
+/// far away. `progress` receives the finished share. Throws InputError if frames do not belong together or ids are not
+/// ascending.
 [[nodiscard]] RunSurvey survey_run(const std::vector<FrameFile>& frames, const Box3& colliders,
                                    const std::function<void(double)>& progress);
 
-/// The ids of a frame. Throws InputError, naming the file, where it has none or they are not ascending.
+/// Returns the ids of a frame. Throws InputError with the file name if there are none or they are not ascending.
 [[nodiscard]] const std::vector<std::int64_t>& frame_ids(const VtkPolyData& frame, const FrameFile& file);
-/// The values of a frame for an attribute. Throws InputError where the frame lacks the array.
+/// Returns the values of an attribute in a frame. Throws InputError if the frame lacks the array.
 [[nodiscard]] std::vector<double> attribute_values(const VtkPolyData& frame, const PageAttribute& attribute,
                                                    const FrameFile& file);
 

@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kSampledPoints = 50000;
-constexpr double kMargin = 1.06;  // air around the subject
+constexpr double kMargin = 1.06;  // the margin around the subject is 6 %
 
 void append_sample(std::vector<Vec3>& sample, const std::vector<Vec3>& points) {
     const std::size_t stride = points.size() / kSampledPoints + 1;
@@ -20,7 +20,7 @@ void append_sample(std::vector<Vec3>& sample, const std::vector<Vec3>& points) {
     }
 }
 
-// From the 2nd to the 98th hundredth of the coordinates, widened by a tenth.
+// Returns the box from the 2nd to the 98th percentile of each coordinate, widened by a tenth on each side.
 Box3 bulk_box(const std::vector<Vec3>& points) {
     Box3 box;
     for (int axis = 0; axis < 3; ++axis) {
@@ -48,8 +48,8 @@ std::vector<Vec3> points_to_show(const ViewSubject& subject) {
     return shown;
 }
 
-// The smallest distance at which all points lie between two planes through the eye of slope `tangent`:
-// |x - shift| <= tangent * (z + distance) for some shift across the view.
+// Returns the smallest distance at which all points lie between two planes of slope `tangent` through the eye. The
+// condition is |x - shift| <= tangent * (z + distance) for some shift across the view.
 double fitting_distance(const std::vector<Vec3>& points, const Vec3& across, const Vec3& forward, double tangent) {
     double low = -std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
@@ -62,7 +62,7 @@ double fitting_distance(const std::vector<Vec3>& points, const Vec3& across, con
     return 0.5 * (high + low) / tangent;
 }
 
-// The shift across the view that leaves as much air on one side as on the other.
+// Returns the shift across the view that leaves equal margins on both sides.
 double centering_shift(const std::vector<Vec3>& points, const Vec3& across, const Vec3& forward, double distance) {
     double low = -distance;
     double high = distance;
@@ -87,7 +87,7 @@ double half_height(const Camera& camera) { return std::tan(0.5 * camera.fov_degr
 CameraFrame camera_frame(const Camera& camera) {
     const Vec3 forward = normalized(camera.target - camera.position);
     Vec3 right = cross(forward, camera.up);
-    // Straight up or down: any direction across will do.
+    // If the view is straight up or down, any direction across is valid.
     if (length(right) < 1e-9) right = tangent_frame(camera.up)[0];
     right = normalized(right);
     return {right, cross(right, forward), forward};
@@ -100,7 +100,7 @@ Camera automatic_camera(const ViewSubject& subject, const Vec3& up, double aspec
     const auto [east, north] = tangent_frame(up);
     Camera camera;
     camera.up = up;
-    // From the right, in front and above: about 54 degrees around and 31 degrees up.
+    // The camera is to the right, in front and above: about 54 degrees around and 31 degrees up.
     camera.position = 0.55 * east - 0.75 * north + 0.56 * up;
     camera.target = {0, 0, 0};
     const CameraFrame frame = camera_frame(camera);

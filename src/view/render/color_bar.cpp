@@ -13,9 +13,9 @@
 namespace ricochet {
 namespace {
 
-constexpr int kDotsWide = 110;  // a bar at least, in dots of its letters
+constexpr int kDotsWide = 110;  // least width of a bar, in dots of its letters
 constexpr int kDotsHigh = 8;
-constexpr int kMargin = 6;                      // dots around
+constexpr int kMargin = 6;                      // dots on each side
 constexpr int kLineHeight = kLetterHeight + 3;  // dots
 
 int dot_of(int picture_width, int picture_height) {
@@ -32,7 +32,7 @@ struct BarTexts {
         title = broken_text(bar.unit.empty() ? bar.name : fmt::format("{} ({})", bar.name, bar.unit), letters);
         note = broken_text(bar.note, letters);
     }
-    /// Dots.
+    /// Returns the width in dots.
     [[nodiscard]] int width() const {
         int width = kDotsWide;
         for (const auto* lines : {&title, &note}) {
@@ -89,7 +89,7 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
     std::vector<std::string> lines;
     std::string rest = text;
     while (rest.size() > letters) {
-        // A space may stand right behind the last letter that fits.
+        // The space after the last character that fits is also a valid break.
         const std::size_t space = rest.rfind(' ', letters);
         const bool at_space = space != std::string::npos && space > 0;
         lines.push_back(rest.substr(0, at_space ? space : letters));
@@ -103,8 +103,8 @@ std::vector<BarPlace> bar_places(int picture_width, int picture_height, const st
     const int dot = dot_of(picture_width, picture_height);
     std::vector<BarPlace> places;
     int x = 2 * kMargin;       // dots
-    int bottom = 2 * kMargin;  // dots, of the row above the picture's edge
-    int tallest = 0;           // dots, of the bars in the row
+    int bottom = 2 * kMargin;  // in dots, of the current row above the picture's lower edge
+    int tallest = 0;           // in dots, of the tallest bar in the row
     for (const ColorBar& bar : bars) {
         const BarTexts texts(bar, picture_width, dot);
         if (x > 2 * kMargin && (x + texts.width() + kMargin) * dot > picture_width) {

@@ -1,5 +1,5 @@
 /// \file
-/// What the colours of a picture mean, in its lower left corner: bars with name, unit and range.
+/// Colour bars in the lower left corner of a picture. They show the name, unit and range of each coloured quantity.
 #pragma once
 
 #include <string>
@@ -10,36 +10,36 @@
 
 namespace ricochet {
 
-/// A quantity that colours something.
+/// A quantity that is shown as colour.
 struct ColorBar {
     std::string name;
-    std::string unit;  ///< empty: none
+    std::string unit;  ///< empty: no unit
     ValueRange range;
     ColorMap map = ColorMap::plasma;
-    std::string note{};  ///< a line below the numbers; empty: none
+    std::string note{};  ///< a line below the numbers; empty: no line
 };
 
-/// Where a bar stands in a picture, pixels; x to the right, y down.
+/// Position and size of a bar in a picture, in pixels, with x to the right and y down.
 struct BarPlace {
     int x = 0;
     int y = 0;
     int width = 0;
     int height = 0;
-    int dot = 1;  ///< pixels a dot of its letters
+    int dot = 1;  ///< pixels per dot of its letters
 };
 
-/// Returns the places of the bars of a picture. Each is as wide as its texts need; they stand beside each other, and
-/// above each other where the picture is too narrow.
+/// Returns the positions of the bars of a picture. Each bar is as wide as its texts need. Bars stand side by side, and
+/// wrap to a new row above if the picture is too narrow.
 [[nodiscard]] std::vector<BarPlace> bar_places(int picture_width, int picture_height,
                                                const std::vector<ColorBar>& bars);
 
-/// Breaks a text into lines of at most so many letters, between words where it can.
+/// Breaks a text into lines of at most `letters` characters, between words if possible.
 [[nodiscard]] std::vector<std::string> broken_text(const std::string& text, std::size_t letters);
 
-/// Draws the bars. Pictures less than 200 pixels wide or 100 high have no room for them and stay as they are.
+/// Draws the bars. Pictures less than 200 pixels wide or 100 pixels high are too small for bars and stay unchanged.
 void draw_color_bars(Image& image, const std::vector<ColorBar>& bars);
 
-/// A number as a bar shows it: three digits that count.
+/// Formats a number for a bar, with three significant digits.
 [[nodiscard]] std::string bar_number(double value);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Numbers as colours, and what colours mean between files and light.
+/// Colour maps, and conversion between sRGB and linear light.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace ricochet {
 
-/// Colour maps by name; all but turbo are even to the eye.
+/// Colour maps by name. All but turbo are perceptually uniform.
 /// Sources: viridis, plasma, inferno and magma by S. van der Walt and N. Smith (2015, CC0), turbo by A. Mikhailov
-/// (2019), each read off at nine knots.
+/// (2019). Each map is sampled at nine knots.
 enum class ColorMap { viridis, plasma, turbo, inferno, magma };
 
 [[nodiscard]] std::optional<ColorMap> color_map_from_name(std::string_view name);
-/// All names, in the order of the enumeration.
+/// Returns all names, in the order of the enumeration.
 [[nodiscard]] std::vector<std::string_view> color_map_names();
 
-/// Linear-light colour of t; t below 0 or above 1 takes the end's colour, NaN a neutral grey.
+/// Returns the linear-light colour of t. A t below 0 or above 1 gets the colour of that end. NaN gets a neutral grey.
 [[nodiscard]] Vec3 map_color(ColorMap map, double t);
 
-/// Linear-light value of an sRGB channel value in 0..1, and back.
+/// Converts an sRGB channel value in 0..1 to linear light, and back.
 [[nodiscard]] double linear_from_srgb(double value);
 [[nodiscard]] double srgb_from_linear(double value);
 
@@ -32,8 +32,8 @@ struct ValueRange {
     double low = 0.0;
     double high = 1.0;
 };
-/// From the 1st to the 99th hundredth of the finite values, so that a few strays do not take the colours from the rest.
-/// Widened where all are equal; [0, 1] when there is none.
+/// Returns the range from the 1st to the 99th percentile of the finite values, so that outliers do not compress the
+/// colours. Equal values give a slightly wider range. An empty list gives [0, 1].
 [[nodiscard]] ValueRange robust_range(std::vector<double> values);
 
 }  // namespace ricochet

@@ -19,8 +19,9 @@ void make_drawable(TriangleMesh& mesh) {
     }
 }
 
-// From a point of a triangle to the smooth surface that its corners' normals stand for, along which shadows fall: rays
-// that begin on the flat triangle would draw the edge of its own shadow. Zero where the surface is hollow.
+// Returns the offset from a point of a triangle to the smooth surface that the corner normals define. Shadow rays
+// start on the smooth surface, because rays from the flat triangle would draw the edge of its own shadow. The offset
+// is zero on concave surfaces.
 // Method: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021, chapter 4.
 Vec3 lift_to_smooth(const DrawnMesh& mesh, unsigned triangle, const std::array<double, 3>& weights,
                     const Vec3& seen_normal) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private: a mesh as rays meet it, and what its shading needs. Included by the .cpp files that use Embree only.
+/// Private: a mesh for ray tracing, with the data for its shading. Included only by the .cpp files that use Embree.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace ricochet {
 
-// Debian builds Embree with assertions: rays beyond 1.8e18 or not finite end the process.
+// Debian builds Embree with assertions, and rays that are not finite or exceed 1.8e18 end the process.
 inline constexpr double kLargestDrawn = 1e15;
 
-/// False for what is not finite, too.
+/// Returns true if a point is finite and within the drawable range.
 [[nodiscard]] inline bool drawable(const Vec3& p) {
     return std::fabs(p.x) <= kLargestDrawn && std::fabs(p.y) <= kLargestDrawn && std::fabs(p.z) <= kLargestDrawn;
 }
@@ -24,24 +24,25 @@ inline constexpr double kLargestDrawn = 1e15;
     return dot(normal, direction) > 0.0 ? -normal : normal;
 }
 
-/// A mesh whose vertices are drawable, and the normals of its triangles' corners.
+/// A mesh with drawable vertices, and the normals at its triangles' corners.
 struct DrawnMesh {
     PreviewMesh source;
     std::vector<std::array<Vec3, 3>> normals;
 };
 
-/// Triangles with a hopeless corner shrink to nothing; their numbers stay taken.
+/// Prepares a mesh for drawing. Triangles with an undrawable corner shrink to a point, so that triangle numbers stay
+/// valid.
 [[nodiscard]] DrawnMesh drawn_mesh(PreviewMesh source, double crease_degrees);
-/// Its triangles, about the origin. Throws RunError when memory is short.
+/// Creates an Embree geometry of the triangles, with `origin` as the origin. Throws RunError if memory is short.
 [[nodiscard]] RTCGeometry triangles_of(RTCDevice device, const TriangleMesh& mesh, const Vec3& origin);
 
-/// What a point of a triangle looks like.
+/// Shading data of a point on a triangle.
 struct MeshPoint {
-    Vec3 normal;  ///< smoothed, of unit length, to the side of `face`
-    Vec3 lift;    ///< m, to the smooth surface that the corners' normals stand for
+    Vec3 normal;  ///< smoothed unit normal, on the side of `face`
+    Vec3 lift;    ///< offset to the smooth surface that the corner normals define, in m
     Vec3 color;
 };
-/// u, v: Embree's coordinates in the triangle. face: its normal of unit length, to the side that is seen.
+/// Returns the shading data at Embree's coordinates u, v of a triangle. `face` is the unit normal of the visible side.
 [[nodiscard]] MeshPoint point_of(const DrawnMesh& mesh, unsigned triangle, double u, double v, const Vec3& face);
 
 }  // namespace ricochet

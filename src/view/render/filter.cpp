@@ -12,12 +12,12 @@
 namespace ricochet {
 namespace {
 
-constexpr std::array<int, 3> kSteps = {1, 2, 4};  // pixels between taps, one pass each
-constexpr float kLightSigmas = 2.0F;              // differences of light beyond these deviations are edges
-constexpr float kLightFloor = 2e-3F;              // deviation below which nothing is noise to the eye
+constexpr std::array<int, 3> kSteps = {1, 2, 4};  // distance between taps in each pass, in pixels
+constexpr float kLightSigmas = 2.0F;              // light differences of more standard deviations than this are edges
+constexpr float kLightFloor = 2e-3F;              // standard deviation below which noise is invisible
 constexpr float kNormalSharpness = 48.0F;
 constexpr float kAlbedoSharpness = 260.0F;
-constexpr float kSmallestAlbedo = 0.03F;  // added before light is divided by it
+constexpr float kSmallestAlbedo = 0.03F;  // added to the albedo before light is divided by it
 
 float bright(const Float3& c) { return 0.2126F * c.x + 0.7152F * c.y + 0.0722F * c.z; }
 
@@ -31,17 +31,17 @@ Float3 multiplied(const Float3& light, const Float3& albedo) {
             light.z * (albedo.z + kSmallestAlbedo)};
 }
 
-// exp(-x) for x >= 0 to some thousandths, without a call: (1 - x / 16)^16.
+// Approximates exp(-x) for x >= 0 to some thousandths, without a call: (1 - x / 16)^16.
 float falling(float x) {
     const float left = 1.0F - x * (1.0F / 16.0F);
-    float t = 0.5F * (left + std::fabs(left));  // not below 0, without a branch
+    float t = 0.5F * (left + std::fabs(left));  // max(left, 0), without a branch
     t *= t;
     t *= t;
     t *= t;
     return t * t;
 }
 
-// A row of a picture, number by number, so that the processor can take several pixels at once.
+// A row of a picture, one array per component, so that the compiler can vectorize the loops over pixels.
 struct Row {
     std::vector<float> red, green, blue, bright, variance;
     std::vector<float> normal_x, normal_y, normal_z, albedo_x, albedo_y, albedo_z, distance;
@@ -86,8 +86,9 @@ struct Sums {
 
 float squared(float x) { return x * x; }
 
-// How much each of `count` pixels speaks against showing the surface of another one, and against having its light.
-// scale: over differences of brightness; steep: 1/m, over the difference of distance that a slant explains.
+// Computes the dissimilarity of `count` pairs of pixels, from surface features and brightness. `scale` multiplies
+// differences of brightness. `steep`, in 1/m, multiplies differences of distance; it is the inverse of the difference
+// that the slant explains.
 void differences(const Row& here, std::size_t x, const Row& there, std::size_t u, std::size_t count,
                  const float* __restrict scale, const float* __restrict steep, float* __restrict out) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -104,7 +105,7 @@ void differences(const Row& here, std::size_t x, const Row& there, std::size_t u
     }
 }
 
-// One pass of the filter over the light of a picture, from one buffer into another.
+// One pass of the filter over the light of a picture, from one buffer to another.
 class Pass {
 public:
     Pass(const NoisyPicture& picture, int step)
@@ -117,7 +118,7 @@ public:
           steep_{std::vector<float>(width_), std::vector<float>(width_), std::vector<float>(width_)},
           weights_(width_) {}
 
-    // Rows a step apart one after the other, which have most of the rows of their taps in common.
+    // Processes rows one step apart in sequence, because they share most of the rows of their taps.
     void rows(int begin, int end, NoisyPicture& target) {
         for (int first = begin; first < std::min(begin + step_, end); ++first) {
             for (int y = first; y < end; y += step_) row(y, target);
@@ -150,7 +151,7 @@ private:
         }
     }
 
-    // Of the last rows of taps asked for.
+    // Returns a row of the picture from the cache of the last rows, and loads it if necessary.
     const Row& loaded(int y) {
         const auto slot = static_cast<std::size_t>(y / step_) % kRows;
         if (loaded_[slot] != y) {
@@ -164,7 +165,7 @@ private:
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.width) + static_cast<std::size_t>(x);
     }
 
-    // Of the variances around a pixel, which is less noisy than its own.
+    // Returns a weighted mean of the variances around a pixel, which is less noisy than the pixel's own variance.
     [[nodiscard]] float variance_near(int x, int y) const {
         constexpr std::array<float, 2> kWeights = {0.5F, 0.25F};
         float sum = 0.0F;
@@ -182,7 +183,7 @@ private:
         return sum / weights;
     }
 
-    // Of all pixels of the row whose tap lies in the picture.
+    // Adds one tap to all pixels of the row whose tap lies in the picture.
     void add_tap(const Row& here, const Row& there, int dx, int dy) {
         constexpr std::array<float, 3> kKernel = {3.0F / 8.0F, 1.0F / 4.0F, 1.0F / 16.0F};
         const auto across = static_cast<std::size_t>(std::abs(dx));
@@ -223,13 +224,13 @@ private:
     const NoisyPicture& picture_;
     int step_;
     std::size_t width_;
-    static constexpr std::size_t kRows = 5;  // of the taps of a pixel
+    static constexpr std::size_t kRows = 5;  // rows of the taps of a pixel
     std::vector<Row> rows_;
     std::array<int, kRows> loaded_{-1, -1, -1, -1, -1};
     Sums sums_;
     std::vector<float> scale_;
-    std::array<std::vector<float>, 3> steep_;  // by the steps that a tap is away
-    std::vector<float> weights_;               // of one tap
+    std::array<std::vector<float>, 3> steep_;  // by the distance of the tap, in steps
+    std::vector<float> weights_;               // weights of one tap
 };
 
 }  // namespace

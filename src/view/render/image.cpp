@@ -59,7 +59,8 @@ std::string png_bytes(const Image& image) {
 
 namespace {
 
-/// Why the decoder has given up: it may quote bytes of the file, and for some files it has no reason.
+/// Returns the reason for which the decoder failed. The reason can quote bytes of the file. For some files the decoder
+/// gives none.
 std::string failure_reason() {
     const char* const reason = stbi_failure_reason();
     return reason == nullptr ? "a chunk does not fit in the file" : printable(reason, 60);
@@ -68,7 +69,7 @@ std::string failure_reason() {
 }  // namespace
 
 Image read_png(const std::filesystem::path& path) {
-    constexpr std::uint64_t kMostBytes = 0x7fffffff;  // that the decoder can count
+    constexpr std::uint64_t kMostBytes = 0x7fffffff;  // limit of the decoder's byte counter
     const std::string bytes = read_regular_file(path, kMostBytes, "a PNG file");
     const auto refuse = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", path.string(), what)); };
     if (bytes.empty()) refuse("is empty, expected a PNG file");

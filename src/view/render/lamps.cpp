@@ -11,12 +11,12 @@
 namespace ricochet {
 namespace {
 
-// What a cell of the grid holds.
+// Sums over one cell of the grid.
 struct Cell {
     Vec3 intensity;
-    Vec3 moment;          // of the positions, weighted by brightness
+    Vec3 moment;          // sum of the positions, weighted by brightness
     double weight = 0.0;  // sum of the brightness
-    double spread = 0.0;  // of the squared positions
+    double spread = 0.0;  // sum of the squared positions, weighted by brightness
 };
 
 using CellIndex = std::array<long, 3>;
@@ -32,7 +32,7 @@ bool shines(const Sprites& sprites, std::size_t i) {
            luminance(sprites.colors[i]) > 0.0;
 }
 
-// A small thing that shines.
+// A small light source.
 struct Shining {
     Vec3 center;
     double radius = 0.0;  // m
@@ -50,7 +50,7 @@ std::vector<Shining> shining_discs(const Sprites& sprites) {
     return all;
 }
 
-// Into pieces not longer than a cell, each with its part of the light.
+// Splits a line into pieces not longer than a cell, each with its share of the light.
 void cut_up(const GlowingLine& line, double size, std::vector<Shining>& all) {
     const double pieces = std::max(1.0, std::ceil(length(line.to - line.from) / size));
     for (double k = 0.5; k < pieces; k += 1.0) {

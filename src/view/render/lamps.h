@@ -1,5 +1,5 @@
 /// \file
-/// Glowing particles as lights on what is around them.
+/// Glowing particles as lights for their surroundings.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,17 @@
 
 namespace ricochet {
 
-/// A small light that shines the same in all directions.
+/// A small light that shines equally in all directions.
 struct Lamp {
     Vec3 position;        ///< m
-    Vec3 intensity;       ///< light times m^2: on a surface that faces it at a distance d it is intensity / d^2
-    double radius = 0.0;  ///< m, of what it stands for: nearer than this it gets no brighter
+    Vec3 intensity;       ///< light times m^2: a surface that faces the lamp at a distance d receives intensity / d^2
+    double radius = 0.0;  ///< radius of the objects that it represents, in m; it gets no brighter below this distance
 };
 
-/// The light of glowing discs and lines, gathered into a few lamps: one for each cell of a grid about them that has
-/// any. Their intensities add up to that of the discs, each a sphere of its radius that is as bright as its colour, and
-/// of the lines, which are in each cell with what lies in it. most: the grid is made coarser until no more lamps are
-/// left, > 0. The same lamps for any number of threads.
+/// Merges the light of glowing discs and lines into a few lamps, one for each occupied cell of a grid.
+/// The lamps and their sources have the same total intensity. Each disc counts as a sphere of its radius that is as
+/// bright as its colour. Each line contributes to a cell with the piece that lies in it. The grid is made coarser
+/// until at most `most` (> 0) lamps remain. The lamps do not depend on the number of threads.
 [[nodiscard]] std::vector<Lamp> lamps_of(const Sprites& sprites, std::span<const GlowingLine> lines, std::size_t most);
 [[nodiscard]] inline std::vector<Lamp> lamps_of(const Sprites& sprites, std::size_t most) {
     return lamps_of(sprites, {}, most);

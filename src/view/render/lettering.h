@@ -1,5 +1,5 @@
 /// \file
-/// Small text in pictures, in letters of 5 x 8 dots.
+/// Small text in pictures, with letters of 5 x 8 dots.
 #pragma once
 
 #include <string_view>
@@ -10,19 +10,19 @@
 namespace ricochet {
 
 inline constexpr int kLetterWidth = 6;   ///< dots from one letter to the next
-inline constexpr int kLetterHeight = 8;  ///< dots, with what hangs below the line
+inline constexpr int kLetterHeight = 8;  ///< in dots, with descenders
 
-/// Width of a text in dots, without the gap after its last letter.
+/// Returns the width of a text in dots, without the gap after its last letter.
 [[nodiscard]] int text_width(std::string_view text);
 
-/// Writes a text with its upper left corner at a pixel; what is outside of the picture is cut off. dot: pixels a dot.
-/// Characters other than those of ASCII are shown as a question mark.
+/// Writes a text with its upper left corner at a pixel. Parts outside the picture are cut off. `dot` is the size of a
+/// dot in pixels. Non-ASCII characters are shown as question marks.
 void write_text(Image& image, int x, int y, int dot, std::string_view text);
 
-/// Darkens a rectangle to a part of its light, 0..1, in the display's values; it becomes opaque.
+/// Darkens a rectangle to the fraction `part` (0..1) of its display values, and makes it opaque.
 void shade_rectangle(Image& image, int x, int y, int width, int height, double part);
 
-/// Sets a pixel, unless it is outside of the picture. color: linear light.
+/// Sets a pixel to a colour in linear light. Does nothing outside the picture.
 void set_pixel(Image& image, int x, int y, const Vec3& color);
 
 }  // namespace ricochet

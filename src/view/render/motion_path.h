@@ -1,5 +1,5 @@
 /// \file
-/// The way of a particle between two frames of a run, from what the run knows of it: states, and impacts in between.
+/// Path of a particle between two frames of a run, from the recorded states and the impacts in between.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace ricochet {
 
-/// A moment of which place and velocity are known. At an impact the two velocities differ; elsewhere they are the same.
+/// A time of known position and velocity. The two velocities differ only at an impact.
 struct PathNode {
     double time = 0.0;  ///< s
     Vec3 position;      ///< m
@@ -17,19 +17,20 @@ struct PathNode {
     Vec3 velocity_after;
 };
 
-/// Where the particle is at a time, s: between two nodes on the cubic that has their places and velocities, which is
-/// the true path under a constant acceleration; beyond the first and the last on straight lines. nodes: at least one,
-/// in the order of time.
+/// Returns the position of the particle at a time, in s.
+/// Between two nodes, the path is the cubic through their positions and velocities. It is the true path under a
+/// constant acceleration. The path is straight before the first node and after the last. `nodes` must hold at least
+/// one node and be in order of time.
 [[nodiscard]] Vec3 position_on_path(std::span<const PathNode> nodes, double time);
 
-/// Where the particle is at a moment.
+/// A point of a path with its time.
 struct PathPoint {
     double time = 0.0;  ///< s
     Vec3 position;      ///< m
 };
 
-/// The path from one time to a later one as points: both ends, every node in between, and between them as many that the
-/// path bends less than `sagitta`, m, away from the lines that join them (at most 64 a piece).
+/// Returns the path from `from` to the later time `to` as points. The points contain both ends and every node in
+/// between. More points keep the path within `sagitta` (m) of the lines between the points, but at most 64 per piece.
 [[nodiscard]] std::vector<PathPoint> path_points(std::span<const PathNode> nodes, double from, double to,
                                                  double sagitta);
 

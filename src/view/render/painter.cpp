@@ -54,7 +54,7 @@ void Painter::pixels(std::span<const PixelPlace> places, std::span<PixelLight> o
     for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean();
 }
 
-// Towards a sample of a pixel.
+// Sets the camera ray for a sample of a pixel.
 void Painter::aim(Look& look, const PixelPlace& place, int sample) const {
     look.sample = sample;
     const SamplePair at = look.get(SamplePurpose::pixel);
@@ -63,12 +63,12 @@ void Painter::aim(Look& look, const PixelPlace& place, int sample) const {
     look.ray.time = look.samples->time(sample);
 }
 
-// For pixels whose samples see different things or may have missed an outline, and some for those beside them, whose
-// samples may have missed what is small.
+// Returns the number of extra rays per pixel. Pixels get more rays if their samples see different things or can have
+// missed an outline. Their neighbours get some rays too, because their samples can have missed small objects.
 std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPlace> places, std::span<const PixelSum> sums,
                                                   const KnownSpheres& known) const {
     constexpr int kBeside = 4;
-    constexpr double kHalfDiagonal = 1.42;  // over half a pixel
+    constexpr double kHalfDiagonal = 1.42;  // in units of half a pixel
     std::array<bool, kPacketRays> outlines{};
     if (known.listed && !known.listed->empty()) {
         std::array<PreviewRay, kPacketRays> middles;
@@ -87,7 +87,7 @@ std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPlace> pl
     return wanted;
 }
 
-// More rays from the camera, and to the sun.
+// Adds more rays from the camera and to the sun.
 void Painter::add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums,
                           const KnownSpheres& known) const {
     std::array<Look, kPacketRays> room;
@@ -174,7 +174,7 @@ void Painter::quick_pixels(std::span<const PixelPlace> places, std::span<PixelLi
     }
 }
 
-// The first thing on each ray, of what is told of spheres and what rays find.
+// Finds the first hit of each ray, from the known spheres and from traced rays.
 void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<PreviewHit>> hits,
                             std::span<const SphereFind> finds) const {
     if (finds.empty()) {
@@ -190,7 +190,8 @@ void Painter::trace_besides(std::span<PreviewRay> rays, std::span<std::optional<
     }
 }
 
-// From the centre to the point that is hit; what is smaller than numbers tell apart faces the ray.
+// Returns the hit on a sphere. The normal points from the centre to the hit point. It faces the ray if the sphere is
+// too small to resolve.
 PreviewHit Painter::sphere_hit(const SphereFind& find, const PreviewRay& ray) const {
     const Vec3 outward = ray.origin - preview_.spheres().centers[find.sphere] + find.distance * ray.direction;
     const double size = length(outward);

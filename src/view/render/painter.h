@@ -1,6 +1,6 @@
 /// \file
-/// The light that comes to the camera from what a picture shows: sun with soft shadows, sky light, one bounce of light
-/// between surfaces, glass.
+/// The light that reaches the camera: sun with soft shadows, sky light, one bounce of light between surfaces, and
+/// glass.
 #pragma once
 
 #include <array>
@@ -22,61 +22,64 @@
 
 namespace ricochet {
 
-/// Where a pixel is: column and row.
+/// Column and row of a pixel.
 struct PixelPlace {
     int x = 0;
     int y = 0;
 };
 
-/// What is known of the spheres without rays, where that is faster.
+/// Data about the spheres that replaces rays when it is faster.
 struct KnownSpheres {
-    /// Those that rays from the camera through a tile may meet, the nearest first; nothing: rays find them.
+    /// Spheres that camera rays through a tile can hit, nearest first; nothing: rays find them.
     std::optional<std::span<const NearSphere>> listed;
-    /// What shadows they throw; null: rays find them.
+    /// Shadows of the spheres; null: rays find them.
     const SunShadows* shadows = nullptr;
 };
 
-/// Safe from any thread. Pixels are worked on in tiles, whose rays go alike: up to kPacketRays at once.
+/// Computes the light of pixels. Safe to use from any thread. Pixels are processed in tiles, whose coherent rays are
+/// traced in packets of up to kPacketRays.
 class Painter {
 public:
     Painter(const Preview& preview, const Camera& camera, const PictureOptions& options, std::vector<Lamp> lamps = {});
 
-    /// out: as many as places, which are of one tile. known: of the spheres that are seen there.
+    /// Computes the pixels of one tile. `out` has as many entries as `places`. `known` describes the spheres visible
+    /// there.
     void pixels(std::span<const PixelPlace> places, std::span<PixelLight> out, const KnownSpheres& known = {}) const;
-    /// As PictureOptions::quick has it: light and alpha alone are set. finds: the spheres that are seen, as many as
-    /// places, and what shadows spheres throw towards sun_middle(); without them rays find both.
+    /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` holds the
+    /// visible spheres, as many as `places`. `shadows` holds the spheres' shadows towards sun_middle(). Without them,
+    /// rays find both.
     void quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
                       std::span<const SphereFind> finds = {}, const SunShadows* shadows = nullptr) const;
-    /// Direction to the middle of the sun; nothing without a sun.
+    /// Returns the direction to the middle of the sun, or nothing without a sun.
     [[nodiscard]] std::optional<Vec3> sun_middle() const;
-    /// Tangent of the angle between that and the sun's rim.
+    /// Returns the tangent of the angle between the middle of the sun and its rim.
     [[nodiscard]] double sun_slope() const { return light_.sun_size; }
 
 private:
-    // What one ray sees.
+    // Light along one camera ray.
     struct Seen {
         Vec3 light;
         double cover = 1.0;
     };
     using Hits = std::array<std::optional<PreviewHit>, kPacketRays>;
-    // A sample of a pixel on its way.
+    // State of one sample of a pixel.
     struct Look {
         PreviewRay ray;
         const PixelSamples* samples = nullptr;
         int sample = 0;
         const PreviewHit* hit = nullptr;
-        std::uint32_t surface = 0;  // as that of Glance
-        Vec3 color;                 // of what is hit
-        double left = 1.0;          // of its light: the rest is what is behind everything on the horizon
-        Vec3 sun, sky;              // light that falls on what is hit
+        std::uint32_t surface = 0;  // as in Glance
+        Vec3 color;                 // colour of the hit surface
+        double left = 1.0;          // share of its light; the rest is the background at the horizon
+        Vec3 sun, sky;              // light that falls on the hit surface
 
         [[nodiscard]] SamplePair get(SamplePurpose purpose) const { return samples->get(sample, purpose); }
     };
-    // Asks for the sun's light on a surface.
+    // A query for the sun's light on a surface.
     struct SunAsk {
         const PreviewHit* hit = nullptr;
         Vec3 to_sun{};
-        Vec3 light{};  // the answer
+        Vec3 light{};  // result
     };
 
     [[nodiscard]] PreviewRay camera_ray(double x, double y, const SamplePair& lens) const;
@@ -117,12 +120,12 @@ private:
     SunDisc sun_;
     std::vector<Lamp> lamps_;
     Vec3 sun_middle_;  // direction to the middle of the sun
-    Vec3 horizon_;     // what is behind everything there
+    Vec3 horizon_;     // background at the horizon
     double tangent_;
-    double half_pixel_;  // slope
-    double focus_;       // m from the camera's plane to the plane that is sharp
-    double extent_;      // half the height of what the picture shows at the target, m
-    double tile_;        // edge of the chequer on planes, m
+    double half_pixel_;  // as a slope
+    double focus_;       // from the camera's plane to the plane of focus, in m
+    double extent_;      // half the visible height at the target, in m
+    double tile_;        // edge length of the chequer on planes, in m
 };
 
 }  // namespace ricochet

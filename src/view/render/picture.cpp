@@ -23,7 +23,7 @@
 namespace ricochet {
 namespace {
 
-// Pixels that are worked on together.
+// Pixels of a tile, which are processed together.
 constexpr int kTileWidth = 4;
 constexpr int kTileHeight = 2;
 static_assert(kTileWidth * kTileHeight == kPacketRays);
@@ -34,7 +34,7 @@ std::size_t pixel_count(const PictureOptions& options) {
     return static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height);
 }
 
-// A picture whose samples are taken, and the alpha of its pixels where it has one.
+// A sampled picture, with the alpha of its pixels if it has an alpha channel.
 struct Sampled {
     NoisyPicture picture;
     std::vector<float> alpha;
@@ -51,14 +51,15 @@ struct Sampled {
     }
 };
 
-// Of what glows.
+// Returns the lamps of glowing sprites and lines.
 std::vector<Lamp> lamps_in(std::span<const Sprites> layers, const Preview& preview) {
     constexpr std::size_t kMostLamps = 48;
     const auto glowing = std::find_if(layers.begin(), layers.end(), [](const Sprites& layer) { return layer.glow; });
     return lamps_of(glowing == layers.end() ? Sprites{} : *glowing, preview.glowing_lines(), kMostLamps);
 }
 
-// All layers: what covers as one, and what only adds light, which no cover bounds. Empty where nothing is drawn.
+// All layers, merged. Covering layers and additive light are separate, because no coverage bounds additive light. Both
+// are empty if nothing is drawn.
 struct LaidOver {
     SpriteLayer cover;
     std::vector<Vec3> glow;
@@ -87,7 +88,7 @@ LaidOver laid_over_each_other(std::span<const Sprites> layers, const Preview& pr
     return all;
 }
 
-// Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and keeps what it gives.
+// Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and stores the results.
 template <class Paint>
 void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
     std::array<PixelPlace, kPacketRays> places;
@@ -106,7 +107,7 @@ void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
     }
 }
 
-// A draft's spheres and their shadows, found without rays where that pays.
+// Spheres of a draft and their shadows, found without rays when that is faster.
 class DraftSpheres {
 public:
     DraftSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter)
@@ -118,7 +119,7 @@ public:
         if (!pays_ || (sun && !shadows_)) preview.prepare_sphere_rays();
     }
 
-    // The rows [begin, end) of one band of the view.
+    // Paints the rows [begin, end) of one band of the view.
     void paint(const Painter& painter, int begin, int end, Sampled& out) const {
         std::vector<SphereFind> finds;
         if (pays_) {
@@ -143,8 +144,8 @@ private:
     std::optional<SunShadows> shadows_;
 };
 
-// What is known of spheres at rest without rays, where that is faster: those that rays from the camera may meet, tile
-// by tile, if the lens has no width, and their shadows.
+// Spheres at rest, found without rays when that is faster. Spheres that camera rays can hit are listed tile by tile,
+// if the lens is a pinhole. Their shadows are stored too.
 class TiledSpheres {
 public:
     TiledSpheres(const Preview& preview, const Camera& camera, const PictureOptions& options, const Painter& painter) {
@@ -153,7 +154,7 @@ public:
             view_.emplace(preview.spheres(), camera, options.width, options.height, WithinPixel::anywhere);
             if (!view_->pays()) view_.reset();
         }
-        // The grid takes up to 400 bytes for each sphere; rays to a wide sun come through too many of its cells.
+        // The grid takes up to 400 bytes for each sphere. Rays to a wide sun cross too many of its cells.
         constexpr std::size_t kMostSpheres = 500000;
         constexpr double kWidestSun = 0.1;
         if (preview.spheres().centers.size() > kMostSpheres || painter.sun_slope() > kWidestSun) return;
@@ -163,9 +164,9 @@ public:
         }
     }
 
-    // The rows [begin, end) of one row of tiles.
+    // Paints the rows [begin, end) of one row of tiles.
     void paint(const Painter& painter, int begin, int end, Sampled& out) const {
-        constexpr std::size_t kMost = 256;  // spheres of a tile; for more, rays are faster
+        constexpr std::size_t kMost = 256;  // spheres of a tile; above this, rays are faster
         SphereTiles tiles;
         if (view_) tiles = view_->tiles(begin, end, kTileWidth);
         paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
@@ -191,7 +192,7 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
         tiled.emplace(preview, camera, options, painter);
     }
     const std::size_t pixels = pixel_count(options);
-    // A draft is not filtered, and needs the light alone.
+    // A draft is not filtered and needs only the light.
     const std::size_t filtered = options.quick ? 0 : pixels;
     Sampled out{{options.width, options.height, std::vector<Float3>(pixels), std::vector<float>(filtered),
                  std::vector<PixelFeatures>(filtered)},
@@ -213,8 +214,8 @@ Sampled sampled(const Preview& preview, const Camera& camera, const PictureOptio
     return out;
 }
 
-// A pixel of the picture as shown, with the layers over it. The curve of the tones is for what covers as if it covered
-// all, so that what covers half is half of that; it would make thin cover too bright.
+// Composites the layers over a pixel. Tone mapping treats a layer's colour as fully opaque and applies coverage
+// afterwards. Tone mapping after coverage would make thin layers too bright.
 void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& light, double& alpha) {
     if (!layers.cover.light.empty()) {
         const double open = layers.cover.transmittance[i];
@@ -231,7 +232,8 @@ void lay_over(const LaidOver& layers, std::size_t i, double exposure, Vec3& ligh
     }
 }
 
-// Bytes of a pixel whose light is that of its covered part alone: PNG wants colours that are not multiplied by alpha.
+// Stores the bytes of a pixel. PNG needs colours that are not premultiplied by alpha, so the light is divided by
+// alpha.
 void store_pixel(Image& image, std::size_t index, Vec3 light, double alpha) {
     if (!image.alpha.empty()) {
         if (alpha > 0.0) light = light / alpha;
@@ -270,7 +272,7 @@ Image render_picture(const Preview& preview, const Camera& camera, const Picture
 }
 
 double picture_bytes(int width, int height, bool has_sprites) {
-    // The picture, the copy from which PNG is packed, and what it is packed into, which grows by doubling.
+    // The bytes cover the picture, the copy that is packed, and the packed data, which grows by doubling.
     constexpr double kPixel = 5.0 * 4.0;
     constexpr double kFiltered = 2.0 * (sizeof(Float3) + sizeof(float)) + sizeof(PixelFeatures) + sizeof(float);
     constexpr double kSprites = sizeof(Vec3) + sizeof(double);

@@ -1,6 +1,6 @@
 /// \file
-/// Makes a picture of colliders and particles: sun with soft shadows, sky light, one bounce of light between surfaces.
-/// The same scene and options give the same bytes for any thread count.
+/// Renders a picture of colliders and particles: sun with soft shadows, sky light, one bounce of light between
+/// surfaces. The same scene and options give the same bytes for any thread count.
 #pragma once
 
 #include <functional>
@@ -16,25 +16,25 @@
 
 namespace ricochet {
 
-/// How a picture is made.
+/// Options of a rendered picture.
 struct PictureOptions {
     int width = 1280;  ///< pixels, 1..16384
     int height = 720;  ///< pixels, 1..16384
-    int samples = 16;  ///< rays a pixel, 1..4096
-    /// A draft: one ray through the middle of each pixel, hard shadows, the sky's light by the surface's slope alone,
-    /// no light from surface to surface, no blur. samples and filter have no part in it.
+    int samples = 16;  ///< rays per pixel, 1..4096
+    /// Renders a draft: one ray through the middle of each pixel, hard shadows, sky light by the surface's slope
+    /// alone. A draft has no light between surfaces and no blur. It ignores `samples` and `filter`.
     bool quick = false;
     double exposure = 1.0;
     Lighting lighting = Lighting::day;
-    std::optional<Vec3> background;  ///< linear light behind everything, instead of the light's own
-    bool transparent = false;        ///< nothing behind everything: the picture has an alpha channel
-    bool filter = true;              ///< take the noise out, see filter_noise()
-    /// Called now and then, from any thread, with the part that is done, 0..1. May be empty.
+    std::optional<Vec3> background;  ///< linear light of the background, instead of the lighting's own
+    bool transparent = false;        ///< no background: the picture has an alpha channel
+    bool filter = true;              ///< remove the noise, see filter_noise()
+    /// Called repeatedly, from any thread, with the finished share, 0..1. Can be empty.
     std::function<void(double)> progress;
 };
 
-/// sprites: laid over the picture of everything else, brought to the display's range by themselves; each layer over
-/// those before it. The first of those that glow lights what is around, as lines of the preview that shine do.
+/// Renders the picture. Sprites are composited over everything else and tone-mapped separately, each layer over the
+/// previous layers. The first glowing layer lights its surroundings, as glowing lines of the preview do.
 [[nodiscard]] Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
                                    std::span<const Sprites> layers);
 [[nodiscard]] inline Image render_picture(const Preview& preview, const Camera& camera, const PictureOptions& options,
@@ -42,7 +42,7 @@ struct PictureOptions {
     return render_picture(preview, camera, options, std::span(&sprites, 1));
 }
 
-/// Memory that render_picture() and packing as PNG need together at their peak, bytes, without what they show.
+/// Returns the peak memory of render_picture() and PNG packing together, in bytes, without the scene.
 [[nodiscard]] double picture_bytes(int width, int height, bool has_sprites);
 
 }  // namespace ricochet

@@ -10,10 +10,11 @@
 namespace ricochet {
 namespace {
 
-// The differences between a pixel's samples, of the root of what is shown, as the eye and the picture's bytes have it.
-constexpr double kEven = 0.06;            // below which a pixel needs no more rays
+// Differences between a pixel's samples are measured on the square root of the shown value, like perception and the
+// picture's bytes.
+constexpr double kEven = 0.06;            // below this, a pixel needs no more rays
 constexpr double kRaysByContrast = 20.0;  // for a difference of 1
-constexpr int kRaysUnseen = 4;            // where samples may have missed an outline
+constexpr int kRaysUnseen = 4;            // if samples can have missed an outline
 
 Vec3 rooted(const Vec3& shown) { return {std::sqrt(shown.x), std::sqrt(shown.y), std::sqrt(shown.z)}; }
 
@@ -53,15 +54,15 @@ void PixelSum::add_features(const Glance& glance) {
     seen_ += glance.covers ? 1.0 : 0.0;
 }
 
-// How much of its plain light the pixel has.
+// Returns the ratio of the pixel's light to its unoccluded light.
 Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
 
-// What a sample would show if its surface were lit as the mean of the pixel is.
+// Returns the light of a sample if its surface were lit like the mean of the pixel.
 Vec3 PixelSum::expected(const Sample& sample, const Vec3& lit) const {
     return tone_mapped(exposure_ * (sample.own + times(lit, sample.plain)));
 }
 
-// Of what the samples would show.
+// Returns the contrast of the expected light of the samples.
 double PixelSum::contrast() const {
     const Vec3 all = lit();
     Vec3 lower = rooted(expected(kept_[0], all));
@@ -93,18 +94,18 @@ PixelLight PixelSum::mean() const {
     mean.slope = sum_.slope / rays_;
     mean.alpha = cover_ / samples_;
     const double bright = luminance(mean.light);
-    // Of one sample nothing is known: it may be off by as much as it is.
+    // The error of a single sample is unknown. It is taken as large as the sample itself.
     const double spread = samples_ == 1 ? bright * bright : sum_of_squares_ / samples_ - bright * bright;
     mean.variance = std::max(0.0, spread) / std::max(1, samples_ - 1);
     if (rays_ > samples_) correct(mean);
     return mean;
 }
 
-// From the mean of the samples to that of all rays.
+// Corrects the mean of the samples to the mean of all rays.
 void PixelSum::correct(PixelLight& mean) const {
     const Vec3 all = lit();
     Vec3 few, many;
-    double left = 0.0;  // sums of squares: of what is not expected, and of what is
+    double left = 0.0;  // sum of squares of the differences from the expected light
     double square = 0.0;
     double rest = 0.0;
     for (int k = 0; k < rays_; ++k) {
@@ -123,7 +124,7 @@ void PixelSum::correct(PixelLight& mean) const {
     mean.alpha = std::clamp(mean.alpha + seen_ / rays_ - seen_by_samples_ / samples_, 0.0, 1.0);
     const double bright = luminance(many / rays_);
     const double of_rest = left / samples_ - (rest / samples_) * (rest / samples_);
-    // Rays of a net miss the mean by about their spread over their number to the power 3/4 (edges).
+    // The error of stratified rays is about their spread over their number to the power 3/4 (edges).
     const double of_rays = std::max(0.0, square / rays_ - bright * bright) / std::pow(rays_, 1.5);
     if (samples_ > 1) mean.variance = std::max(0.0, of_rest) / (samples_ - 1) + of_rays;
 }

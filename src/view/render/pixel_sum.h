@@ -1,8 +1,8 @@
 /// \file
-/// What the samples of a pixel add up to. Where these are few, more rays from the camera, which go on to the sun alone,
-/// tell how much of the pixel each surface covers and how much of it lies in the sun. The mean of what they would show
-/// takes the place of that of the samples, which are left to say by how much the light differs from it (a control
-/// variate: the picture that many samples converge to is the same).
+/// Sum of the samples of a pixel. If the samples are few, extra camera rays that trace only the sun add information.
+/// They measure how much of the pixel each surface covers and how much of it is in sunlight. Their mean expected light
+/// replaces the samples' mean expected light. The samples supply the difference between actual and expected light (a
+/// control variate). The limit for many samples is the same.
 #pragma once
 
 #include <array>
@@ -13,50 +13,51 @@
 
 namespace ricochet {
 
-/// What the samples of a pixel say together.
+/// Result of the samples of a pixel.
 struct PixelLight {
     Vec3 light;             ///< in the display's range, mean of the samples
-    double variance = 0.0;  ///< of the mean's luminance
-    double alpha = 1.0;     ///< part of the samples that show something, where the background is transparent
+    double variance = 0.0;  ///< variance of the mean's luminance
+    double alpha = 1.0;     ///< share of the samples that hit something, if the background is transparent
     Vec3 normal;            ///< means over the samples
     Vec3 albedo;
     double distance = 0.0;  ///< m
-    double slope = 0.0;     ///< m from pixel to pixel
+    double slope = 0.0;     ///< in m per pixel
 };
 
-/// Most rays from the camera of a pixel whose samples see different things; where samples are as many, there are no
-/// others.
+/// Largest number of camera rays of a pixel whose samples see different things. No extra rays are traced if there are
+/// as many samples.
 inline constexpr int kGlances = 16;
 
-/// What a ray from the camera shows before the sky's light is traced; as it is where it meets nothing.
+/// Result of a camera ray before the sky's light is traced. The defaults describe a ray without a hit.
 struct Glance {
-    Vec3 own;    ///< light that is known: the surface's own, the sun's on it, and what is behind everything
-    Vec3 plain;  ///< light that the surface sends besides if nothing keeps the sky from it
+    Vec3 own;    ///< known light: the surface's emission, the sun's light on it, and the background
+    Vec3 plain;  ///< further light of the surface if nothing occludes the sky
     Vec3 normal;
     Vec3 albedo{1, 1, 1};
     double distance = 0.0;      ///< m
-    double slope = 0.0;         ///< m from pixel to pixel
-    std::uint32_t surface = 0;  ///< a number for each sphere that is known; 0 for all else
-    bool covers = true;         ///< whether it is in the picture: the background is not where that is transparent
+    double slope = 0.0;         ///< in m per pixel
+    std::uint32_t surface = 0;  ///< a number for each known sphere; 0 for everything else
+    bool covers = true;         ///< true if it is part of the picture: a transparent background is not
 };
 
-/// What is known of a pixel, sample by sample.
+/// Accumulator for the samples of a pixel.
 class PixelSum {
 public:
-    /// exposure: by which light is multiplied before it is shown.
+    /// Sets the exposure, which multiplies light before it is shown.
     explicit PixelSum(double exposure = 1.0) : exposure_(exposure) {}
-    /// light: what the surface sends, or what is behind everything; shown: what the pixel shows of it, in the display's
-    /// range; cover: part of it that is in the picture.
+    /// Adds a sample. `light` is the light of the surface or the background. `shown` is the result in the display's
+    /// range. `cover` is the covered share.
     void add(const Glance& glance, const Vec3& light, const Vec3& shown, double cover);
-    /// How many rays more make the pixel good, at most kGlances with the samples: the more, the more these differ, and
-    /// all where they do on both sides of an outline. 0 after kGlances. has_outline: whether that of a known sphere may
-    /// be seen.
+    /// Returns the number of extra rays that the pixel needs, at most kGlances together with the samples. The number
+    /// grows with the differences between the samples. It is the maximum if the samples differ on both sides of an
+    /// outline. It is 0 after kGlances samples. `has_outline` tells whether the outline of a known sphere can be
+    /// visible.
     [[nodiscard]] int rays_wanted(bool has_outline = false) const;
-    /// Distance of the farthest surface of the samples, m; infinite where one saw none.
+    /// Returns the distance of the farthest surface of the samples, in m. It is infinite if a sample had no hit.
     [[nodiscard]] double farthest() const { return farthest_; }
-    /// A ray from the camera beyond the samples; at most kGlances with them.
+    /// Adds a camera ray beyond the samples. Rays and samples together are at most kGlances.
     void add(const Glance& glance);
-    /// Of the samples, at least one, and the glances.
+    /// Returns the mean of the samples, at least one, and the extra rays.
     [[nodiscard]] PixelLight mean() const;
 
 private:
@@ -71,13 +72,13 @@ private:
 
     double exposure_;
     PixelLight sum_{{}, 0.0, 0.0, {}, {}, 0.0, 0.0};
-    double sum_of_squares_ = 0.0;  // of the luminance
-    Vec3 light_, plain_;           // sums of what surfaces send and would send
+    double sum_of_squares_ = 0.0;  // squares of the luminance
+    Vec3 light_, plain_;           // sums of actual and of unoccluded light
     double cover_ = 0.0;           // sums over the samples, and over all rays
     double seen_ = 0.0;
     double seen_by_samples_ = 0.0;
     double farthest_ = 0.0;
-    std::uint32_t surface_ = 0;  // of the first sample
+    std::uint32_t surface_ = 0;  // surface of the first sample
     bool surfaces_differ_ = false;
     int samples_ = 0;
     int rays_ = 0;

@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 constexpr double kCreaseDegrees = 40.0;
-constexpr double kClothCreaseDegrees = 180.0;  // its folds are round
+constexpr double kClothCreaseDegrees = 180.0;  // folds of cloth are round
 
 void store(float* target, const Vec3& p) {
     target[0] = static_cast<float>(p.x);
@@ -26,14 +26,14 @@ embree::Scene new_scene(RTCDevice device) {
     return scene;
 }
 
-// What is darker gives no light that could be seen: the display's first step is 3e-4.
+// Returns true if a line emits visible light. The display's first step is 3e-4.
 bool shines(const PreviewLines& lines, std::size_t i) {
     constexpr double kDarkest = 1e-3;
     return !lines.emissions.empty() && luminance(lines.emissions[i]) > kDarkest;
 }
 
-// A convex body of the surface A and the brightness L shines in all directions together as a ball of that surface: its
-// intensity is L A / (4 pi) in the mean.
+// Returns the lamp of a glowing line. A convex body of surface A and brightness L has the mean intensity L A / (4 pi),
+// like a ball of the same surface.
 GlowingLine glowing_line(const PreviewLines& lines, std::size_t i) {
     const auto [a, b] = lines.ends[i];
     const double radius = lines.radii[i];
@@ -42,7 +42,7 @@ GlowingLine glowing_line(const PreviewLines& lines, std::size_t i) {
     return {lines.points[a], lines.points[b], radius, size * lines.emissions[i]};
 }
 
-// Gives a finished geometry to the scene under the given number.
+// Commits a finished geometry and attaches it to the scene under the given number.
 void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
     rtcSetGeometryMask(geometry, 0xffffffffU);
     rtcCommitGeometry(geometry);
@@ -121,7 +121,7 @@ void Preview::Impl::build_spheres() {
     embree::check_device(device.get(), "building the picture's particles");
 }
 
-// Lines that shine are in a scene of their own, so that rays that look for light can leave them out.
+// Glowing lines have a scene of their own, so that rays that gather light can leave them out.
 void Preview::Impl::add_lines(const PreviewLines& lines) {
     std::vector<std::size_t> dark, bright;
     glowing_lines.clear();
@@ -149,7 +149,7 @@ void Preview::Impl::add_lines(const PreviewLines& lines) {
     rtcCommitScene(glow_scene.get());
 }
 
-// Every line has two points of its own, since lines that share one may differ in radius.
+// Every line gets two points of its own, because lines that share a point can differ in radius.
 LineGroup Preview::Impl::attach_lines(const PreviewLines& lines, const std::vector<std::size_t>& drawn, RTCScene scene,
                                       MovingGeometry id) const {
     LineGroup group;

@@ -1,5 +1,5 @@
 /// \file
-/// Private: what is behind Preview. Included by the .cpp files of it only.
+/// Private: implementation of Preview. Included only by its .cpp files.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@
 
 namespace ricochet {
 
-/// Geometries of the scene of what moves, but for spheres and lines that shine, which have scenes of their own.
+/// Geometries of the scene of moving objects. Spheres and glowing lines have scenes of their own.
 enum MovingGeometry : unsigned { kLines, kCloth, kCopies, kGlowingLines };
 
 /// Lines that are traced together, in the order of their primitives.
 struct LineGroup {
     std::vector<Vec3> colors;
-    std::vector<Vec3> emissions;  // the same, or empty
+    std::vector<Vec3> emissions;  // per line, or empty
 };
 
 /// Meshes that are traced together; geometry k of the scene is mesh k.
@@ -29,11 +29,12 @@ struct MeshGroup {
     [[nodiscard]] bool empty() const { return meshes.empty(); }
 };
 
-/// What a ray has met: Embree's hit, and where it is from.
+/// Embree's hit of a ray, with the source of the hit.
 struct RayFind {
     RTCRayHit query;
-    unsigned geometry = RTC_INVALID_GEOMETRY_ID;  ///< of the scene that it is from; invalid: nothing was met
-    const MeshGroup* group = nullptr;             ///< whose scene that is; null: that of spheres or of what moves
+    unsigned geometry = RTC_INVALID_GEOMETRY_ID;  ///< number in the scene of the hit; invalid: no hit
+    const MeshGroup* group = nullptr;             ///< group of the hit scene; null: the scene of spheres or of moving
+                                                  ///< objects
     bool is_sphere = false;
     CopyHit copy;
 };
@@ -45,7 +46,7 @@ struct Preview::Impl {
     embree::Scene moving_scene, sphere_scene, glow_scene;
     std::vector<PreviewPlane> planes;
     DrawnSpheres spheres;
-    std::vector<std::vector<Vec3>> sphere_ways;  // of the drawn spheres while the shutter is open; empty at rest
+    std::vector<std::vector<Vec3>> sphere_ways;  // paths of the drawn spheres while the shutter is open; empty at rest
     bool has_sphere_rays = false;
     LineGroup dark_lines, bright_lines;
     std::vector<GlowingLine> glowing_lines;  // in the order of bright_lines

@@ -1,4 +1,4 @@
-// How rays are shot at what a picture shows: one by one, and in packets of those that go alike.
+// Ray tracing of Preview: single rays, and packets of coherent rays.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -34,7 +34,7 @@ RayFind new_find(const PreviewRay& ray, const Vec3& origin) {
     return find;
 }
 
-// Which scene the last query has found something in.
+// Records the scene of the last query's hit.
 void note_source(RayFind& find, const MeshGroup* group, bool is_sphere) {
     if (find.query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
     find.geometry = find.query.hit.geomID;
@@ -43,7 +43,7 @@ void note_source(RayFind& find, const MeshGroup* group, bool is_sphere) {
     find.query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
 }
 
-// Rays in Embree's layout. Lanes are numbered by the rays' ids, by which copies note what they are hit in.
+// Writes a ray into a lane of Embree's layout. The ray's id is the lane number, because copies record their hit by id.
 template <class Rays>
 void set_lane(Rays& rays, std::size_t lane, const PreviewRay& ray, const Vec3& origin) {
     const RTCRay one = embree_ray(ray, origin);
@@ -59,7 +59,7 @@ void set_lane(Rays& rays, std::size_t lane, const PreviewRay& ray, const Vec3& o
     rays.id[lane] = static_cast<unsigned>(lane);
 }
 
-// What a packet of rays has met, as RayFind for one.
+// Hits of a packet of rays; see RayFind for a single ray.
 struct PacketFind {
     alignas(32) std::array<int, kPacketRays> valid{};
     RTCRayHit8 query{};

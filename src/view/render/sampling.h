@@ -1,6 +1,6 @@
 /// \file
-/// The numbers that the samples of a pixel are made of: well spread in every pair of dimensions, other ones in every
-/// pixel, the same for any number of threads.
+/// Sample numbers of pixels. Every pair of dimensions is well stratified, every pixel has different numbers, and the
+/// numbers do not depend on the number of threads.
 /// Method: Owen-scrambled (0, 2)-sequences by hashing: B. Burley, "Practical Hash-based Owen Scrambling", Journal of
 /// Computer Graphics Techniques 9(4), 2020. Points: I. M. Sobol, 1967, first two dimensions.
 #pragma once
@@ -13,7 +13,7 @@
 
 namespace ricochet {
 
-/// Two numbers in 0..1, 1 left out.
+/// Two numbers in [0, 1).
 struct SamplePair {
     double u = 0.0;
     double v = 0.0;
@@ -25,9 +25,9 @@ struct DiscPoint {
     double y = 0.0;
 };
 
-/// Evenly over the disc: the angle is v turns to 3e-9, the square of the distance from the middle u.
-/// By series about the nearest quarter of a turn: a library's sine of any angle takes longer than much of what it is
-/// for.
+/// Maps a pair uniformly to the unit disc. The angle is v turns, to 3e-9, and the squared radius is u.
+/// The function uses series around the nearest quarter turn, because a general library sine takes longer than many of
+/// its uses here.
 [[nodiscard]] inline DiscPoint on_disc(const SamplePair& at) {
     const int quarter = static_cast<int>(4.0 * at.v + 0.5);  // v is not negative
     const double t = (4.0 * at.v - quarter) * (0.5 * std::numbers::pi);
@@ -39,19 +39,19 @@ struct DiscPoint {
         q * (1.0 / 2.0) *
             (1.0 - q * (1.0 / 12.0) * (1.0 - q * (1.0 / 30.0) * (1.0 - q * (1.0 / 56.0) * (1.0 - q * (1.0 / 90.0)))));
     const double radius = std::sqrt(at.u);
-    // By tables: which quarter it is no processor can foresee.
+    // Tables avoid branches on the quarter, which a processor cannot predict.
     constexpr std::array<double, 4> kSigns = {1.0, 1.0, -1.0, -1.0};
     const std::array<double, 2> either = {radius * cosine, radius * sine};
     const auto turns = static_cast<std::size_t>(quarter & 3);
     return {kSigns[(turns + 1) & 3] * either[turns & 1], kSigns[turns] * either[(turns & 1) ^ 1]};
 }
 
-/// Of PixelSamples.
+/// Bit operations of PixelSamples.
 namespace sampling {
 
 inline constexpr double kUnit = 1.0 / 4294967296.0;
 
-/// The highest bit becomes the lowest one, and so on.
+/// Returns the number with its 32 bits in reverse order.
 [[nodiscard]] inline std::uint32_t reversed_bits(std::uint32_t x) {
     x = (x >> 16) | (x << 16);
     x = ((x & 0x00ff00ffU) << 8) | ((x & 0xff00ff00U) >> 8);
@@ -60,7 +60,8 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
     return ((x & 0x55555555U) << 1) | ((x & 0xaaaaaaaaU) >> 1);
 }
 
-/// Owen's scrambling of the bits from the highest down (Burley 2020, listing 3), of a number whose bits are reversed.
+/// Applies Owen's scrambling of the bits from the highest down (Burley 2020, listing 3) to a number whose bits are
+/// reversed.
 [[nodiscard]] inline std::uint32_t scrambled_reversed(std::uint32_t x, std::uint32_t seed) {
     x += seed;
     x ^= x * 0x6c50b47cU;
@@ -70,9 +71,11 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
     return reversed_bits(x);
 }
 
-/// The second dimension of Sobol's sequence, bits reversed; the first one is the index with reversed bits. Its
-/// direction numbers are the powers of 1 + t over the field of two elements: bits are the coefficients of a polynomial
-/// in t, into which 1 + t is put for t, half by half, since (1 + t)^16 = 1 + t^16 there, and so on.
+/// Returns the second dimension of Sobol's sequence with its bits reversed. The first dimension is the index with
+/// reversed bits.
+/// The direction numbers are the powers of 1 + t over the field of two elements. The bits are the coefficients of a
+/// polynomial in t, in which 1 + t replaces t. The substitution works half by half, because (1 + t)^16 = 1 + t^16 in
+/// this field, and so on.
 [[nodiscard]] inline std::uint32_t reversed_sobol_second(std::uint32_t index) {
     index ^= index >> 16;
     index ^= (index & 0xff00ff00U) >> 8;
@@ -83,7 +86,7 @@ inline constexpr double kUnit = 1.0 / 4294967296.0;
 
 }  // namespace sampling
 
-/// What a pair is for; pairs of different purposes are independent of each other.
+/// Purpose of a sample pair. Pairs of different purposes are independent.
 enum class SamplePurpose : std::uint32_t { pixel, lens, sun, sky, far_sun, lamp };
 inline constexpr std::size_t kSamplePurposes = 6;
 
@@ -91,13 +94,14 @@ inline constexpr std::size_t kSamplePurposes = 6;
 class PixelSamples {
 public:
     PixelSamples(int x, int y);
-    /// sample: 0, 1, ...; any first 2^k of them are stratified in every elementary interval of the square.
+    /// Returns the pair of a sample (0, 1, ...). The first 2^k samples are stratified in every elementary interval of
+    /// the square.
     [[nodiscard]] SamplePair get(int sample, SamplePurpose purpose) const;
-    /// A number for the time within the shutter: as get(), in one dimension.
+    /// Returns the time of a sample within the shutter interval, as get() does in one dimension.
     [[nodiscard]] double time(int sample) const;
 
 private:
-    // Of the order of the pairs of a purpose, and of its two dimensions.
+    // Seeds for the order of the pairs of a purpose, and for its two dimensions.
     struct Seeds {
         std::uint32_t order = 0, first = 0, second = 0;
     };
@@ -107,7 +111,7 @@ private:
 
 inline SamplePair PixelSamples::get(int sample, SamplePurpose purpose) const {
     const Seeds& seeds = seeds_[static_cast<std::size_t>(purpose)];
-    // The order is shuffled by scrambling the index, so that pairs of two purposes are independent.
+    // Scrambling the index shuffles the order, so that pairs of two purposes are independent.
     const std::uint32_t index =
         sampling::scrambled_reversed(sampling::reversed_bits(static_cast<std::uint32_t>(sample)), seeds.order);
     return {sampling::scrambled_reversed(index, seeds.first) * sampling::kUnit,

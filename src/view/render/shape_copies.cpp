@@ -9,9 +9,9 @@ namespace ricochet {
 namespace {
 
 constexpr double kCreaseDegrees = 40.0;
-constexpr double kFlattest = 1e-9;  // of a map's determinant, over the cube of its longest row
+constexpr double kFlattest = 1e-9;  // limit of a map's determinant, relative to the cube of its longest row
 
-// The rows of the inverse.
+// Returns the inverse of the linear part.
 AffineMap inverse_of(const AffineMap& map) {
     const double scale = 1.0 / map.determinant();
     const Vec3 a = scale * cross(map.row_y, map.row_z);
@@ -90,7 +90,7 @@ void ShapeCopies::write_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& self = *static_cast<const ShapeCopies*>(args->geometryUserPtr);
     const Copy& copy = self.copies_[args->primID];
     const Vec3 center = self.ways_.empty() ? copy.center : self.ways_[args->primID][args->timeStep];
-    // Wider by what single precision may take away.
+    // The box is widened to cover single-precision rounding.
     constexpr double kWider = 1.0 + 1e-5;
     const double rounding = 1e-6 * max_abs(center);
     const Vec3 half = kWider * copy.half_size + Vec3{rounding, rounding, rounding};
@@ -179,7 +179,7 @@ void ShapeCopies::occlude(const RTCOccludedFunctionNArguments* args) {
     }
 }
 
-// Normals go by the transposed inverse.
+// Transforms a normal by the transposed inverse.
 Vec3 ShapeCopies::world_normal(std::size_t copy, const Vec3& shape_normal) const {
     return normalized(copies_[copy].shape_from_world.direction_back(shape_normal));
 }

@@ -1,6 +1,6 @@
 /// \file
-/// Private: many copies of one shape as a single geometry of Embree, which takes a few hundred bytes a copy whatever
-/// the shape. Included by the .cpp files that use Embree only.
+/// Private: many copies of shapes as a single Embree geometry. A copy takes a few hundred bytes, whatever its shape.
+/// Included only by the .cpp files that use Embree.
 #pragma once
 
 #include <cstdint>
@@ -14,48 +14,48 @@
 
 namespace ricochet {
 
-/// What a query learns about a copy that it hits. A QueryContext's user pointer leads to as many as it has rays, by
-/// their ids.
+/// Result of a query that hits a copy. The user pointer of a QueryContext points to an array with one entry per ray,
+/// indexed by the ray's id.
 struct CopyHit {
     unsigned triangle = 0;
     float u = 0.0F;
     float v = 0.0F;
 };
 
-/// Stays where it is while Embree has its geometry.
+/// Copies of shapes. The object must keep its address while Embree uses its geometry.
 class ShapeCopies {
 public:
-    /// shapes: all of each at most 1 away from its origin.
+    /// Sets the shapes. All points of a shape must be at most 1 away from its origin.
     void set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes);
 
-    /// The copies that can be drawn, about the origin; null pointer where there are none. Queries need a CopyHit for
-    /// each ray.
+    /// Creates a geometry of the drawable copies, relative to the origin. Returns a null pointer if there are none.
+    /// Queries need a CopyHit for each ray.
     [[nodiscard]] RTCGeometry make_geometry(RTCDevice device, const PreviewCopies& copies, const Vec3& origin);
 
-    /// What a ray has hit.
+    /// Returns the hit of a ray.
     [[nodiscard]] PreviewHit hit(const RTCRayHit& hit, const CopyHit& copy_hit, const PreviewRay& ray) const;
 
 private:
     struct Copy {
-        AffineMap shape_from_world;  // without the translation
-        Vec3 center;                 // about the origin, when the shutter closes
-        Vec3 half_size;              // of its box
+        AffineMap shape_from_world;  // linear part only
+        Vec3 center;                 // relative to the origin, at shutter close
+        Vec3 half_size;              // of its bounding box
         Vec3 color;
         Vec3 emission;
-        std::uint32_t shape;  // from 1 on; 0: a ball of radius 1
+        std::uint32_t shape;  // counted from 1; 0: a ball of radius 1
     };
     struct Shape {
         DrawnMesh mesh;
         embree::Scene scene;
     };
-    // A ray in the shape's own coordinates; distances are those of the world's ray.
+    // A ray in the shape's coordinates. Distances are in world units.
     struct LocalRay {
         Vec3 origin, direction;
     };
 
     [[nodiscard]] Vec3 center_at(std::size_t copy, double time) const;
     [[nodiscard]] LocalRay local_ray(const RTCRay& ray, std::size_t copy) const;
-    // How far a ray goes to the ball or the shape, and what it meets; false where it meets nothing nearer.
+    // Intersects a ray with the ball or the shape. Returns false if there is no closer hit.
     [[nodiscard]] bool meet(const RTCRay& ray, std::size_t copy, float& distance, CopyHit& what) const;
     [[nodiscard]] bool meet_ball(const LocalRay& local, const RTCRay& ray, float& distance) const;
     [[nodiscard]] static bool meet_mesh(const Shape& shape, const LocalRay& local, const RTCRay& ray, float& distance,
@@ -67,7 +67,7 @@ private:
 
     std::vector<Shape> shapes_;
     std::vector<Copy> copies_;
-    std::vector<std::vector<Vec3>> ways_;  // about the origin; empty without any
+    std::vector<std::vector<Vec3>> ways_;  // relative to the origin; empty if no copy moves
 };
 
 }  // namespace ricochet

@@ -10,22 +10,22 @@ namespace ricochet {
 namespace {
 
 constexpr std::size_t kBlock = 1024;   // spheres per unit of parallel work
-constexpr double kMostCovered = 24.0;  // pixels that spheres may cover, over those of the picture
+constexpr double kMostCovered = 24.0;  // limit for the pixels that spheres cover, relative to the pixels of the picture
 constexpr double kMargin = 0.01;       // pixels, for rounding
 
-// Slopes between which a circle is seen from the origin: it is `ahead` > radius before it, and `across`.
+// Returns the slopes of the two tangents from the origin to a circle. Its centre is at `ahead` > radius and `across`.
 std::array<double, 2> slopes_of(double across, double ahead, double radius) {
     const double under = ahead * ahead - radius * radius;
     const double spread = radius * std::sqrt(across * across + under);
     return {(across * ahead - spread) / under, (across * ahead + spread) / under};
 }
 
-// The first of `count` pixels whose middle is not below `at`, which may be anything.
+// Returns the first of `count` pixels whose middle is not below `at`. Any value of `at` is valid.
 int pixel_from(double at, int count) {
     return static_cast<int>(std::clamp(std::ceil(at - 0.5), 0.0, static_cast<double>(count)));
 }
 
-// A sphere, and the tiles [begin, end) of a row that it may be seen in.
+// A sphere, and the tiles [begin, end) of a row in which it can be visible.
 struct KeptSpot {
     NearSphere sphere;
     std::size_t begin = 0;
@@ -68,7 +68,7 @@ SphereView::SphereView(const DrawnSpheres& spheres, const Camera& camera, int wi
     if (pays_) sort_into_bands();
 }
 
-// Each band lists its spots in the order of the spheres.
+// Lists the spots of each band in the order of the spheres.
 void SphereView::sort_into_bands() {
     const auto each_band = [this](auto&& visit) {
         for (std::size_t k = 0; k < spots_.size(); ++k) {
@@ -121,7 +121,7 @@ void SphereView::find(int band, std::span<SphereFind> finds) const {
     }
 }
 
-// Along a ray of direction d = forward + x right + y up, which is not of unit length, the sphere is met where
+// A ray of direction d = forward + x right + y up, not normalized, hits the sphere at
 // |d|^2 t^2 - 2 (d . away) t + power = 0.
 void SphereView::cover_row(const Spot& spot, std::uint32_t sphere, int row, std::span<SphereFind> finds) const {
     const double slope = up_[static_cast<std::size_t>(row)];
@@ -169,8 +169,8 @@ SphereTiles SphereView::tiles(int top, int bottom, int tile_width) const {
     return out;
 }
 
-// A ray of the unit direction d meets a sphere where t^2 - 2 (d . away) t + power = 0. All rays are tested at once; few
-// spheres are met by any.
+// A ray of unit direction d hits a sphere at t^2 - 2 (d . away) t + power = 0. All rays are tested at once, because
+// few spheres are hit by any ray.
 void meet_spheres(std::span<const NearSphere> spheres, std::span<const PreviewRay> rays, std::span<SphereFind> finds) {
     std::array<double, kPacketRays> x{};
     std::array<double, kPacketRays> y{};
@@ -206,7 +206,8 @@ void meet_spheres(std::span<const NearSphere> spheres, std::span<const PreviewRa
     }
 }
 
-// The nearest first: what is behind a sphere that covers all of the surroundings is not seen.
+// Spheres are processed nearest first. A sphere that covers the whole neighbourhood of a ray hides everything behind
+// it.
 std::array<bool, kPacketRays> outlines_about(std::span<const PreviewRay> rays, std::span<const NearSphere> spheres,
                                              double slope) {
     std::array<bool, kPacketRays> found{};

@@ -25,7 +25,8 @@ SpriteImage::SpriteImage(const Image& image)
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
 }
 
-// Each texel is the mean of what lies under it, so that the mean of the image stays the same at odd sizes too.
+// Returns the next coarser level. Each texel is the mean of the area under it, so that odd sizes preserve the mean of
+// the image.
 SpriteImage::Level SpriteImage::half_of(const Level& level) {
     struct Part {
         std::size_t from = 0;
@@ -62,7 +63,7 @@ SpriteImage::Level SpriteImage::half_of(const Level& level) {
     return out;
 }
 
-// Between the four nearest texels.
+// Interpolates between the four nearest texels.
 SpriteTexel SpriteImage::at_level(const Level& level, double x, double y) {
     const double across = x * level.width - 0.5;
     const double down = y * level.height - 0.5;
@@ -95,7 +96,7 @@ SpriteTexel SpriteImage::at(double x, double y, double texels) const {
     return {(1.0 - part) * fine.light + part * coarse.light, (1.0 - part) * fine.cover + part * coarse.cover};
 }
 
-// A third more for the smaller levels, and the bytes that it is made of.
+// The smaller levels take a third more, and the source image takes 4 bytes per pixel.
 double SpriteImage::bytes(double pixels) { return pixels * (4.0 / 3.0 * sizeof(Texel) + 4.0); }
 
 }  // namespace ricochet

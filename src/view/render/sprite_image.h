@@ -1,6 +1,6 @@
 /// \file
-/// The image of sprites, looked up at any size.
-/// Method: L. Williams, "Pyramidal Parametrics", SIGGRAPH 1983 (levels of halved size, mixed).
+/// Image of sprites, sampled at any size.
+/// Method: L. Williams, "Pyramidal Parametrics", SIGGRAPH 1983 (levels of halved size, interpolated).
 #pragma once
 
 #include <vector>
@@ -10,26 +10,27 @@
 
 namespace ricochet {
 
-/// Light and cover of an image's place.
+/// Light and coverage at a point of an image.
 struct SpriteTexel {
-    Vec3 light;          ///< linear, times cover
+    Vec3 light;          ///< linear, multiplied by cover
     double cover = 0.0;  ///< 0..1
 };
 
-/// Nothing is around the image.
+/// An image with levels of detail. It is transparent outside its bounds.
 class SpriteImage {
 public:
-    /// image: at least a pixel.
+    /// `image` must have at least one pixel.
     explicit SpriteImage(const Image& image);
 
-    /// Half the width and half the height, the longer one 1.
+    /// Returns half the width and half the height, scaled so that the longer one is 1.
     [[nodiscard]] double half_width() const { return half_width_; }
     [[nodiscard]] double half_height() const { return half_height_; }
     [[nodiscard]] int width() const { return levels_[0].width; }
     [[nodiscard]] int height() const { return levels_[0].height; }
-    /// x, y: from the upper left corner, in 0..1. texels: of the image to a pixel of the picture.
+    /// Samples the image. x and y are in 0..1 from the upper left corner. `texels` is the number of texels per pixel
+    /// of the picture.
     [[nodiscard]] SpriteTexel at(double x, double y, double texels) const;
-    /// Bytes that an image of so many pixels takes.
+    /// Returns the memory of an image with the given number of pixels, in bytes.
     [[nodiscard]] static double bytes(double pixels);
 
 private:

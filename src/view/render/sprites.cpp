@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kRows = 16;        // rows per unit of parallel work
 constexpr std::size_t kDiscs = 256;      // discs per unit of parallel work
 constexpr double kSmallestRadius = 0.8;  // pixels
-constexpr double kGlowReach = 2.5;       // a glow's radius over the particle's
+constexpr double kGlowReach = 2.5;       // radius of a glow, relative to the particle's radius
 
 // A disc on the screen, in pixels.
 struct Disc {
@@ -34,7 +34,7 @@ public:
           middle_y_(0.5 * height),
           scale_(0.5 * height / half_height(camera)) {}
 
-    // A disc of no strength where there is nothing to be seen.
+    // Projects a disc to the screen. Its strength is zero if it is invisible.
     [[nodiscard]] Disc project(const Sprites& sprites, std::size_t i, const Preview& preview) const {
         Disc disc;
         const Vec3 away = sprites.centers[i] - camera_.position;

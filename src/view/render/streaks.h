@@ -1,5 +1,5 @@
 /// \file
-/// Balls drawn as threads along the way that they went while the shutter was open.
+/// Balls drawn as threads along their path while the shutter is open.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,18 @@
 
 namespace ricochet {
 
-/// A ball and its way.
+/// A ball and its path.
 struct Streak {
     std::span<const PathNode> nodes;  ///< at least one, in the order of time
-    double from = 0.0, to = 0.0;      ///< s, the part of the way that is drawn
+    double from = 0.0, to = 0.0;      ///< drawn interval of the path, in s
     double radius = 0.0;              ///< m, > 0
     Vec3 color;
-    std::optional<Vec3> emission{};  ///< light of its own; all streaks and other lines of a picture have it, or none
+    std::optional<Vec3> emission{};  ///< emitted light; either all streaks and other lines of a picture have it, or
+                                     ///< none
 };
 
-/// Adds a streak to what is drawn. It is as bright as the ball, and gives the light of one ball in all, spread over the
-/// way by the time that the ball was there, however long that is.
+/// Adds a streak to the drawn lines. It is as bright as the ball and gives the light of one ball in total. The light
+/// is distributed over the path by the time that the ball spends there, whatever the total duration.
 void add_streak(const Streak& streak, PreviewLines& lines);
 
 }  // namespace ricochet

@@ -11,22 +11,22 @@ namespace ricochet {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 1e-12;         // the least tangent of a ray to the light, along a coordinate: none is zero
-constexpr double kEntries = 10.0;       // cells that a sphere is in, at most in the mean
+constexpr double kFlat = 1e-12;         // least tangent of a ray to the light, along a coordinate; avoids zero
+constexpr double kEntries = 10.0;       // limit for the mean number of cells per sphere
 constexpr double kMostAcross = 2048.0;  // cells
 constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work
 
-// The cells of one coordinate of a grid that a ray comes through. Coordinates are in cells, and change by `slope` with
-// the height, m, over the ray's start. Without branches by the slope's sign, which no processor can foresee.
+// Cells of one grid coordinate that a ray crosses. Coordinates are in cells. They change by `slope` per m of height
+// above the ray's start. The code avoids branches on the sign of the slope, which a processor cannot predict.
 struct GridWalk {
     double at, slope, per_slope, ahead;
     std::size_t count;      // cells
-    std::size_t change;     // from cell to cell: 1, or -1 by overflow
-    double enters, leaves;  // heights of the grid's ends
+    std::size_t change;     // step from cell to cell: 1, or -1 by overflow
+    double enters, leaves;  // heights of the ray at the ends of the grid
     std::size_t cell = 0;
-    double next = 0.0;  // the height at which the ray leaves the cell
+    double next = 0.0;  // height at which the ray leaves the cell
 
-    // tangent: of the ray to the light, along the coordinate; per_size: cells per m.
+    // `tangent` is the tangent of the ray to the light along the coordinate. `per_size` is in cells per m.
     GridWalk(double start, double tangent, double per_size, std::size_t cells)
         : at(start),
           slope(std::copysign(std::max(std::fabs(tangent), kFlat), tangent) * per_size),
@@ -42,7 +42,7 @@ struct GridWalk {
         find_next();
     }
 
-    // False beyond the last cell.
+    // Advances to the next cell. Returns false beyond the last cell.
     bool step() {
         cell += change;
         find_next();
@@ -75,7 +75,7 @@ SunShadows::Shade SunShadows::shade_of(const Vec3& center, double radius) const 
     return {dot(center, across_), dot(center, along_), dot(center, to_light_), radius};
 }
 
-// Cells that all spheres are in together, at most.
+// Returns an upper bound for the number of cell entries of all spheres.
 double SunShadows::entries(const std::vector<Shade>& shades, double size) const {
     double sum = 0.0;
     for (const Shade& shade : shades) {
@@ -85,7 +85,7 @@ double SunShadows::entries(const std::vector<Shade>& shades, double size) const 
     return sum;
 }
 
-// Cells as small as the memory for them allows.
+// Chooses the smallest cells that the memory limit allows.
 void SunShadows::choose_grid(const std::vector<Shade>& shades) {
     double right = -kNever;
     double high = -kNever;
@@ -96,7 +96,7 @@ void SunShadows::choose_grid(const std::vector<Shade>& shades) {
         low_ = std::min(low_, shade.v - shade.radius);
         high = std::max(high, shade.v + shade.radius);
     }
-    const double extent = std::max({right - left_, high - low_, 1e-300});  // what is very far away may have none
+    const double extent = std::max({right - left_, high - low_, 1e-300});  // spheres very far away can have zero extent
     const auto count = static_cast<double>(shades.size());
     double size = extent / kMostAcross;
     const auto cells = [&] { return ((right - left_) / size + 1.0) * ((high - low_) / size + 1.0); };
@@ -163,7 +163,7 @@ bool SunShadows::covers(const Vec3& point) const {
     return false;
 }
 
-// Spheres over a cell, as a sphere finds it in the mean.
+// Returns the mean number of spheres over a cell, as seen from a sphere.
 double SunShadows::crowd() const {
     double sum = 0.0;
     for (std::size_t cell = 0; cell + 1 < first_.size(); ++cell) {
@@ -173,20 +173,21 @@ double SunShadows::crowd() const {
     return sum;
 }
 
-// Most rays stop at one of the first spheres of their cell; not where all are in one, as strays far away make it.
+// Most rays stop at one of the first spheres of their cell. This fails if all spheres share one cell because of
+// distant outliers.
 bool SunShadows::pays() const {
     constexpr double kMostCrowded = 2000.0;
     return over_.empty() || crowd() < kMostCrowded;
 }
 
-// By what a ray looks at: the spheres over the cells that it comes through.
+// The cost of a ray is the number of spheres over the cells that it crosses.
 bool SunShadows::pays(double slope) const {
     constexpr double kMostLooks = 150.0;
     if (over_.empty()) return true;
     return crowd() * (1.0 + slope * (top_ - bottom_) * per_size_) < kMostLooks;
 }
 
-// Between two heights over the ray's start.
+// Returns true if a sphere over a cell blocks the ray between two heights above the ray's start.
 bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low, double high) const {
     for (std::size_t k = first_[cell]; k < first_[cell + 1]; ++k) {
         const Shade& shade = over_[k];
@@ -202,7 +203,7 @@ bool SunShadows::covers_within(std::size_t cell, const Slanted& ray, double low,
     return false;
 }
 
-// Cell by cell, by the height at which the ray leaves each.
+// Steps through the cells in order of the height at which the ray leaves each.
 bool SunShadows::covers(const Vec3& point, const Vec3& direction) const {
     if (direction == to_light_) return covers(point);
     if (over_.empty()) return false;

@@ -1,6 +1,6 @@
 /// \file
-/// The shadows that spheres throw in one direction, or nearly: a grid across it, whose cells know what stands over
-/// them. For many spheres that takes a tenth of the time of rays, or half of it where directions differ.
+/// Shadows of spheres along one direction, or nearly so. A grid across the direction stores the spheres over each
+/// cell. For many spheres this takes a tenth of the time of rays, or half of it for varying directions.
 #pragma once
 
 #include <array>
@@ -13,34 +13,36 @@
 
 namespace ricochet {
 
-/// Stays valid on its own. Safe from any thread.
+/// Shadow lookup for spheres. Independent of the spheres after construction. Safe from any thread.
 class SunShadows {
 public:
-    /// to_light: of unit length.
+    /// `to_light` must have unit length.
     SunShadows(const DrawnSpheres& spheres, const Vec3& to_light);
 
-    /// True when a sphere stands on the ray from a point to the light.
+    /// Returns true if a sphere blocks the ray from a point to the light.
     [[nodiscard]] bool covers(const Vec3& point) const;
-    /// The same for a ray along a unit vector, less than a right angle from the light.
+    /// Returns true if a sphere blocks the ray along a unit vector, which must be less than a right angle from the
+    /// light.
     [[nodiscard]] bool covers(const Vec3& point, const Vec3& direction) const;
-    /// Whether the first is faster than rays.
+    /// Returns true if covers(point) is faster than rays.
     [[nodiscard]] bool pays() const;
-    /// Whether the second is faster than rays where the tangent of this angle is up to `slope`.
+    /// Returns true if covers(point, direction) is faster than rays. `slope` is the largest tangent of the angle to
+    /// the light.
     [[nodiscard]] bool pays(double slope) const;
 
 private:
-    // A sphere, across the light and towards it.
+    // A sphere in coordinates across the light and towards it.
     struct Shade {
         double u = 0.0, v = 0.0, height = 0.0;  // m
         double radius = 0.0;                    // m
     };
     struct Cells {
-        std::size_t left, right, low, high;  // ends included
+        std::size_t left, right, low, high;  // inclusive
     };
     // A ray in the coordinates of Shade.
     struct Slanted {
         Shade from;
-        double across = 0.0, along = 0.0, rise = 0.0;  // the unit vector
+        double across = 0.0, along = 0.0, rise = 0.0;  // unit direction
     };
 
     void choose_grid(const std::vector<Shade>& shades);
@@ -53,11 +55,11 @@ private:
 
     Vec3 across_, along_, to_light_;
     double left_ = 0.0, low_ = 0.0;  // m, the grid's corner
-    double per_size_ = 1.0;          // 1/m, over a cell's edge
+    double per_size_ = 1.0;          // inverse edge length of a cell, in 1/m
     std::size_t columns_ = 0, rows_ = 0;
-    std::vector<std::size_t> first_;   // of a cell in over_; the last is the end
-    std::vector<Shade> over_;          // those nearest to the light first
-    double bottom_ = 0.0, top_ = 0.0;  // m, heights between which all spheres are
+    std::vector<std::size_t> first_;   // index of a cell's first entry in over_; the last entry is the end
+    std::vector<Shade> over_;          // sorted per cell: spheres nearest to the light first
+    double bottom_ = 0.0, top_ = 0.0;  // range of heights of all spheres, in m
 };
 
 }  // namespace ricochet

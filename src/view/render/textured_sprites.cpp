@@ -1,5 +1,5 @@
-// Sprites that show an image: squares that face the camera, laid over each other from far to near, each part of them
-// only where nothing solid is nearer.
+// Sprites with an image: squares that face the camera, composited from far to near. Each part is visible only if
+// nothing solid is nearer.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kRows = 16;        // rows per unit of parallel work
 constexpr double kSmallestRadius = 0.8;  // pixels
-constexpr int kProbes = 4;               // rays a pixel that look for what stands before the sprites
+constexpr int kProbes = 4;               // rays per pixel that find solid objects in front of the sprites
 
 // A square on the screen, in pixels.
 struct Square {
@@ -39,7 +39,7 @@ public:
           height_(height),
           scale_(0.5 * height / half_height(camera)) {}
 
-    // Of no strength where there is nothing to be seen.
+    // Projects a sprite to the screen. Its strength is zero if it is invisible.
     [[nodiscard]] Square square(const Sprites& sprites, std::size_t i) const {
         Square out;
         const Vec3 away = sprites.centers[i] - camera_.position;
@@ -62,7 +62,7 @@ public:
         return out;
     }
 
-    // Along the view to what is solid, m.
+    // Returns the depth of the first solid object along the view, in m.
     [[nodiscard]] double solid_depth(const Preview& preview, double x, double y) const {
         const Vec3 ahead =
             frame_.forward + (x - 0.5 * width_) / scale_ * frame_.right + (0.5 * height_ - y) / scale_ * frame_.up;
@@ -76,7 +76,7 @@ private:
     double width_, height_, scale_;
 };
 
-// Depths of what is solid in some rows of the picture, looked for where a sprite is drawn.
+// Depths of solid objects in some rows of the picture, traced on demand.
 class SolidDepths {
 public:
     SolidDepths(const Preview& preview, const Screen& screen, std::size_t first_row, std::size_t rows, int width)
@@ -87,7 +87,7 @@ public:
           depths_(rows * width_),
           known_(rows * width_, 0) {}
 
-    // The part of a pixel in which nothing solid is nearer.
+    // Returns the share of a pixel in which nothing solid is nearer than `depth`.
     [[nodiscard]] double open_part(std::size_t x, std::size_t y, double depth) {
         const std::size_t at = (y - first_row_) * width_ + x;
         std::array<double, kProbes>& here = depths_[at];

@@ -12,8 +12,8 @@ namespace {
 
 long rounded_channel(double linear) { return std::lround(255.0 * srgb_from_linear(linear)); }
 
-// rounded_channel() without a power: where each channel begins, and the channel at the lower end of each of many cells
-// of 0..1, which are narrower than any channel.
+// Table for rounded_channel() without a power function. It stores the start of each channel, and the channel at the
+// lower end of each cell of 0..1. The cells are narrower than any channel.
 class ChannelTable {
 public:
     ChannelTable() {
@@ -34,9 +34,10 @@ public:
 
 private:
     static constexpr std::size_t kChannels = 256;
-    static constexpr std::size_t kCells = 4096;  // a power of two: cells begin where `inside * kCells` says
+    static constexpr std::size_t kCells = 4096;  // a power of two, so that `inside * kCells` is exact at the cell
+                                                 // boundaries
 
-    // The least number whose channel is not below k.
+    // Returns the smallest number whose channel is not below k.
     static double start_of(long k) {
         const double about = linear_from_srgb((static_cast<double>(k) - 0.5) / 255.0);
         double below = about * (1.0 - 1e-9);

@@ -1,5 +1,5 @@
 /// \file
-/// How drawn particles are turned, and how they change their shape at the same volume.
+/// Rotation of drawn particles, and stretch at constant volume.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,22 @@
 
 namespace ricochet {
 
-/// A turn as a unit quaternion.
+/// A rotation as a unit quaternion.
 struct Turn {
     double w = 1.0;
     Vec3 v;
 };
 
-/// One for each particle, uniform over all turns, the same in every run and on every machine.
+/// Returns a random rotation for a particle, uniform over all rotations. It is the same in every run and on every
+/// machine.
 /// Method: K. Shoemake, "Uniform Random Rotations", Graphics Gems III, 1992.
 [[nodiscard]] Turn random_turn(std::uint64_t id);
-/// After turning on at a constant spin, rad/s.
+/// Returns the rotation after a time at a constant spin, in rad/s.
 [[nodiscard]] Turn turned_on(const Turn& turn, const Vec3& spin, double seconds);
-/// The turn as a map, without translation.
+/// Returns the rotation as a map without translation.
 [[nodiscard]] AffineMap map_of(const Turn& turn);
 
-/// What is a particle's own, as random_turn() is.
+/// Rotation parameters of one particle, determined by its id like random_turn().
 struct OwnTurning {
     Vec3 axis;            ///< of unit length
     double angle = 0.0;   ///< radians, in [0, 2 pi)
@@ -31,10 +32,10 @@ struct OwnTurning {
 };
 [[nodiscard]] OwnTurning own_turning(std::uint64_t id);
 
-/// Makes things longer along a unit direction by a factor > 0, and thinner across it by its square root: the volume
-/// stays.
+/// Returns a map that stretches by a factor > 0 along a unit direction. It shrinks across the direction by the square
+/// root of the factor, so that the volume stays constant.
 [[nodiscard]] AffineMap stretch_along(const Vec3& direction, double factor);
-/// First `before`, then `after`; without translations.
+/// Returns the product of two maps without translations: `before` is applied first.
 [[nodiscard]] AffineMap linear_product(const AffineMap& after, const AffineMap& before);
 
 }  // namespace ricochet

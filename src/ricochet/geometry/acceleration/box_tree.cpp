@@ -12,10 +12,10 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// Relative: more than the rounding to single precision and that of the margin itself.
+/// Relative error bound. It covers the rounding to single precision and the rounding of the margin itself.
 constexpr float kOutward = 0x1p-22F;
 
-/// In single precision, and by how much it may be off.
+/// A number in single precision with a bound on its error.
 struct Rounded {
     explicit Rounded(double x)
         : value(static_cast<float>(std::clamp(x, -double{kLargest}, double{kLargest}))),
@@ -25,21 +25,23 @@ struct Rounded {
     float error;
 };
 
-/// What a query pays for a node, relative to others: the sum of its edges, which flat boxes have too.
+/// Returns the relative cost of a node for a query. It is the sum of the node's edges, which is positive for flat boxes
+/// too.
 double cost(const std::array<float, 3>& lower, const std::array<float, 3>& upper) {
     double sum = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) sum += double{upper[axis]} - double{lower[axis]};
     return sum;
 }
 
-/// Boxes that a child of a node over so many holds when it is full: a power of four, so that nodes far down are full.
+/// Returns the number of boxes in a full child of a node over `count` boxes. It is a power of four, so that nodes far
+/// down are full.
 std::uint32_t full_child_of(std::uint32_t count) {
     std::uint32_t full = 1;
     while (full < (count + 3) / 4) full *= 4;
     return full;
 }
 
-/// Half of so many boxes, in full children.
+/// Returns half of the given number of boxes, in full children.
 std::uint32_t half_of(std::uint32_t count, std::uint32_t full) {
     return std::min(count, std::max(full, (count / 2 + full / 2) / full * full));
 }
@@ -69,8 +71,8 @@ void BoxTree::build(std::span<const Box3> boxes) {
     cost_when_built_ = place_branches();
 }
 
-/// So that those before the middle have their centres before those of the others, along the longest side of the box of
-/// the centres.
+/// Partially sorts the boxes along the longest side of the box of their centres. The centres of the boxes before
+/// `middle` then come before all others.
 void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end, std::span<const Box3> boxes) {
     if (middle <= begin || middle >= end) return;
     Box3 centers;
@@ -85,7 +87,7 @@ void BoxTree::halve(std::uint32_t begin, std::uint32_t middle, std::uint32_t end
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, is_before);
 }
 
-/// A node over these in the order, and the nodes below it. Returns its number.
+/// Adds a node over the given range of the order, and the nodes below it. Returns its index.
 std::uint32_t BoxTree::add_node(std::uint32_t begin, std::uint32_t end, std::span<const Box3> boxes) {
     poll_loop_stop();
     const auto index = static_cast<std::uint32_t>(nodes_.size());
@@ -108,7 +110,7 @@ std::uint32_t BoxTree::add_node(std::uint32_t begin, std::uint32_t end, std::spa
 }
 
 BoxTree::Bounds BoxTree::bounds_of(const Node& node) {
-    const auto least = [](const Quad& of) {  // not of what is no number
+    const auto least = [](const Quad& of) {  // NaN is ignored
         float smallest = std::numeric_limits<float>::infinity();
         for (std::size_t lane = 0; lane < kLanes; ++lane) smallest = std::min(smallest, of[lane]);
         return smallest;
@@ -117,7 +119,7 @@ BoxTree::Bounds BoxTree::bounds_of(const Node& node) {
             {-least(-node.upper_x), -least(-node.upper_y), -least(-node.upper_z)}};
 }
 
-/// Children stand behind their parents. Returns the cost of all nodes.
+/// Updates the bounds of all branches. Children are stored behind their parents. Returns the cost of all nodes.
 double BoxTree::place_branches() {
     double sum = 0.0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {

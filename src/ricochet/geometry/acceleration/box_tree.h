@@ -1,10 +1,10 @@
 /// \file
-/// Which boxes meet a box: a hierarchy over boxes that change their places from step to step. It is fitted anew to
-/// them, and built anew where that has made it poor; what it finds does not depend on that.
+/// A hierarchy that finds the boxes that intersect a box, for boxes that move from step to step. It is refitted to the
+/// moved boxes and rebuilt if the refit has made it inefficient. The boxes found do not depend on that.
 ///
-/// A node has four children side by side, in single precision and rounded outward, so that one comparison tests all of
-/// them (H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of
-/// incoherent rays", EGSR 2008). The boxes themselves decide, in doubles.
+/// A node stores four children side by side, in single precision and rounded outward. One comparison tests all of them
+/// (H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of incoherent
+/// rays", EGSR 2008). The boxes themselves decide, in doubles.
 #pragma once
 
 #include <array>
@@ -19,14 +19,14 @@
 
 namespace ricochet {
 
-/// Queries are safe from any number of threads, but not beside fit().
+/// A tree over boxes. Queries are safe from any number of threads, but not concurrently with fit().
 class BoxTree {
 public:
-    /// The boxes from now on, none of them empty. Their number may differ from before.
+    /// Replaces the boxes, none of which may be empty. Their number may differ from before.
     void fit(std::span<const Box3> boxes) {
         fit(boxes.size(), [&](std::uint32_t i) { return boxes[i]; });
     }
-    /// The same with box_of(i) for so many i, asked from any number of threads.
+    /// Replaces the boxes by box_of(i) for i below `count`. box_of is called from any number of threads.
     template <class BoxOf>
     void fit(std::size_t count, const BoxOf& box_of) {
         if (count != order_.size() || count == 0) {
@@ -46,7 +46,7 @@ public:
             return false;
         }));
     }
-    /// The same until is_it(i) is true of one. True when there is one.
+    /// Visits boxes in the same way until is_it(i) is true for one. Returns true if there is one.
     template <class IsIt>
     [[nodiscard]] bool any_near(const Box3& box, const IsIt& is_it) const {
         if (nodes_.empty()) return false;
@@ -70,14 +70,14 @@ public:
         }
         return false;
     }
-    /// True when a box has a point in common with `box`.
+    /// Returns true if a box has a point in common with `box`.
     [[nodiscard]] bool has_near(const Box3& box) const {
         return any_near(box, [](std::uint32_t) { return true; });
     }
-    /// Holds all of them; empty where there are none.
+    /// Returns a box around all boxes. It is empty if there are none.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
-    /// True when two boxes have a point in common.
+    /// Returns true if two boxes have a point in common.
     [[nodiscard]] static bool meet(const Box3& a, const Box3& b) {
         const bool x = (a.lower.x <= b.upper.x) & (b.lower.x <= a.upper.x);
         const bool y = (a.lower.y <= b.upper.y) & (b.lower.y <= a.upper.y);
@@ -89,7 +89,7 @@ private:
     using Quad = float __attribute__((vector_size(16)));
     using Mask = int __attribute__((vector_size(16)));
     static constexpr std::size_t kLanes = 4;
-    /// Of a child that is a box: the rest is its place in the order of the leaves.
+    /// Flag of a child that is a box. The other bits are its position in the order of the leaves.
     static constexpr std::uint32_t kBox = 0x80000000U;
     static constexpr std::uint32_t kNoChild = 0xFFFFFFFFU;
 
@@ -97,11 +97,11 @@ private:
         std::array<float, 3> lower;
         std::array<float, 3> upper;
     };
-    /// Bounds of all children; not a number where there is none.
+    /// Bounds of all children. They are NaN for a missing child.
     struct alignas(64) Node {
         Quad lower_x, lower_y, lower_z;
         Quad upper_x, upper_y, upper_z;
-        std::array<std::uint32_t, kLanes> child;  ///< the number of a node, or a box
+        std::array<std::uint32_t, kLanes> child;  ///< index of a node, or a box
     };
 
     [[nodiscard]] static Bounds outward(const Box3& box);
@@ -129,7 +129,7 @@ private:
         });
         return boxes;
     }
-    /// In the order of the leaves, so that what lies together is asked for together.
+    /// Updates the boxes in the order of the leaves, so that neighbouring boxes are requested together.
     template <class BoxOf>
     void place_boxes(const BoxOf& box_of) {
         parallel_for_blocks(nodes_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -151,15 +151,16 @@ private:
 
     /// Boxes or nodes per unit of parallel work.
     static constexpr std::size_t kBlock = 1 << 13;
-    /// Fitted boxes that are larger by this factor, all branches together, are worth a new hierarchy.
+    /// Growth of the total size of the branches at which a new hierarchy is built.
     static constexpr double kPoor = 2.0;
-    /// Quartering 2^31 boxes leaves no more than 17 levels; of each but the last one three children wait.
+    /// Capacity of the stack of open nodes. Dividing 2^31 boxes by four leaves at most 17 levels, and at most three
+    /// children wait on each but the last.
     static constexpr std::size_t kMostOpen = 64;
 
     std::vector<Node> nodes_;           ///< depth first
-    std::vector<std::uint32_t> order_;  ///< numbers of the boxes, in the order of the leaves
+    std::vector<std::uint32_t> order_;  ///< indices of the boxes, in the order of the leaves
     std::vector<Box3> boxes_;           ///< in the same order
-    Box3 bounds_;                       ///< of all, at least
+    Box3 bounds_;                       ///< encloses all boxes
     double cost_when_built_ = 0.0;
 };
 

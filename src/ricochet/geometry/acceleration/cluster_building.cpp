@@ -1,4 +1,4 @@
-// How the triangles of a mesh are put together in clusters of neighbours.
+// Builds clusters of neighbouring triangles for a mesh.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 12;
 
-/// Cost of a cluster in memory and time besides its box's surface, in surfaces of the mean triangle's box. Neighbours
-/// along the curve need not be neighbours in space, so full clusters are not the best ones.
+/// Cost of a cluster in memory and time besides its box's surface, in units of the mean triangle's box surface.
+/// Neighbours along the curve need not be neighbours in space, so full clusters are not the best ones.
 constexpr double kCostOfCluster = 2.0;
 
 Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {
@@ -66,14 +66,15 @@ TriangleCluster cluster_of(std::span<const Vec3> vertices, std::span<const Trian
     return cluster;
 }
 
-/// Half the surface of a box, m^2: the share of random lines that meet it goes by the surface.
+/// Returns half the surface of a box, in m^2. The share of random lines that intersect the box is proportional to its
+/// surface.
 double half_area(const Box3& box) {
     const Vec3 size = box.size();
     return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
-/// Where clusters end along a block of the order, given the triangles' boxes, such that the sum of their costs is
-/// least: dynamic programming over the size of the last cluster.
+/// Returns the ends of clusters along a block of the order, given the triangles' boxes, so that the sum of their costs
+/// is minimal. Method: dynamic programming over the size of the last cluster.
 std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
     double area = 0.0;
     for (const Box3& box : boxes) area += half_area(box);
@@ -97,7 +98,7 @@ std::vector<std::uint32_t> cluster_ends(const std::vector<Box3>& boxes) {
     return ends;
 }
 
-/// A block of the order and where its clusters end in it.
+/// A block of the order and the ends of its clusters.
 struct Block {
     std::span<const std::uint32_t> triangles;
     std::vector<std::uint32_t> ends;

@@ -14,28 +14,30 @@ constexpr std::size_t kTrianglesPerBlock = 1 << 12;
 constexpr std::size_t kMinCells = 1 << 15;
 constexpr std::size_t kCellsPerTriangle = 2;
 
-/// Cells along the longest axis. Distances beyond what a byte holds are clamped to it.
+/// Maximum number of cells along the longest axis. Distances that exceed a byte are clamped.
 constexpr double kMaxAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Budget of marks for each triangle, and for a million more in every grid.
+/// Budget of marks per triangle. Every grid gets the budget of a million further triangles.
 constexpr double kMaxMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }
 
-/// The cell, of `count` along an axis, that a coordinate in units of cells lies in; the nearest one outside of them.
+/// Returns the index of the cell that contains a coordinate, in units of cells, out of `count` along an axis. Outside
+/// the grid it is the nearest cell.
 std::size_t cell_of(double coordinate, std::size_t count) {
     return static_cast<std::size_t>(std::clamp(coordinate, 0.0, static_cast<double>(count - 1)));
 }
 
-/// Extents of triangles, from which the work for a cell size follows.
+/// Extents of triangles, which determine the work for a cell size.
 struct Extents {
     double count = 0.0;
-    double sum = 0.0;      ///< m
-    double squares = 0.0;  ///< m^2
+    double sum = 0.0;      ///< in m
+    double squares = 0.0;  ///< in m^2
 
-    /// Bound of the marks for a cell size: a triangle needs at most the square of its cells along an axis.
+    /// Returns a bound on the marks for a cell size. A triangle needs at most the square of its number of cells along
+    /// an axis.
     [[nodiscard]] double marks(double cell) const { return count + 2.0 * sum / cell + squares / (cell * cell); }
 };
 
@@ -84,7 +86,7 @@ DistanceField::DistanceField(std::span<const Vec3> vertices, std::span<const Tri
     spread();
 }
 
-// Cells near the coordinates' rounding are refused.
+// Rejects cells whose size is near the coordinates' rounding.
 void DistanceField::choose_cells(std::size_t most, const std::function<bool(double cell)>& is_cheap) {
     const Vec3 extent = box_.size();
     const double smallest = kSmallestDistanceCell * max_abs(max(abs(box_.lower), abs(box_.upper)));
@@ -102,7 +104,7 @@ void DistanceField::choose_cells(std::size_t most, const std::function<bool(doub
     }
 }
 
-/// Marks the cells that a triangle, with corners in units of cells, may lie in; large triangles are bisected.
+/// Marks the cells that may contain a triangle, with corners in units of cells. Large triangles are bisected.
 void DistanceField::mark(const std::array<Vec3, 3>& corners) {
     Box3 box;
     for (const Vec3& corner : corners) box.include(corner);
@@ -134,8 +136,8 @@ void DistanceField::mark_cells_of(const Box3& box) {
     }
 }
 
-// The two passes of the chessboard distance transform: each cell becomes at most one more than the neighbours that the
-// pass has visited, those in earlier rows first, then the previous one in its own row.
+// The two passes of the chessboard distance transform. Each cell becomes at most one more than the neighbours that the
+// pass has visited. Cells in earlier rows come first, then the previous cell in the same row.
 void DistanceField::spread() {
     for (std::size_t z = 0; z < count_[2]; ++z) {
         for (std::size_t y = 0; y < count_[1]; ++y) spread_rows(z, y, 1);
@@ -145,7 +147,7 @@ void DistanceField::spread() {
     }
 }
 
-/// direction: 1 for the pass upwards, -1 for the one downwards.
+/// Updates one row. `direction` is 1 for the upward pass and -1 for the downward pass.
 void DistanceField::spread_rows(std::size_t z, std::size_t y, int direction) {
     const std::size_t columns = count_[0];
     std::uint8_t* row = &cells_[index(0, y, z)];
@@ -174,8 +176,8 @@ void DistanceField::spread_rows(std::size_t z, std::size_t y, int direction) {
     }
 }
 
-// Chessboard distances are at most Euclidean ones. A point outside the box is at least as far from what is in it, along
-// each axis, as the closest point of the box.
+// Chessboard distances are at most Euclidean distances. Along each axis, the closest point of the box is at most as far
+// from a point outside as anything inside the box.
 double DistanceField::lower_bound(const Vec3& p) const {
     if (cell_ == 0.0) return 0.0;
     const Vec3 outside = max(box_.lower - p, p - box_.upper);

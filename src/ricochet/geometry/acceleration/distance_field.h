@@ -1,9 +1,10 @@
 /// \file
-/// Distance field: a grid of certain lower bounds of the distance to the nearest triangle.
+/// Distance field: a grid of certain lower bounds on the distance to the nearest triangle.
 ///
-/// Each cell holds its chessboard distance to the nearest cell with a triangle in it (A. Rosenfeld, J. L. Pfaltz,
+/// Each cell stores its chessboard distance to the nearest cell that contains a triangle (A. Rosenfeld, J. L. Pfaltz,
 /// "Distance Functions on Digital Pictures", Pattern Recognition 1, 1968). Sphere tracing (J. C. Hart, The Visual
-/// Computer 12, 1996) crosses free space with it where curved paths leave the broad phase's margin too soon.
+/// Computer 12, 1996) uses it to cross free space. It is needed if curved paths leave the broad phase's margin too
+/// soon.
 #pragma once
 
 #include <array>
@@ -18,18 +19,20 @@
 
 namespace ricochet {
 
-/// Immutable after construction; safe from any number of threads.
+/// A distance field of static triangles. Immutable after construction, so it is safe from any number of threads.
 class DistanceField {
 public:
-    /// Empty: lower_bound() is 0 everywhere.
+    /// Makes an empty field, whose lower_bound() is 0 everywhere.
     DistanceField() = default;
-    /// Built with all threads, from triangles with finite corners inside the box. Some two cells a triangle, 2^15 for
-    /// small meshes, at most kMaxCells, a byte each; fewer for large triangles that overlap.
+    /// Builds the field with all threads, from triangles with finite corners inside the box. It has about two cells per
+    /// triangle, at least 2^15 for small meshes and at most kMaxCells, of one byte each. The grid is coarser if
+    /// large triangles overlap.
     DistanceField(std::span<const Vec3> vertices, std::span<const Triangle> triangles, const Box3& box);
 
-    /// m: no triangle is nearer to p than this. 0 near triangles. p must be finite.
+    /// Returns a distance in m such that no triangle is nearer to p. It is 0 near triangles. p must be finite.
     [[nodiscard]] double lower_bound(const Vec3& p) const;
-    /// Edge of a cell, m: lower_bound() is 0 within about two of them around the triangles. 0 when empty.
+    /// Returns the edge length of a cell, in m, or 0 for an empty field. lower_bound() is 0 within about two cells of
+    /// the triangles.
     [[nodiscard]] double cell() const { return cell_; }
     [[nodiscard]] std::size_t memory_bytes() const { return cells_.capacity(); }
 
@@ -47,7 +50,7 @@ private:
 
     Box3 box_;
     double cell_ = 0.0;
-    double per_cell_ = 0.0;  ///< 1 / m
+    double per_cell_ = 0.0;  ///< in 1/m
     std::array<std::size_t, 3> count_{};
     std::vector<std::uint8_t> cells_;
 };

@@ -1,5 +1,5 @@
 /// \file
-/// Private: hides the difference between Embree 3 and 4. Included by the .cpp files that use Embree only.
+/// Wrapper that hides the difference between Embree 3 and 4. Private: only .cpp files that use Embree include it.
 #pragma once
 
 #if __has_include(<embree4/rtcore.h>)
@@ -15,8 +15,8 @@
 
 namespace ricochet::embree {
 
-/// Context of a query, passed to the callbacks. Embree's own context must stay the first member: callbacks get a
-/// pointer to it and cast it back.
+/// Context of a query, passed to the callbacks. Embree's own context must stay the first member, because callbacks
+/// receive a pointer to it and cast it back.
 struct QueryContext {
 #if RTC_VERSION_MAJOR >= 4
     RTCRayQueryContext base;
@@ -35,7 +35,8 @@ inline void init_context(QueryContext& context, void* user) {
     context.user = user;
 }
 
-/// The user pointer of the query that a callback runs for. Arguments: RTCIntersectFunctionNArguments and the like.
+/// Returns the user pointer of the query that a callback runs for. Arguments: RTCIntersectFunctionNArguments and
+/// similar types.
 template <class Arguments>
 [[nodiscard]] inline void* user_of(const Arguments* arguments) {
     return reinterpret_cast<const QueryContext*>(arguments->context)->user;
@@ -52,7 +53,8 @@ inline void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit
 #endif
 }
 
-/// Sixteen rays at once: those whose entry of `valid` is -1, not 0. `valid` must be aligned to 64 bytes.
+/// Traces sixteen rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
+/// aligned to 64 bytes.
 inline void intersect16(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit16& ray_hits) {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -64,8 +66,8 @@ inline void intersect16(const int* valid, RTCScene scene, QueryContext& context,
 #endif
 }
 
-/// Eight rays at once, as intersect16(): `valid` must be aligned to 32 bytes. Eight is what processors with AVX trace
-/// together; others take the rays in turn.
+/// Traces eight rays at once, as intersect16() does. `valid` must be aligned to 32 bytes. Processors with AVX trace
+/// eight rays together. Others trace them one after the other.
 inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& ray_hits) {
 #if RTC_VERSION_MAJOR >= 4
     RTCIntersectArguments arguments;
@@ -77,7 +79,7 @@ inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, 
 #endif
 }
 
-/// Eight shadow rays at once, as occluded1() and intersect8().
+/// Traces eight shadow rays at once. See occluded1() and intersect8().
 inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
 #if RTC_VERSION_MAJOR >= 4
     RTCOccludedArguments arguments;
@@ -89,7 +91,7 @@ inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, R
 #endif
 }
 
-/// Shadow ray: afterwards ray.tfar is -infinity when it is occluded.
+/// Traces a shadow ray. Afterwards ray.tfar is -infinity if the ray is occluded.
 inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #if RTC_VERSION_MAJOR >= 4
     RTCOccludedArguments arguments;
@@ -101,8 +103,8 @@ inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
 #endif
 }
 
-/// Throws RunError when the device has recorded an error since the last call. A null device stands for those that could
-/// not be made.
+/// Throws RunError if the device has recorded an error since the last call. A null device reports errors of devices
+/// that could not be created.
 inline void check_device(RTCDevice device, const char* doing) {
     const RTCError error = rtcGetDeviceError(device);
     if (error == RTC_ERROR_NONE) return;
@@ -135,7 +137,8 @@ private:
 using Device = Owned<RTCDevice, rtcReleaseDevice>;
 using Scene = Owned<RTCScene, rtcReleaseScene>;
 
-/// A new device, in Embree's own configuration language. Geometries and rays need mask -1: Embree 4 always masks.
+/// Makes a new device from a configuration in Embree's own language. Geometries and rays need mask -1, because Embree 4
+/// always masks.
 [[nodiscard]] inline Device make_device(const std::string& config = {}) {
     Device device(rtcNewDevice(config.c_str()));
     if (device.get() != nullptr) return device;

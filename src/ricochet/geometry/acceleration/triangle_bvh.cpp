@@ -21,7 +21,7 @@ std::string& embree_config() {
     return config;
 }
 
-/// Maps world doubles to the floats that Embree sees: centred, and scaled by a power of two to about 1.
+/// Maps world coordinates in doubles to the floats that Embree uses: centred, and scaled by a power of two to about 1.
 struct FloatFrame {
     Vec3 center;
     double scale = 1.0;
@@ -29,12 +29,12 @@ struct FloatFrame {
     [[nodiscard]] Vec3 apply(const Vec3& p) const { return scale * (p - center); }
 };
 
-/// Segments that extend further out than this (in units of the float frame, about the scene's half extent) are not
-/// clipped: the clipped point's own rounding could exceed the boxes' padding. Every triangle is a candidate instead;
-/// that is rare, since such a segment must also point at the collider.
+/// Distance beyond which segments are not clipped, in units of the float frame (about the scene's half extent). The
+/// clipped point's own rounding could exceed the boxes' padding. Every triangle is a candidate instead. This is rare,
+/// because such a segment must also point at the collider.
 constexpr double kFarAway = 0x1p20;
 
-/// Rays shorter than this have no direction in single precision.
+/// Length below which rays have no direction in single precision.
 constexpr double kShortestRay = 0x1p-120;
 
 float round_down(double value) {
@@ -53,7 +53,7 @@ FloatFrame frame_of(const Box3& box) {
     return frame;
 }
 
-/// The part of a segment inside a box, as fractions; nothing when it misses the box.
+/// The part of a segment inside a box, in fractions of the segment.
 struct ClippedRange {
     double begin;
     double end;
@@ -81,14 +81,14 @@ std::optional<ClippedRange> clip_to_box(const Vec3& from, const Vec3& to, const 
 struct Query {
     void* context;
     const TriangleClusters* clusters;
-    TriangleBvh::VisitSegment visit = nullptr;    ///< this one or the next
-    TriangleBvh::VisitTube query_tube = nullptr;  ///< triangles that the tube may touch
+    TriangleBvh::VisitSegment visit = nullptr;    ///< either this one or `query_tube` is set
+    TriangleBvh::VisitTube query_tube = nullptr;  ///< for triangles that the tube may touch
     Tube tube = {};
     double clip_begin = 0.0;        ///< fraction of the segment at which the ray starts
     double ray_per_fraction = 0.0;  ///< ray length of the whole segment
     double fraction_limit = 1.0;
 
-    /// Visits the triangles of a cluster; returns the narrowed fraction.
+    /// Visits the triangles of a cluster. Returns the narrowed fraction.
     double visit_cluster(const TriangleCluster& cluster);
 };
 
@@ -115,16 +115,16 @@ struct PointQuery {
     void* context;
     TriangleBvh::VisitPoint visit;
     const TriangleClusters* clusters;
-    double within;  ///< m, narrowed so far
+    double within;  ///< in m, narrowed so far
     double scale;   ///< of the float frame
 
     [[nodiscard]] float radius() const;
 };
 
-/// Distances are compared as squares in single precision: some 8 roundings. The point itself is rounded to 2^-23 of its
-/// largest coordinate, which is within the boxes' padding plus as much of the distance. 2^-20 covers both. An infinite
-/// radius would also include the empty boxes that Embree keeps; from a point that is not far away, everything is nearer
-/// than the largest one.
+/// Distances are compared as squares in single precision, with about 8 roundings. The point itself is rounded to 2^-23
+/// of its largest coordinate. That is within the boxes' padding plus 2^-23 of the distance. 2^-20 covers both. An
+/// infinite radius would also include the empty boxes that Embree keeps. If the point is not far away, everything is
+/// within the largest radius.
 float PointQuery::radius() const {
     constexpr double kEverything = 4.0 * kFarAway;
     return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
@@ -142,13 +142,13 @@ bool visit_cluster_near_point(RTCPointQueryFunctionArguments* args) {
     return true;
 }
 
-/// Largest distance of a point from a box along an axis, 0 inside: no more than its distance from the box.
+/// Returns the largest distance of a point from a box along an axis, 0 inside. It is at most the distance from the box.
 double distance_to_box(const Box3& box, const Vec3& p) {
     const Vec3 outside = max(box.lower - p, p - box.upper);
     return std::max({outside.x, outside.y, outside.z, 0.0});
 }
 
-/// Bytes that Embree holds; its own threads count too.
+/// Bytes that Embree has allocated. Embree's own threads update the count too.
 struct MemoryCount {
     std::atomic<std::ptrdiff_t> bytes{0};
     SyncPoint begun;
@@ -168,7 +168,7 @@ bool count_memory(void* user, ssize_t bytes, bool /*post*/) {
     return true;
 }
 
-/// The one that hierarchies share, for as long as there are such.
+/// Returns the device that hierarchies share. It exists as long as one of them does.
 std::shared_ptr<const embree::Device> shared_device() {
     static std::mutex mutex;
     static std::weak_ptr<const embree::Device> shared;
@@ -189,20 +189,21 @@ struct TriangleBvh::Impl {
     double slack = 0.0;
     FloatFrame frame;
     double padding = 0.0;  ///< in the float frame: rounding, slack and margin
-    Box3 clip_box;         ///< world; generously larger than the padded boxes
+    Box3 clip_box;         ///< in world coordinates; generously larger than the padded boxes
     MemoryCount memory;
     std::shared_ptr<const embree::Device> device;
     bool shares_device = false;
     embree::Scene scene;
 
-    /// What Embree's threads are given while they build.
+    /// Argument of Embree's threads during a build.
     struct Build {
         const Impl* impl;
-        LoopSync sync;  // after impl: it is constructed when impl is set
+        LoopSync sync;  // after impl, because it is constructed when impl is set
     };
 
     Impl() = default;
-    // Where memory has run out, Embree's threads may keep the device beyond this object: they must not count then.
+    // After memory has run out, Embree's threads may keep the device beyond this object. They must not count memory
+    // then.
     ~Impl() {
         if (device && !shares_device) rtcSetDeviceMemoryMonitorFunction(device->get(), nullptr, nullptr);
     }
@@ -222,7 +223,7 @@ void TriangleBvh::Impl::set_frame() {
     Box3 box;
     for (const TriangleCluster& cluster : *clusters) box.include(cluster.box());
     frame = frame_of(box);
-    // Half extent H and a clipped segment of length L <= 2 sqrt(3) H; both at least 1 in the float frame.
+    // The half extent H and the length L <= 2 sqrt(3) H of a clipped segment are both at least 1 in the float frame.
     const double half_extent = std::max(1.0, frame.scale * 0.5 * max_abs(box.size()));
     slack = kBoxSlack * half_extent / frame.scale + kCandidateSlack * max_abs(max(abs(box.lower), abs(box.upper)));
     const double beside = frame.scale * (margin + slack);
@@ -268,7 +269,7 @@ void TriangleBvh::Impl::build() {
         const double limit = query.visit_cluster((*query.clusters)[args->primID]);
         if (limit >= query.fraction_limit) return;
         query.fraction_limit = limit;
-        // Rounded up generously: a shorter ray must still reach everything up to the limit.
+        // Rounded up generously, because a shorter ray must still reach everything up to the limit.
         const double ray_length = (limit - query.clip_begin) * query.ray_per_fraction;
         float& tfar = RTCRayN_tfar(RTCRayHitN_RayN(args->rayhit, args->N), args->N, 0);
         tfar = std::min(tfar, round_up(std::max(ray_length, 0.0) * (1.0 + 0x1p-20)));
@@ -345,7 +346,7 @@ void TriangleBvh::Impl::visit_segment(const Vec3& from, const Vec3& to, Query& q
     const Vec3 along = frame.scale * delta;
     query.clip_begin = range->begin;
     query.ray_per_fraction = length(along);
-    // A segment too short for single precision is a point as far as boxes go.
+    // A segment too short for single precision counts as a point for the boxes.
     const bool is_point = query.ray_per_fraction <= kShortestRay;
     const Vec3 direction = is_point ? Vec3{1, 0, 0} : along / query.ray_per_fraction;
     const double ray_length = (range->end - range->begin) * query.ray_per_fraction;
@@ -364,8 +365,8 @@ void TriangleBvh::Impl::query_near(PointQuery& query, const Vec3& point) const {
 }
 
 void TriangleBvh::query_point(const Vec3& p, double within, void* context, VisitPoint visitor) const {
-    // The box exceeds the padded ones by far more than the rounding of a point that is not far away; a far one's is
-    // covered by the factor.
+    // The clip box exceeds the padded boxes by far more than the rounding of a point that is not far away. The factor
+    // covers the rounding of a far one.
     if (impl_->clusters->empty() || distance_to_box(impl_->clip_box, p) > within * (1.0 + 0x1p-50)) return;
     const FloatFrame& frame = impl_->frame;
     if (max_abs(p - frame.center) * frame.scale > kFarAway) {

@@ -13,27 +13,28 @@ namespace {
 
 constexpr float kExtent = TriangleCluster::kExtent;
 
-/// Units by which a corner may differ from its quantised position: half of one along each axis, and one at the largest
-/// number, which is not a power of two.
+/// Bound on the difference between a corner and its quantised position, in units. It is half a unit along each axis,
+/// and one at the largest number, which is not a power of two.
 constexpr double kCornerRounding = 2.0;
 
-/// Rounding of the height over a triangle's plane, times the length of its normal, in single precision: some sixty
-/// roundings of 2^-24 of edges of at most two extents.
+/// Rounding of the height above a triangle's plane, times the length of its normal, in single precision. There are
+/// about sixty roundings of 2^-24, and edges are at most two extents long.
 constexpr float kHeightRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
 
-/// Rounding of twice a projected area, in squares of the largest coordinate: some thirty roundings of 2^-24.
+/// Rounding of twice a projected area, in squares of the largest coordinate: about thirty roundings of 2^-24.
 constexpr float kAreaRounding = 0x1p-18F;
 
-/// Shorter directions count as zero: their reciprocal would leave the range of doubles.
+/// Length below which directions count as zero, because their reciprocal would leave the range of doubles.
 constexpr double kShortestDirection = 1e-290;
 
-/// Rounding of a fraction, a quotient of such numbers.
+/// Rounding of a fraction, which is a quotient of such numbers.
 constexpr float kFractionRounding = 0x1p-20F;
 
-/// 1/m: the square of a shorter segment's length would leave the range of doubles. It is not cut.
+/// Largest reciprocal length, in 1/m, of a segment that is cut. The squared length of a shorter segment would leave the
+/// range of doubles.
 constexpr double kMaxPerLength = 1e140;
 
-// Four numbers at once (GCC's and Clang's vector extensions): one register of every 64-bit processor.
+// Four numbers at once (GCC's and Clang's vector extensions). They fill one register of every 64-bit processor.
 using Quad = float __attribute__((vector_size(16)));
 using Mask = int __attribute__((vector_size(16)));
 
@@ -43,7 +44,7 @@ struct QuadVec {
     Quad z;
 };
 
-// Sign extension by an arithmetic shift: three instructions on all 64-bit processors.
+// Sign extension by an arithmetic shift takes three instructions on all 64-bit processors.
 Quad loaded(const TriangleCluster::Lanes& lanes) {
     using Numbers = std::int16_t __attribute__((vector_size(16)));
     const auto numbers = std::bit_cast<Numbers>(std::array{std::bit_cast<std::uint64_t>(lanes), std::uint64_t{0}});
@@ -67,28 +68,28 @@ Quad min(const Quad& a, const Quad& b) { return a < b ? a : b; }
 
 Quad max(const Quad& a, const Quad& b) { return a > b ? a : b; }
 
-/// |x| + |y| + |z|, at least the length and at most sqrt(3) of it.
+/// Returns |x| + |y| + |z|, which is at least the length and at most sqrt(3) times the length.
 Quad size_of(const QuadVec& a) { return abs(a.x) + abs(a.y) + abs(a.z); }
 
-/// The chord of the part of a path that passes by a cluster, in the cluster's units.
+/// The chord of the part of a path that passes a cluster, in the cluster's units.
 struct LocalSegment {
     double begin;  ///< fractions of the whole path
     double end;
     Vec3 start;  ///< from the centre
     Vec3 chord;
-    double width;               ///< margin
-    std::array<float, 3> from;  ///< the same in single precision
+    double width;               ///< the margin
+    std::array<float, 3> from;  ///< start, chord and width in single precision
     std::array<float, 3> along;
     float margin;
-    float size;  ///< at least that of all numbers here and of differences to the corners
+    float size;  ///< upper bound on all numbers here and on differences to the corners
 };
 
-/// What else rounding does to the margin here is far below the bounds' own.
+/// Factor for the remaining rounding of the margin, which is far below the rounding of the bounds.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
-/// Only what is within twice the extent and the margin of the centre can be within the margin of a triangle. The part
-/// is empty (begin > end) when nothing is. It leaves its chord by less than the whole path leaves its own: by the
-/// square of its share.
+/// Returns the part of a path that can be within the margin of a triangle. It lies within twice the extent plus the
+/// margin of the centre. The part is empty (begin > end) if no point is that near. Its sagitta is the path's sagitta
+/// times the square of its share of the path.
 LocalSegment localized(const TriangleCluster& cluster, const Tube& tube) {
     LocalSegment local{0.0, 1.0, {}, {}, 0.0, {}, {}, 0.0F, 0.0F};
     const Vec3 offset = cluster.center - tube.from;
@@ -126,10 +127,11 @@ struct View {
     float x;  ///< to the right
     float y;  ///< up
     float margin;
-    float size;  ///< at least that of all numbers here and of differences to the corners
+    float size;  ///< upper bound on all numbers here and on differences to the corners
 };
 
-/// Along the shear, through a point relative to the cluster's centre and up to `extent` beyond.
+/// Returns the view along the shear, through a point relative to the cluster's centre. The path extends up to `extent`
+/// beyond the point.
 template <int kAxis>
 View view_along(const Vec3& point, const Shear& shear, double margin, float extent) {
     using Axes = Projection<kAxis>;
@@ -153,8 +155,8 @@ struct QuadPoint {
     Quad y;
 };
 
-/// Twice the area of the origin and an edge, and by how much it must differ from 0 for the origin to be certainly more
-/// than the margin on one side of the edge.
+/// Twice the area of the origin and an edge, and its bound. If the area differs from 0 by more than the bound, the
+/// origin is certainly more than the margin on one side of the edge.
 struct EdgeSide {
     Quad area;
     Quad bound;
@@ -170,9 +172,9 @@ const std::array<TriangleCluster::Lanes, 3>& coordinates(const TriangleCluster& 
     return kAxis == 0 ? cluster.x : (kAxis == 1 ? cluster.y : cluster.z);
 }
 
-// The projected triangle misses the path's point when that is certainly beyond one of its edges or of its box. Winding
-// does not matter: the areas add up to that of the triangle, so beyond an edge one has the sign that the other two do
-// not have. A triangle that is projected to a line has its box.
+// The projected triangle misses the path's point if the point is certainly beyond one of its edges or outside its box.
+// Winding does not matter. The areas add up to that of the triangle, so beyond an edge one area has a sign that the
+// other two do not have. For a triangle that projects to a line, the box decides.
 template <int kAxis>
 Mask lanes_of(const TriangleCluster& cluster, const View& view) {
     using Axes = Projection<kAxis>;
@@ -196,8 +198,8 @@ Mask lanes_of(const TriangleCluster& cluster, const View& view) {
     return ~(beyond | outside_box);
 }
 
-/// The lanes that may be near a path along the shear. Straight paths need not be cut first: the whole line is projected
-/// to one point.
+/// Returns the lanes that may be near a path along the shear. Straight paths need not be cut first, because the whole
+/// line projects to one point.
 Mask projected_lanes(const TriangleCluster& cluster, const Vec3& point, const Shear& shear, double margin,
                      float extent) {
     switch (shear.axis) {
@@ -210,8 +212,8 @@ Mask projected_lanes(const TriangleCluster& cluster, const Vec3& point, const Sh
     }
 }
 
-// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. Everything is
-// compared without dividing by the normal's length, so slivers only make the bound larger.
+// The tube can touch a triangle only while the chord is within the margin of the triangle's plane. All comparisons
+// avoid division by the normal's length, so slivers only make the bound larger.
 unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& segment, const Mask& projected,
                            TubeIntervals& intervals) {
     const QuadVec a{loaded(cluster.x[0]), loaded(cluster.y[0]), loaded(cluster.z[0])};
@@ -229,7 +231,7 @@ unsigned overlapping_lanes(const TriangleCluster& cluster, const LocalSegment& s
     const Quad none{};
     const Quad lower = min(first, second);
     const Quad upper = max(first, second);
-    // A slope that is rounding gives no interval.
+    // A slope within rounding gives no interval.
     const Mask is_level = abs(slope) <= rounding;
     const Quad enter = is_level ? none : max(lower - kFractionRounding * abs(lower), none);
     const Quad leave = is_level ? none + 1.0F : min(upper + kFractionRounding * abs(upper), none + 1.0F);

@@ -1,5 +1,5 @@
 /// \file
-/// Triangles in groups of four neighbours, laid out for testing four at once: the leaves of the broad phase.
+/// Clusters of four neighbouring triangles, laid out for testing four at once. They are the leaves of the broad phase.
 #pragma once
 
 #include <array>
@@ -13,29 +13,29 @@
 
 namespace ricochet {
 
-/// An empty lane of a cluster.
+/// Index that marks an empty lane of a cluster.
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// A shear that projects along a direction onto the plane across its dominant axis.
+/// A shear that projects along a direction onto the plane perpendicular to its dominant axis.
 /// Method: S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", Journal of Computer Graphics
 /// Techniques 2, 2013.
 struct Shear {
     Shear() = default;
-    /// Along the largest component of a direction, which need not be of unit length.
+    /// Makes the shear along a direction of any length. Its axis is the direction's largest component.
     explicit Shear(const Vec3& direction);
 
-    int axis = 2;        ///< dominant; the next one (cyclic) is to the right and the one after that is up
-    double right = 0.0;  ///< per length along the axis; at most 1 in magnitude, as is up
+    int axis = 2;        ///< dominant; the next axis (cyclic) is "right" and the one after that is "up"
+    double right = 0.0;  ///< per length along the axis; at most 1 in magnitude, like `up`
     double up = 0.0;
-    double norm = 1.0;  ///< by which projected distances grow at most
+    double norm = 1.0;  ///< largest factor by which projected distances grow
 };
 
-/// A line or parabola from `start` to `end`, start + f (end - start) - f (1 - f) curve for f in [0, 1], and everything
-/// within a margin of it.
+/// A line or parabola from `start` to `end`, with everything within a margin of it. The path is start + f (end - start)
+/// - f (1 - f) curve for f in [0, 1].
 class Tube {
 public:
     Tube() = default;
-    /// distance >= 0, m.
+    /// Makes a tube of the given radius `distance` (m, >= 0).
     Tube(const Vec3& start, const Vec3& end, double distance, const Vec3& curvature = {})
         : from(start),
           along(end - start),
@@ -54,46 +54,47 @@ public:
     Vec3 along;  ///< to the other end
     Vec3 curve;
     double margin = 0.0;
-    double sagitta = 0.0;     ///< m, by which the path leaves its chord
-    double per_length = 0.0;  ///< 1/m, of the chord; not finite for a point
+    double sagitta = 0.0;     ///< largest distance of the path from its chord, in m
+    double per_length = 0.0;  ///< in 1/m, of the chord; not finite for a point
     Shear shear;              ///< along the chord
     bool is_straight = true;
 };
 
-/// Intervals of a tube's path, in fractions of it, one a lane.
+/// Intervals of a tube's path for each lane, in fractions of the path.
 struct TubeIntervals {
     std::array<double, 4> enter;
     std::array<double, 4> leave;
 };
 
-/// Up to four triangles as structure of arrays, quantised to 16 bits about their own centre; bounds cover the rounding,
-/// since clusters only propose candidates. Two cache lines.
+/// Up to four triangles as a structure of arrays, quantised to 16 bits relative to their common centre. Bounds cover
+/// the rounding, because clusters only propose candidates. Occupies two cache lines.
 struct alignas(64) TriangleCluster {
     using Lanes = std::array<std::int16_t, 4>;
-    /// Half the largest extent of a cluster in its units, at most.
+    /// Upper bound on half the largest extent of a cluster, in its units.
     static constexpr float kExtent = 0x1p15F;
 
     std::array<Lanes, 3> x;  ///< of the corners, in units from the centre, rounded to the nearest
     std::array<Lanes, 3> y;
     std::array<Lanes, 3> z;
-    std::array<std::uint32_t, 4> triangle;  ///< indices; kNoTriangle last, with the corners of the first
-    Vec3 center;                            ///< m
-    double per_unit = 1.0;                  ///< 1/m, a power of two
+    std::array<std::uint32_t, 4> triangle;  ///< indices; kNoTriangle at the end, with the corners of the first
+    Vec3 center;                            ///< in m
+    double per_unit = 1.0;                  ///< in 1/m, a power of two
 
-    /// Bits of the lanes whose triangle may be inside the tube, and for these the interval outside of which it
-    /// certainly is not. Errs on the side of more. Triangles may be degenerate.
+    /// Returns the bits of the lanes whose triangle may be inside the tube. For these lanes it sets the interval
+    /// outside of which the triangle is certainly not inside. Errs on the side of more candidates. Triangles may be
+    /// degenerate.
     [[nodiscard]] unsigned overlaps(const Tube& tube, TubeIntervals& intervals) const;
-    /// A box about the triangles, m.
+    /// Returns a box around the triangles, in m.
     [[nodiscard]] Box3 box() const;
 };
 static_assert(sizeof(TriangleCluster) == 128);
 
 using TriangleClusters = PageVector<TriangleCluster>;
 
-/// All triangles of a mesh in clusters of neighbours.
+/// Returns all triangles of a mesh in clusters of neighbours.
 [[nodiscard]] TriangleClusters make_clusters(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
-/// Clusters of the same triangles after vertices have moved. Where neighbours do not stay neighbours queries cost more.
+/// Returns clusters of the same triangles after vertices have moved. Queries cost more if neighbours have moved apart.
 [[nodiscard]] TriangleClusters refitted(std::span<const TriangleCluster> clusters, std::span<const Vec3> vertices,
                                         std::span<const Triangle> triangles);
 

@@ -1,5 +1,5 @@
-// The one file that knows Assimp. What it gives is checked as what the own readers give; what it does on the way there,
-// in time and memory, is its own affair.
+// The only file that uses Assimp. Its results are checked like the results of other readers. The time and memory that
+// Assimp itself uses are not bounded.
 #include <assimp/config.h>
 #include <assimp/scene.h>
 #include <assimp/version.h>
@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace {
 
-/// Opens nothing: a mesh file names textures, materials and other scenes.
+/// File system that opens no files, because a mesh file can name textures, materials and other scenes.
 class NoFiles final : public Assimp::IOSystem {
 public:
     bool Exists(const char* /*file*/) const override { return false; }
@@ -120,8 +120,8 @@ private:
 
 ParsedMesh read_foreign(const MeshSource& source, const std::string& extension) {
     Assimp::Importer importer;
-    importer.SetIOHandler(new NoFiles);                                          // which takes it over
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not the numbers beside them
+    importer.SetIOHandler(new NoFiles);                                          // the importer takes ownership
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // names instead of ids
     const std::string hint = extension.substr(std::min<std::size_t>(1, extension.size()));
     const aiScene* const scene = importer.ReadFileFromMemory(source.bytes.data(), source.bytes.size(), 0, hint.c_str());
     constexpr std::size_t kLongest = 200;

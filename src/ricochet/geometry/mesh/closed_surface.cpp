@@ -22,13 +22,13 @@ std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
     return face_of;
 }
 
-/// How the edges of a shell are used.
+/// Parity of the faces at the edges of a shell.
 struct ShellParity {
-    bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated ones count once
-    bool is_odd = false;       ///< the same if all of them count
+    bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated faces count once
+    bool is_odd = false;       ///< an edge has an odd number of faces if all faces count
 };
 
-/// Returns true if each edge has as many faces in either direction.
+/// Returns true if each edge has equally many faces in both directions.
 bool is_oriented(const FaceList& faces, const EdgeTable& edges, const std::vector<std::uint32_t>& left_out) {
     const std::vector<std::uint32_t> face_of =
         left_out.empty() ? std::vector<std::uint32_t>{} : faces_of_corners(faces);
@@ -86,7 +86,7 @@ ClosedSurface closed_surface(const FaceList& faces, const EdgeTable& edges) {
 
 ClosedSurface closed_surface(const TriangleMesh& mesh) {
     const TriangleMesh joined = joined_by_position(mesh);
-    std::vector<std::uint32_t> number;  // of the triangle that each face is
+    std::vector<std::uint32_t> number;  // triangle of each face
     const FaceList faces = faces_of(joined, &number);
     ClosedSurface result = closed_surface(faces, EdgeTable(faces, joined.vertices.size()));
     for (std::uint32_t& face : result.left_out) face = number[face];

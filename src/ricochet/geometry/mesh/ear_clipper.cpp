@@ -12,14 +12,14 @@ namespace {
 constexpr std::uint32_t kLeafSize = 8;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-// Exact: every point of the box is strictly right of the line from a to b when its leftmost corner is.
+// Exact test: if the box's leftmost corner is strictly right of the line from a to b, so is every point of the box.
 bool is_right_of(const Point2& lower, const Point2& upper, const Point2& a, const Point2& b) {
     const Point2 leftmost{b.v < a.v ? upper.u : lower.u, b.u > a.u ? upper.v : lower.v};
     return orient2d(a, b, leftmost) < 0;
 }
 
-// Exact orientation of the outline: the turn at its lowest-left corner, which is convex in every simple polygon. Where
-// the outline runs back on itself there, the sum of areas decides.
+// Returns the exact orientation of the outline. It is the turn at the lowest-left corner, which is convex in every
+// simple polygon. If the outline reverses its direction there, the sum of areas decides.
 int orientation(const std::vector<Point2>& p) {
     const auto lowest = std::min_element(
         p.begin(), p.end(), [](const Point2& a, const Point2& b) { return std::tie(a.u, a.v) < std::tie(b.u, b.v); });
@@ -45,7 +45,7 @@ void PointTree::build(const std::vector<Point2>& points, std::vector<std::uint32
     split(0, 0, static_cast<std::uint32_t>(members_.size()));
 }
 
-// Depth is logarithmic, since halves are equal.
+// The depth is logarithmic, because both halves have equal size.
 void PointTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     nodes_[node].begin = begin;
     nodes_[node].members = end - begin;
@@ -137,8 +137,8 @@ int EarClipper::turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
 
 int EarClipper::turn_at(std::uint32_t corner) const { return turn(previous_[corner], corner, next_[corner]); }
 
-// Ears are clipped in queue order: neighbours of a clipped corner wait for a whole round, which keeps triangles from
-// becoming thin. Only neighbours of a clipped ear can become ears or cease to be ones (Meisters).
+// Ears are clipped in queue order. Neighbours of a clipped corner wait for a whole round, which avoids thin triangles.
+// Only the neighbours of a clipped ear can become ears or cease to be ears (Meisters).
 void EarClipper::clip_all(Strictness strictness, std::vector<Triangle>& triangles) {
     queue_.clear();
     is_queued_.assign(points_.size(), 0);
@@ -148,7 +148,7 @@ void EarClipper::clip_all(Strictness strictness, std::vector<Triangle>& triangle
         const std::uint32_t ear = queue_[head];
         if (is_queued_[ear] == 0) continue;
         is_queued_[ear] = 0;
-        // A neighbour may have been clipped while this corner waited.
+        // A neighbour may have been clipped since this corner was queued.
         if (!is_ear(ear, strictness)) continue;
         clip_ear(ear, triangles);
         update(previous_[ear], strictness);
@@ -183,7 +183,7 @@ bool EarClipper::is_ear(std::uint32_t corner, Strictness strictness) const {
            fits_between_neighbours(corner, strictness) && is_free_of_corners(corner, strictness);
 }
 
-// The diagonal must leave both of its ends inside the outline: a convex end stays convex when the ear is gone.
+// The diagonal must leave both of its ends inside the outline. A convex end must stay convex after the ear is removed.
 bool EarClipper::fits_between_neighbours(std::uint32_t corner, Strictness strictness) const {
     const std::uint32_t before = previous_[corner];
     const std::uint32_t after = next_[corner];
@@ -192,7 +192,7 @@ bool EarClipper::fits_between_neighbours(std::uint32_t corner, Strictness strict
     return turn_at(after) <= 0 || turn(before, after, next_[after]) >= least;
 }
 
-// Corners that coincide with one of the ear's are other visits of the outline to it (the ends of a bridge).
+// Corners that coincide with a corner of the ear are further visits of the outline to it (the ends of a bridge).
 bool EarClipper::is_free_of_corners(std::uint32_t corner, Strictness strictness) const {
     const Point2& a = points_[previous_[corner]];
     const Point2& b = points_[corner];
@@ -205,7 +205,7 @@ bool EarClipper::is_free_of_corners(std::uint32_t corner, Strictness strictness)
     });
 }
 
-// Any triangulation of an outline covers what it winds around, so the simplest suffices.
+// Any triangulation of an outline covers the area that it winds around, so a fan suffices.
 void EarClipper::fan_the_rest(std::vector<Triangle>& triangles) {
     const std::uint32_t hub = any_corner_;
     std::uint32_t corner = next_[hub];

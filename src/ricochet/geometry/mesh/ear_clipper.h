@@ -1,5 +1,5 @@
 /// \file
-/// Private to the triangulation: cuts a polygon in the plane into triangles by clipping ears.
+/// Cuts a polygon in the plane into triangles by ear clipping. Private to the triangulation.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace ricochet {
 
-/// A balanced k-d tree over points; finds those near a triangle.
+/// A balanced k-d tree over points that finds the points near a triangle.
 /// Method: J. L. Bentley, "Multidimensional binary search trees used for associative searching", CACM 18(9), 1975.
 class PointTree {
 public:
-    /// Rebuilds with the given members, indices into `points` (which must stay alive and unchanged).
+    /// Rebuilds the tree with the given members, which are indices into `points`. `points` must stay alive and
+    /// unchanged.
     void build(const std::vector<Point2>& points, std::vector<std::uint32_t> members);
-    /// Removes a member; others are ignored.
+    /// Removes a member. Ignores other indices.
     void remove(std::uint32_t member);
 
-    /// Calls visit(member) for the members in boxes that the closed counter-clockwise triangle (a, b, c) touches, and
-    /// maybe some others, until it returns true. Returns whether it did.
+    /// Calls visit(member) for the members in boxes that the closed counter-clockwise triangle (a, b, c) touches, until
+    /// it returns true. May visit other members too. Returns true if a call did.
     template <typename Visit>
     bool any_near_triangle(const Point2& a, const Point2& b, const Point2& c, Visit&& visit) const {
         if (nodes_.empty()) return false;
@@ -47,8 +48,8 @@ private:
         Point2 lower;
         Point2 upper;
         std::uint32_t begin = 0;        // leaf: members_[begin, begin + members)
-        std::uint32_t members = 0;      // that are left below this node
-        std::uint32_t first_child = 0;  // the other one follows; 0 for a leaf
+        std::uint32_t members = 0;      // that remain below this node
+        std::uint32_t first_child = 0;  // index of the first child, which the other one follows; 0 for a leaf
         std::uint32_t parent = 0;
     };
 
@@ -60,17 +61,17 @@ private:
     std::vector<std::uint32_t> members_;  // in the order of the leaves
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> leaf_of_;        // per point; kNone for points that are not members
-    mutable std::vector<std::uint32_t> stack_;  // scratch of a search
+    mutable std::vector<std::uint32_t> stack_;  // scratch memory of a search
 };
 
-/// Cuts polygons by clipping ears, with exact signs. Every corner is tested once at the start and when a neighbour of
-/// it was clipped, against the reflex corners near its triangle, which a tree finds: close to linear time.
-/// Keeps its memory from one polygon to the next.
+/// Cuts polygons by ear clipping, with exact signs. A corner is tested once at the start and again when one of its
+/// neighbours is clipped. The test uses the reflex corners near its triangle, which a tree finds, so the time is close
+/// to linear. Memory is reused from one polygon to the next.
 class EarClipper {
 public:
-    /// Appends n - 2 triangles of indices into `points` (n >= 3 corners in either orientation; neighbours may not be
-    /// the same corner, but may coincide). The triangles have the outline's winding. Returns false when the outline
-    /// crosses itself: the triangles then cover it, but overlap.
+    /// Appends n - 2 triangles of indices into `points`, which has n >= 3 corners in either orientation. Neighbours
+    /// must be different corners, but may coincide. The triangles have the outline's winding. Returns false if the
+    /// outline crosses itself. The triangles then cover it, but overlap.
     [[nodiscard]] bool clip(const std::vector<Point2>& points, std::vector<Triangle>& triangles);
 
 private:
@@ -88,14 +89,14 @@ private:
     void update(std::uint32_t corner, Strictness strictness);
     void fan_the_rest(std::vector<Triangle>& triangles);
 
-    std::vector<Point2> points_;  // mirrored if need be: the outline runs counter-clockwise
+    std::vector<Point2> points_;  // mirrored if necessary, so that the outline is counter-clockwise
     std::vector<std::uint32_t> next_;
     std::vector<std::uint32_t> previous_;
     std::vector<char> is_reflex_;  // corners that an ear must not contain
     std::vector<char> is_queued_;  // corners that were an ear when last tested
     std::vector<std::uint32_t> queue_;
     std::uint32_t remaining_ = 0;
-    std::uint32_t any_corner_ = 0;  // one that is still there
+    std::uint32_t any_corner_ = 0;  // a corner that is not clipped yet
     PointTree reflex_tree_;
 };
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the mesh readers: the names of faces, as groups that they share.
+/// The names of faces, stored as groups that faces share. Private to the mesh readers.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace ricochet {
 
-/// The names that hold for the faces that follow; empty where there is none.
+/// The names that apply to the faces that follow. A missing name is empty.
 struct FaceNames {
     std::string material;
     std::string group;
     std::string object;
 };
 
-/// Numbers the combinations of names that faces have. A mesh without names keeps empty lists; the first name found
-/// gives the faces before it the empty names.
+/// Numbers the combinations of names that faces have. A mesh without names keeps empty lists. When the first name is
+/// found, all earlier faces get the empty names.
 class FaceGroupTable {
 public:
-    /// To be changed for the faces that follow.
+    /// Returns the current names, to change them for the faces that follow.
     [[nodiscard]] FaceNames& names() {
         is_known_ = false;
         return current_;
     }
-    /// Gives the names to the face that was closed last.
+    /// Assigns the current names to the face that was closed last.
     void record(PolygonMesh& mesh);
 
 private:
@@ -40,7 +40,7 @@ private:
     bool has_names_ = false;
     bool is_known_ = false;
     std::uint32_t current_group_ = 0;
-    // Numbers go by first use, so that the tables' own order reaches nothing.
+    // Numbers are assigned by first use, so the iteration order of the tables has no effect.
     std::unordered_map<FaceGroup, std::uint32_t, Hash> groups_;
     std::unordered_map<std::string, std::uint32_t> numbers_;
 };

@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace {
 
-/// Adds up the triangles of names of one kind.
+/// Sums the triangles of the names of one kind.
 class NameCounts {
 public:
     explicit NameCounts(FaceNameKind kind) : kind_(kind) {}
@@ -22,10 +22,10 @@ public:
 private:
     FaceNameKind kind_;
     std::vector<NamedTriangles> names_;
-    std::map<std::string_view, std::size_t> places_;  // in names_; of texts that outlive this
+    std::map<std::string_view, std::size_t> places_;  // index in names_; the texts outlive this object
 };
 
-// A line of `g` and its words; one that occurs twice in it counts once.
+// Adds a line of `g` and its words. A word that occurs twice in the line counts once.
 void add_group(NameCounts& counts, std::string_view line, std::size_t triangles) {
     counts.add(line, triangles);
     std::set<std::string_view> seen = {line};
@@ -55,7 +55,7 @@ std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported) {
 
     std::vector<NamedTriangles> all;
     const auto add_kind = [&](FaceNameKind kind, std::uint32_t FaceGroup::*number) {
-        // By number first: a long line of words may be part of many combinations.
+        // Summed by number first, because a long line of words may belong to many combinations.
         std::vector<std::size_t> of_name(mesh.group_names.size(), 0);
         for (std::size_t i = 0; i < mesh.groups.size(); ++i) of_name[mesh.groups[i].*number] += of_group[i];
         NameCounts counts(kind);

@@ -1,5 +1,5 @@
 /// \file
-/// The names by which faces of a mesh file can be meant.
+/// The names that refer to faces of a mesh file.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,27 @@
 
 namespace ricochet {
 
-/// What has the name; the one that counts most where a face has several comes first.
+/// The kind of a name. If a face has several names, the kind listed first takes precedence.
 enum class FaceNameKind : std::uint8_t {
     material,  ///< `usemtl`
     group,     ///< `g`: the whole line, or one of its words
     object,    ///< `o`
 };
 
-/// A name, and what goes by it.
+/// A name and the number of triangles that have it.
 struct NamedTriangles {
     FaceNameKind kind = FaceNameKind::material;
     std::string name;
-    std::size_t triangles = 0;  ///< that have it, whatever other names they have
+    std::size_t triangles = 0;  ///< that have it, regardless of their other names
 };
 
-/// The words of a text, which blanks separate.
+/// Returns the words of a text, which are separated by blanks.
 [[nodiscard]] std::vector<std::string_view> words_of(std::string_view text);
 
-/// Every name that triangles of a mesh have: of materials, of groups (the whole lines, each with its words behind it
-/// where it has several), of objects, each in the order in which the file first names it. For a mesh that was read with
-/// MeshContent::everything. Time is close to linear in the number of triangles and the length of the names.
+/// Returns every name that triangles of a mesh have: materials, groups, then objects. Each kind is in the order in
+/// which the file first uses the names. A group is a whole line. If it has several words, each word follows it as a
+/// further name. Requires a mesh that was read with MeshContent::everything. Time is close to linear in the number of
+/// triangles and the length of the names.
 [[nodiscard]] std::vector<NamedTriangles> named_triangles(const ImportedMesh& imported);
 
 }  // namespace ricochet

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "glTF is copied from little-endian bytes");
 
-// The numbers of component types in the file (those of OpenGL).
+// Numbers of component types in the file, which are the OpenGL constants.
 constexpr std::uint64_t kInt8 = 5120;
 constexpr std::uint64_t kUint8 = 5121;
 constexpr std::uint64_t kInt16 = 5122;
@@ -51,14 +51,14 @@ std::uint32_t index_at(std::uint64_t type, const char* at) {
     return value_at<std::uint32_t>(at);
 }
 
-// An integer type's value over its largest; -128 and -32768 count as one more, as the format says.
+// Returns an integer type's value divided by its largest value. -128 and -32768 give -1, as the format requires.
 template <typename Value>
 double integer_at(const char* at, bool is_normalized) {
     const double value = value_at<Value>(at);
     return is_normalized ? std::max(value / std::numeric_limits<Value>::max(), -1.0) : value;
 }
 
-// The bytes from an offset on, enough for so many elements.
+// Returns the bytes from an offset on, after checking that they suffice for `count` elements.
 std::string_view require_bytes(const GltfPlace& place, std::string_view view, std::uint64_t count, std::size_t stride,
                                std::size_t element) {
     const std::uint64_t offset = place.whole_number("byteOffset", 0);

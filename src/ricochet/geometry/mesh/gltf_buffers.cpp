@@ -50,7 +50,7 @@ int hex_digit(char c) {
     return c >= 'A' && c <= 'F' ? c - 'A' + 10 : kNoDigit;
 }
 
-// "%20" is a blank.
+// Decodes percent-encoded bytes, such as "%20" for a blank.
 std::string without_percents(const GltfPlace& uri, std::string_view text) {
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -72,7 +72,8 @@ bool is_within(const fs::path& path, const fs::path& folder) {
     return rest == folder.end();
 }
 
-// The file that a buffer names: beside the glTF file or below, also where links lead.
+// Returns the path of the file that a buffer names. It must be beside the glTF file or in a folder below, also after
+// following links.
 fs::path file_below(const GltfPlace& uri, const fs::path& folder) {
     const std::string name = without_percents(uri, uri.text());
     const fs::path path(name);
@@ -119,7 +120,7 @@ GltfBuffers::View GltfBuffers::view(const GltfPlace& owner, std::string_view key
     }
     const std::uint64_t stride = view.whole_number("byteStride", 0);
     constexpr std::uint64_t kLargestStride = 252;
-    // Several exporters write 0 for elements that follow each other without a gap.
+    // Several exporters write 0 for elements without gaps.
     if (stride != 0 && (stride < 4 || stride > kLargestStride)) {
         view.fail(fmt::format("found the byteStride {}, expected 4 to {}, or 0 for none", stride, kLargestStride));
     }

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the glTF reader: the bytes of its buffers, and the points and indices that accessors find in them.
+/// Bytes of glTF buffers, and the points and indices that accessors read from them. Private to the glTF reader.
 #pragma once
 
 #include <cstddef>
@@ -17,28 +17,29 @@
 
 namespace ricochet {
 
-/// Where buffers may come from besides the JSON.
+/// Sources of buffers other than the JSON.
 struct GltfSurroundings {
     std::optional<std::string_view> chunk;        ///< the binary chunk of a GLB file
-    std::optional<std::filesystem::path> folder;  ///< of files that buffers name; nothing: such files are refused
+    std::optional<std::filesystem::path> folder;  ///< of files that buffers name; nullopt: such files are refused
 };
 
-/// Bytes of buffers, each fetched once and only when something in it is asked for.
+/// Bytes of buffers. Each buffer is fetched once, at its first use.
 class GltfBuffers {
 public:
     GltfBuffers(const GltfPlace& document, GltfSurroundings surroundings);
 
-    /// A buffer view: its bytes, and the bytes from one element to the next (0: they lie side by side).
+    /// A buffer view: its bytes and the stride from one element to the next (0: no gaps).
     struct View {
         std::string_view bytes;
         std::size_t stride = 0;
     };
-    /// Of the number that a key says. Throws InputError where buffer or view do not reach as far as they say.
+    /// Returns the buffer view with the index stored under `key`. Throws InputError if the buffer or the view is
+    /// shorter than declared.
     [[nodiscard]] View view(const GltfPlace& owner, std::string_view key);
 
-    /// Files that were read, in the order of their names.
+    /// Returns the files that were read, sorted by name.
     [[nodiscard]] std::vector<std::filesystem::path> files() const;
-    /// Their size together.
+    /// Returns the total size of these files.
     [[nodiscard]] std::size_t bytes_of_files() const;
 
 private:
@@ -49,24 +50,24 @@ private:
     GltfList buffers_;
     GltfList views_;
     GltfSurroundings surroundings_;
-    std::map<std::size_t, std::string_view> known_;  ///< of buffers by number
-    std::map<std::size_t, std::string> decoded_;     ///< of data URIs by number of the buffer
+    std::map<std::size_t, std::string_view> known_;  ///< of buffers by index
+    std::map<std::size_t, std::string> decoded_;     ///< of data URIs by index of the buffer
     std::map<std::filesystem::path, FileBytes> read_;
 };
 
-/// What an accessor says of its elements, checked against the bytes that there are.
+/// The elements of an accessor, checked against the available bytes.
 class GltfAccessor {
 public:
-    /// An accessor of points: three floats each, or small integers with KHR_mesh_quantization.
+    /// Makes an accessor of points: three floats each, or small integers with KHR_mesh_quantization.
     [[nodiscard]] static GltfAccessor of_points(const GltfPlace& accessor, GltfBuffers& buffers, bool quantized);
-    /// An accessor of indices: one unsigned integer each.
+    /// Makes an accessor of indices: one unsigned integer each.
     [[nodiscard]] static GltfAccessor of_indices(const GltfPlace& accessor, GltfBuffers& buffers);
 
     [[nodiscard]] std::size_t size() const { return count_; }
-    /// As the file has it, finite or not.
+    /// Returns the point as in the file, finite or not.
     [[nodiscard]] Vec3 point(std::size_t i) const;
     [[nodiscard]] std::uint32_t index(std::size_t i) const;
-    /// The largest value of an index's type, which means no vertex.
+    /// Returns the largest value of an index's type, which means no vertex.
     [[nodiscard]] std::uint32_t no_index() const;
 
 private:
@@ -84,7 +85,7 @@ private:
     std::size_t count_ = 0;
     std::size_t stride_ = 0;
     std::string_view bytes_;                     ///< from the first element; empty: all elements are zero
-    std::vector<std::uint32_t> sparse_indices_;  ///< elements whose values stand in sparse_values_, rising
+    std::vector<std::uint32_t> sparse_indices_;  ///< elements whose values are in sparse_values_, ascending
     std::string_view sparse_values_;
 };
 

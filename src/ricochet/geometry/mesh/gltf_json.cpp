@@ -16,15 +16,16 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A file of this many values beside its numbers in buffers would hold a million nodes.
+/// Maximum number of stored values. A file with this many values, besides the numbers in its buffers, would have a
+/// million nodes.
 constexpr std::size_t kMostGltfValues = 4'000'000;
 
-/// The lists and objects of a glTF file that a mesh is made of.
+/// Top-level keys of a glTF file that describe a mesh.
 constexpr std::array<std::string_view, 11> kTopKeys = {
     "asset", "accessors", "buffers", "bufferViews",    "materials",         "meshes",
     "nodes", "scene",     "scenes",  "extensionsUsed", "extensionsRequired"};
 
-/// What those hold and a mesh does not need; textures of materials are the bulk of it.
+/// Keys inside these that a mesh does not need. Textures of materials are the largest part.
 constexpr std::array<std::string_view, 13> kLeftOut = {"extras",
                                                        "extensions",
                                                        "copyright",
@@ -44,8 +45,8 @@ bool contains(const List& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-// Builds the tree of what is kept. The open containers are the last elements of their parents, so that pointers to
-// them stay valid.
+// Builds the tree of stored values. The open containers are the last elements of their parents, so pointers to them
+// stay valid.
 class GltfTreeBuilder final : public nlohmann::json_sax<Json> {
 public:
     explicit GltfTreeBuilder(const MeshSource& source) : source_(source) {}
@@ -71,7 +72,7 @@ public:
         if (is_top) is_in_nodes_ = name == "nodes";
         const bool is_kept = is_top ? contains(kTopKeys, name) : is_kept_below(name);
         skips_next_ = !is_kept;
-        // Of animations it matters whether there are any.
+        // For animations only their existence matters.
         if (is_kept || (is_top && name == "animations"))
             std::get<GltfValue::Object>(open_.back()->value).push_back({std::move(name), {}});
         return true;
@@ -88,9 +89,9 @@ public:
     GltfValue take() { return std::move(root_); }
 
 private:
-    // Of a node's extensions it matters whether they hide it.
+    // For a node's extensions only KHR_node_visibility matters.
     [[nodiscard]] bool is_kept_below(std::string_view name) const {
-        constexpr std::size_t kInNode = 3;  // nodes[0] is the third of the open containers
+        constexpr std::size_t kInNode = 3;  // nodes[0] is the third open container
         if (is_in_nodes_ && open_.size() == kInNode && name == "extensions") return true;
         if (is_in_nodes_ && open_.size() == kInNode + 1) return name == kGltfVisibility;
         return !contains(kLeftOut, name);
@@ -110,7 +111,7 @@ private:
             ++skipped_depth_;
             return true;
         }
-        // The deepest value that is read: meshes[0].primitives[0].targets[0].POSITION.
+        // The deepest value that is read is meshes[0].primitives[0].targets[0].POSITION.
         constexpr std::size_t kDeepest = 16;
         if (open_.size() == kDeepest) source_.fail("JSON nested deeper than any glTF file needs");
         open_.push_back(attach({std::move(container)}));
@@ -176,7 +177,7 @@ const GltfValue* GltfValue::find(std::string_view key) const {
 }
 
 GltfValue parse_gltf_json(const MeshSource& source, std::string_view text) {
-    // The parser would take what stands before a NUL byte for all there is.
+    // The parser would stop at a NUL byte and treat the text before it as the whole file.
     if (text.find('\0') != std::string_view::npos) source.fail("NUL byte in the JSON of the glTF file");
     GltfTreeBuilder builder(source);
     if (!Json::sax_parse(text.begin(), text.end(), &builder)) source.fail("the JSON of the glTF file cannot be read");
@@ -214,7 +215,7 @@ GltfPlace GltfList::operator[](std::size_t i) const {
 }
 
 std::uint64_t GltfPlace::whole_number() const {
-    // Offsets and counts beyond this are no part of any file, and sums of two of them stay in range.
+    // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in range.
     constexpr double kLargest = 9007199254740992.0;
     if (const auto* whole = std::get_if<std::uint64_t>(&value_->value)) {
         if (*whole <= static_cast<std::uint64_t>(kLargest)) return *whole;

@@ -1,8 +1,8 @@
 /// \file
-/// Private to the glTF reader: the part of a file's JSON that says where triangles are, with strict access to it.
+/// The part of a glTF file's JSON that describes triangles, with strict access to it. Private to the glTF reader.
 ///
-/// What a mesh does not need (images, animations, cameras, `extras`, extensions of materials) is checked for being
-/// JSON and not kept.
+/// Data that a mesh does not need (images, animations, cameras, `extras`, extensions of materials) must be valid JSON,
+/// but is not stored.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace ricochet {
 
-/// The extension that hides nodes, the only one that is kept of `extensions`.
+/// Extension that hides nodes. It is the only one stored from `extensions`.
 inline constexpr std::string_view kGltfVisibility = "KHR_node_visibility";
 
 struct GltfMember;
@@ -26,10 +26,10 @@ struct GltfMember;
 struct GltfValue {
     using Array = std::vector<GltfValue>;
     using Object = std::vector<GltfMember>;
-    /// Whole numbers >= 0 are std::uint64_t, all others double.
+    /// Whole numbers >= 0 are std::uint64_t, and all others are double.
     std::variant<std::monostate, bool, std::uint64_t, double, std::string, Array, Object> value;
 
-    /// The value of a key; null pointer when this is no object or has no such key.
+    /// Returns the value of a key, or a null pointer if this is not an object or lacks the key.
     [[nodiscard]] const GltfValue* find(std::string_view key) const;
 };
 
@@ -39,16 +39,16 @@ struct GltfMember {
     GltfValue value;
 };
 
-/// Parses the JSON of a glTF file. Throws InputError: not JSON, not an object, keys that appear twice, more than
-/// 4 million values that would be kept.
+/// Parses the JSON of a glTF file. Throws InputError if the text is not JSON or not an object, or if a key appears
+/// twice. Throws also if more than 4 million values would be stored.
 [[nodiscard]] GltfValue parse_gltf_json(const MeshSource& source, std::string_view text);
 
 class GltfPlace;
 
-/// The items of a list; lives as long as source and document.
+/// The items of a list. Valid as long as the source and the document exist.
 class GltfList {
 public:
-    /// items: null pointer for a list that is not there.
+    /// Makes a list. `items` is a null pointer if the list is missing.
     GltfList(const MeshSource& source, const GltfValue::Array* items, std::string path)
         : source_(&source), items_(items), path_(std::move(path)) {}
 
@@ -61,8 +61,9 @@ private:
     std::string path_;
 };
 
-/// A value that knows its place, such as `accessors[3].count`, for messages. What is asked of it is there and of the
-/// right kind, or an InputError is thrown that says what was found. Lives as long as source and document.
+/// A value that knows its location in the JSON, such as `accessors[3].count`, for messages. Each access checks that the
+/// requested value exists and has the right kind. Otherwise it throws an InputError that states the found value. Valid
+/// as long as the source and the document exist.
 class GltfPlace {
 public:
     GltfPlace(const MeshSource& source, const GltfValue& value, std::string path)
@@ -72,25 +73,25 @@ public:
     [[noreturn]] void fail(const std::string& what) const;
 
     [[nodiscard]] bool has(std::string_view key) const { return value_->find(key) != nullptr; }
-    /// The value of a key that must be there.
+    /// Returns the value of a required key.
     [[nodiscard]] GltfPlace at(std::string_view key) const;
-    /// The items of the list that a key holds; none where there is no such key.
+    /// Returns the items of the list under a key, or an empty list if the key is missing.
     [[nodiscard]] GltfList items(std::string_view key) const;
 
-    /// This value itself.
+    /// The next functions read this value itself.
     [[nodiscard]] std::uint64_t whole_number() const;
     [[nodiscard]] double number() const;
     [[nodiscard]] const std::string& text() const;
-    /// A whole number below the count of what it points to.
+    /// Returns a whole number that must be below `count`. `what` names the elements that it refers to, for messages.
     [[nodiscard]] std::uint32_t index_below(std::size_t count, std::string_view what) const;
 
-    // Values of keys that may be missing.
+    // The next functions read the values of optional keys.
     [[nodiscard]] std::uint64_t whole_number(std::string_view key, std::uint64_t otherwise) const;
     [[nodiscard]] bool flag(std::string_view key, bool otherwise) const;
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] std::optional<std::uint32_t> index_below(std::string_view key, std::size_t count,
                                                            std::string_view what) const;
-    /// As many numbers as are expected; empty where there is no such key.
+    /// Returns exactly `count` numbers, or none if the key is missing.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
 
 private:

@@ -16,12 +16,13 @@ namespace {
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 
-// What a file may require and triangles do not depend on.
+// Extensions that a file may require and that do not affect triangles.
 constexpr std::array<std::string_view, 8> kHarmless = {
     "KHR_materials_",      "KHR_texture_",    "EXT_texture_",          "MSFT_texture_",
     "KHR_lights_punctual", "KHR_xmp_json_ld", "KHR_animation_pointer", kGltfVisibility};
 
-// Divided by the square of its length, so that quarter turns are exact whatever digits their root of 1/2 has.
+// Applies a rotation. It is divided by the square of the quaternion's length, so quarter turns are exact for any
+// rounding of the square root of 1/2.
 void turn(AffineMap& map, const GltfPlace& node, const std::vector<double>& q) {
     const double x = q[0];
     const double y = q[1];
@@ -86,15 +87,15 @@ public:
     }
 
 private:
-    // A node on the way from its root, and how far its children are done.
+    // A node on the path from its root, with the index of its next child.
     struct Open {
         std::uint32_t node = 0;
         std::size_t next_child = 0;
         AffineMap world;
-        std::optional<std::uint32_t> named;  // itself, or the nearest node above that has a name
+        std::optional<std::uint32_t> named;  // the node itself, or the nearest ancestor that has a name
     };
 
-    // Where every node has one parent at most, and roots none, what the roots reach is a tree.
+    // The nodes reachable from the roots form a tree if every node has at most one parent and roots have none.
     void find_parents() {
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const GltfList children = nodes_[n].items("children");
@@ -119,7 +120,7 @@ private:
         }
     }
 
-    // Parents before children, without recursion: a file may nest its nodes as deep as it likes.
+    // Visits parents before children without recursion, because a file may nest its nodes arbitrarily deep.
     void walk_from(std::uint32_t root) {
         enter(root, {}, std::nullopt);
         while (!open_.empty()) {
@@ -155,7 +156,7 @@ private:
         return !node.at("extensions").at(kGltfVisibility).flag("visible", true);
     }
 
-    // What poses a mesh otherwise than its node does.
+    // Refuses meshes that are posed by anything other than their node.
     static void require_rigid(const GltfPlace& node, const GltfPlace& mesh) {
         if (node.has("skin")) {
             node.fail(

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the glTF reader: which meshes a file shows, and where.
+/// The meshes that a glTF file shows, and their placement. Private to the glTF reader.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,27 @@
 
 namespace ricochet {
 
-/// A mesh where a node puts it.
+/// A mesh with the placement that a node gives it.
 struct PlacedGltfMesh {
-    std::uint32_t mesh = 0;  ///< its number in the file
-    AffineMap world;         ///< world of the file from mesh
-    std::string name;        ///< the node's, or of the nearest node above that has one
+    std::uint32_t mesh = 0;  ///< index in the file
+    AffineMap world;         ///< from mesh coordinates to the file's world
+    std::string name;        ///< of the node, or of the nearest ancestor that has a name
 };
 
-/// What the nodes of a file show.
+/// The visible content of a file's nodes.
 struct GltfScenery {
     std::vector<PlacedGltfMesh> meshes;
-    std::size_t hidden_nodes = 0;  ///< left out, with all nodes below them: KHR_node_visibility hides them
+    std::size_t hidden_nodes = 0;  ///< nodes hidden by KHR_node_visibility, left out with all their descendants
 };
 
-/// Returns the meshes of the scene that the file shows (of all its nodes if it has no scenes), parents before children.
-/// Throws InputError if nodes are no tree, or pose their mesh by joints or shapes.
+/// Returns the meshes of the scene that the file shows (of all nodes if it has no scenes), parents before children.
+/// Throws InputError if the nodes are not a tree, or if a mesh is posed by joints or morph targets.
 [[nodiscard]] GltfScenery placed_gltf_meshes(const GltfPlace& document);
 
-/// Throws InputError where the file needs an extension that changes where triangles are and is not known here.
+/// Throws InputError if the file requires an unsupported extension that changes the position of triangles.
 void require_known_extensions(const GltfPlace& document);
 
-/// True when points may be small integers (KHR_mesh_quantization).
+/// Returns true if points may be small integers (KHR_mesh_quantization).
 [[nodiscard]] bool uses_quantization(const GltfPlace& document);
 
 }  // namespace ricochet

@@ -33,7 +33,7 @@ std::uint32_t number_at(const MeshSource& source, std::size_t byte) {
     return value;
 }
 
-// A header of 12 bytes, then chunks, each with its length and its kind before it.
+// A GLB file has a header of 12 bytes, then chunks. The length and the kind of each chunk precede it.
 GltfParts parts_of_glb(const MeshSource& source) {
     constexpr std::size_t kHeader = 12;
     constexpr std::size_t kChunkHeader = 8;
@@ -72,7 +72,7 @@ GltfParts parts_of(const MeshSource& source) {
     return {source.bytes, std::nullopt, "glTF 2.0"};
 }
 
-/// What a primitive draws.
+/// Geometry that a primitive draws.
 enum class Drawing : std::uint8_t { nothing, list, strip, fan };
 
 Drawing drawing_of(const GltfPlace& primitive) {
@@ -86,7 +86,7 @@ Drawing drawing_of(const GltfPlace& primitive) {
     return mode == kStrip ? Drawing::strip : Drawing::fan;
 }
 
-// Which of the primitive's elements triangle t has.
+// Returns the elements of the primitive's triangle t.
 std::array<std::size_t, 3> elements_of(Drawing drawing, std::size_t t) {
     if (drawing == Drawing::list) return {3 * t, 3 * t + 1, 3 * t + 2};
     if (drawing == Drawing::fan) return {t + 1, t + 2, 0};
@@ -119,7 +119,7 @@ public:
     }
 
 private:
-    // Memory is bounded by the file also where its nodes show one mesh many times: corners are counted first.
+    // Corners are counted first, so that memory stays bounded by the file even if its nodes show one mesh many times.
     void reserve(const std::vector<PlacedGltfMesh>& placed) {
         constexpr std::size_t kCornersPerByte = 16;
         std::map<std::uint32_t, std::uint64_t> counts;
@@ -137,12 +137,12 @@ private:
                                 std::min(most, kLargestIndexCount), bytes));
             }
         }
-        constexpr double kBytesPerCorner = 24.0;  // with its share of faces and vertices
+        constexpr double kBytesPerCorner = 24.0;  // including its share of faces and vertices
         require_memory(kBytesPerCorner * static_cast<double>(corners), source_.name);
         builder_.reserve(corners);
     }
 
-    // A primitive that draws nothing counts too, since it takes time.
+    // A primitive that draws nothing counts too, because it takes time.
     std::uint64_t corners_in(const GltfPlace& mesh) {
         std::uint64_t corners = 0;
         const GltfList primitives = mesh.items("primitives");
@@ -207,7 +207,7 @@ private:
             if (indices != nullptr) {
                 for (std::size_t& corner : corners) corner = index_in(primitive, *indices, corner, points.size());
             }
-            // A strip turns by triangles that name a point twice.
+            // Triangles that name a point twice only change the direction of a strip.
             const bool repeats = corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
             if (repeats && drawing == Drawing::strip) continue;
             for (const std::size_t corner : corners) {
@@ -244,7 +244,7 @@ private:
             notes.emplace_back("animations are not played: everything stands as the nodes of the file say");
         }
         if (const std::size_t scenes = document_.items("scenes").size(); scenes > 1) {
-            notes.push_back(fmt::format("one of {} scenes is read: that which the file shows", scenes));
+            notes.push_back(fmt::format("one of {} scenes is read: the one that the file shows", scenes));
         }
         return notes;
     }

@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-/// Those of a body about the origin, moved there.
+/// Returns the moments of a body that is centred at the origin and then mapped.
 MassMoments placed(double volume, const SymmetricMatrix& second, const AffineMap& map) {
     const Vec3& center = map.translation;
     return {volume, volume * center, congruent(map, second) + volume * outer_product(center)};
@@ -21,7 +21,7 @@ SymmetricMatrix MassMoments::inertia() const {
 
 MassMoments moments_of(const TriangleMesh& mesh) {
     if (mesh.vertices.empty()) return {};
-    // From a point of the mesh, where tetrahedra cancel least.
+    // The tetrahedra start at a point of the mesh, which minimises cancellation.
     const Vec3 apex = mesh.vertices.front();
     double volume = 0.0;
     Vec3 first;
@@ -36,7 +36,7 @@ MassMoments moments_of(const TriangleMesh& mesh) {
         first += (six / 24.0) * sum;
         second = second + (six / 120.0) * (outer_product(a) + outer_product(b) + outer_product(c) + outer_product(sum));
     }
-    // Back to the origin: x = apex + y.
+    // Moves the moments back to the origin: x = apex + y.
     return {volume, first + volume * apex, second + mixed_product(apex, first) + volume * outer_product(apex)};
 }
 

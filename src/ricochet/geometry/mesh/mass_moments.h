@@ -9,14 +9,14 @@
 
 namespace ricochet {
 
-/// Integrals over a body. Those of several that do not overlap add up.
+/// Integrals over a body. The integrals of bodies that do not overlap can be added.
 struct MassMoments {
-    double volume = 0.0;     ///< m^3
-    Vec3 first;              ///< of the position, m^4
-    SymmetricMatrix second;  ///< of x x^T, m^5
+    double volume = 0.0;     ///< in m^3
+    Vec3 first;              ///< of the position, in m^4
+    SymmetricMatrix second;  ///< of x x^T, in m^5
 
     [[nodiscard]] Vec3 center() const { return first / volume; }
-    /// The inertia about the centre over the density, m^5.
+    /// Returns the inertia about the centre, divided by the density, in m^5.
     [[nodiscard]] SymmetricMatrix inertia() const;
 
     friend MassMoments operator+(const MassMoments& a, const MassMoments& b) {
@@ -24,13 +24,14 @@ struct MassMoments {
     }
 };
 
-/// Of what a closed mesh holds, with its triangles counter-clockwise seen from outside: exact for the polyhedron, to
-/// rounding; turned inside out all is negative. Source: the tetrahedra from one point to all triangles; their moments
-/// from S. Lien, J. T. Kajiya, IEEE Computer Graphics and Applications 4 (1984).
+/// Returns the moments of the volume inside a closed mesh whose triangles are counter-clockwise seen from outside. They
+/// are exact for the polyhedron, up to rounding. All are negative for a mesh that is wound inward. Method: sums over
+/// the tetrahedra from one point to all triangles. Source of their moments: S. Lien, J. T. Kajiya, IEEE Computer
+/// Graphics and Applications 4 (1984).
 [[nodiscard]] MassMoments moments_of(const TriangleMesh& mesh);
-/// Of the unit ball under a map.
+/// Returns the moments of the unit ball under a map.
 [[nodiscard]] MassMoments moments_of_ball(const AffineMap& world_from_unit);
-/// Of the cylinder x^2 + y^2 <= 1, |z| <= 1 under a map.
+/// Returns the moments of the cylinder x^2 + y^2 <= 1, |z| <= 1 under a map.
 [[nodiscard]] MassMoments moments_of_cylinder(const AffineMap& world_from_unit);
 
 }  // namespace ricochet

@@ -11,27 +11,27 @@
 namespace ricochet {
 namespace {
 
-constexpr double kMaxCells = 1024.0;  // along either axis: a million columns are enough for any mesh
+constexpr double kMaxCells = 1024.0;  // along either axis; a million columns suffice for any mesh
 
-/// Entries in lists of columns, for each triangle and in every mesh. Fewer: columns of ordinary meshes would be too
-/// wide. More: large triangles one upon the other would take memory beyond proportion.
+/// Entries in the column lists: per triangle, and for every mesh. With fewer entries, the columns of ordinary meshes
+/// would be too wide. With more, large triangles on top of each other would take too much memory.
 constexpr std::size_t kEntriesPerTriangle = 64;
 constexpr std::size_t kEntries = std::size_t{1} << 20;
 
 Point2 flat(const Vec3& p) { return {p.x, p.y}; }
 
-// True when the horizontal ray to the right of the moved point p crosses the edge from a to b, seen from above.
+// Returns true if the horizontal ray to the right of the moved point p crosses the edge from a to b, seen from above.
 bool crosses_right(const Vec3& a, const Vec3& b, const Vec3& p) {
-    const bool a_is_above = a.y > p.y;  // p counts as moved up, so what is level with it is below
+    const bool a_is_above = a.y > p.y;  // p counts as moved up, so points at its level are below it
     if (a_is_above == (b.y > p.y)) return false;
     const Vec3& low = a_is_above ? b : a;
     const Vec3& high = a_is_above ? a : b;
     int turn = orient2d(flat(low), flat(high), flat(p));  // +1: p is on the left
     if (turn == 0) turn = high.x > low.x ? 1 : (high.x < low.x ? -1 : 0);
-    return turn > 0;  // on a vertical edge the move to the right decides: p is not on the left
+    return turn > 0;  // on a vertical edge, the move to the right decides: p is not on the left
 }
 
-// Returns +1 if the ray upwards from the moved point crosses the triangle along its normal, -1 against it, or 0.
+// Returns +1 if the upward ray from the moved point crosses the triangle along its normal, -1 if against it, else 0.
 int crossing(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     const bool covers = crosses_right(a, b, p) ^ crosses_right(b, c, p) ^ crosses_right(c, a, p);
     if (!covers) return 0;
@@ -45,7 +45,7 @@ bool is_on(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     return box.contains(p) && point_on_triangle(p, a, b, c);
 }
 
-/// Calls use(triangle) for all triangles of a mesh but those left out.
+/// Calls use(triangle) for all triangles of a mesh that are not left out.
 template <class Use>
 void for_each_counted(const TriangleMesh& mesh, const std::vector<std::uint32_t>& left_out, const Use& use) {
     auto skipped = left_out.begin();
@@ -80,7 +80,7 @@ MeshInterior::Columns MeshInterior::columns_of(const Triangle& t) const {
     return {{cell_of(box.lower.x, 0), cell_of(box.lower.y, 1)}, {cell_of(box.upper.x, 0), cell_of(box.upper.y, 1)}};
 }
 
-/// How many there are in the lists of all columns.
+/// Returns the number of entries in the lists of all columns.
 std::size_t MeshInterior::entries(const std::vector<std::uint32_t>& left_out) const {
     std::size_t count = 0;
     for_each_counted(*mesh_, left_out, [&](std::uint32_t t) {
@@ -90,7 +90,7 @@ std::size_t MeshInterior::entries(const std::vector<std::uint32_t>& left_out) co
     return count;
 }
 
-// Monotone in the value, so that a point's column lies within those of every triangle above or below it.
+// The index is monotone in the value, so a point's column is within the columns of every triangle above or below it.
 std::size_t MeshInterior::cell_of(double value, int axis) const {
     const double width = box_.upper[axis] - box_.lower[axis];
     if (!(width > 0.0)) return 0;

@@ -1,10 +1,10 @@
 /// \file
-/// Inside or outside of a closed mesh, exactly, for many points of one mesh.
+/// Exact test whether points are inside a closed mesh, for many points of one mesh.
 ///
-/// Counts the crossings of the ray upwards (along z) from the point, which counts as moved by an infinitesimal amount
-/// along y and a still smaller one along x (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of
-/// Simplicity", ACM Transactions on Graphics 9, 1990), so that the ray hits neither edges nor vertices. Signs come from
-/// the exact predicates.
+/// The test counts the crossings of the upward ray (along z) from the point. The point counts as moved by an
+/// infinitesimal amount along y and a still smaller one along x. The ray therefore hits neither edges nor vertices
+/// (symbolic perturbation: H. Edelsbrunner, E. P. Muecke, "Simulation of Simplicity", ACM Transactions on Graphics 9,
+/// 1990). Signs come from the exact predicates.
 #pragma once
 
 #include <array>
@@ -20,26 +20,26 @@
 
 namespace ricochet {
 
-/// Returns true if the mesh separates an inside from an outside, see closed_surface.h.
+/// Returns true if the mesh separates an inside from an outside. See closed_surface.h.
 [[nodiscard]] bool is_closed(const TriangleMesh& mesh);
 
-/// Thread-safe. For closed meshes only (closed_surface.h).
+/// The interior of a closed mesh (closed_surface.h). Thread-safe.
 class MeshInterior {
 public:
     explicit MeshInterior(std::shared_ptr<const TriangleMesh> mesh);
-    /// left_out: what closed_surface() says of the mesh.
+    /// Uses a known set of triangles to leave out: ClosedSurface::left_out of the mesh.
     MeshInterior(std::shared_ptr<const TriangleMesh> mesh, const std::vector<std::uint32_t>& left_out);
 
-    /// Exact; false for a point on the surface itself.
+    /// Returns true if the point is inside. Exact. A point on the surface itself is not inside.
     [[nodiscard]] bool contains(const Vec3& point, InsideRule rule = InsideRule::parity) const;
-    /// Winding number at a finite point within box(), without the triangles of one shell. shell_of: shell of each
-    /// triangle. Exact for the point moved as above.
+    /// Returns the winding number at a finite point within box(), without the triangles of one shell. `shell_of` is the
+    /// shell of each triangle. The result is exact for the infinitesimally moved point.
     [[nodiscard]] std::int64_t winding_without(const Vec3& point, const std::vector<std::uint32_t>& shell_of,
                                                std::uint32_t shell) const;
     [[nodiscard]] const Box3& box() const { return box_; }
 
 private:
-    /// Along x and y, of a triangle.
+    /// The range of columns that a triangle covers, along x and y.
     struct Columns {
         std::array<std::size_t, 2> first;
         std::array<std::size_t, 2> last;
@@ -51,7 +51,7 @@ private:
 
     std::shared_ptr<const TriangleMesh> mesh_;
     Box3 box_;
-    std::size_t cells_ = 1;  // columns along x and y each
+    std::size_t cells_ = 1;  // columns along x and along y
     std::vector<std::uint32_t> column_begin_;
     std::vector<std::uint32_t> column_triangles_;
 };

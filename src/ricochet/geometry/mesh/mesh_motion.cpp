@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Two keys are further apart than this part of the larger of their times.
+/// Smallest distance of two keys, as a fraction of the larger of their times.
 constexpr double kLeastSpacing = 0x1p-40;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("mesh that deforms: " + what); }
@@ -69,7 +69,7 @@ double MeshMotion::key_time(std::int64_t key) const {
     return times_[static_cast<std::size_t>(key - round * in_round)] + static_cast<double>(round) * period;
 }
 
-/// Of keys that repeat.
+/// Returns the key before a time for repeating keys.
 std::int64_t MeshMotion::key_before(double time) const {
     constexpr double kMostRounds = 0x1p52;
     const double period = times_.back() - times_.front();

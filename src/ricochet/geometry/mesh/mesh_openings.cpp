@@ -14,11 +14,12 @@
 namespace ricochet {
 namespace {
 
-/// Directions in which loops are measured, besides those across their edges, of which long loops spare some.
+/// Limits of the directions in which loops are measured: fixed directions, and directions across edges. Long loops skip
+/// some of their edges.
 constexpr int kDirections = 90;
 constexpr std::size_t kMostEdges = 512;
 
-/// Twice the area that a closed chain encloses, as a vector (M. E. Newell's rule).
+/// Returns twice the area that a closed chain encloses, as a vector (M. E. Newell's rule).
 Vec3 area_vector(const TriangleMesh& mesh, std::span<const std::uint32_t> loop) {
     Vec3 sum;
     const Vec3& origin = mesh.vertices[loop[0]];
@@ -44,7 +45,7 @@ double width_of(const TriangleMesh& mesh, std::span<const std::uint32_t> loop) {
     if (!(length(area) > 0.0)) return 0.0;
     const auto [first, second] = tangent_frame(normalized(area));
     double width = std::numeric_limits<double>::infinity();
-    // The smallest extent of a convex outline is that across one of its edges.
+    // The smallest extent of a convex outline is across one of its edges.
     const std::size_t stride = 1 + loop.size() / kMostEdges;
     for (std::size_t k = 0; k < loop.size(); k += stride) {
         const Vec3 edge = mesh.vertices[loop[(k + 1) % loop.size()]] - mesh.vertices[loop[k]];

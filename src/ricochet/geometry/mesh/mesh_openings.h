@@ -1,5 +1,5 @@
 /// \file
-/// Where a surface is open: its boundary loops as holes and mouths, and how far around a point it closes.
+/// Openings of a surface: the size of its boundary loops, and the degree to which it encloses a point.
 #pragma once
 
 #include <vector>
@@ -11,19 +11,21 @@ namespace ricochet {
 
 /// A boundary loop of a mesh.
 struct MeshOpening {
-    double width = 0.0;     ///< m: no ball wider than that passes through the loop, if the loop lies in a plane
-    double diameter = 0.0;  ///< m, diagonal of its box
+    double width = 0.0;     ///< in m; if the loop is planar, no wider ball passes through it
+    double diameter = 0.0;  ///< in m, diagonal of its box
 };
 
-/// One for each of MeshTopology::boundary_loops(), equal positions joined. The width is the smallest extent of the loop
-/// in the plane in which it encloses most, across its edges (up to some 500) and in 90 more directions: exact for
-/// convex loops; 0 for a loop that encloses nothing.
+/// Returns one opening for each of MeshTopology::boundary_loops(), with equal positions joined. The width is the
+/// smallest extent of the loop in the plane in which it encloses the largest area. Extents are measured across its
+/// edges (up to about 500) and in 90 further directions. The width is exact for convex loops and 0 for a loop that
+/// encloses no area.
 [[nodiscard]] std::vector<MeshOpening> openings_of(const TriangleMesh& mesh);
 
-/// The part of all directions from p in which the surface stands with its back to p, less the part in which it faces p:
-/// 1 inside a closed mesh wound outward, 0 outside; between for open ones. Source of the formula: A. van Oosterom and
-/// J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Trans. Biomed. Eng. 30, 1983; of its use: A. Jacobson,
-/// L. Kavan, O. Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding Numbers", SIGGRAPH 2013.
+/// Returns the generalized winding number of p. It is the fraction of directions from p that hit the surface from
+/// behind, minus the fraction that hit it from the front. It is 1 inside a closed mesh wound outward, 0 outside, and
+/// between them for open meshes. Source of the formula: A. van Oosterom and J. Strackee, "The Solid Angle of a Plane
+/// Triangle", IEEE Trans. Biomed. Eng. 30, 1983. Source of the method: A. Jacobson, L. Kavan, O. Sorkine-Hornung,
+/// "Robust Inside-Outside Segmentation using Generalized Winding Numbers", SIGGRAPH 2013.
 [[nodiscard]] double winding_number(const TriangleMesh& mesh, const Vec3& p);
 
 }  // namespace ricochet

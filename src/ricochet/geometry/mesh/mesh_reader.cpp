@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-// A signature in the content outweighs the name; without one the extension decides.
+// A signature in the content takes precedence over the name. Without a signature, the extension decides.
 std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesystem::path& path) {
     if (looks_like_ply(source)) return MeshFormat::kPly;
     if (has_binary_stl_size(source) || starts_with_solid(source)) return MeshFormat::kStl;
@@ -25,7 +25,7 @@ std::optional<MeshFormat> format_of(const MeshSource& source, const std::filesys
     return std::nullopt;
 }
 
-// Locale-free on purpose: file formats are ASCII.
+// Independent of the locale, because file formats are ASCII.
 std::string ascii_lower(std::string text) {
     for (char& c : text) {
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -33,7 +33,7 @@ std::string ascii_lower(std::string text) {
     return text;
 }
 
-/// Where a glTF file's buffers may be; nothing for a file that is in memory.
+/// Folder of a glTF file's buffers; nullopt for a file that is in memory.
 using Folder = std::optional<std::filesystem::path>;
 
 ParsedMesh parse(const MeshSource& source, const std::filesystem::path& path, const Folder& folder) {
@@ -67,7 +67,7 @@ ParsedMesh parse_checked(const std::filesystem::path& path, std::string_view byt
     return parsed;
 }
 
-// Frees what collisions do not need, the triangles' own memory being taken already.
+// Frees all data that collisions do not need. The triangles already have their own memory.
 void keep_triangles(ImportedMesh& imported) {
     imported.mesh.vertices = std::move(imported.polygons.vertices);
     imported.polygons.vertices = {};
@@ -103,7 +103,7 @@ ImportedMesh read_mesh(const std::filesystem::path& path, MeshContent content) {
     ParsedMesh parsed = [&path] {
         const FileBytes bytes = read_regular_file(path);
         return parse_checked(path, bytes.view(), path.parent_path());
-    }();  // the file's bytes are gone before the triangles are made
+    }();  // the file's bytes are freed before triangulation
     return finish(std::move(parsed), content);
 }
 

@@ -24,7 +24,7 @@ std::size_t count_degenerate(const TriangleMesh& mesh) {
     return static_cast<std::size_t>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), without_area));
 }
 
-// "1 edge is", "2 edges are".
+// Formats a count with its noun: "1 edge is", "2 edges are".
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -34,9 +34,9 @@ void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) 
     if (topology.closed) return;
     if (topology.boundary_edges == 0) {
         warnings.push_back(
-            "not closed, though without an opening: edges belong to three faces or another odd number of them, as "
-            "where walls part an inside, or polygons that are listed twice are cut along different diagonals, so "
-            "nothing leaks, but inside and outside cannot be told apart");
+            "not closed, though without an opening: edges belong to three faces or another odd number (inner "
+            "walls, or polygons that are listed twice and cut along different diagonals); nothing leaks, but inside "
+            "and outside cannot be told apart");
         return;
     }
     warnings.push_back(fmt::format("open surface, {} in {}: particles pass through the openings",
@@ -75,7 +75,7 @@ void warn_of_orientation(const MeshReport& report, std::vector<std::string>& war
         warnings.push_back(
             "wound inside out, the faces' normals point inward: faces stop particles from both sides, so nothing "
             "leaks, "
-            "but a mesh emitter on them (without volume) gives birth on the inside and launches inward");
+            "but a mesh emitter on them (without volume) spawns particles on the inside and launches them inward");
     }
 }
 
@@ -114,9 +114,8 @@ void warn_of_self_intersections(const MeshReport& report, std::vector<std::strin
 void warn_of_nested_shells(const MeshReport& report, std::vector<std::string>& warnings) {
     if (report.shells_nested_alike == 0) return;
     warnings.push_back(fmt::format(
-        "{} within another that is wound the same way: nothing leaks and the inside is told by parity, so the inner "
-        "shell "
-        "is a hole, but the volume counts it twice; reverse the inner faces to make the volume that of the wall",
+        "{} within another that is wound the same way: nothing leaks, and parity decides the inside, so the inner "
+        "shell is a hole; the volume counts it twice: reverse the inner faces to get the volume of the wall",
         counted(report.shells_nested_alike, "shell lies", "shells lie")));
 }
 

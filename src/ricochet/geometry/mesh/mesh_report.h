@@ -16,30 +16,30 @@
 
 namespace ricochet {
 
-/// What `ricochet info` shows.
+/// Report that `ricochet info` shows.
 struct MeshReport {
     std::string format;
-    std::size_t vertices = 0;             ///< in the file, used or not
-    std::size_t faces = 0;                ///< as the file lists them
-    std::size_t triangles = 0;            ///< of the collision mesh
-    Box3 bounds;                          ///< of the triangles, m
-    double area = 0.0;                    ///< m^2
-    std::optional<double> volume;         ///< enclosed volume, m^3, not negative; nothing when the surface is open
-    bool wound_inward = false;            ///< closed, and the faces' normals point to the inside
-    TopologyReport topology;              ///< of the collision mesh, equal positions joined
-    std::size_t joined_vertices = 0;      ///< used vertices at the position of an earlier one, joined for the topology
-    std::size_t shells_nested_alike = 0;  ///< consistent winding only: shells within others that are wound the same way
-    std::size_t duplicate_faces = 0;      ///< faces with the same vertices as an earlier one
+    std::size_t vertices = 0;              ///< in the file, used or not
+    std::size_t faces = 0;                 ///< as listed in the file
+    std::size_t triangles = 0;             ///< of the collision mesh
+    Box3 bounds;                           ///< of the triangles, in m
+    double area = 0.0;                     ///< in m^2
+    std::optional<double> volume;          ///< enclosed volume, in m^3, not negative; nullopt for an open surface
+    bool wound_inward = false;             ///< closed, and the faces' normals point inward
+    TopologyReport topology;               ///< of the collision mesh, with equal positions joined
+    std::size_t joined_vertices = 0;       ///< used vertices that repeat an earlier position, joined for the topology
+    std::size_t shells_nested_alike = 0;   ///< consistent winding only: shells within others of the same winding
+    std::size_t duplicate_faces = 0;       ///< faces with the same vertices as an earlier one
     std::size_t degenerate_triangles = 0;  ///< exactly without area
     std::size_t faces_with_repeated_corners = 0;
     std::size_t crossing_faces = 0;      ///< polygons whose outline crosses itself
-    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, equal positions joined
+    std::size_t self_intersections = 0;  ///< pairs of triangles that touch or cross, with equal positions joined
     bool self_intersections_are_all = true;
     std::optional<WeldReport> weld;     ///< STL and glTF only
     bool y_up = false;                  ///< the file has y up; the bounds have z up
-    std::vector<NamedTriangles> names;  ///< by which faces can be meant
-    std::vector<std::string> notes;     ///< what the file holds and was not read
-    std::vector<std::string> warnings;  ///< one sentence per kind of defect: what it is, what it means for leaks
+    std::vector<NamedTriangles> names;  ///< names of faces
+    std::vector<std::string> notes;     ///< notes on content that was not read
+    std::vector<std::string> warnings;  ///< one sentence per kind of defect, with its effect on leaks
 };
 
 /// Examines a mesh. Time and memory are close to linear in its size.

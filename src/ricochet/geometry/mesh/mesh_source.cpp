@@ -33,7 +33,7 @@ void require_regular(const std::filesystem::path& path, const struct stat& statu
 
 class FileDescriptor {
 public:
-    // Non-blocking: should the name become a FIFO after it was checked, opening it must not wait for a writer.
+    // Opened without blocking. If the name becomes a FIFO after the check, opening it must not wait for a writer.
     explicit FileDescriptor(const std::filesystem::path& path)
         : value_(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
     ~FileDescriptor() {
@@ -51,13 +51,13 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 bool is_line_break(char c) { return c == '\n' || c == '\r'; }
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// from_chars refuses a leading plus; the formats allow it.
+// from_chars refuses a leading plus, which the formats allow.
 const char* skip_plus(const char* at, const char* end) {
     return end - at > 1 && *at == '+' && (is_digit(at[1]) || at[1] == '.') ? at + 1 : at;
 }
 
-// Decides for a number that is out of the range of doubles whether it is too small: by the decimal place of its first
-// non-zero digit.
+// Returns true if a number outside the range of doubles is too small. The decimal position of its first nonzero digit
+// decides.
 bool is_too_small(std::string_view text) {
     const std::size_t exponent_mark = text.find_first_of("eE");
     const std::string_view mantissa = text.substr(0, exponent_mark);
@@ -68,7 +68,8 @@ bool is_too_small(std::string_view text) {
         if (digits.starts_with('+')) digits.remove_prefix(1);
         const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
         if (result.ec == std::errc::result_out_of_range) return digits.starts_with('-');
-        // Beyond this no count of digits makes a difference, and the sum below cannot overflow.
+        // A larger exponent makes no difference for any number of digits, and the clamp prevents overflow of the sum
+        // below.
         exponent = std::clamp(exponent, -kLargestExponent, kLargestExponent);
     }
     const auto point = static_cast<long long>(std::min(mantissa.find('.'), mantissa.size()));
@@ -181,7 +182,7 @@ std::string TextCursor::rest_of_line() {
                 ++at_;
                 continue;
             }
-            if (at_word_end() || (syntax_.hash_comments && *at_ == '#')) break;  // a continuation, or a comment
+            if (at_word_end() || (syntax_.hash_comments && *at_ == '#')) break;  // a continuation or a comment
             (void)word();
             last = at_;
         }
@@ -272,7 +273,7 @@ Vec3 TextCursor::point(const char* what) {
     return {x, y, z};
 }
 
-// Digits without a sign, too few to overflow: what nearly every index is.
+// Reads digits without a sign that are too few to overflow. Nearly every index has this form.
 std::optional<std::int64_t> TextCursor::small_number() {
     constexpr std::ptrdiff_t kSafeDigits = 18;
     const char* const most = end_ - at_ > kSafeDigits ? at_ + kSafeDigits : end_;

@@ -1,5 +1,6 @@
 /// \file
-/// Private to the mesh readers: a file's bytes, a cursor over its text, limits, errors, and the reader of each format.
+/// Common parts of the mesh readers: a file's bytes, a text cursor, limits, errors and the reader of each format.
+/// Private to the mesh readers.
 #pragma once
 
 #include <cmath>
@@ -21,7 +22,7 @@
 
 namespace ricochet {
 
-/// Bytes to read a mesh from; does not own them.
+/// Bytes of a mesh file. Does not own them.
 struct MeshSource {
     std::string name;        ///< file name for messages
     std::string_view bytes;  ///< the whole file
@@ -30,7 +31,7 @@ struct MeshSource {
     [[noreturn]] void fail(const std::string& what) const;
     /// Throws InputError "name:line: what".
     [[noreturn]] void fail_at_line(std::size_t line, const std::string& what) const;
-    /// Throws InputError "name: byte N: what"; the first byte is number 0.
+    /// Throws InputError "name: byte N: what". The first byte has number 0.
     [[noreturn]] void fail_at_byte(std::size_t byte, const std::string& what) const;
 };
 
@@ -42,40 +43,41 @@ struct FileBytes {
     [[nodiscard]] std::string_view view() const { return {data.get(), size}; }
 };
 
-/// Reads a regular file whole. Throws InputError for anything else (folder, FIFO, device), without opening it.
+/// Reads a whole regular file. Throws InputError for anything else (folder, FIFO, device) without opening it.
 [[nodiscard]] FileBytes read_regular_file(const std::filesystem::path& path);
 
-/// What a format's reader returns: the faces as listed.
+/// Result of a format's reader: the faces as listed.
 struct ParsedMesh {
     PolygonMesh polygons;
     std::string format;
     std::optional<WeldReport> weld;
-    bool y_up = false;                           ///< the file has y up; what was read has z up
+    bool y_up = false;                           ///< the file has y up; the result has z up
     std::vector<std::filesystem::path> files{};  ///< read besides the file itself
-    std::vector<std::string> notes{};            ///< what the file holds and was not read, a sentence each
+    std::vector<std::string> notes{};            ///< notes on content that was not read, one sentence each
 };
 
-/// Indices are 32-bit: more vertices or corners than this are refused.
+/// Largest number of vertices or corners. More are refused, because indices are 32-bit.
 inline constexpr std::uint64_t kLargestIndexCount = std::numeric_limits<std::uint32_t>::max();
 
-/// Ends the current face of a mesh that is being read.
+/// Ends the current face of a mesh under construction.
 inline void close_face(PolygonMesh& mesh) {
     mesh.face_offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
 }
 
-/// A word of a file for a message: printable, short, in quotes.
+/// Formats a word of a file for a message: printable, short, in quotes.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
 /// Refuses NUL bytes and UTF-16.
 void require_plain_text(const MeshSource& source);
 
-/// Reads a text once, in words, numbers and lines. Lines end with LF, CR LF or CR; numbers are read without locale.
+/// Reads a text once, in words, numbers and lines. Lines end with LF, CR LF or CR. Numbers are read independently of
+/// the locale.
 ///
-/// Inline functions decide the common case (a printable character, one blank, a lone LF), the `_slowly` functions hold
-/// the whole rule, with comments and continuation lines.
+/// Inline functions decide the common case (a printable character, one blank, a lone LF). The `_slowly` functions
+/// implement the complete rule, with comments and continuation lines.
 class TextCursor {
 public:
-    /// How a format writes what is not data.
+    /// Syntax of comments and continuation lines in a format.
     struct Syntax {
         bool hash_comments = false;             ///< '#' starts a comment that ends with the line
         bool backslash_continues_line = false;  ///< a backslash at the end joins the next line
@@ -92,57 +94,57 @@ public:
           line_(first_line),
           syntax_(syntax) {}
 
-    /// True when nothing but blanks (and a comment) is left on the line.
+    /// Returns true if the rest of the line has only blanks (and possibly a comment).
     [[nodiscard]] bool at_line_end() {
         if (comes_next(' ')) ++at_;
         return !comes_plain() && at_line_end_slowly();
     }
-    /// Next word of the line; empty at its end.
+    /// Reads the next word of the line. Returns an empty word at the end of the line.
     [[nodiscard]] std::string_view word();
-    /// Returns the rest of the line without blanks at its ends, as the syntax says: without a comment that begins after
-    /// a blank, and with continuation lines, each joined by one blank.
+    /// Returns the rest of the line without blanks at its ends. As the syntax specifies, a comment after a blank is
+    /// left out, and continuation lines are joined by one blank each.
     [[nodiscard]] std::string rest_of_line();
-    /// Goes to the line after the statement, and thus behind its continuation lines.
+    /// Moves to the line after the statement, behind its continuation lines.
     void skip_statement();
-    /// Goes to the start of the next line.
+    /// Moves to the start of the next line.
     void next_line() {
         if (!comes_next('\n')) return next_line_slowly();
         ++at_;
         ++line_;
     }
-    /// Goes to the next line that has a word; false when there is none.
+    /// Moves to the next line that has a word. Returns false if there is none.
     [[nodiscard]] bool next_filled_line();
-    /// Goes back by characters of the word that was read last.
+    /// Moves back by the given number of characters of the last word.
     void step_back(std::size_t characters) { at_ -= characters; }
-    /// Number of the line the cursor is in; 1 for the first.
+    /// Returns the number of the current line, which is 1 for the first.
     [[nodiscard]] std::size_t line() const { return line_; }
     [[nodiscard]] const MeshSource& source() const { return source_; }
     [[nodiscard]] std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
 
-    /// Next word of the line as a finite number; `what` names it in errors.
+    /// Reads the next word of the line as a finite number. `what` names it in errors.
     [[nodiscard]] double number(const char* what);
-    /// Skips a number that is not used; false if it is none that is finite, as programs write for a colour that they do
-    /// not know ("nan", "-nan(ind)", "inf", "1.#QNAN").
+    /// Skips an unused number. Returns false if it is not finite. Some programs write such values for an unknown colour
+    /// ("nan", "-nan(ind)", "inf", "1.#QNAN").
     [[nodiscard]] bool skip_number(const char* what);
-    /// The same within the range of coordinates; tiny values become zero.
+    /// Reads a finite number within the range of coordinates. Tiny values become zero.
     [[nodiscard]] double coordinate(const char* what);
     [[nodiscard]] Vec3 point(const char* what);
-    /// Next word of the line as an integer.
+    /// Reads the next word of the line as an integer.
     [[nodiscard]] std::int64_t integer(const char* what);
-    /// An integer that may be followed by other characters of the same word (OBJ corners).
+    /// Reads an integer that may be followed by other characters of the same word (OBJ corners).
     [[nodiscard]] std::int64_t integer_part(const char* what);
-    /// Takes one character if it comes next, without skipping blanks.
+    /// Consumes a character if it comes next, without skipping blanks. Returns true if it did.
     [[nodiscard]] bool take(char c);
-    /// True if the character comes next, without skipping blanks.
+    /// Returns true if the character comes next, without skipping blanks.
     [[nodiscard]] bool comes_next(char c) const { return at_ != end_ && *at_ == c; }
-    /// True at a blank, a line end or the text's end.
+    /// Returns true at a blank, a line end or the text's end.
     [[nodiscard]] bool at_word_end() const { return !comes_plain() && at_word_end_slowly(); }
 
     /// Throws InputError with the file and the line.
     [[noreturn]] void fail(const std::string& what) const { source_.fail_at_line(line_, what); }
 
 private:
-    // A character that belongs to a word in every syntax.
+    // Returns true if the next character belongs to a word in every syntax.
     [[nodiscard]] bool comes_plain() const { return at_ != end_ && *at_ > ' ' && *at_ != '#' && *at_ != '\\'; }
     [[nodiscard]] bool at_line_end_slowly();
     [[nodiscard]] bool at_word_end_slowly() const;
@@ -160,62 +162,63 @@ private:
     Syntax syntax_;
 };
 
-/// Brings a coordinate into the range in which predicates are exact; nothing when it is too large or not finite.
+/// Returns a coordinate in the range in which the predicates are exact, or nullopt if it is too large or not finite.
 [[nodiscard]] inline std::optional<double> accepted_coordinate(double value) {
     if (!(std::fabs(value) <= kLargestCoordinate)) return std::nullopt;
     return std::fabs(value) < kSmallestExactCoordinate ? 0.0 : value;
 }
 
-/// Reads OBJ text. Faces are grouped by the name valid at the face: its material (usemtl) if there is one, else its
-/// group (g), else its object (o), else the empty name.
+/// Reads OBJ text. Each face has the material (usemtl), the group (g) and the object (o) that are valid at the face.
 [[nodiscard]] ParsedMesh read_obj(const MeshSource& source);
 
-/// True when the text's first statement is one that OBJ has.
+/// Returns true if the text's first statement exists in OBJ.
 [[nodiscard]] bool looks_like_obj(const MeshSource& source);
 
-/// Reads OFF text with any of the prefixes ST, C and N; every vertex and every face has a line of its own. Values
-/// after the coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. A
-/// file that cannot be read so is read as free-form text, in which line ends separate numbers as blanks do. It must
-/// then hold exactly the numbers that its counts and prefixes promise.
+/// Reads OFF text with any of the prefixes ST, C and N. Every vertex and every face has its own line. Values after the
+/// coordinates and after a face's indices (colours, normals, texture) must be numbers and are not used. If this fails,
+/// the file is read as free-form text, in which line ends separate numbers like blanks. It must then contain exactly as
+/// many numbers as its counts and prefixes promise.
 [[nodiscard]] ParsedMesh read_off(const MeshSource& source);
 
-/// True when the text's first word is the keyword OFF with some of its prefixes.
+/// Returns true if the text's first word is the keyword OFF with any of its prefixes.
 [[nodiscard]] bool looks_like_off(const MeshSource& source);
 
-/// Reads the elements vertex (x, y, z of any type), face (list vertex_indices or vertex_index) and tristrips
-/// (list vertex_indices, -1 starts a new strip); everything else is skipped. In an ASCII file every element has a
-/// line of its own. Triangles of a strip that repeat a vertex only turn the strip; they are not faces.
+/// Reads the elements vertex, face and tristrips, and skips all others. A vertex has x, y and z of any type. A face has
+/// a list vertex_indices or vertex_index. A strip has a list vertex_indices, in which -1 starts a new strip. In an
+/// ASCII file every element has its own line. Triangles of a strip that repeat a vertex only change its direction and
+/// are not faces.
 [[nodiscard]] ParsedMesh read_ply(const MeshSource& source);
 
-/// True when the size is what the triangle count at byte 80 requires, or larger by one byte or by CR LF; the header's
+/// Returns true if the size matches the triangle count at byte 80, or exceeds it by one byte or by CR LF. The header's
 /// text does not matter.
 [[nodiscard]] bool has_binary_stl_size(const MeshSource& source);
 
-/// True when the text starts with the word "solid", after lines that begin with '#' if there are any.
+/// Returns true if the text starts with the word "solid". Lines that begin with '#' may come before it.
 [[nodiscard]] bool starts_with_solid(const MeshSource& source);
 
 /// Reads STL and joins corners of equal coordinates. The facets' normals are not used. The name of a solid in an ASCII
-/// file is the group of its facets.
+/// file becomes the group of its facets.
 [[nodiscard]] ParsedMesh read_stl(const MeshSource& source);
 
-/// Corners of triangles that a glTF file may show however small it is; beyond, 16 for each of its bytes.
+/// Number of triangle corners that any glTF file may show, however small. Larger files may show 16 per byte.
 inline constexpr std::size_t kFreeGltfCorners = 4'000'000;
 
-/// Reads glTF 2.0, as text or binary (GLB): the triangles of the scene that the file shows, where its nodes put them,
-/// with z up. Corners of one mesh at one node are joined where their coordinates are equal. A face has the name of its
-/// material, the mesh's name as its group, and the node's as its object. folder: where files of buffers are; nothing:
-/// such files are refused.
+/// Reads glTF 2.0, as text or binary (GLB). The result has the triangles of the scene that the file shows, placed by
+/// its nodes, with z up. Corners of one mesh at one node are joined if their coordinates are equal. A face has the name
+/// of its material, the mesh's name as its group, and the node's as its object. `folder` contains the files of buffers.
+/// If it is nullopt, such files are refused.
 [[nodiscard]] ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesystem::path>& folder,
                                    std::size_t free_corners = kFreeGltfCorners);
 
-/// True when the bytes begin as a GLB file does.
+/// Returns true if the bytes begin like a GLB file.
 [[nodiscard]] bool looks_like_glb(const MeshSource& source);
 
-/// Reads a file by the Assimp library, which finds the format by content and extension (".fbx"): the faces that its
-/// nodes place, as read_gltf() does. Nothing else is opened. Throws InputError too where this build has no Assimp.
+/// Reads a file with the Assimp library, which finds the format by content and extension (".fbx"). The result has the
+/// faces that the file's nodes place, as in read_gltf(). No other file is opened. Also throws InputError if this build
+/// has no Assimp.
 [[nodiscard]] ParsedMesh read_foreign(const MeshSource& source, const std::string& extension);
 
-/// True where this build has Assimp.
+/// Returns true if this build has Assimp.
 [[nodiscard]] bool reads_foreign();
 
 }  // namespace ricochet

@@ -41,7 +41,7 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 using Corners = std::span<const std::uint32_t>;
 
-// Adds a face; equal neighbours count once, and faces with fewer than three corners left are none.
+// Adds a face. Equal neighbours count once. A face with fewer than three remaining corners is not added.
 void add_face(Corners corners, FaceList& faces) {
     const std::size_t first = faces.corners.size();
     for (const std::uint32_t corner : corners) {
@@ -82,12 +82,12 @@ Corners corners_of(const TriangleMesh& mesh) {
     return {mesh.triangles.front().data(), 3 * mesh.triangles.size()};
 }
 
-// Half-edges that run along one edge in both directions, one each, can be glued.
+// Returns true if exactly one half-edge runs along the edge in each direction, so that both can be glued.
 bool is_manifold_edge(const FaceList& faces, std::span<const std::uint32_t> uses) {
     return uses.size() == 2 && faces.corners[uses[0]] != faces.corners[uses[1]];
 }
 
-// Joins, for two half-edges along one edge, the corners at its two ends.
+// Joins the corners of two half-edges at both ends of their edge.
 void join_at_ends(const FaceList& faces, std::uint32_t a, std::uint32_t b, DisjointSets& corners) {
     const bool same_direction = faces.corners[a] == faces.corners[b];
     corners.join(a, same_direction ? b : faces.next_corner[b]);
@@ -163,13 +163,14 @@ FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers)
     return faces;
 }
 
-// The half-edge mesh is assembled from the edge table instead of by add_face: that function searches all edges of a
-// vertex for every face (quadratic at the tip of a large fan) and refuses what is not manifold. Here every vertex is
-// first split into its fans, which are manifold by construction: a half-edge vertex has at most one gap.
+// The half-edge mesh is assembled from the edge table instead of by add_face. That function searches all edges of a
+// vertex for every face, which is quadratic at the tip of a large fan. It also refuses non-manifold input. Here every
+// vertex is first split into its fans. They are manifold by construction, because a half-edge vertex has at most one
+// gap.
 struct MeshTopology::Impl {
     OpenMesh::PolyConnectivity mesh;
-    std::vector<std::uint32_t> vertex_of_fan;  // our vertex of every half-edge vertex
-    std::vector<char> is_real_boundary;        // per edge: it belongs to one face, it is not a cut
+    std::vector<std::uint32_t> vertex_of_fan;  // vertex of the index list for every half-edge vertex
+    std::vector<char> is_real_boundary;        // per edge: it belongs to one face and is not a cut
     TopologyReport report;
 
     [[nodiscard]] static std::unique_ptr<Impl> of(const FaceList& faces, std::size_t vertex_count);
@@ -182,8 +183,8 @@ struct MeshTopology::Impl {
     [[nodiscard]] std::vector<std::uint32_t> loop_from(OpenMesh::HalfedgeHandle start,
                                                        std::vector<char>& visited) const;
 
-    std::vector<std::uint32_t> fan_of_corner;                  // scratch of assembly
-    std::vector<OpenMesh::HalfedgeHandle> halfedge_of_corner;  // scratch of assembly
+    std::vector<std::uint32_t> fan_of_corner;                  // scratch memory of the assembly
+    std::vector<OpenMesh::HalfedgeHandle> halfedge_of_corner;  // scratch memory of the assembly
 };
 
 void MeshTopology::Impl::assemble(const FaceList& faces, const EdgeTable& edges) {
@@ -202,7 +203,7 @@ void MeshTopology::Impl::add_vertices(const FaceList& faces, const EdgeTable& ed
     });
     fan_of_corner.assign(faces.corners.size(), kNone);
     for (std::uint32_t c = 0; c < faces.corners.size(); ++c) {
-        const std::uint32_t first = fans.find(c);  // not after c, so it has its number already
+        const std::uint32_t first = fans.find(c);  // not after c, so it already has its index
         if (first == c) {
             fan_of_corner[c] = static_cast<std::uint32_t>(vertex_of_fan.size());
             vertex_of_fan.push_back(faces.corners[c]);
@@ -247,7 +248,7 @@ void MeshTopology::Impl::add_faces(const FaceList& faces) {
     }
 }
 
-// A vertex at a gap starts exactly one half-edge without a face; OpenMesh requires it to be the vertex's own.
+// A vertex at a gap starts exactly one half-edge without a face. OpenMesh requires it to be the vertex's own half-edge.
 void MeshTopology::Impl::close_gaps() {
     for (std::size_t h = 0; h < mesh.n_halfedges(); ++h) {
         const OpenMesh::HalfedgeHandle halfedge(static_cast<int>(h));
@@ -322,7 +323,8 @@ std::vector<std::vector<std::uint32_t>> MeshTopology::boundary_loops() const {
     return loops;
 }
 
-// The half-edge structure has an edge that is cut once for every face along it: those become one without neighbours.
+// The half-edge structure stores a cut edge once for every face along it. These copies become one edge without
+// neighbours.
 std::vector<MeshEdge> MeshTopology::edges() const {
     std::vector<MeshEdge> edges;
     edges.reserve(impl_->mesh.n_edges());

@@ -1,5 +1,5 @@
 /// \file
-/// How the faces of a mesh are connected; the only header in front of OpenMesh.
+/// Connectivity of the faces of a mesh. This is the only header that wraps OpenMesh.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 
 namespace ricochet {
 
-// Which faces use which edge, which elements are connected, which positions are equal.
+// Basic connectivity: faces per edge, connected elements and equal positions.
 
-/// Faces as corner lists in which neighbouring corners differ.
+/// Faces as lists of corners. Neighbouring corners differ.
 struct FaceList {
     std::vector<std::uint32_t> corners;       ///< vertex of every corner
     std::vector<std::uint32_t> face_offsets;  ///< as in PolygonMesh
@@ -26,20 +26,23 @@ struct FaceList {
     [[nodiscard]] std::size_t face_count() const { return face_offsets.size() - 1; }
 };
 
-/// Lists triangles that name three vertices. numbers, if given, receives the triangle that each face is.
+/// Lists the triangles that have three different vertices. If `numbers` is given, it receives the triangle of each
+/// face.
 [[nodiscard]] FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers = nullptr);
 
-/// Returns the faces with the same vertices as an earlier one, in whatever order, in increasing order.
+/// Returns the faces with the same vertices as an earlier one, in any order of vertices. The list is in increasing
+/// order.
 [[nodiscard]] std::vector<std::uint32_t> repeated_faces(const FaceList& faces);
 
-/// All uses of all edges, grouped by edge. The half-edge of corner c runs from its vertex to that of next_corner[c].
-/// Bucket sort by the edge's smaller vertex: linear in the number of corners for meshes of bounded valence.
+/// All uses of all edges, grouped by edge. The half-edge of corner c goes from its vertex to the vertex of
+/// next_corner[c]. Method: bucket sort by the edge's smaller vertex, linear in the number of corners for meshes of
+/// bounded valence.
 class EdgeTable {
 public:
     EdgeTable(const FaceList& faces, std::size_t vertex_count);
 
-    /// Calls visit(corners) once per edge with the corners whose half-edges run along it, in either direction, in
-    /// increasing order.
+    /// Calls visit(corners) once per edge. The corners, in increasing order, are those whose half-edges run along the
+    /// edge in either direction.
     template <typename Visit>
     void for_each_edge(Visit&& visit) const {
         std::vector<std::uint32_t> corners;
@@ -59,45 +62,46 @@ private:
         std::uint32_t corner;
     };
 
-    std::vector<std::uint32_t> begin_;  // per smaller vertex: its part of uses_
+    std::vector<std::uint32_t> begin_;  // per smaller vertex: its range in uses_
     std::vector<Use> uses_;
 };
 
-/// Counts that say whether a surface is watertight and two-manifold, by vertex index: where coincident vertices are to
-/// be one, joined_by_position() comes first. A face that names a vertex several times in a row counts it once; faces
-/// with fewer than three corners left are ignored.
+/// Counts that show whether a surface is watertight and two-manifold, by vertex index. Apply joined_by_position() first
+/// if coincident vertices should count as one. A vertex that a face names several times in a row counts once. Faces
+/// with fewer than three remaining corners are ignored.
 struct TopologyReport {
-    bool closed = false;                   ///< there is an inside, see closed_surface.h
+    bool closed = false;                   ///< an inside exists, see closed_surface.h
     std::size_t shells = 0;                ///< sets of faces connected by edges
     std::size_t boundary_edges = 0;        ///< edges of one face
     std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
     std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
-    std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces are several groups without a common edge
-    std::size_t inconsistent_edges = 0;    ///< edge directions that more than one face runs along
+    std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces form several groups without a common edge
+    std::size_t inconsistent_edges = 0;    ///< edge directions shared by more than one face
     bool consistently_oriented = false;    ///< no inconsistent edge
     std::size_t unused_vertices = 0;       ///< vertices that no face names
 };
 
-/// Instead of a vertex index: none.
+/// Marker for a missing vertex.
 inline constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 
-/// An edge of a mesh, and what lies across it.
+/// An edge of a mesh and the corners opposite to it.
 struct MeshEdge {
     std::uint32_t first;   ///< vertex
     std::uint32_t second;  ///< vertex, first < second
-    /// Of the triangle on either side the corner that is not on the edge. kNoVertex where there is no face, where the
-    /// face is no triangle, and on both sides of an edge at which the surface is not manifold.
+    /// Corner of the triangle on either side that is not on the edge. It is kNoVertex if there is no face, or if the
+    /// face is not a triangle. Both are kNoVertex if the surface is not manifold at the edge.
     std::array<std::uint32_t, 2> opposite;
 };
 
-/// Half-edge structure of a polygon mesh. Where it is not manifold (edges of several faces, vertices that join separate
-/// sheets, neighbours of opposite winding) the structure is cut open, as half-edges cannot represent it; the counts of
-/// the report are those of the index list all the same. Time and memory are linear in the number of corners.
+/// Half-edge structure of a polygon mesh. A half-edge structure cannot represent edges of several faces, vertices that
+/// join separate sheets, or neighbours of opposite winding. It is cut open there. The counts of the report still
+/// describe the index list. Time and memory are linear in the number of corners.
 class MeshTopology {
 public:
     explicit MeshTopology(const PolygonMesh& mesh);
-    /// The same for triangles. Differs from that of the polygons they were cut from in one case: two polygons with two
-    /// common corners that are not neighbours may be cut along the same line, which is an edge of four triangles then.
+    /// Builds the structure for triangles. It can differ from the structure of the original polygons in one case. Two
+    /// polygons with two common corners that are not neighbours may be cut along the same line. This line then is an
+    /// edge of four triangles.
     explicit MeshTopology(const TriangleMesh& mesh);
     ~MeshTopology();
     MeshTopology(MeshTopology&&) noexcept;
@@ -105,12 +109,12 @@ public:
 
     [[nodiscard]] const TopologyReport& report() const;
 
-    /// The chains of half-edges that bound the surface, as vertex numbers, each with the surface on its right hand (the
-    /// direction opposite to the faces'). A chain that meets cuts of the half-edge structure runs along them; chains of
-    /// cuts alone are left out.
+    /// Returns the chains of half-edges that bound the surface, as vertex indices. The surface is on the right of each
+    /// chain, opposite to the faces' direction. A chain that meets cuts of the half-edge structure continues along
+    /// them. Chains that consist of cuts alone are left out.
     [[nodiscard]] std::vector<std::vector<std::uint32_t>> boundary_loops() const;
 
-    /// Every edge of the index list once, in the order of (first, second).
+    /// Returns every edge of the index list once, in the order of (first, second).
     [[nodiscard]] std::vector<MeshEdge> edges() const;
 
 private:
@@ -119,13 +123,13 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Vertices that no triangle names.
+/// Returns the number of vertices that no triangle names.
 [[nodiscard]] std::size_t count_unused_vertices(const TriangleMesh& mesh);
 
-/// Faces with the same vertices as an earlier one, in whatever order.
+/// Returns the number of faces with the same vertices as an earlier one, in any order of vertices.
 [[nodiscard]] std::size_t count_duplicate_faces(const PolygonMesh& mesh);
 
-/// OpenMesh's version, for `--version` and reports.
+/// Returns OpenMesh's version, for `--version` and reports.
 [[nodiscard]] const char* openmesh_version();
 
 }  // namespace ricochet

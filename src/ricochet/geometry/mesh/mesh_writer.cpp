@@ -17,7 +17,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the binary writers copy little-endian memory");
 
-// Collects small pieces, so that the file sees blocks.
+// Collects small pieces of output, so that the file is written in blocks.
 class BlockWriter {
 public:
     explicit BlockWriter(const std::filesystem::path& path) : file_(path) {}

@@ -1,5 +1,5 @@
 /// \file
-/// Mesh files written from triangle meshes. Every file is written under a temporary name and renamed when complete.
+/// Writes triangle meshes to files. Every file is written under a temporary name and renamed when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +9,14 @@
 
 namespace ricochet {
 
-/// Writes the mesh in the format of the name's extension (.obj, .ply, .stl, .off in any case): OBJ and OFF as text with
-/// as many digits as bring back the same double (17 at most), PLY as binary little endian with double coordinates, STL
-/// as binary. STL stores single precision and no shared vertices: coordinates are rounded to the nearest float.
-/// Throws InputError for another extension and for an STL coordinate beyond single precision, RunError when the disk
-/// refuses.
+/// Writes the mesh in the format of the name's extension (.obj, .ply, .stl, .off in any case). OBJ and OFF are text
+/// with enough digits to restore the same double (17 at most). PLY is binary little endian with double coordinates, and
+/// STL is binary. STL stores single precision and no shared vertices, so coordinates are rounded to the nearest float.
+/// Throws InputError for another extension and for an STL coordinate beyond single precision. Throws RunError if the
+/// disk write fails.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path);
 
-/// The same in a given format, whatever the name.
+/// Writes the mesh in a given format, regardless of the name.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& path, MeshFormat format);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// Stands in for assimp_reader.cpp where the library is built without Assimp.
+// Replaces assimp_reader.cpp if the library is built without Assimp.
 #include <fmt/format.h>
 
 #include "ricochet/geometry/mesh/mesh_source.h"

@@ -12,14 +12,15 @@
 namespace ricochet {
 namespace {
 
-// Statements that hold nothing a particle can hit: normals and texture coordinates, points and lines (no area),
-// render settings, other files, and attributes of curves, which matter only where a curve or surface is drawn.
+// Statements without geometry that a particle can hit: normals and texture coordinates, points and lines (no area),
+// render settings and other files. Attributes of curves are also ignored, because they only matter for a drawn curve or
+// surface.
 constexpr std::array<std::string_view, 32> kIgnored = {
     "vt",       "vn",       "s",     "mtllib", "p",   "l",      "vp",         "maplib",    "usemap", "lod",  "bevel",
     "c_interp", "d_interp", "stech", "ctech",  "mg",  "cstype", "deg",        "bmat",      "step",   "parm", "trim",
     "hole",     "scrv",     "sp",    "end",    "con", "curv2",  "shadow_obj", "trace_obj", "res",    "#"};
 
-// Statements that draw a curved surface or run something.
+// Statements that draw a curved surface or run a program.
 constexpr std::array<std::string_view, 9> kRefused = {"curv", "surf", "bsp", "bzp", "cdc", "cdp", "fo", "call", "csh"};
 
 template <typename List>
@@ -27,7 +28,7 @@ bool contains(const List& list, std::string_view word) {
     return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-// Lines that begin as vertices and faces do: what the lists will hold, as a rule.
+// Counts of lines that begin like vertices and faces. They are usually the sizes of the lists.
 struct LineCounts {
     std::size_t vertices = 0;
     std::size_t faces = 0;
@@ -75,8 +76,8 @@ private:
         std::size_t line = 0;
     };
 
-    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes: whatever the lines turn out to hold, the
-    // lists take no more than a small multiple of the file's size.
+    // The shortest line that can be read ("v 0 0 0", "f 1 2 3") has 8 bytes. The lists therefore take at most a small
+    // multiple of the file's size, whatever the lines contain.
     void reserve(std::string_view text) {
         constexpr std::size_t kShortestLine = 8;
         const LineCounts counts = count_lines(text);
@@ -106,8 +107,8 @@ private:
         }
     }
 
-    // Programs add statements of their own. A word that no program would choose, or a slip of the pen for a vertex or a
-    // face, is refused, because a part of the surface would be missing.
+    // Leaves out a statement that a program has added. An improbable word, or a misspelt vertex or face, is refused,
+    // because a part of the surface would be missing.
     void leave_out(std::string_view keyword) {
         constexpr std::array<std::string_view, 6> kSlips = {"V", "F", "vertex", "face", "VT", "VN"};
         const auto is_in_name = [](char c) {
@@ -139,7 +140,7 @@ private:
         return notes;
     }
 
-    // After x y z may come w (a weight of curves) or red green blue, with w or alpha.
+    // After x y z there may be w (a weight of curves), or red green blue with w or alpha.
     void read_vertex() {
         if (mesh_.vertices.size() >= kLargestIndexCount)
             cursor_.fail(fmt::format("more than {} vertices", kLargestIndexCount));
@@ -169,7 +170,7 @@ private:
         names_.record(mesh_);
     }
 
-    // v, v/t, v//n or v/t/n; only v counts.
+    // Reads a corner of the form v, v/t, v//n or v/t/n. Only v is used.
     void read_corner() {
         const std::int64_t index = cursor_.integer_part("vertex index of a face");
         for (int i = 0; i < 2 && cursor_.take('/'); ++i) {
@@ -179,7 +180,7 @@ private:
         mesh_.corners.push_back(vertex_number(index));
     }
 
-    // OBJ counts from 1, or backwards from the last vertex read with negative numbers.
+    // OBJ counts from 1, or backwards from the last vertex with negative numbers.
     std::uint32_t vertex_number(std::int64_t index) {
         const auto count = static_cast<std::int64_t>(mesh_.vertices.size());
         if (index == 0) cursor_.fail("vertex index 0, OBJ counts from 1 (or from -1 backwards)");

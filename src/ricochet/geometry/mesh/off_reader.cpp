@@ -19,7 +19,7 @@ struct OffHeader {
     bool any_dimension = false;
 };
 
-// The keyword with its prefixes. Some programs write the number of vertices right behind it ("OFF8 12 0").
+// Returns the keyword with its prefixes. Some programs write the number of vertices directly after it ("OFF8 12 0").
 std::string_view keyword_in(std::string_view word) {
     const std::size_t digits = word.find_last_not_of("0123456789");
     return word.substr(0, digits == std::string_view::npos ? 0 : digits + 1);
@@ -44,10 +44,10 @@ std::optional<OffHeader> parse_keyword(std::string_view word) {
     return header;
 }
 
-/// How a file uses line ends.
+/// Meaning of line ends in a file.
 enum class OffForm : std::uint8_t {
-    lines,  ///< the counts, each vertex, and each face have a line of their own
-    free,   ///< line ends separate numbers as blanks do; only a face's colour ends with its line
+    lines,  ///< the counts, each vertex and each face have their own line
+    free,   ///< line ends separate numbers like blanks; only a face's colour ends with its line
 };
 
 class OffReader {
@@ -85,7 +85,7 @@ private:
         if (cursor_.at_line_end()) cursor_.next_line();
     }
 
-    // Vertices, faces, and edges, which are not used and which some programs leave out.
+    // Reads the counts of vertices, faces and edges. The count of edges is not used, and some programs leave it out.
     void read_counts() {
         if (!cursor_.next_filled_line()) cursor_.fail("file ends before the counts of vertices and faces");
         vertex_count_ = count("number of vertices", 6);
@@ -99,8 +99,8 @@ private:
         mesh_.face_offsets.reserve(face_count_ + 1);
     }
 
-    // The shortest vertex line is "0 0 0\n", the shortest face line "3 0 1 2\n": no file holds more than its size
-    // allows.
+    // Reads a count and checks that the file is large enough for it. The shortest vertex line is "0 0 0\n", and the
+    // shortest face line is "3 0 1 2\n".
     std::uint64_t count(const char* what, std::uint64_t shortest_line) {
         const std::int64_t value = cursor_.integer(what);
         if (value < 0) cursor_.fail(fmt::format("{} is {}, expected 0 or more", what, value));
@@ -143,7 +143,7 @@ private:
         }
     }
 
-    /// In a free-form file the next number may be in a later line.
+    /// Moves to the next number, which can be in a later line of a free-form file.
     void cross_line_end() {
         if (is_free_ && !cursor_.next_filled_line()) cursor_.fail("file ends within a list of numbers");
     }
@@ -207,7 +207,7 @@ ParsedMesh read_off(const MeshSource& source) {
     try {
         return {OffReader(source, OffForm::lines).read(), "OFF", std::nullopt};
     } catch (const InputError& by_lines) {
-        // The reason that the common form gives is the one to show.
+        // The error of the common form is more useful, so it is reported.
         const std::string reason = by_lines.what();
         try {
             return {OffReader(source, OffForm::free).read(), "OFF", std::nullopt};

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the readers of files that put meshes into a tree of nodes: one mesh of all that is placed.
+/// Builds one mesh from all meshes that a tree of nodes places. Private to the readers of such files.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,14 @@
 
 namespace ricochet {
 
-/// x -> outer(inner(x)).
+/// Returns the map x -> outer(inner(x)).
 [[nodiscard]] AffineMap joined(const AffineMap& outer, const AffineMap& inner);
 
-/// A point that PlacedMeshBuilder::add_corner() refuses, for a message.
+/// Formats a message about a point that PlacedMeshBuilder::add_corner() refuses.
 [[nodiscard]] std::string misplaced_point(std::size_t number, const Vec3& placed);
 
-/// Collects faces where nodes put them, in a world with y up, and gives them with z up. Corners of one placed mesh are
-/// joined where their coordinates are equal: programs give every corner a vertex of its own where its normal or its
-/// texture differs.
+/// Collects placed faces in a world with y up and returns them with z up. Corners of one placed mesh are joined if
+/// their coordinates are equal. Programs duplicate a vertex for every corner with a different normal or texture.
 class PlacedMeshBuilder {
 public:
     PlacedMeshBuilder() { mesh_.face_offsets.push_back(0); }
@@ -31,15 +30,15 @@ public:
     PlacedMeshBuilder& operator=(const PlacedMeshBuilder&) = delete;
 
     void reserve(std::size_t corners);
-    /// The faces that follow are a mesh's, placed. world: of the file, from the mesh.
+    /// Starts a placed mesh for the faces that follow. `world` maps mesh coordinates to the file's world.
     void begin(const AffineMap& world, const std::string& object, const std::string& group);
-    /// Of the faces that follow.
+    /// Sets the material of the faces that follow.
     void set_material(const std::string& name) { names_.names().material = name; }
-    /// A corner of the next face. Nothing, or where it would be when that is not finite or out of range.
+    /// Adds a corner to the next face. Returns nullopt, or its placed position if that is not finite or out of range.
     [[nodiscard]] std::optional<Vec3> add_corner(const Vec3& local);
-    /// Ends that face. A placement that mirrors turns it, so that its outside stays outside.
+    /// Ends the face. A mirroring placement reverses it, so that its outside stays outside.
     void end_face();
-    /// What was collected since begin() is complete.
+    /// Ends the mesh that begin() started.
     void end();
     [[nodiscard]] ParsedMesh finish(std::string format);
 
@@ -48,7 +47,7 @@ private:
     FaceGroupTable names_;
     AffineMap world_;
     bool mirrors_ = false;
-    std::vector<Vec3> points_;  ///< of what is being placed
+    std::vector<Vec3> points_;  ///< points of the current mesh
     std::optional<VertexWelder> welder_;
 };
 

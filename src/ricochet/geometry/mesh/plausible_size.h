@@ -1,5 +1,5 @@
 /// \file
-/// Whether the numbers of a mesh file can be metres.
+/// Tests whether the numbers of a mesh file can be metres.
 #pragma once
 
 #include <optional>
@@ -10,29 +10,29 @@
 
 namespace ricochet {
 
-/// Extents, in m, beyond which a mesh is rather in another unit. Terrain measures some 100 m. Parts of machines in
-/// millimetres measure 50 and more, so larger parts are found and small ones are not.
+/// Extent, in m, above which a mesh is probably in another unit. Terrain measures about 100 m. Machine parts in
+/// millimetres measure 50 and more. Larger parts are therefore detected, and small ones are not.
 inline constexpr double kLargestPlausibleExtent = 200.0;
 
-/// The same for STL, which names no unit and holds millimetres by custom.
+/// The same limit for STL, in m. STL files name no unit and are usually in millimetres.
 inline constexpr double kLargestPlausibleStlExtent = 20.0;
 
-/// Below a millimetre air and adhesion decide, not impacts; most meshes of this size were converted twice.
+/// Extent, in m, below which a mesh is implausible. Below a millimetre, air and adhesion dominate instead of impacts.
+/// Most meshes of this size were converted twice.
 inline constexpr double kSmallestPlausibleExtent = 1e-3;
 
-/// Where the numbers of a mesh come from.
+/// Origin of a mesh's unit.
 enum class SizeOrigin {
-    file,      ///< a file without a custom unit
+    file,      ///< a file without a usual unit
     stl_file,  ///< an STL file
-    stated,    ///< metres, by a unit that the user has stated
+    stated,    ///< metres, because the user has stated a unit
 };
 
-/// Returns the origin of a mesh that was read from a file of this format, as ImportedMesh::format names it, or with
-/// this extension.
+/// Returns the origin for a file format, as ImportedMesh::format names it, or for an extension.
 [[nodiscard]] SizeOrigin size_origin(std::string_view format_or_extension);
 
-/// Returns a clause that says what is odd about the size of a mesh, with its largest extent in m, or nothing where
-/// that is plausible.
+/// Returns a clause that describes the implausible size of a mesh, with its largest extent in m. Returns nullopt if the
+/// size is plausible.
 [[nodiscard]] std::optional<std::string> implausible_size(const Box3& bounds, SizeOrigin origin);
 
 }  // namespace ricochet

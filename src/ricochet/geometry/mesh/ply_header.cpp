@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-// Far beyond what programs write; names are looked up one by one.
+// Limits far above the counts that programs write. Names are searched linearly.
 constexpr std::size_t kMaxElements = 256;
 constexpr std::size_t kMaxProperties = 1024;
 
@@ -68,7 +68,7 @@ private:
             cursor_.fail(fmt::format("{} after the {} line's values", in_quotes(cursor_.word()), keyword));
     }
 
-    // Before the first element a line says nothing about the data: programs write their name there. A misspelt element
+    // A line before the first element does not describe data. Some programs write their name there. A misspelt element
     // is refused when its first property comes.
     void leave_out(std::string_view keyword) {
         const std::string what = fmt::format(
@@ -145,8 +145,8 @@ private:
         return *type;
     }
 
-    // The body starts right after the line's end, which is what the first line's end is: after a lone CR, a byte 10 is
-    // data.
+    // The body starts directly after the line's end. The first line shows the kind of line end. After a lone CR, a byte
+    // 10 is data.
     void end_header() {
         if (!cursor_.at_line_end()) cursor_.fail(fmt::format("{} after end_header", in_quotes(cursor_.word())));
         const MeshSource& source = cursor_.source();
@@ -163,7 +163,7 @@ private:
     TextCursor cursor_;
     PlyHeader header_;
     bool has_format_ = false;
-    std::string left_out_;  // why the last line that was left out would be refused
+    std::string left_out_;  // error message for the last line that was left out
     std::size_t left_out_line_ = 0;
 };
 

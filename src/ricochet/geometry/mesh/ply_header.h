@@ -1,5 +1,5 @@
 /// \file
-/// Private to mesh_reader: the header of a PLY file.
+/// The header of a PLY file. Private to mesh_reader.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace ricochet {
 enum class PlyEncoding { kAscii, kLittleEndian, kBigEndian };
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
-/// Bytes of a value in a binary file.
+/// Returns the bytes of a value in a binary file.
 [[nodiscard]] std::size_t ply_size(PlyType type);
 [[nodiscard]] inline bool is_integer(PlyType type) { return type < PlyType::kFloat32; }
 
@@ -29,11 +29,11 @@ struct PlyElement {
     std::string name;
     std::uint64_t count = 0;
     std::vector<PlyProperty> properties;
-    std::size_t line = 0;  ///< where the header declares it
+    std::size_t line = 0;  ///< of the declaration in the header
 
-    /// Bytes of one element in a binary file if all its lists are empty.
+    /// Returns the bytes of one element in a binary file if all its lists are empty.
     [[nodiscard]] std::size_t smallest_size() const;
-    /// Index of a property; nothing if there is none of that name.
+    /// Returns the index of a property, or nullopt if no property has that name.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
 };
 
@@ -47,7 +47,7 @@ struct PlyHeader {
     [[nodiscard]] const PlyElement* find(std::string_view element) const;
 };
 
-/// True when the first line is "ply".
+/// Returns true if the first line is "ply".
 [[nodiscard]] bool looks_like_ply(const MeshSource& source);
 
 /// Reads the header and checks that the rest of the file is long enough for the counts it promises.

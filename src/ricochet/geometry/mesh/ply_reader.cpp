@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "byte order is chosen for little-endian machines");
 
-// Values of an ASCII body.
+// Reads the values of an ASCII body.
 class AsciiValues {
 public:
     AsciiValues(const MeshSource& source, const PlyHeader& header)
@@ -50,7 +50,7 @@ private:
     TextCursor cursor_;
 };
 
-// Values of a binary body.
+// Reads the values of a binary body.
 template <bool kSwapBytes>
 class BinaryValues {
 public:
@@ -95,7 +95,7 @@ public:
         require(type, count);
         at_ += ply_size(type) * static_cast<std::size_t>(count);
     }
-    // A count is believed only when that many values can follow.
+    // A count is accepted only if that many values can follow.
     void require(PlyType type, std::int64_t count) const {
         const std::size_t left = source_.bytes.size() - at_;
         if (static_cast<std::uint64_t>(count) > left / ply_size(type)) {
@@ -125,10 +125,10 @@ private:
 
     const MeshSource& source_;
     std::size_t at_;
-    std::size_t last_ = 0;  // where the last value began, for messages
+    std::size_t last_ = 0;  // start of the last value, for messages
 };
 
-// What becomes of a property's values.
+// Use of a property's values.
 enum class Use { kSkip, kX, kY, kZ, kFace, kStrip };
 
 std::size_t require_property(const MeshSource& source, const PlyElement& element, std::string_view name) {
@@ -248,7 +248,7 @@ private:
         end_face();
     }
 
-    // Every second triangle of a strip is wound in the opposite direction.
+    // Every second triangle of a strip has the opposite winding.
     void read_strips(const PlyProperty& list) {
         const std::int64_t length = list_length(list);
         std::array<std::uint32_t, 2> last{};

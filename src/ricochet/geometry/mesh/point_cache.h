@@ -1,10 +1,13 @@
 /// \file
-/// Point caches in the PC2 format of Autodesk 3ds Max, which Blender and others write: the vertices of a mesh, without
-/// its faces, in frame after frame.
+/// Point caches in the PC2 format of Autodesk 3ds Max, which Blender and others write. A cache stores the vertices of a
+/// mesh, without its faces, for a series of frames.
 ///
-/// The format, little-endian: the 12 bytes "POINTCACHE2" and a zero; version (1), number of points, 32-bit integers;
-/// first frame and frames between two samples, floats; number of samples, a 32-bit integer; then for every sample x, y,
-/// z of every point, floats.
+/// The format is little-endian:
+/// - The 12 bytes "POINTCACHE2" and a zero.
+/// - Version (1) and number of points, as 32-bit integers.
+/// - First frame and frames between two samples, as floats.
+/// - Number of samples, as a 32-bit integer.
+/// - X, y and z of every point of every sample, as floats.
 #pragma once
 
 #include <cstdint>
@@ -19,25 +22,29 @@ namespace ricochet {
 
 struct PointCache {
     std::vector<double> frames;                ///< numbers of the samples' frames, ascending
-    std::vector<std::vector<Vec3>> positions;  ///< m, of all points in each
+    std::vector<std::vector<Vec3>> positions;  ///< in m, of all points at each sample
 };
 
-/// Reads a whole file that is in memory. Throws InputError "name: what is wrong" for another signature or version,
-/// counts that do not agree with its size, no points, fewer than two samples, frames that do not ascend, and numbers
-/// that are not finite. Memory is bounded by a small multiple of the file's size.
+/// Reads a whole file that is in memory. Memory is bounded by a small multiple of the file's size. Throws InputError
+/// "name: what is wrong" in these cases:
+/// - Another signature or version.
+/// - Counts that disagree with the file's size.
+/// - No points, or fewer than two samples.
+/// - Frames that do not ascend.
+/// - Numbers that are not finite.
 [[nodiscard]] PointCache read_point_cache(const std::filesystem::path& name, std::string_view bytes);
 
-/// Writes a cache sample by sample, numbered from 0; it appears under its name when it is complete.
+/// Writes a cache sample by sample, with frames numbered from 0. The file appears under its name when it is complete.
 class PointCacheWriter {
 public:
-    /// Throws InputError for counts that the format cannot hold (points 1 to 2147483647, samples 2 to as many), and
-    /// like AtomicFile.
+    /// Throws InputError for counts that the format cannot store (points 1 to 2147483647, samples 2 to 2147483647).
+    /// Also throws like AtomicFile.
     PointCacheWriter(const std::filesystem::path& path, std::uint64_t points, std::uint64_t samples);
 
-    /// As many points as were announced. Throws InputError for another number of them and for a coordinate that does
-    /// not fit single precision, RunError when the disk does not take them.
+    /// Writes one sample with the announced number of points. Throws InputError for another number of points and for a
+    /// coordinate that does not fit single precision. Throws RunError if the disk write fails.
     void add(const std::vector<Vec3>& sample);
-    /// To be called once, after all samples. Throws RunError where the disk refuses.
+    /// Completes the file. Call it once, after all samples. Throws RunError if the disk write fails.
     void commit();
 
 private:

@@ -14,24 +14,25 @@
 namespace ricochet {
 namespace {
 
-/// Marks a triangle without area, instead of its first neighbour.
+/// Marks a triangle without area. It is stored in place of the first neighbour.
 constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 /// Added to indices into the list of irregular edges, to distinguish them from triangles.
 constexpr std::uint32_t kIrregularEdge = 1U << 31U;
 
-/// Arc tangent of t in [0, 1] within some 2^-51. The library's own, because that of the system may differ in its last
-/// bit from the next system's: three times halved, tan(x / 2) = t / (1 + sqrt(1 + t^2)), then the series.
+/// Returns the arc tangent of t in [0, 1] within about 2^-51. The system's function is not used, because its last bit
+/// can differ between systems. Method: halves the angle three times by tan(x / 2) = t / (1 + sqrt(1 + t^2)), then sums
+/// the series.
 double arc_tangent(double t) {
     for (int k = 0; k < 3; ++k) t /= 1.0 + std::sqrt(1.0 + t * t);
-    const double square = t * t;  // below 0.0098: the next term is below 2^-64
+    const double square = t * t;  // below 0.0098, so the next term is below 2^-64
     double sum = 0.0;
     for (int k = 8; k >= 0; --k) sum = 1.0 / (2 * k + 1) - square * sum;
     return 8.0 * t * sum;
 }
 
-/// Angle between two directions (not zero), rad, within some 2^-50. Method: W. Kahan, "How Futile are
-/// Mindless Assessments of Roundoff in Floating-Point Computation?", 2006, section 12: twice the arc tangent of the
-/// difference's length over the sum's.
+/// Returns the angle between two nonzero directions, in rad, within about 2^-50. It is twice the arc tangent of the
+/// difference's length over the sum's length. Method: W. Kahan, "How Futile are Mindless Assessments of Roundoff in
+/// Floating-Point Computation?", 2006, section 12.
 double angle_between(const Vec3& u, const Vec3& v) {
     const Vec3 p = normalized(u / max_abs(u));
     const Vec3 q = normalized(v / max_abs(v));
@@ -48,13 +49,13 @@ int sign_beyond(double value, double error) {
 
 bool is_vertex(TriangleFeature feature) { return feature >= TriangleFeature::kVertexA; }
 
-/// Edges AB, BC and CA and vertices A, B and C as 0, 1 and 2.
+/// Returns the index of edge AB, BC or CA, or of vertex A, B or C, as 0, 1 or 2.
 std::size_t number_of(TriangleFeature feature) {
     return static_cast<std::size_t>(feature) -
            static_cast<std::size_t>(is_vertex(feature) ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB);
 }
 
-/// Signed distance from a triangle's plane with its error, which counts for slender triangles.
+/// Signed distance from a triangle's plane with its error, which matters for slender triangles.
 struct Height {
     double value;
     double error;
@@ -137,7 +138,8 @@ void Pseudonormals::link_edge(std::span<const TriangleSide> sides) {
     irregular_edges_.push_back(edge);
 }
 
-/// Copies of a triangle share every edge; each is recorded at the one opposite to its largest vertex.
+/// Records the copies of a triangle. Copies share every edge, so each is recorded at the edge opposite to its largest
+/// vertex.
 void Pseudonormals::record_copies(std::span<const TriangleSide> sides) {
     struct Use {
         std::uint32_t opposite;
@@ -229,7 +231,8 @@ int Pseudonormals::side_of_face(std::uint32_t triangle, const Vec3& p) const {
     return orient3d(vertices_[a], vertices_[b], vertices_[c], p);
 }
 
-/// From the nearer end, so that little of the scalar product is along the edge, where it should vanish.
+/// Measured from the nearer end. The component along the edge, which should vanish, then contributes least to the
+/// scalar product.
 int Pseudonormals::side_of_edge(std::uint32_t triangle, std::size_t side, const Vec3& p) const {
     const Vec3 from_start = p - vertices_[triangles_[triangle][side]];
     const Vec3 from_end = p - vertices_[triangles_[triangle][(side + 1) % 3]];
@@ -240,8 +243,8 @@ int Pseudonormals::side_of_edge(std::uint32_t triangle, std::size_t side, const 
     return beyond < kIrregularEdge ? side_of_two_faces(triangle, beyond, p) : 0;
 }
 
-/// The scalar product with an edge's pseudonormal is the mean of the distances from both faces' planes, which are known
-/// better: their signs are exact.
+/// The scalar product with an edge's pseudonormal is the mean of the distances from both faces' planes. These distances
+/// are more accurate, because their signs are exact.
 int Pseudonormals::side_of_two_faces(std::uint32_t first, std::uint32_t second, const Vec3& p) const {
     const int first_side = side_of_face(first, p);
     const int second_side = side_of_face(second, p);

@@ -1,10 +1,11 @@
 /// \file
-/// Angle-weighted pseudonormals: the side of a mesh that a point is on, from its closest point alone.
+/// Angle-weighted pseudonormals. They give the side of a mesh on which a point lies from its closest point alone.
 ///
 /// Method: J. A. Baerentzen, H. Aanaes, "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG
-/// 11(3), 2005. For triangles that bound a solid and are wound outward, the scalar product with the offset from the
-/// closest point to p is positive outside and negative inside, also at edges of four faces or more and in nested
-/// shells. Vertices at the same position are the same (0 and -0 are equal); triangles with collinear corners are left
+/// 11(3), 2005. Consider triangles that bound a solid and are wound outward. The scalar product with the offset from
+/// the closest point to p is positive outside and negative inside. This includes edges of four faces or more and nested
+/// shells. Vertices at the same position count as one (0 and -0 are equal). Triangles with collinear corners are left
+/// out.
 /// out.
 #pragma once
 
@@ -21,44 +22,47 @@
 
 namespace ricochet {
 
-/// Immutable after construction; safe from any number of threads. All sums run in the order of the triangles.
+/// Pseudonormals of all features of a mesh. Immutable after construction, so they are safe from any number of threads.
+/// All sums run in the order of the triangles.
 class Pseudonormals {
 public:
-    /// `vertices` and `triangles` must outlive it; finite, within the predicates' range.
+    /// Builds the pseudonormals. `vertices` and `triangles` must outlive this object. They must be finite and within
+    /// the predicates' range.
     Pseudonormals(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 
-    /// True for triangles whose corners are collinear, for which the functions below are undefined.
+    /// Returns true for triangles with collinear corners, for which the functions below are undefined.
     [[nodiscard]] bool is_left_out(std::uint32_t triangle) const;
 
-    /// The pseudonormal of a part of a triangle, as the weighted mean of unit normals: at most of unit length. Zero
-    /// where normals cancel to rounding (kPseudonormalRounding): two sheets back to back. That includes faces that are
-    /// listed as often with one winding as with the other.
+    /// Returns the pseudonormal of a triangle's feature, as the weighted mean of unit normals. Its length is at most 1.
+    /// It is zero if normals cancel to rounding (kPseudonormalRounding), as in two sheets back to back. Normals also
+    /// cancel for faces that are listed equally often with either winding.
     [[nodiscard]] Vec3 of(std::uint32_t triangle, TriangleFeature feature) const;
 
-    /// The side that p is on, where `nearest` is what closest_point_on_triangle() said about p and that triangle and no
-    /// triangle of the mesh is nearer: +1 where the normals point to, -1 behind, 0 on the surface, where the
-    /// pseudonormal is zero, or where rounding would decide. Exact over faces, and over edges where both faces agree.
+    /// Returns the side on which p lies: +1 on the side of the normals, -1 behind. `nearest` must be the result of
+    /// closest_point_on_triangle() for p and that triangle, and no triangle of the mesh may be nearer. Returns 0 on the
+    /// surface, if the pseudonormal is zero, or if rounding would decide. Exact over faces, and over edges if both
+    /// faces agree.
     [[nodiscard]] int side(std::uint32_t triangle, const ClosestPointOnTriangle& nearest, const Vec3& p) const;
 
-    /// True when the feature is an edge of an odd number of triangles, or a vertex at the end of one: sides are
-    /// undefined.
+    /// Returns true if the feature is an edge of an odd number of triangles, or a vertex at the end of such an edge.
+    /// Sides are undefined there.
     [[nodiscard]] bool is_on_boundary(std::uint32_t triangle, TriangleFeature feature) const;
 
-    /// Bytes held besides the vertices and triangles: some 30 a triangle for a closed mesh.
+    /// Returns the bytes in use besides the vertices and triangles: about 30 per triangle for a closed mesh.
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
-    /// What is across a side of a triangle: another triangle, or (with kIrregularEdge added) an entry of
+    /// The neighbour across a side of a triangle: another triangle, or (with kIrregularEdge added) an entry of
     /// irregular_edges_.
     using Neighbour = std::uint32_t;
 
-    /// The side from corner `side` of a triangle to the next.
+    /// The side of a triangle from corner `side` to the next.
     struct TriangleSide {
         std::uint32_t triangle;
         std::uint32_t side;
     };
 
-    /// An edge that has not exactly two triangles.
+    /// An edge that does not have exactly two triangles.
     struct IrregularEdge {
         Vec3 normal;
         bool is_open = false;
@@ -79,14 +83,14 @@ private:
 
     std::span<const Vec3> vertices_;
     std::span<const Triangle> triangles_;
-    std::uint32_t first_vertex_ = 0;               ///< the smallest that a triangle names
-    std::vector<std::uint32_t> welded_;            ///< per vertex from there on: its index among the different ones
-    std::vector<Vec3> at_vertex_;                  ///< pseudonormals of the different vertices
+    std::uint32_t first_vertex_ = 0;     ///< the smallest index that a triangle names
+    std::vector<std::uint32_t> welded_;  ///< per vertex from first_vertex_ on: its index among the distinct vertices
+    std::vector<Vec3> at_vertex_;        ///< pseudonormals of the distinct vertices
     std::vector<std::uint8_t> vertex_is_open_;     ///< 1 for ends of open edges
-    std::vector<std::array<Neighbour, 3>> sides_;  ///< per triangle: beyond AB, BC and CA
+    std::vector<std::array<Neighbour, 3>> sides_;  ///< per triangle: across AB, BC and CA
     std::vector<IrregularEdge> irregular_edges_;
-    /// Triangles listed several times, ascending: 1 when more often with this winding than with the opposite one, -1
-    /// when less often, 0 when as often.
+    /// Triangles that are listed several times, ascending. The value compares this winding with the opposite one: 1 if
+    /// it is more frequent, -1 if less frequent, 0 if equally frequent.
     std::vector<std::pair<std::uint32_t, int>> copies_;
 };
 

@@ -13,13 +13,13 @@
 namespace ricochet {
 namespace {
 
-/// A balanced tree over boxes, in double precision: nothing is rounded, so nothing is missed.
+/// A balanced tree over boxes in double precision. Nothing is rounded, so no overlap is missed.
 class BoxTree {
 public:
     explicit BoxTree(const std::vector<Box3>& boxes);
 
-    /// Calls visit(number) for every box that has a point in common with the given one. May be called from several
-    /// threads at once.
+    /// Calls visit(number) for every box that has a common point with the given one. May be called from several threads
+    /// at once.
     template <typename Visit>
     void for_each_overlap(const Box3& box, Visit&& visit) const {
         std::array<std::uint32_t, kMaxLevels> stack;
@@ -40,14 +40,14 @@ public:
     }
 
 private:
-    // Halves are equal, so 32-bit numbers of boxes make at most 32 levels, each of which leaves one node waiting.
+    // Halves are equal, so 32-bit numbers of boxes give at most 32 levels. Each level leaves one node waiting.
     static constexpr std::size_t kMaxLevels = 64;
 
     struct Node {
         Box3 box;
         std::uint32_t begin = 0;  // leaf: order_[begin, end)
         std::uint32_t end = 0;
-        std::uint32_t first_child = 0;  // the other one follows; 0 for a leaf
+        std::uint32_t first_child = 0;  // index of the first child, which the other one follows; 0 for a leaf
     };
 
     [[nodiscard]] static bool boxes_overlap(const Box3& a, const Box3& b) {
@@ -90,7 +90,7 @@ void BoxTree::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) 
     split(child + 1, middle, end);
 }
 
-// Two triangles turned so that the vertices that both name come first, in the same order.
+// Two triangles, rotated so that the vertices that both name come first, in the same order.
 struct TrianglePair {
     Triangle first;
     Triangle second;
@@ -135,19 +135,19 @@ private:
         return segment_intersects_triangle(at(p), at(q), at(t[0]), at(t[1]), at(t[2]));
     }
 
-    // Triangles without a common vertex intersect when an edge of one intersects the other.
+    // Triangles without a common vertex intersect if an edge of one intersects the other.
     [[nodiscard]] bool cross(const Triangle& s, const Triangle& t) const {
         return edge_intersects(s[0], s[1], t) || edge_intersects(s[1], s[2], t) || edge_intersects(s[2], s[0], t) ||
                edge_intersects(t[0], t[1], s) || edge_intersects(t[1], t[2], s) || edge_intersects(t[2], t[0], s);
     }
 
-    // From a common vertex, what else is common reaches an edge that is opposite to it.
+    // Any further common part extends from a common vertex to an edge opposite to it.
     [[nodiscard]] bool intersect_besides_vertex(const TrianglePair& pair) const {
         return edge_intersects(pair.first[1], pair.first[2], pair.second) ||
                edge_intersects(pair.second[1], pair.second[2], pair.first);
     }
 
-    // With a common edge: in one plane and on the same side of the edge.
+    // Triangles with a common edge overlap if they are in one plane and on the same side of the edge.
     [[nodiscard]] bool overlap_in_plane(const TrianglePair& pair) const {
         const Vec3& a = at(pair.first[0]);
         const Vec3& b = at(pair.first[1]);
@@ -178,21 +178,21 @@ struct TriangleBoxes {
     std::vector<Box3> boxes;
 };
 
-/// Tests of pairs of triangles, for each triangle and in every mesh. Fewer: pairs of ordinary meshes would not all be
-/// counted. More: triangles that all cross each other would take time beyond proportion.
+/// Tests of pairs of triangles: per triangle, and for every mesh. With fewer tests, not all pairs of ordinary meshes
+/// would be counted. With more, triangles that all cross each other would take too much time.
 constexpr std::size_t kPairTestsPerTriangle = 256;
 constexpr std::size_t kPairTests = std::size_t{1} << 20;
-constexpr std::size_t kPairBlock = 256;  // triangles that one thread looks at in a row
-constexpr std::size_t kPairBlocks = 16;  // that are looked at side by side
+constexpr std::size_t kPairBlock = 256;  // consecutive triangles of one thread
+constexpr std::size_t kPairBlocks = 16;  // blocks tested in parallel
 
-/// The pairs of a row of triangles with those behind them, as far as they have been looked for.
+/// Search for the pairs of consecutive triangles with later ones. It can be interrupted.
 struct PairSearch {
-    std::size_t next = 0;  ///< triangle
+    std::size_t next = 0;  ///< next triangle
     std::size_t end = 0;
     std::size_t pairs = 0;  ///< found so far
     std::size_t tests = 0;  ///< made so far
 
-    /// Ends with the triangle at which so many more tests have been made.
+    /// Continues the search. Stops after the triangle at which `most` further tests have been made.
     void go_on(const BoxTree& tree, const std::vector<Box3>& boxes, const std::vector<std::uint32_t>& numbers,
                const PairTest& intersect, std::size_t most) {
         const std::size_t last = tests + most;
@@ -216,8 +216,8 @@ SelfIntersections find_self_intersections(const TriangleMesh& mesh) {
     const PairTest intersect(mesh);
     std::size_t left = kPairTests + kPairTestsPerTriangle * boxes.size();
     SelfIntersections result;
-    // The blocks of a round share the remaining tests in equal parts. Blocks that need more go on one after the other.
-    // The end of the search thus does not depend on threads.
+    // The blocks of a round share the remaining tests equally. Blocks that need more continue one after the other. The
+    // end of the search therefore does not depend on threads.
     for (std::size_t begin = 0; begin < boxes.size() && left > 0; begin += kPairBlocks * kPairBlock) {
         std::array<PairSearch, kPairBlocks> searches;
         parallel_for_blocks(kPairBlocks, 1, [&](std::size_t, std::size_t first, std::size_t last) {

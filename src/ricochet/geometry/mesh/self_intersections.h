@@ -11,22 +11,22 @@
 
 namespace ricochet {
 
-/// How often triangles of a mesh touch or cross each other.
+/// Number of pairs of triangles of a mesh that touch or cross each other.
 struct SelfIntersections {
     std::size_t pairs = 0;
-    bool are_all = true;  ///< false where the search has ended early
+    bool are_all = true;  ///< false if the search ended early
 };
-/// Counts pairs of triangles that have a point in common besides the vertices and the edge that both name: they cross,
-/// touch or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel; the count does not depend on
-/// the number of threads. Time is close to linear in the number of triangles: the search ends early after some hundred
-/// pairs with overlapping boxes for each triangle.
+/// Counts pairs of triangles that have a common point besides the vertices and the edge that both name. Such pairs
+/// cross, touch or lie on each other. Exact. Degenerate triangles do not count. Runs in parallel, and the count does
+/// not depend on the number of threads. Time is close to linear in the number of triangles. The search ends early after
+/// some hundred pairs with overlapping boxes per triangle.
 [[nodiscard]] SelfIntersections find_self_intersections(const TriangleMesh& mesh);
 [[nodiscard]] inline std::size_t count_self_intersections(const TriangleMesh& mesh) {
     return find_self_intersections(mesh).pairs;
 }
 
-/// The first of these pairs whose triangles belong to different parts, at most so many. part_of: of each triangle. The
-/// search ends early after as many pairs with overlapping boxes.
+/// Returns the first of these pairs whose triangles belong to different parts, at most `most` pairs. `part_of` is the
+/// part of each triangle. The search ends early after as many pairs with overlapping boxes.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> intersections_between(
     const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of, std::size_t most);
 

@@ -62,7 +62,7 @@ Vec3 centroid(const TriangleMesh& mesh, std::uint32_t triangle) {
     return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
 }
 
-/// Returns true if an edge of the first passes through the inside of the second.
+/// Returns true if an edge of the first triangle passes through the inside of the second.
 bool pierces(const TriangleMesh& mesh, const Triangle& first, const Triangle& second) {
     const auto at = [&](std::uint32_t v) -> const Vec3& { return mesh.vertices[v]; };
     const auto& [a, b, c] = second;
@@ -81,10 +81,11 @@ bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t
            pierces(mesh, mesh.triangles[second], mesh.triangles[first]);
 }
 
-/// Returns true if the first triangle comes out of the second one's plane at a place from which it leads into a shell:
-/// halfway from there to a corner, and on both sides of the triangle, which a shell that only touches does not hold.
+/// Returns true if the first triangle crosses the second one's plane at a point from which it leads into a shell.
+/// Points halfway from there to a corner are tested on both sides of the triangle. A shell that only touches does not
+/// contain both.
 bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
-    constexpr double kBeside = 1e-6;  // part of the edge's length
+    constexpr double kBeside = 1e-6;  // fraction of the edge's length
     const auto& [a, b, c] = mesh.triangles[second];
     const Vec3& origin = mesh.vertices[a];
     const Vec3 normal = cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin);
@@ -107,7 +108,7 @@ bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32
     return false;
 }
 
-/// Signed volume of one shell, in m^3, and the sum of the magnitudes that it was added up from.
+/// Signed volume of one shell, in m^3, and the sum of the magnitudes of its terms.
 struct ShellVolume {
     double sum = 0.0;
     double magnitude = 0.0;
@@ -120,7 +121,7 @@ struct ShellVolume {
     }
 };
 
-/// Returns the volume of each shell, at the number of its first triangle.
+/// Returns the volume of each shell, at the index of its first triangle.
 std::vector<ShellVolume> shell_volumes(const TriangleMesh& mesh, const std::vector<std::uint32_t>& shell_of) {
     std::vector<ShellVolume> volumes(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

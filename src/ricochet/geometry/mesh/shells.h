@@ -9,14 +9,14 @@
 namespace ricochet {
 
 /// Returns true if two shells of a mesh overlap. Shells are sets of triangles joined by edges, at equal positions.
-/// Shells that only touch, or of which one lies within the other, do not overlap. Exact for shells that cross properly.
-/// Where their triangles only touch, or lie in one plane, places on the first of these triangles decide: centroids, and
-/// places halfway from where an edge comes through the other's plane.
+/// Shells that only touch do not overlap, and neither do nested shells. The result is exact for shells that cross
+/// properly. If their triangles only touch, or lie in one plane, points on the first of these triangles decide. These
+/// points are centroids, and points halfway along an edge from its intersection with the other triangle's plane.
 [[nodiscard]] bool shells_overlap(const TriangleMesh& mesh);
 
-/// Returns the number of shells that lie within other shells wound the same way. Such a shell is a hole by the parity
-/// rule of inside_rule.h, but adds to signed_volume() where a hole would subtract. The first vertex of a shell decides.
-/// Repeated faces count as in closed_surface.h. The mesh must be closed.
+/// Returns the number of shells within other shells of the same winding. Such a shell is a hole by the parity rule of
+/// inside_rule.h. However, it adds to signed_volume(), from which a hole would subtract. The first vertex of a shell
+/// decides. Repeated faces count as in closed_surface.h. The mesh must be closed.
 [[nodiscard]] std::size_t count_shells_nested_alike(const TriangleMesh& mesh);
 
 }  // namespace ricochet

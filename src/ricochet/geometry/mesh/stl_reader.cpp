@@ -31,7 +31,7 @@ Value value_at(const MeshSource& source, std::size_t byte) {
 
 std::uint64_t facets_promised(const MeshSource& source) { return value_at<std::uint32_t>(source, kCountByte); }
 
-// Keywords are written in lower or upper case.
+// Compares a word with a keyword, which may be in lower or upper case.
 bool is_keyword(std::string_view word, std::string_view keyword) {
     if (word.size() != keyword.size()) return false;
     for (std::size_t i = 0; i < word.size(); ++i) {
@@ -41,13 +41,13 @@ bool is_keyword(std::string_view word, std::string_view keyword) {
     return true;
 }
 
-/// Bytes behind the last facet of a binary file.
+/// Returns the bytes behind the last facet of a binary file.
 std::string_view bytes_behind(const MeshSource& source) {
     const std::uint64_t size = kFirstFacet + kFacetBytes * facets_promised(source);
     return source.bytes.substr(std::min<std::uint64_t>(size, source.bytes.size()));
 }
 
-// Joins facet corners while they are read.
+// Joins facet corners as they are read.
 class FacetCollector {
 public:
     FacetCollector() { mesh_.face_offsets.push_back(0); }
@@ -57,13 +57,13 @@ public:
         close_face(mesh_);
         names_.record(mesh_);
     }
-    /// Of the facets that follow.
+    /// Sets the solid's name for the facets that follow.
     void set_solid(const std::string& name) { names_.names().group = name; }
     [[nodiscard]] std::size_t corners() const { return mesh_.corners.size(); }
     void reserve(std::size_t facets) {
         mesh_.corners.reserve(3 * facets);
         mesh_.face_offsets.reserve(facets + 1);
-        welder_.reserve(facets / 2 + 2);  // of a closed surface, by Euler's formula; others grow
+        welder_.reserve(facets / 2 + 2);  // for a closed surface, by Euler's formula; others grow
     }
     ParsedMesh finish(std::string format) {
         const WeldReport weld{mesh_.corners.size(), mesh_.vertices.size()};
@@ -121,7 +121,7 @@ public:
     }
 
 private:
-    // solid NAME facet ... endsolid NAME; a file may hold several.
+    // Reads "solid NAME facet ... endsolid NAME". A file may have several solids.
     void read_solid() {
         expect("solid");
         collector_.set_solid(cursor_.rest_of_line());
@@ -180,7 +180,7 @@ bool starts_with_solid(const MeshSource& source) {
 
 ParsedMesh read_stl(const MeshSource& source) {
     if (has_binary_stl_size(source)) return read_binary(source);
-    // A binary file that is cut off may start with "solid" too, but text holds no NUL bytes.
+    // A truncated binary file may start with "solid" too, but text has no NUL bytes.
     if (starts_with_solid(source) && source.bytes.find('\0') == std::string_view::npos) {
         return AsciiStlReader(source).read();
     }

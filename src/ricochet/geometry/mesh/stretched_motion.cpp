@@ -16,12 +16,13 @@
 namespace ricochet {
 namespace {
 
-/// Of the time between two keys: as far from them bounds are taken, so that they are not those of what is beyond.
+/// Distance from two keys at which bounds are taken, as a fraction of the time between them. The bounds then exclude
+/// the neighbouring intervals.
 constexpr double kInside = 1e-9;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }
 
-/// Of a frame and those that it stands on: the curves of their factors.
+/// Returns the factor curves of a frame and its ancestors.
 std::vector<const KeyedCurve<Vec3>*> factors_of(const FrameTree& frames, std::size_t frame) {
     std::vector<const KeyedCurve<Vec3>*> all;
     for (std::optional<std::size_t> k = frame; k; k = frames.find(frames.description(*k).parent)) {
@@ -37,7 +38,7 @@ std::vector<const KeyedCurve<Vec3>*> factors_of(const FrameTree& frames, std::si
     return all;
 }
 
-/// Curves can go below their keys.
+/// Throws InputError if a factor is not above 0, because curves can go below their keys.
 void require_size(const std::vector<const KeyedCurve<Vec3>*>& all, double time) {
     for (const KeyedCurve<Vec3>* factors : all) {
         const Vec3 factor = factors->value(time);
@@ -49,7 +50,7 @@ void require_size(const std::vector<const KeyedCurve<Vec3>*>& all, double time) 
     }
 }
 
-/// How a mesh moves, and how far from it straight lines can be.
+/// Motion of a mesh, with the number of keys that it needs.
 class Stretching {
 public:
     Stretching(std::span<const Vec3> vertices, const FrameTree& frames, std::size_t frame)
@@ -64,7 +65,7 @@ public:
 
     [[nodiscard]] double next_key(double time) const { return frames_.next_key(frame_, time); }
 
-    /// How many pieces the time between two keys is cut into.
+    /// Returns the number of intervals into which the time between two keys is divided.
     [[nodiscard]] double pieces(double begin, double end) const {
         const double inside = kInside * (end - begin);
         const MotionBounds bounds = frames_.bounds(frame_, begin + inside, end - inside);
@@ -87,8 +88,8 @@ private:
     const FrameTree& frames_;
     std::size_t frame_;
     std::vector<const KeyedCurve<Vec3>*> factors_;
-    double farthest_ = 0.0;   // m, from the frame's origin
-    double tolerance_ = 0.0;  // m
+    double farthest_ = 0.0;   // in m, from the frame's origin
+    double tolerance_ = 0.0;  // in m
 };
 
 }  // namespace

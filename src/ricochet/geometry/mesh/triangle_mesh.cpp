@@ -16,7 +16,7 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kSides = 96;  // around the axis
 constexpr std::uint32_t kBelts = 48;  // from pole to pole of a ball
 
-/// Points of a circle about the z axis.
+/// Adds the points of a circle around the z axis.
 void add_ring(TriangleMesh& mesh, double radius, double z) {
     for (std::uint32_t k = 0; k < kSides; ++k) {
         const double angle = 2.0 * kPi * k / kSides;
@@ -24,7 +24,7 @@ void add_ring(TriangleMesh& mesh, double radius, double z) {
     }
 }
 
-/// Two triangles for every side between two rings, the lower one first in the list.
+/// Adds two triangles for every side between two rings. `lower` is the first vertex of the lower ring.
 void add_belt(TriangleMesh& mesh, std::uint32_t lower, std::uint32_t upper) {
     for (std::uint32_t k = 0; k < kSides; ++k) {
         const std::uint32_t next = (k + 1) % kSides;
@@ -33,7 +33,7 @@ void add_belt(TriangleMesh& mesh, std::uint32_t lower, std::uint32_t upper) {
     }
 }
 
-/// A fan around a point on the axis, facing up or down.
+/// Adds a fan around a point on the axis, facing up or down.
 void add_fan(TriangleMesh& mesh, std::uint32_t apex, std::uint32_t ring, bool up) {
     for (std::uint32_t k = 0; k < kSides; ++k) {
         const std::uint32_t next = (k + 1) % kSides;
@@ -77,7 +77,7 @@ double surface_area(const TriangleMesh& mesh) {
 double signed_volume(const TriangleMesh& mesh) {
     require_corners(mesh);
     if (mesh.triangles.empty()) return 0.0;
-    // Relative to a point of the mesh, so that a far-away mesh does not cancel.
+    // Relative to a point of the mesh, so that a distant mesh does not cause cancellation.
     const Vec3 origin = mesh.vertices[mesh.triangles.front()[0]];
     double six_volumes = 0.0;
     for (const Triangle& t : mesh.triangles) {

@@ -30,13 +30,14 @@ bool has_repeats(Corners corners, std::vector<std::uint32_t>& scratch) {
     return std::adjacent_find(scratch.begin(), scratch.end()) != scratch.end();
 }
 
-// Neighbours that are the same vertex count once, around the whole outline.
+// Removes equal neighbours around the whole outline, so that each vertex counts once.
 void remove_equal_neighbours(std::vector<std::uint32_t>& corners) {
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
 }
 
-// Twice the polygon's area vector (Newell's method), relative to a corner so that a far-away face does not cancel.
+// Returns twice the polygon's area vector (Newell's method). It is computed relative to a corner, so that a distant
+// face does not cause cancellation.
 Vec3 newell_normal(const std::vector<Vec3>& vertices, Corners corners) {
     const Vec3 origin = vertices[corners[0]];
     Vec3 normal;
@@ -46,7 +47,7 @@ Vec3 newell_normal(const std::vector<Vec3>& vertices, Corners corners) {
     return normal;
 }
 
-// The projection drops the coordinate along which the normal is longest; what is left keeps its exact coordinates.
+// The projection drops the coordinate along which the normal is longest. The other coordinates stay exact.
 int dropped_axis(const Vec3& normal) {
     const Vec3 size = abs(normal);
     if (size.z >= size.x && size.z >= size.y) return 2;
@@ -127,7 +128,8 @@ private:
         if (!clean) ++result_.crossing_faces;
     }
 
-    // Along the diagonal whose two triangles turn the same way, corner 0's if both do. False for a bow-tie.
+    // Cuts along the diagonal whose two triangles turn the same way, or along corner 0's diagonal if both do. Returns
+    // false for a bow-tie.
     bool cut_quad() {
         const std::vector<Point2>& p = points_;
         const int along_02 = orient2d(p[0], p[1], p[2]) * orient2d(p[0], p[2], p[3]);
@@ -155,7 +157,7 @@ private:
     const PolygonMesh& mesh_;
     Triangulation result_;
     EarClipper clipper_;
-    std::vector<std::uint32_t> distinct_;  // corners of the face, and scratch for finding repeats
+    std::vector<std::uint32_t> distinct_;  // corners of the face, and scratch memory for finding repeats
     std::vector<Point2> points_;           // their projections
     std::vector<Triangle> ears_;           // triangles as indices into distinct_
 };

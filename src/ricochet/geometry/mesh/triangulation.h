@@ -1,16 +1,17 @@
 /// \file
-/// Polygons cut into triangles between their own corners.
+/// Cuts polygons into triangles between their own corners.
 ///
-/// Polygons are cut along diagonals only, so that every edge of the outline is an edge of exactly one triangle, a
-/// closed polygon mesh gives a closed triangle mesh, and the triangles cover every point that the projected outline
+/// Polygons are cut along diagonals only, so every edge of the outline is an edge of exactly one triangle. A closed
+/// polygon mesh therefore gives a closed triangle mesh. The triangles cover every point that the projected outline
 /// winds around.
 ///
-/// A polygon is projected along the axis nearest to its normal (Newell's method) and cut by ear clipping; all decisions
-/// are signs of exact 2D orientations. The triangles of an outline that is simple in that projection do not overlap. An
-/// outline that crosses itself is fanned where no ear is left, may overlap, and is counted in `crossing_faces`.
+/// A polygon is projected along the axis nearest to its normal (Newell's method) and cut by ear clipping. All decisions
+/// are signs of exact 2D orientations. If the outline is simple in that projection, the triangles do not overlap. If an
+/// outline crosses itself and no ear is left, the rest becomes a fan. Its triangles may overlap, and the face is
+/// counted in `crossing_faces`.
 ///
-/// Neighbouring corners that are the same vertex count once; a face with fewer than three corners left, and a triangle
-/// that names a vertex twice, stay as one degenerate triangle.
+/// Neighbouring corners at the same vertex count once. A face with fewer than three remaining corners stays as one
+/// degenerate triangle, and so does a triangle that names a vertex twice.
 ///
 /// Sources: G. H. Meisters, "Polygons Have Ears", American Mathematical Monthly 82, 1975; M. Held, "FIST: Fast
 /// Industrial-Strength Triangulation of Polygons", Algorithmica 30, 2001 (tests against reflex corners only).
@@ -24,7 +25,7 @@
 
 namespace ricochet {
 
-/// Largest number of corners of one polygon: the slowest outline known takes about a second and a half at that size.
+/// Largest number of corners of one polygon. At that size, the slowest known outline takes about 1.5 seconds.
 inline constexpr std::size_t kLargestPolygon = 100'000;
 
 /// The triangles of a polygon mesh, in the order of its faces.
@@ -35,8 +36,8 @@ struct Triangulation {
     std::size_t crossing_faces = 0;               ///< faces whose projected outline crosses itself
 };
 
-/// Cuts all faces. A face of n different corners gives n - 2 triangles with its winding.
-/// Throws InputError when a face has more corners than kLargestPolygon or fewer than 3.
+/// Cuts all faces. A face of n different corners gives n - 2 triangles with its winding. Throws InputError if a face
+/// has more corners than kLargestPolygon or fewer than 3.
 [[nodiscard]] Triangulation triangulate(const PolygonMesh& mesh);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Which positions are the same vertex.
+/// Joins equal positions into one vertex.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,16 @@
 
 namespace ricochet {
 
-/// Numbers different positions in the order of their first appearance. Exact comparison: 0 and -0 are equal, positions
-/// that are only close are different. Positions must be finite.
+/// Numbers distinct positions in the order of their first appearance. The comparison is exact: 0 and -0 are equal, and
+/// positions that are only close are different. Positions must be finite.
 class VertexWelder {
 public:
-    /// Vertices are appended to a list of the caller's.
+    /// Makes a welder that appends vertices to the caller's list.
     explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices) {}
 
-    /// Reserves for that many different positions: 8 to 16 bytes each, besides the list.
+    /// Reserves memory for the given number of distinct positions: 8 to 16 bytes each, besides the list.
     void reserve(std::size_t positions);
-    /// Number of the position; a new one is appended to the list (with -0 stored as 0).
+    /// Returns the index of the position. A new position is appended to the list (with -0 stored as 0).
     [[nodiscard]] std::uint32_t index_of(const Vec3& position);
 
 private:

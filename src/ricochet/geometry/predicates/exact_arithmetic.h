@@ -1,6 +1,7 @@
 /// \file
-/// Exact and bounded arithmetic behind the predicates' filters: double-double with error bounds, then floating-point
-/// expansions, on the stack. Bounds and their reasons: docs/exactness.md.
+/// Exact and bounded arithmetic for the predicates after their floating-point filters. The first level is double-double
+/// with error bounds. The second is floating-point expansions, stored on the stack. The bounds are derived in
+/// docs/exactness.md.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 /// Discrete & Computational Geometry 18, 1997.
@@ -15,9 +16,10 @@
 
 namespace ricochet {
 
-/// A number as the exact sum of at most Capacity doubles, in increasing order of magnitude, strongly non-overlapping,
-/// none zero. Exact while no component overflows and none has bits below 2^-1074. Sums and products of numbers that are
-/// not finite are wrong, yet never have more components than there is room for. Only the first `size` are initialised.
+/// A number as the exact sum of at most Capacity doubles. The components are in increasing order of magnitude, strongly
+/// non-overlapping and nonzero. The sum is exact while no component overflows and none has bits below 2^-1074. If an
+/// operand is not finite, sums and products are wrong, but they never exceed Capacity components. Only the first `size`
+/// components are initialised.
 template <int Capacity>
 struct Expansion {
     std::array<double, static_cast<std::size_t>(Capacity)> components;
@@ -35,14 +37,15 @@ struct Expansion {
         if (component != 0.0) components[static_cast<std::size_t>(size++)] = component;
     }
     [[nodiscard]] double operator[](int i) const { return components[static_cast<std::size_t>(i)]; }
-    /// That of the largest component, which outweighs the others together.
+    /// Returns the sign of the number. It is the sign of the largest component, which exceeds the sum of the others in
+    /// magnitude.
     [[nodiscard]] int sign() const {
         if (size == 0) return 0;
         return (*this)[size - 1] > 0.0 ? 1 : -1;
     }
 };
 
-/// Exact sum (Shewchuk's fast-expansion-sum with zero elimination).
+/// Returns the exact sum (Shewchuk's fast-expansion-sum with zero elimination).
 template <int M, int N>
 [[nodiscard]] Expansion<M + N> operator+(const Expansion<M>& e, const Expansion<N>& f) {
     Expansion<M + N> sum;
@@ -74,7 +77,7 @@ template <int M, int N>
     return e + (-f);
 }
 
-/// Exact product with a double (Shewchuk's scale-expansion with zero elimination).
+/// Returns the exact product with a double (Shewchuk's scale-expansion with zero elimination).
 template <int N>
 [[nodiscard]] Expansion<2 * N> operator*(const Expansion<N>& e, double factor) {
     Expansion<2 * N> product;
@@ -94,13 +97,13 @@ template <int N>
     return product;
 }
 
-/// Exact product with the sum of two doubles.
+/// Returns the exact product with the sum of two doubles.
 template <int N>
 [[nodiscard]] Expansion<4 * N> operator*(const Expansion<N>& e, const DoubleDouble& factor) {
     return (e * factor.lo) + (e * factor.hi);
 }
 
-/// The number rounded to double-double, relative error below 2^-100.
+/// Returns the number rounded to double-double, with a relative error below 2^-100.
 template <int N>
 [[nodiscard]] DoubleDouble rounded(const Expansion<N>& e) {
     DoubleDouble sum;
@@ -108,7 +111,7 @@ template <int N>
     return sum;
 }
 
-/// The exact difference of two points, each component the sum of two doubles.
+/// The exact difference of two points. Each component is the sum of two doubles.
 struct ExactDifference {
     DoubleDouble x;
     DoubleDouble y;
@@ -130,7 +133,8 @@ struct BoundedValue {
     }
 };
 
-/// u x v in double-double. `magnitude` holds the sums of the magnitudes of each component's two terms.
+/// The cross product u x v in double-double. Each component of `magnitude` is the sum of the magnitudes of that
+/// component's two terms.
 struct BoundedCross {
     static constexpr double kRoundoff = 0x1p-53;
 
@@ -145,8 +149,9 @@ struct BoundedCross {
           z(u.x * v.y - u.y * v.x),
           magnitude(detail::filtered_cross(u.rounded(), v.rounded()).magnitude) {}
 
-    /// (u x v) . w. Each of the six terms errs by two products (7 u^2 each), a subtraction and at most two additions
-    /// (3 u^2 each); 32 u^2 also covers higher orders and the rounding of the magnitude.
+    /// Returns (u x v) . w with an error bound. Each of the six terms has the error of two products (7 u^2 each), a
+    /// subtraction and at most two additions (3 u^2 each). The factor 32 u^2 also covers higher orders and the rounding
+    /// of the magnitude.
     [[nodiscard]] BoundedValue dot(const ExactDifference& w) const {
         const double terms =
             magnitude.x * std::fabs(w.x.hi) + magnitude.y * std::fabs(w.y.hi) + magnitude.z * std::fabs(w.z.hi);
@@ -159,13 +164,13 @@ namespace detail {
 using ExactMinor = Expansion<16>;
 using ExactDeterminant = Expansion<192>;
 
-/// a d - b c for differences.
+/// Returns a d - b c for differences.
 inline ExactMinor exact_minor(const DoubleDouble& a, const DoubleDouble& b, const DoubleDouble& c,
                               const DoubleDouble& d) {
     return Expansion<2>(a) * d - Expansion<2>(b) * c;
 }
 
-/// Component 0, 1 or 2 of u x v.
+/// Returns component 0, 1 or 2 of u x v.
 inline ExactMinor exact_cross_component(const ExactDifference& u, const ExactDifference& v, int axis) {
     if (axis == 0) return exact_minor(u.y, u.z, v.y, v.z);
     if (axis == 1) return exact_minor(u.z, u.x, v.z, v.x);

@@ -11,7 +11,7 @@ namespace {
 
 using Integer = boost::multiprecision::cpp_int;
 
-/// integer * 2^exponent
+/// The number integer * 2^exponent.
 struct Dyadic {
     Integer integer;
     int exponent = 0;

@@ -6,17 +6,17 @@
 
 namespace ricochet {
 
-/// numerator / denominator, the denominator not zero.
+/// The quotient numerator / denominator. The denominator is not zero.
 struct ExactRatio {
     detail::ExactDeterminant numerator;
     detail::ExactDeterminant denominator;
 };
 
-/// Sign of x - y. Exact, in whole numbers of any length: some microseconds and memory from the heap, for the few pairs
-/// that rounded quotients do not separate.
+/// Returns the exact sign of x - y. Uses integers of arbitrary length, which takes some microseconds and heap memory.
+/// Call it only for the few pairs that rounded quotients cannot order.
 [[nodiscard]] int compare(const ExactRatio& x, const ExactRatio& y);
 
-/// An expansion with room for more components.
+/// Returns the expansion with the capacity of an exact determinant.
 template <int N>
 [[nodiscard]] detail::ExactDeterminant widened(const Expansion<N>& e) {
     detail::ExactDeterminant wide;

@@ -10,10 +10,11 @@ namespace {
 
 constexpr double kU = 0x1p-53;
 
-/// Sign of component `axis` of (b - a) x (c - a): the orientation of the three points projected along that axis.
+/// Returns the sign of component `axis` of (b - a) x (c - a): the orientation of the three points projected along that
+/// axis.
 int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
-    // Each of the two terms passes at most 4 roundings (2 differences, 1 product, 1 subtraction); as for
-    // kDeterminantFilter this leaves 4 u and a little, and 4.5 u is used.
+    // Each of the two terms has at most 4 roundings (2 differences, 1 product, 1 subtraction). As for
+    // kDeterminantFilter, the bound is slightly above 4 u, so 4.5 u is used.
     constexpr double kMinorFilter = 4.5 * kU;
     const detail::FilteredCross filtered = detail::filtered_cross(b - a, c - a);
     const double value = filtered.value[axis];
@@ -23,7 +24,7 @@ int orient2d(const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
     return detail::exact_cross_component(ExactDifference(b, a), ExactDifference(c, a), axis).sign();
 }
 
-/// An axis along which the projection of the three points has an area, or -1 when they are collinear.
+/// Returns an axis along which the projection of the three points has an area, or -1 if they are collinear.
 int projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
     for (int axis = 0; axis < 3; ++axis) {
         if (orient2d(a, b, c, axis) != 0) return axis;
@@ -33,14 +34,16 @@ int projection_axis(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool is_between(double x, double a, double b) { return a < b ? (a <= x && x <= b) : (b <= x && x <= a); }
 
-/// True when p lies in the axis-parallel box of a and b; for collinear points: on the segment.
+/// Returns true if p lies in the axis-parallel box of a and b. If the three points are collinear, this means that p is
+/// on the segment.
 bool in_box(const Vec3& p, const Vec3& a, const Vec3& b) {
     return is_between(p.x, a.x, b.x) && is_between(p.y, a.y, b.y) && is_between(p.z, a.z, b.z);
 }
 
 bool point_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) { return in_box(p, a, b) && are_collinear(a, b, p); }
 
-/// Closed segments whose four ends lie in one plane, onto which the projection along `axis` is one to one.
+/// Returns true if the closed segments have a common point. Their four ends lie in one plane, and the projection along
+/// `axis` is one to one on that plane.
 bool coplanar_segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, int axis) {
     const int p_side = orient2d(a, b, p, axis);
     const int q_side = orient2d(a, b, q, axis);
@@ -48,12 +51,12 @@ bool coplanar_segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, co
     const int a_side = orient2d(p, q, a, axis);
     const int b_side = orient2d(p, q, b, axis);
     if (p_side * q_side < 0 && a_side * b_side < 0) return true;
-    // Otherwise a common point, if any, is an end of one of the segments.
+    // Otherwise any common point is an end of one of the segments.
     return (p_side == 0 && in_box(p, a, b)) || (q_side == 0 && in_box(q, a, b)) || (a_side == 0 && in_box(a, p, q)) ||
            (b_side == 0 && in_box(b, p, q));
 }
 
-/// Closed segments in space, both possibly a point.
+/// Returns true if the closed segments in space have a common point. Either of them can be a single point.
 bool segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     if (orient3d(p, q, a, b) != 0) return false;
     const std::array<int, 4> axes{projection_axis(p, q, a), projection_axis(p, q, b), projection_axis(a, b, p),
@@ -64,7 +67,8 @@ bool segments_intersect(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3&
     return in_box(p, a, b) || in_box(q, a, b) || in_box(a, p, q) || in_box(b, p, q);  // all on one line
 }
 
-/// p in the plane of a triangle whose projection along `axis` has an area.
+/// Returns true if p lies in the closed triangle. p is in the plane of the triangle, whose projection along `axis` has
+/// an area.
 bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, int axis) {
     const int ab = orient2d(a, b, p, axis);
     const int bc = orient2d(b, c, p, axis);
@@ -73,7 +77,8 @@ bool coplanar_point_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, con
     return ab * ca >= 0 && bc * ca >= 0;
 }
 
-/// Both ends of the segment in the plane of the triangle, or a triangle without area.
+/// Returns true if the segment intersects the triangle. Both ends lie in the plane of the triangle, or the triangle has
+/// no area.
 bool coplanar_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const int axis = projection_axis(a, b, c);
     if (axis < 0)
@@ -104,8 +109,8 @@ bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c) { return project
 
 bool detail::segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                        const Vec3& c, int p_side, int q_side) {
-    // The side on which the line pq passes each edge. It misses the triangle when two sides are strictly opposite;
-    // that holds whatever the planes say, so cheap filters may reject before anything is computed exactly.
+    // Sides on which the line pq passes each edge. The line misses the triangle if two sides are strictly opposite.
+    // This is true whatever the sides of p and q are, so cheap filters can reject before any exact computation.
     const Vec3 pa = a - p;
     const Vec3 pb = b - p;
     const Vec3 pc = c - p;

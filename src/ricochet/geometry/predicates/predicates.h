@@ -1,10 +1,11 @@
 /// \file
-/// Exact geometric predicates: the sign returned is the sign of the real-number expression, always.
+/// Exact geometric predicates. The returned sign is always the sign of the real-number expression.
 ///
 /// Method: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
-/// Discrete & Computational Geometry 18, 1997: a floating-point filter with a proven error bound, then double-double
-/// with its own bound, then expansions (docs/exactness.md). Exact while no product leaves the range of doubles:
-/// coordinates are multiples of 2^-340 and below 2^300, which flush_tiny() and the mesh readers ensure.
+/// Discrete & Computational Geometry 18, 1997. A floating-point filter with a proven error bound comes first, then
+/// double-double with its own bound, then expansions (docs/exactness.md). The predicates are exact while no product
+/// leaves the range of doubles. This requires coordinates that are multiples of 2^-340 and below 2^300, which
+/// flush_tiny() and the mesh readers ensure.
 #pragma once
 
 #include <cmath>
@@ -23,43 +24,47 @@ struct Point2 {
 
 /// Largest coordinate magnitude for which the predicates are exact.
 inline constexpr double kLargestExactCoordinate = 0x1p300;
-/// Coordinates smaller than this are replaced by zero, which keeps every product inside the range of doubles.
+/// Smallest coordinate magnitude. Smaller coordinates are replaced by zero, which keeps every product inside the range
+/// of doubles.
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 
-/// Replaces components smaller than kSmallestExactCoordinate by zero; other values are returned unchanged.
+/// Replaces components smaller than kSmallestExactCoordinate by zero and returns other components unchanged.
 [[nodiscard]] inline Vec3 flush_tiny(const Vec3& p) {
     const auto flushed = [](double x) { return std::fabs(x) < kSmallestExactCoordinate ? 0.0 : x; };
     return {flushed(p.x), flushed(p.y), flushed(p.z)};
 }
 
-/// Sign of (b - a) x (c - a) . (d - a): +1 when d lies on the side that the triangle's normal (counter-clockwise rule)
-/// points to, -1 on the other side, 0 in the plane (or when a, b, c are collinear).
+/// Returns the sign of (b - a) x (c - a) . (d - a). It is +1 if d is on the side that the triangle's normal
+/// (counter-clockwise rule) points to, and -1 if d is on the other side. It is 0 if d is in the plane or if a, b and c
+/// are collinear.
 [[nodiscard]] int orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// True when a, b and c are exactly collinear (coincident points included).
+/// Returns true if a, b and c are exactly collinear. Coincident points count as collinear.
 [[nodiscard]] bool are_collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// True when the closed segment [p, q] and the closed triangle (a, b, c) have a point in common. Exact in every case:
-/// coplanar and degenerate segments, degenerate triangles.
+/// Returns true if the closed segment [p, q] and the closed triangle (a, b, c) have a point in common. The result is
+/// exact in every case, including coplanar and degenerate segments and degenerate triangles.
 [[nodiscard]] bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                const Vec3& c);
 
-/// True when p lies on the closed triangle, which may be degenerate. Exact.
+/// Returns true if p lies on the closed triangle, which can be degenerate. Exact.
 [[nodiscard]] bool point_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Fraction t in [0, 1] at which p + t (q - p) crosses the plane of (a, b, c), for p and q whose exact orientations
-/// differ in sign (one may be zero). Within 2 ulp of the exact rational, whatever the triangle's shape.
+/// Returns the fraction t in [0, 1] at which p + t (q - p) crosses the plane of (a, b, c). The exact orientations of p
+/// and q must differ in sign (one can be zero). The result is within 2 ulp of the exact rational for every shape of
+/// triangle.
 [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// Unit normal of (a, b, c) by the counter-clockwise rule. Every component is within 2^-51 of the exact one, also for
-/// slender triangles; an axis-aligned triangle gives exactly an axis, its zeros positive. The triangle must not be
-/// degenerate.
+/// Returns the unit normal of (a, b, c) by the counter-clockwise rule. Every component is within 2^-51 of the exact
+/// one, also for slender triangles. An axis-aligned triangle gives exactly an axis with positive zeros. The triangle
+/// must not be degenerate.
 [[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 // The filters are inline because they decide nearly every call of the innermost loop.
 namespace detail {
 
-/// A cross product u x v in plain doubles with, for its error bound, the sums of the magnitudes of its terms.
+/// A cross product u x v in plain doubles. `magnitude` is the sum of the magnitudes of each component's terms, for the
+/// error bound.
 struct FilteredCross {
     Vec3 value;
     Vec3 magnitude;
@@ -73,13 +78,12 @@ struct FilteredCross {
             {std::fabs(yz) + std::fabs(zy), std::fabs(zx) + std::fabs(xz), std::fabs(xy) + std::fabs(yx)}};
 }
 
-/// Error of filtered_sign's determinant relative to its magnitude. Each of the six terms passes at most 8 roundings
-/// u = 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions): 8 u and a little, so 8.5 u. Underflow is
-/// harmless: terms are multiples of 2^-1020, so sums below 2^-967 are exact.
+/// Error of filtered_sign's determinant relative to its magnitude. Each of the six terms has at most 8 roundings u =
+/// 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions). The bound is slightly above 8 u, so 8.5 u is used.
+/// Underflow is harmless, because terms are multiples of 2^-1020, so sums below 2^-967 are exact.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
-/// Sign of (u x v) . w when the error bound decides it, else 0. All of u, v, w are rounded differences of
-/// points.
+/// Returns the sign of (u x v) . w if the error bound decides it, else 0. u, v and w are rounded differences of points.
 [[nodiscard]] inline int filtered_sign(const FilteredCross& cross, const Vec3& w) {
     const double determinant = cross.value.x * w.x + cross.value.y * w.y + cross.value.z * w.z;
     const double magnitude =
@@ -88,14 +92,14 @@ inline constexpr double kDeterminantFilter = 0x1.1p-50;
     return static_cast<int>(determinant > bound) - static_cast<int>(determinant < -bound);
 }
 
-/// orient2d when the filter does not decide.
+/// Computes orient2d for points that the filter does not decide.
 [[nodiscard]] int orient2d_beyond_filter(const Point2& a, const Point2& b, const Point2& c);
 
-/// orient3d when the filter does not decide.
+/// Computes orient3d for points that the filter does not decide.
 [[nodiscard]] int orient3d_beyond_filter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// segment_intersects_triangle when the filter has not put both ends on the same side; p_side and q_side are what it
-/// found (0: not decided).
+/// Computes segment_intersects_triangle unless the filter has put both ends on the same side. p_side and q_side are the
+/// filter's results (0: not decided).
 [[nodiscard]] bool segment_intersects_triangle_beyond_filter(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                              const Vec3& c, int p_side, int q_side);
 
@@ -114,9 +118,10 @@ inline bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3
     return detail::segment_intersects_triangle_beyond_filter(p, q, a, b, c, p_side, q_side);
 }
 
-/// +1 when a, b, c turn counter-clockwise, -1 when clockwise, 0 when they are collinear; exact.
+/// Returns +1 if a, b and c turn counter-clockwise, -1 if clockwise and 0 if they are collinear. Exact.
 [[nodiscard]] inline int orient2d(const Point2& a, const Point2& b, const Point2& c) {
-    // Two differences, a product and the subtraction: 4 roundings of u = 2^-53 on either term, and a little.
+    // Each term has 4 roundings of u = 2^-53: two differences, a product and the subtraction. The bound is slightly
+    // above 4 u.
     constexpr double kFilter = 4.5 * 0x1p-53;
     const double left = (b.u - a.u) * (c.v - a.v);
     const double right = (b.v - a.v) * (c.u - a.u);

@@ -5,11 +5,12 @@
 namespace ricochet {
 namespace {
 
-/// True when squares, products of two and their rounding errors stay far inside the range of doubles.
+/// Returns true if squares of x, products of two such numbers and their rounding errors stay far inside the range of
+/// doubles.
 bool is_moderate(double x) { return std::fabs(x) > 0x1p-400 && std::fabs(x) < 0x1p400; }
 
-/// The double nearest to x / y, up to 2^-100 of it; x not zero. Large and small numbers are scaled by powers of two, so
-/// that the intermediate products stay inside the range.
+/// Returns the double nearest to x / y, except for a relative error of 2^-100. x is not zero. Large and small numbers
+/// are scaled by powers of two, so that the intermediate products stay inside the range.
 double quotient(const DoubleDouble& x, const DoubleDouble& y) {
     if (is_moderate(x.hi) && is_moderate(y.hi)) return (x / y).hi;
     const int x_exponent = std::ilogb(x.hi);
@@ -17,7 +18,7 @@ double quotient(const DoubleDouble& x, const DoubleDouble& y) {
     return std::ldexp((scaled(x, -x_exponent) / scaled(y, -y_exponent)).hi, x_exponent - y_exponent);
 }
 
-/// n / length(n) for n not zero, within 0.51 units in the last place of the largest component.
+/// Returns n / length(n) for nonzero n, within 0.51 units in the last place of the largest component.
 Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
     const double largest = max_abs({x.hi, y.hi, z.hi});
     if (!is_moderate(largest)) {
@@ -26,7 +27,7 @@ Vec3 normalized_normal(DoubleDouble x, DoubleDouble y, DoubleDouble z) {
         y = scaled(y, exponent);
         z = scaled(z, exponent);
     }
-    // What components much smaller than the largest lose to underflow is below 2^-200 of the result.
+    // Components much smaller than the largest can underflow. The resulting error is below 2^-200 of the result.
     const DoubleDouble per_length = DoubleDouble{1.0} / sqrt(x * x + y * y + z * z);
     // Adding zero turns -0 into +0.
     return {(x * per_length).hi + 0.0, (y * per_length).hi + 0.0, (z * per_length).hi + 0.0};
@@ -43,7 +44,7 @@ const TrianglePlane::Precise& TrianglePlane::precise() const {
     return *precise_;
 }
 
-/// The six-fold volume with a relative error below the one asked for (not below 2^-100).
+/// Returns six times the volume with a relative error below `relative_error`, which is at least 2^-100.
 DoubleDouble TrianglePlane::volume(const Vec3& p, double relative_error) const {
     const auto& [u, v, normal] = precise();
     const ExactDifference w(p, a_);
@@ -53,8 +54,8 @@ DoubleDouble TrianglePlane::volume(const Vec3& p, double relative_error) const {
 }
 
 double TrianglePlane::crossing_fraction(const Vec3& p, const Vec3& q) const {
-    // The two volumes differ in sign, so their difference does not cancel and the quotient errs by some 2^-58 before it
-    // is rounded once.
+    // The two volumes differ in sign, so their difference does not cancel. The quotient has an error of about 2^-58
+    // before it is rounded once.
     constexpr double kAccuracy = 0x1p-60;
     const DoubleDouble from_p = volume(p, kAccuracy);
     if (from_p.hi == 0.0) return 0.0;
@@ -65,7 +66,8 @@ const Vec3& TrianglePlane::unit_normal() const {
     if (unit_normal_) return *unit_normal_;
     const Precise& known = precise();
     const BoundedCross& normal = known.normal;
-    // Each component errs by a product and a subtraction, 10 u^2 of its terms' magnitude; 16 u^2 covers the rest.
+    // Each component has the error of a product and a subtraction, 10 u^2 of its terms' magnitude. 16 u^2 covers the
+    // rest.
     constexpr double kError = 16.0 * 0x1p-53 * 0x1p-53;
     const double error = kError * max_abs(normal.magnitude);
     if (error <= 0x1p-60 * max_abs({normal.x.hi, normal.y.hi, normal.z.hi})) {

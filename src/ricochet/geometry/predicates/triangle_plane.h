@@ -1,5 +1,5 @@
 /// \file
-/// The predicates of one triangle, for several queries: common intermediate results are cached.
+/// Predicates of one triangle for several queries. Common intermediate results are cached.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace ricochet {
 
-/// Results are those of the predicates of the same names, to the bit, for the triangle (a, b, c). Not thread-safe,
-/// since const functions fill the cache.
+/// Predicates of the triangle (a, b, c). Results have the bits of the free functions with the same names. Not
+/// thread-safe, because const functions fill the cache.
 class TrianglePlane {
 public:
     TrianglePlane() = default;
@@ -20,17 +20,17 @@ public:
     [[nodiscard]] const Vec3& a() const { return a_; }
     [[nodiscard]] const Vec3& b() const { return b_; }
     [[nodiscard]] const Vec3& c() const { return c_; }
-    /// (b - a) x (c - a) in plain doubles.
+    /// Returns (b - a) x (c - a) in plain doubles.
     [[nodiscard]] const detail::FilteredCross& cross() const { return cross_; }
 
-    /// orient3d(a, b, c, p) where the filter decides, else 0.
+    /// Returns orient3d(a, b, c, p) if the filter decides it, else 0.
     [[nodiscard]] int filtered_side(const Vec3& p) const { return detail::filtered_sign(cross_, p - a_); }
-    /// orient3d(a, b, c, p). Exact.
+    /// Returns orient3d(a, b, c, p). Exact.
     [[nodiscard]] int side(const Vec3& p) const {
         const int filtered = filtered_side(p);
         return filtered != 0 ? filtered : detail::orient3d_beyond_filter(a_, b_, c_, p);
     }
-    /// segment_intersects_triangle(p, q, a, b, c). Exact.
+    /// Returns segment_intersects_triangle(p, q, a, b, c). Exact.
     [[nodiscard]] bool intersects_segment(const Vec3& p, const Vec3& q) const {
         const int p_side = filtered_side(p);
         const int q_side = filtered_side(q);
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] double crossing_fraction(const Vec3& p, const Vec3& q) const;
     /// See unit_normal().
     [[nodiscard]] const Vec3& unit_normal() const;
-    /// See signed_distance() in point_sweep.h, m.
+    /// See signed_distance() in point_sweep.h. The distance is in m.
     [[nodiscard]] double signed_distance(const Vec3& p) const;
 
 private:

@@ -9,12 +9,12 @@
 namespace ricochet {
 namespace {
 
-/// Relative error of a sum of squares or a scalar product and of a local coordinate: some 6 roundings; 8 and more are
-/// granted, in doubles and in double-doubles.
+/// Relative errors of a sum of squares, a scalar product and a local coordinate, in doubles and in double-doubles.
+/// There are about 6 roundings, and at least 8 are allowed for.
 constexpr double kDoubleError = 0x1p-50;
 constexpr double kDoubleDoubleError = 0x1p-98;
 
-/// What can_cull() adds to the margin, relative to all lengths involved.
+/// Addition to the margin in can_cull(), relative to all lengths involved.
 constexpr double kCullSlack = 0x1p-44;
 
 bool is_apart(const ControlPoints& hull, const Box3& box, double margin) {
@@ -26,14 +26,14 @@ bool is_apart(const ControlPoints& hull, const Box3& box, double margin) {
     return false;
 }
 
-/// y in the coordinates in which the (round part of the) shape is the unit ball, or disk.
+/// Returns y in coordinates in which the shape, or its round part, is the unit ball or disk.
 Vec3 in_units(const Ellipsoid& ellipsoid, const Vec3& y) {
     return {y.x / ellipsoid.half_axis(0), y.y / ellipsoid.half_axis(1),
             ellipsoid.axes() == 3 ? y.z / ellipsoid.half_axis(2) : 0.0};
 }
 
-/// Is the hull inside the shape by at least `margin`? The map to the unit ball stretches nothing by more than 1 /
-/// smallest half axis.
+/// Returns true if the hull is inside the shape by at least `margin`. The map to the unit ball stretches no length by
+/// more than 1 / smallest half axis.
 bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double margin) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
     const double largest = 1.0 - margin / ellipsoid.smallest();
@@ -44,14 +44,15 @@ bool is_deep_inside(const LocalShape& shape, const ControlPoints& local, double 
     });
 }
 
-/// Is the hull beyond a tangent plane across n by at least `margin`?
+/// Returns true if the hull is beyond a tangent plane perpendicular to n by at least `margin`.
 bool is_beyond_plane(const LocalShape& shape, const ControlPoints& local, const Vec3& n, double margin) {
     const double height = shape.support(n) + margin * length(n);
     return std::all_of(local.begin(), local.end(), [&](const Vec3& y) { return dot(n, y) > height; });
 }
 
-/// Tries the caps, and the plane that separates the path's chord from the side: where the shape is the unit ball, that
-/// across the chord's point nearest to the centre.
+/// Returns true if the hull is certainly outside the shape. Tests the planes of the caps and a plane that separates the
+/// path's chord from the side. In coordinates in which the shape is the unit ball, this plane passes through the
+/// chord's point nearest to the centre.
 bool is_far_outside(const LocalShape& shape, const ControlPoints& local, double margin) {
     if (shape.is_capped() &&
         (is_beyond_plane(shape, local, {0, 0, 1}, margin) || is_beyond_plane(shape, local, {0, 0, -1}, margin))) {
@@ -69,7 +70,7 @@ bool is_far_outside(const LocalShape& shape, const ControlPoints& local, double 
 
 Vec3 column(const AffineMap& map, int i) { return {map.row_x[i], map.row_y[i], map.row_z[i]}; }
 
-/// The column times a power of two that brings its largest component between 1 and 2.
+/// Returns the column times a power of two that brings its largest component between 1 and 2.
 PreciseVec3 near_one(const Vec3& column) {
     const double scale = std::ldexp(1.0, -std::ilogb(max_abs(column)));
     return {DoubleDouble(scale * column.x), DoubleDouble(scale * column.y), DoubleDouble(scale * column.z)};
@@ -82,7 +83,7 @@ bool is_diagonal(const AffineMap& map) {
            map.row_z.y == 0.0;
 }
 
-/// Lengths of the map's columns: a shape's half axes, m.
+/// Returns the lengths of the map's columns, which are a shape's half axes, in m.
 std::array<double, 3> column_lengths(const AffineMap& map) {
     std::array<double, 3> lengths{};
     for (int i = 0; i < 3; ++i) {

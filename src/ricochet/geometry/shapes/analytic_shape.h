@@ -1,10 +1,11 @@
 /// \file
-/// Shapes with a formula: ellipsoids (a ball under any placement) and capped cylinders, as two-sided surfaces. Pure
+/// Shapes with a formula, as two-sided surfaces: ellipsoids (a ball under any affine map) and capped cylinders. Pure
 /// geometry in world coordinates.
 ///
-/// The axes are the directions of the placement's columns, made exactly orthonormal, the half axes their lengths,
-/// rounded; half axes that agree to rounding are equal, unrotated placements exact. Decisions and times are those of
-/// this shape, in double-double; it differs from the image under the rounded map by a few 2^-53 of its size.
+/// The axes are the directions of the map's columns, made exactly orthonormal. The half axes are the columns' rounded
+/// lengths. Half axes that agree to rounding are made equal, and maps without rotation are exact. Decisions and times
+/// are computed for this shape in double-double. It differs from the image under the rounded map by a few 2^-53 of its
+/// size.
 #pragma once
 
 #include <array>
@@ -23,18 +24,18 @@ namespace ricochet {
 /// Orthonormal frame of a shape: world = center + sum of local_i * axis_i.
 class ShapeFrame {
 public:
-    /// Frame of an affine map whose columns are orthogonal up to rounding (rotation times scale) and not zero. The
-    /// columns' directions, made orthonormal in double-double, are the axes; a mirrored axis may point either way.
+    /// Makes the frame of an affine map whose columns are nonzero and orthogonal up to rounding (rotation times scale).
+    /// The axes are the columns' directions, made orthonormal in double-double. A mirrored axis may point either way.
     explicit ShapeFrame(const AffineMap& world_from_local);
 
-    /// Coordinates of p, rounded: each within 2^-50 |p - center|.
+    /// Returns the rounded coordinates of p, each within 2^-50 |p - center|.
     [[nodiscard]] Vec3 local_point(const Vec3& p) const;
-    /// Coordinates of p, each within 2^-98 |p - center|.
+    /// Returns the coordinates of p, each within 2^-98 |p - center|.
     [[nodiscard]] PreciseVec3 precise_local_point(const Vec3& p) const;
     [[nodiscard]] LocalPath local_path(const Path& path) const;
 
     [[nodiscard]] Vec3 world_point(const Vec3& local) const { return center_ + rotated(local); }
-    /// A unit vector stays one.
+    /// Rotates a normal into world coordinates. A unit vector stays a unit vector.
     [[nodiscard]] Vec3 world_normal(const Vec3& local) const {
         return is_aligned_ ? local : normalized(rotated(local));
     }
@@ -47,13 +48,13 @@ private:
     Vec3 center_;
     std::array<PreciseVec3, 3> axes_{};
     std::array<Vec3, 3> rounded_axes_{};
-    bool is_aligned_ = false;  ///< the axes are those of the world: nothing is rotated
+    bool is_aligned_ = false;  ///< the axes are the world axes, so nothing is rotated
 };
 
 /// First contact of a moving sphere (or point, radius 0) with a shape.
 struct ShapeContact {
-    double time = 0.0;  ///< s along the path
-    Vec3 normal;        ///< unit, from the surface to the centre's side
+    double time = 0.0;  ///< in s, along the path
+    Vec3 normal;        ///< unit vector from the surface to the centre's side
     Vec3 point;         ///< on the surface
     ShapePart part = ShapePart::side;
     bool on_rim = false;
@@ -69,64 +70,68 @@ struct ShapeContacts {
 /// The closest point of a shape's surface.
 struct ShapePoint {
     Vec3 point;
-    Vec3 normal;            ///< unit, outward
-    double distance = 0.0;  ///< signed, m: positive outside
+    Vec3 normal;            ///< unit vector, outward
+    double distance = 0.0;  ///< signed, in m: positive outside
     ShapePart part = ShapePart::side;
-    bool on_rim = false;  ///< where a cap and the side meet
+    bool on_rim = false;  ///< on the edge between a cap and the side
 };
 
 /// A two-sided surface around a convex body. Immutable; safe from any number of threads.
 class AnalyticShape {
 public:
-    /// The image of the unit ball: a sphere, or an ellipsoid when the scale differs by axis. The map is a scale (no
-    /// zeros; mirrored ones too), then a rotation, then a translation; finite.
+    /// Makes the image of the unit ball: a sphere, or an ellipsoid if the scale differs by axis. The map is finite: a
+    /// nonzero scale (mirroring is allowed), then a rotation, then a translation.
     static AnalyticShape ball(const AffineMap& world_from_local);
-    /// The image of the cylinder x^2 + y^2 <= 1, |z| <= 1 with its caps.
+    /// Makes the image of the cylinder x^2 + y^2 <= 1, |z| <= 1 with its caps.
     static AnalyticShape cylinder(const AffineMap& world_from_local);
 
-    /// +1 outside, -1 inside, 0 when p is so close to the surface (some 2^-96 of the distances involved) that rounding
-    /// decides. Never wrong: the rounding error is bounded.
+    /// Returns +1 outside and -1 inside. Returns 0 if p is so close to the surface that rounding decides (about 2^-96
+    /// of the distances involved). The sign is never wrong, because the rounding error is bounded.
     [[nodiscard]] int side(const Vec3& p) const;
 
-    /// Closest point of the surface; on the medial axis one of several. The distance has an error of some 2^-50 of
-    /// itself, also next to the surface and far from the origin (see Ellipsoid::closest_point); the point and its
-    /// normal have that error and the rounding of the coordinates.
+    /// Returns the closest point of the surface; on the medial axis it is one of several. The distance has a relative
+    /// error of about 2^-50, also next to the surface and far from the origin (see Ellipsoid::closest_point). The point
+    /// and its normal have that error plus the rounding of the coordinates.
     [[nodiscard]] ShapePoint closest_point(const Vec3& p) const;
-    /// The same of one part, with its rim; and of one that goes on beyond it: an endless cylinder, a plane. From inside
-    /// a cylinder touches as these do: several at a time.
+    /// Returns the closest point of one part, with its rim. The second function extends the part beyond its rim to an
+    /// endless cylinder or a plane. A sphere inside a cylinder touches these extended parts, and can touch several of
+    /// them at a time.
     [[nodiscard]] ShapePoint closest_point_of(ShapePart part, const Vec3& p) const;
     [[nodiscard]] ShapePoint closest_point_beyond(ShapePart part, const Vec3& p) const;
-    /// How many parts it has: the side, and two caps.
+    /// Returns the number of parts: 1 for a ball (the side), 3 for a cylinder (the side and two caps).
     [[nodiscard]] std::size_t part_count() const { return shape_.parts().size(); }
-    /// Time that a path along a part stays within `slack` m of it; the whole duration for sides.
+    /// Returns the time that a path along a part stays within `slack` (m) of it, in s. For the side it is the whole
+    /// duration.
     [[nodiscard]] double time_over(ShapePart part, const Path& path, double slack) const;
 
-    /// For each part the first time at which the distance between the path and it shrinks to `radius` (m, >= 0), from
-    /// either side; from outside, where only one can be met, the first of all. Held parts are left out; from outside
-    /// nothing else can be met either then. A sphere that starts in overlap is stopped only when approaching: at the
-    /// first time at which the distance shrinks (faster than kMinApproach of the speed) while it is at most the radius.
-    /// A point that starts on the surface is turned back from the side it heads for, at time 0.
+    /// Finds, for each part, the first time at which the distance from the path shrinks to `radius` (m, >= 0), from
+    /// either side. From outside, only the first contact over all parts is returned. Held parts are left out. If any
+    /// part is held, contacts from outside are left out altogether. A sphere that starts in overlap stops only if it
+    /// approaches. It stops at the first time at which the distance shrinks (faster than kMinApproach of the speed)
+    /// while it is at most the radius. A point that starts on the surface is reflected from the side that it heads for,
+    /// at time 0.
     ///
-    /// Points, spheres against spheres, and spheres inside circular cylinders: roots of polynomials in double-double,
-    /// right to about an ulp. Other cases: conservative advancement on the true distance, right to that distance's
-    /// error over the normal speed, and to an ulp. Only grazes that dip in by less than those errors can be missed.
+    /// Points, spheres against spheres, and spheres inside circular cylinders use roots of polynomials in
+    /// double-double, with an error of about an ulp. Other cases use conservative advancement on the true distance.
+    /// Their error is the distance's error over the normal speed, plus an ulp. Only grazing contacts less deep than
+    /// these errors can be missed.
     [[nodiscard]] ShapeContacts contacts(const Path& path, double radius, const HeldParts& held = {}) const;
-    /// The first of them.
+    /// Returns the first of these contacts.
     [[nodiscard]] std::optional<ShapeContact> first_contact(const Path& path, double radius) const;
 
-    /// True when the closed segment [p, q] certainly does not intersect the surface. Errs on the side of false, by some
-    /// 2^-90.
+    /// Returns true if the closed segment [p, q] certainly does not intersect the surface. Errs on the side of false,
+    /// by about 2^-90.
     [[nodiscard]] bool segment_is_clear(const Vec3& p, const Vec3& q) const;
 
-    /// A lower bound of the distance between the closed segment [p, q] and the surface, m, tight to 2^-47 (and the
-    /// error of closest_point). 0 unless the segment is clear.
+    /// Returns a lower bound on the distance between the closed segment [p, q] and the surface, in m. It is tight to
+    /// 2^-47 (plus the error of closest_point). It is 0 unless the segment is clear.
     [[nodiscard]] double distance_to_segment(const Vec3& p, const Vec3& q) const;
 
-    /// True when path, chords and everything within `margin` metres of them certainly stay off the surface. Cheap; errs
-    /// on the side of false.
+    /// Returns true if the path, its chords and everything within `margin` metres of them certainly do not touch the
+    /// surface. Cheap. Errs on the side of false.
     [[nodiscard]] bool can_cull(const Path& path, double margin) const;
 
-    /// A box around the shape, larger by rounding at most.
+    /// Returns a box around the shape. It exceeds the shape only by rounding.
     [[nodiscard]] const Box3& bounds() const { return bounds_; }
 
 private:

@@ -8,16 +8,16 @@ namespace {
 
 using std::size_t;
 
-/// Half axes closer than this, relative, are made equal: a rotation rounds the columns of a uniform scale by about
+/// Relative difference below which half axes are made equal. A rotation rounds the columns of a uniform scale by about
 /// 2^-52.
 constexpr double kEqualAxes = 0x1p-49;
 
-/// Newton's steps for sigma. It converges from below, at first cubically in the distance from a pole, in the end
-/// quadratically; a dozen steps have been seen at the most.
+/// Maximum number of Newton steps for sigma. The method converges from below, at first cubically in the distance from a
+/// pole and finally quadratically. At most a dozen steps were observed.
 constexpr int kMaxSteps = 60;
 
-/// Error of a distance relative to itself, and, away from the surface, to the size of shape and position: four times
-/// what has been seen in 40 000 random cases.
+/// Errors of a distance: relative to itself and, away from the surface, relative to the size of shape and position.
+/// Both are four times the largest error observed in 40 000 random cases.
 constexpr double kRelativeError = 0x1p-48;
 constexpr double kErrorOfSize = 0x1p-50;
 
@@ -142,10 +142,10 @@ double Ellipsoid::distance_error(double distance, const Vec3& y) const {
     return is_round_ || is_near ? relative : relative + kErrorOfSize * (length(y) + largest_);
 }
 
-/// With t = distance / |gradient at the point| the point is x_i = y_i a_i^2 / (a_i^2 + t). For sigma = 1 + t /
-/// smallest^2 and b_i = |y_i| a_i / smallest^2 it lies on the surface when sum (b_i / (excess_i + sigma))^2 = 1. The
-/// largest root is sought; it is >= 0, and 0 means the medial axis (unless b vanishes along the smallest axes
-/// there is no root at 0).
+/// Solves for sigma of the closest point. With t = distance / |gradient at the point|, the point is x_i = y_i a_i^2 /
+/// (a_i^2 + t). Let sigma = 1 + t / smallest^2 and b_i = |y_i| a_i / smallest^2. The point lies on the surface if sum
+/// (b_i / (excess_i + sigma))^2 = 1. The function returns the largest root, which is >= 0. A root of 0 means the medial
+/// axis, and it exists only if b vanishes along the smallest axes.
 double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
     std::array<double, 3> b{};
     double sum = 0.0;
@@ -176,8 +176,8 @@ double Ellipsoid::sigma_of(const std::array<double, 3>& y) const {
     return sigma;
 }
 
-/// Two steps of Newton's method on value - sum (y_i / a_i)^2 (1 - (1 + tau_i)^-2) = 0 with tau_i = tau / ratio_i,
-/// written so that nothing cancels when tau is small: tau becomes accurate relative to itself.
+/// Makes two steps of Newton's method on value - sum (y_i / a_i)^2 (1 - (1 + tau_i)^-2) = 0 with tau_i = tau / ratio_i.
+/// The form has no cancellation for small tau, so tau becomes accurate relative to itself.
 double Ellipsoid::polished(double tau, const std::array<double, 3>& y, double value) const {
     for (int step = 0; step < 2; ++step) {
         double residual = value;
@@ -202,10 +202,10 @@ LocalPoint Ellipsoid::closest_point(const PreciseVec3& y) const {
     const double height = value(y).hi;
     if (sigma > 0.5 && height < 1.0) tau = polished(tau, coordinates, height);
     std::array<double, 3> point = coordinates;
-    double rest = 1.0;  // of sum (x_i / a_i)^2, for the smallest axis when y has nothing along it
+    double rest = 1.0;  // of sum (x_i / a_i)^2, for the smallest axis if y has no component along it
     for (size_t i = 0; i < axes_; ++i) {
         if (sigma == 0.0 && excess_[i] == 0.0) continue;
-        // In terms of sigma deep inside and of tau near the surface: either has no cancellation there.
+        // Uses sigma deep inside and tau near the surface, because neither form has cancellation there.
         point[i] =
             sigma > 0.5 ? coordinates[i] / (1.0 + tau / ratio_[i]) : coordinates[i] * ratio_[i] / (excess_[i] + sigma);
         rest -= square(point[i] / half_axes_[i]);

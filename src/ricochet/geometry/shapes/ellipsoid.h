@@ -1,6 +1,7 @@
 /// \file
-/// Ellipsoids and endless elliptic cylinders in their own frame, about the origin and along the axes: side, nearest
-/// point, and the function that is zero on them along a path. Pure geometry.
+/// Ellipsoids and endless elliptic cylinders in their own frame, centred at the origin and aligned with the axes. They
+/// provide the side of a point, the nearest point, and a function along a path that is zero on the surface. Pure
+/// geometry.
 #pragma once
 
 #include <array>
@@ -13,71 +14,75 @@
 
 namespace ricochet {
 
-/// A path in a shape's frame, with coefficients in double-double: exact to some 2^-98 of their size.
+/// A path in a shape's frame. Its coefficients are double-doubles, accurate to about 2^-98 of their size.
 struct LocalPath {
     std::array<std::array<DoubleDouble, 4>, 3> component{};  ///< by axis, ascending; zero above the degree
     int degree = 1;
-    double duration = 0.0;  ///< s
+    double duration = 0.0;  ///< in s
 
     [[nodiscard]] PreciseVec3 position(double s) const;
     [[nodiscard]] Vec3 velocity(double s) const;
-    /// Second derivative, m/s^2: linear in s.
+    /// Returns the second derivative, in m/s^2. It is linear in s.
     [[nodiscard]] Vec3 acceleration(double s) const;
-    /// Third derivative, m/s^3: constant.
+    /// Returns the third derivative, in m/s^3. It is constant.
     [[nodiscard]] Vec3 jerk() const;
 };
 
-/// The smooth parts of a shape's surface. A ball is all side.
+/// The smooth parts of a shape's surface. A ball has only the side.
 enum class ShapePart : std::uint8_t { side, top, bottom };
 
 /// The point of a surface closest to a given one, in the shape's frame.
 struct LocalPoint {
     Vec3 point;             ///< on the surface
-    Vec3 normal;            ///< unit, outward
-    double distance = 0.0;  ///< signed, m: positive outside
+    Vec3 normal;            ///< unit vector, outward
+    double distance = 0.0;  ///< signed, in m: positive outside
     ShapePart part = ShapePart::side;
-    bool on_rim = false;  ///< where a cap and the side meet
+    bool on_rim = false;  ///< on the edge between a cap and the side
 };
 
-/// An ellipsoid about the origin along the coordinate axes, or with two axes an endless elliptic cylinder along z:
-/// sum over the axes of (y_i / a_i)^2 <= 1. Equal half axes are a circle or sphere, with closed forms.
+/// An ellipsoid at the origin along the coordinate axes, or, with two axes, an endless elliptic cylinder along z. The
+/// body is the set with sum over the axes of (y_i / a_i)^2 <= 1. Equal half axes give a circle or sphere, with closed
+/// forms.
 class Ellipsoid {
 public:
-    /// Half axes in m, > 0; the first `axes` (2 or 3) of them count. Those that agree to rounding are made equal.
+    /// Sets the half axes in m, > 0. Only the first `axes` (2 or 3) of them count. Half axes that agree to rounding are
+    /// made equal.
     Ellipsoid(const std::array<double, 3>& half_axes, int axes);
 
-    /// The function that is zero on the surface, negative inside: |y|^2 - R^2 when round, else sum (y_i / a_i)^2 - 1.
-    /// Each term has an error of some 2^-100 (double-doubles) or 2^-51 (doubles) of itself.
+    /// Returns a function that is zero on the surface and negative inside. It is |y|^2 - R^2 for a round shape, else
+    /// sum (y_i / a_i)^2 - 1. Each term has a relative error of about 2^-100 (double-doubles) or 2^-51 (doubles).
     template <class Scalar>
     [[nodiscard]] Scalar value(const VectorOf<Scalar>& y) const;
-    /// Bound of the error of value() when each coordinate is off by at most `coordinate_error` and arithmetic by `unit`
-    /// relative to the terms.
+    /// Returns a bound on the error of value(). Each coordinate has an error of at most `coordinate_error`, and the
+    /// arithmetic has an error of `unit` relative to the terms.
     [[nodiscard]] double value_error(const Vec3& y, double coordinate_error, double unit) const;
 
-    /// value() along a path, as a polynomial of twice its degree, times `sign`. Of a round one, with the radius changed
-    /// to `radius`.
+    /// Returns value() along a path times `sign`, as a polynomial of twice the path's degree. The second function
+    /// requires a round shape and replaces its radius by `radius`.
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign) const;
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const DoubleDouble& radius) const;
 
-    /// Closest surface point; on the medial axis one of several. The distance is accurate to some 2^-50 of itself, also
-    /// next to the surface; further from it than a quarter of the smallest radius of curvature add 2^-52 of |y| and of
-    /// the size. Point and normal inside are ill-conditioned near the edge of the medial axis.
+    /// Returns the closest surface point; on the medial axis it is one of several. The distance has a relative error of
+    /// about 2^-50, also next to the surface. At distances above a quarter of the smallest radius of curvature, 2^-52
+    /// of |y| and of the size are added. Inside, the point and the normal are ill-conditioned near the edge of the
+    /// medial axis.
     /// Method: D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", Geometric Tools,
-    /// 2013 (the equation in sigma below); J. More, D. Sorensen, "Computing a Trust Region Step", SIAM J. Sci. Stat.
-    /// Comput. 4, 1983 (Newton's method on 1 / norm, which converges from below without overshooting).
+    /// 2013 (the equation in sigma). J. More, D. Sorensen, "Computing a Trust Region Step", SIAM J. Sci. Stat. Comput.
+    /// 4, 1983 (Newton's method on 1 / norm, which converges from below without overshooting).
     [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
-    /// Bound of the error of that distance, m.
+    /// Returns a bound on the error of that distance, in m.
     [[nodiscard]] double distance_error(double distance, const Vec3& y) const;
 
     [[nodiscard]] bool is_round() const { return is_round_; }
     [[nodiscard]] double half_axis(int i) const { return half_axes_[static_cast<std::size_t>(i)]; }
     [[nodiscard]] double smallest() const { return smallest_; }
     [[nodiscard]] double largest() const { return largest_; }
-    /// Number of axes that count, 2 or 3.
+    /// Returns the number of axes that count, 2 or 3.
     [[nodiscard]] int axes() const { return static_cast<int>(axes_); }
-    /// Outward unit normal at a surface point.
+    /// Returns the outward unit normal at a surface point.
     [[nodiscard]] Vec3 normal_at(const Vec3& y) const;
-    /// max over the ellipsoid of n . y for a vector n: the height of the tangent plane across n, times |n|.
+    /// Returns the maximum of n . y over the ellipsoid for a vector n. It is the height of the tangent plane
+    /// perpendicular to n, times |n|.
     [[nodiscard]] double support(const Vec3& n) const;
 
 private:

@@ -6,15 +6,15 @@
 namespace ricochet {
 namespace {
 
-/// Halvings and secants for the nearest point of a segment; the bound returned is valid after any number of them.
+/// Maximum number of halvings and secants for the nearest point of a segment. The returned bound is valid after any
+/// number of them.
 constexpr int kMaxSegmentSteps = 100;
 
-/// Difference between a segment's least distance and its bound, relative, at which the search for the closest point
-/// ends.
+/// Relative difference between a segment's least distance and its bound at which the search for the closest point ends.
 constexpr double kSegmentError = 0x1p-50;
 
-/// Error of a squared length at the rounded point of a perpendicular, relative to the square of the start: the point
-/// errs by some 8 u, the square by the square of that.
+/// Error of a squared length at the rounded foot of a perpendicular, relative to the square of the start. The point has
+/// an error of about 8 u, and the squared length has the square of that.
 constexpr double kMinimumError = 0x1p-98;
 
 double rounded_value(double x) { return x; }
@@ -35,7 +35,7 @@ VectorOf<Scalar> step_of(const LocalSegment<Scalar>& s) {
     return {s.to.x - s.from.x, s.to.y - s.from.y, s.to.z - s.from.z};
 }
 
-/// Fraction at which a height changes from `before` > 0 through zero to `after` < before.
+/// Returns the fraction at which a height changes from `before` > 0 through zero to `after` < before.
 template <class Scalar>
 Scalar crossing(const Scalar& before, const Scalar& after) {
     return before / (before - after);
@@ -66,7 +66,8 @@ int LocalShape::side_of_start(const LocalSegment<Scalar>& segment) const {
     return lateral < 0 && beyond_cap < 0 ? -1 : 0;
 }
 
-/// The part of the segment between the caps' planes, a little more by rounding; nothing when it is all beyond one.
+/// Returns the part of the segment between the caps' planes, slightly enlarged for rounding. Returns nullopt if the
+/// whole segment is beyond one plane.
 template <class Scalar>
 std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const LocalSegment<Scalar>& segment) const {
     Interval<Scalar> part;
@@ -88,8 +89,8 @@ std::optional<LocalShape::Interval<Scalar>> LocalShape::between_caps(const Local
     return part;
 }
 
-/// Outside, the smallest value() between the caps decides: it is convex along the segment, and an error of the
-/// minimum's position counts by its square.
+/// Outside, the smallest value() between the caps decides. It is convex along the segment, so an error in the minimum's
+/// position counts only by its square.
 template <class Scalar>
 bool LocalShape::is_clear(const LocalSegment<Scalar>& segment) const {
     const int side = side_of_start(segment);
@@ -122,12 +123,13 @@ template bool LocalShape::is_clear(const LocalSegment<DoubleDouble>&) const;
 
 namespace {
 
-/// Which way a cap faces along z.
+/// Returns the direction in which a cap faces along z.
 double up_of(ShapePart cap) { return cap == ShapePart::top ? 1.0 : -1.0; }
 
 ShapePart cap_on(double up) { return up > 0.0 ? ShapePart::top : ShapePart::bottom; }
 
-/// The rim of a cap, seen from a point that is so far beyond the side and over the cap.
+/// Returns the nearest point on a cap's rim for a point that is beyond the side and beyond the cap by the given
+/// distances.
 LocalPoint rim_point(const LocalPoint& lateral, ShapePart part, double up, double height, double half_height) {
     const double distance = std::sqrt(lateral.distance * lateral.distance + height * height);
     const Vec3 normal = (lateral.distance / distance) * lateral.normal + Vec3{0.0, 0.0, up * (height / distance)};
@@ -176,13 +178,14 @@ double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) c
     const LocalPoint at_to = closest_point(to);
     double least = std::min(std::fabs(at_from.distance), std::fabs(at_to.distance));
     const Vec3 size = abs(rounded(from)) + abs(rounded(to));
-    // The depth inside a convex body is concave along the segment: its least value is at an end.
+    // The depth inside a convex body is concave along the segment, so its smallest value is at an end.
     if (at_from.distance > 0.0 && at_to.distance > 0.0) least = std::min(least, distance_from_outside(from, to));
     return std::max(0.0, least - ellipsoid_.distance_error(least, size));
 }
 
-/// The distance from a convex body is convex along the segment, so that it lies above its tangents. The root of its
-/// slope is bracketed by secants (with the Illinois rule) until the tangents meet.
+/// Returns a lower bound on the distance of a segment outside the shape. The distance from a convex body is convex
+/// along the segment, so it lies above its tangents. The root of its slope is bracketed by secants (with the Illinois
+/// rule) until the tangents meet.
 double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseVec3& to) const {
     struct Tangent {
         double t;

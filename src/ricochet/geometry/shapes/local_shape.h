@@ -1,6 +1,6 @@
 /// \file
-/// Ellipsoids and capped cylinders in their own frame, about the origin and along the axes: side, nearest point,
-/// segments. Pure geometry.
+/// Ellipsoids and capped cylinders in their own frame, centred at the origin and aligned with the axes. They provide
+/// the side of a point, the nearest point and tests of segments. Pure geometry.
 #pragma once
 
 #include <array>
@@ -15,46 +15,46 @@
 
 namespace ricochet {
 
-/// A segment, or the start of a path, given with the error of its coordinates.
+/// A segment, or the start of a path, with the error of its coordinates.
 template <class Scalar>
 struct LocalSegment {
     VectorOf<Scalar> from;
     VectorOf<Scalar> to;
-    double coordinate_error = 0.0;  ///< m, bound of the error of every coordinate
+    double coordinate_error = 0.0;  ///< in m, bound on the error of every coordinate
     double unit = 0.0;              ///< error of a term of the arithmetic, relative to the term
 };
 
-/// An ellipsoid about the origin, or an elliptic cylinder about z between two caps.
+/// An ellipsoid centred at the origin, or an elliptic cylinder around z between two caps.
 class LocalShape {
 public:
     static LocalShape ball(const std::array<double, 3>& half_axes);
     static LocalShape cylinder(const std::array<double, 3>& half_axes);
 
-    /// +1 outside, -1 inside, 0 when the errors given with the segment leave the side of `from` open.
+    /// Returns +1 outside and -1 inside. Returns 0 if the segment's errors leave the side of `from` undecided.
     template <class Scalar>
     [[nodiscard]] int side_of_start(const LocalSegment<Scalar>& segment) const;
-    /// True when both ends of the segment are certainly on the same side and all that is between them with them.
+    /// Returns true if the whole segment is certainly on one side of the surface.
     template <class Scalar>
     [[nodiscard]] bool is_clear(const LocalSegment<Scalar>& segment) const;
 
     [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
-    /// The same of one part, with its rim.
+    /// Returns the closest point of one part, with its rim.
     [[nodiscard]] LocalPoint closest_point_of(ShapePart part, const PreciseVec3& y) const;
-    /// The same of one part that goes on beyond its rim: an endless cylinder, a plane.
+    /// Returns the closest point of one part that is extended beyond its rim to an endless cylinder or a plane.
     [[nodiscard]] LocalPoint closest_point_beyond(ShapePart part, const PreciseVec3& y) const;
-    /// Time that a path stays over a cap, or beside it by at most `slack` m, s.
+    /// Returns the time that a path stays over a cap, or beside it by at most `slack` (m), in s.
     [[nodiscard]] double time_over_cap(const LocalPath& path, double slack) const;
-    /// side, and top and bottom where there are caps.
+    /// Returns the side and, for a capped shape, the top and the bottom.
     [[nodiscard]] std::span<const ShapePart> parts() const;
-    /// A lower bound, tight to rounding, of the distance of a segment that is_clear() from the surface.
+    /// Returns a lower bound on the distance of a segment from the surface, tight to rounding. Requires is_clear().
     [[nodiscard]] double distance_of(const PreciseVec3& from, const PreciseVec3& to) const;
 
     [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
     [[nodiscard]] bool is_capped() const { return is_capped_; }
     [[nodiscard]] double half_height() const { return half_height_; }
-    /// Radius of a ball about the origin that holds the shape, m.
+    /// Returns the radius of a ball around the origin that contains the shape, in m.
     [[nodiscard]] double extent() const { return ellipsoid_.largest() + half_height_; }
-    /// max over the shape of n . y.
+    /// Returns the maximum of n . y over the shape.
     [[nodiscard]] double support(const Vec3& n) const {
         return ellipsoid_.support(n) + (is_capped_ ? half_height_ * std::fabs(n.z) : 0.0);
     }
@@ -73,13 +73,13 @@ private:
 
     Ellipsoid ellipsoid_;
     bool is_capped_;
-    double half_height_;  ///< m; 0 for balls
+    double half_height_;  ///< in m; 0 for balls
 };
 
 /// The first contact with a shape, in its frame.
 struct LocalContact {
-    double time = 0.0;  ///< s
-    Vec3 normal;        ///< unit, from the surface to the side the path comes from
+    double time = 0.0;  ///< in s
+    Vec3 normal;        ///< unit vector from the surface to the side that the path comes from
     Vec3 point;         ///< on the surface
     ShapePart part = ShapePart::side;
     bool on_rim = false;
@@ -92,7 +92,7 @@ struct LocalContacts {
     [[nodiscard]] std::span<const LocalContact> all() const { return {contacts.data(), count}; }
 };
 
-/// Parts of a shape that take no part in contacts, since they hold the particle.
+/// Parts of a shape that are excluded from contacts because they support the particle.
 struct HeldParts {
     std::array<bool, 3> is_held{};
     [[nodiscard]] bool any() const { return is_held[0] || is_held[1] || is_held[2]; }

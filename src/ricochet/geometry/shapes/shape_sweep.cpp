@@ -9,60 +9,63 @@
 namespace ricochet {
 namespace {
 
-/// A separation below this fraction of the bound of a distance's error is contact: the largest error seen.
+/// Separation below which the ball is in contact, as a fraction of the bound on a distance's error. It is the largest
+/// error observed.
 constexpr double kTouching = 0.25;
 
-/// Samples of a path that starts in overlap.
+/// Number of samples of a path that starts in overlap.
 constexpr int kOverlapSamples = 32;
 
-/// Steps of Newton's method before halving takes over; seven have been seen to be enough.
+/// Number of Newton steps before halving takes over. At most seven were needed in tests.
 constexpr int kMaxNewtonSteps = 16;
 
-/// Halvings that reach the last place of a time.
+/// Number of halvings that reach the last place of a time.
 constexpr int kMaxHalvings = 60;
 
-/// Part of the interval that counts as a long step.
+/// Fraction of the interval that counts as a long step.
 constexpr double kLongStep = 0.8;
 
 double middle_of(double low, double high) { return low + 0.5 * (high - low); }
 
-/// Steps of one advancement.
+/// Maximum number of steps of one advancement.
 constexpr int kMaxAdvancementSteps = 200;
 
-/// Conservative advancement of a ball towards the surface of a convex body, from outside or from inside: each step ends
-/// before the contact, by a bound that holds for every convex body and is of second order, so that steps converge
-/// quadratically and skip nothing. The bounds are derived in docs/exactness.md.
+/// Conservative advancement of a ball towards the surface of a convex body, from outside or from inside. Each step ends
+/// before the contact, by a second-order bound that is valid for every convex body. The steps therefore converge
+/// quadratically and skip no contact. The bounds are derived in docs/exactness.md.
 ///
-/// The time is right to the error of Ellipsoid::closest_point over the normal speed, and to an ulp. After
-/// kMaxAdvancementSteps steps the last safe time is the answer; half a dozen are usual, and 30 for a graze.
+/// The error of the time is the error of Ellipsoid::closest_point over the normal speed, plus an ulp. After
+/// kMaxAdvancementSteps steps the last safe time is returned. Half a dozen steps are usual, and 30 for a grazing
+/// contact.
 class ConservativeAdvancement {
 public:
-    /// Of a body from outside, or of one of its parts from inside, where the others do not end it.
+    /// Prepares the advancement towards a body from outside, or towards one of its parts from inside. From inside, the
+    /// part is extended beyond its rim.
     ConservativeAdvancement(const LocalShape& shape, const LocalPath& path, double radius,
                             std::optional<ShapePart> from_inside);
 
-    /// True when the ball touches or overlaps the surface at the path's start, to rounding.
+    /// Returns true if the ball touches or overlaps the surface at the path's start, to rounding.
     [[nodiscard]] bool starts_in_overlap() const { return is_touching(separation_at(0.0)); }
 
-    /// The first time of contact after `from`, at which the ball must be separated from the surface.
+    /// Returns the first time of contact after `from`, at which the ball must be separated from the surface.
     [[nodiscard]] std::optional<double> first_contact(double from) const {
         return side_ > 0 ? first_from_outside(from) : first_from_inside(from);
     }
 
-    /// How a start in overlap continues.
+    /// The continuation of a start in overlap.
     struct Overlap {
         bool is_stopped = false;  ///< from `time` on the ball approaches while it touches
-        double time = 0.0;        ///< otherwise it is separated from here on; the duration's end when it never is
+        double time = 0.0;        ///< otherwise: start of separation, or the duration if the ball never separates
     };
     /// Samples the path at kOverlapSamples equally spaced times and bisects between two of them.
     [[nodiscard]] Overlap follow_overlap() const;
 
 private:
-    /// The separation at one time and how fast it grows.
+    /// The separation at one time and its rate of change.
     struct Separation {
         double time;
-        double size;  ///< m
-        double rate;  ///< m/s
+        double size;  ///< in m
+        double rate;  ///< in m/s
         Vec3 normal;  ///< outward
     };
 
@@ -78,9 +81,9 @@ private:
     const LocalShape& shape_;
     const LocalPath& path_;
     double radius_;
-    std::optional<ShapePart> part_;  // from inside
+    std::optional<ShapePart> part_;  // if from inside
     int side_;                       // +1 outside, -1 inside
-    double tolerance_;               // m: what distances err by
+    double tolerance_;               // error of distances, in m
 };
 
 ConservativeAdvancement::ConservativeAdvancement(const LocalShape& shape, const LocalPath& path, double radius,
@@ -102,7 +105,7 @@ bool ConservativeAdvancement::approaches(const Separation& separation) const {
     return separation.rate < -kMinApproach * length(path_.velocity(separation.time));
 }
 
-/// Time after separation.time at which the ball touches the tangent plane.
+/// Returns the time after separation.time at which the ball touches the tangent plane.
 std::optional<double> ConservativeAdvancement::time_to_plane(const Separation& separation) const {
     const double left = path_.duration - separation.time;
     const double size = std::max(separation.size, 0.0);
@@ -134,8 +137,8 @@ std::optional<double> ConservativeAdvancement::first_from_outside(double from) c
     return s;
 }
 
-/// The part of the interval from `low` to `high` in which there is certainly no contact; nothing when there is none in
-/// all of it.
+/// Returns the fraction of the interval from `low` to `high` that is certainly free of contact. Returns nullopt if the
+/// whole interval is free.
 std::optional<double> ConservativeAdvancement::safe_fraction(const Separation& low, const Separation& high) const {
     const double span = high.time - low.time;
     const double bend = std::sqrt(
@@ -150,8 +153,8 @@ std::optional<double> ConservativeAdvancement::safe_fraction(const Separation& l
     return x < 1.0 ? std::optional(x) : std::nullopt;
 }
 
-/// A time of contact to rounding between `low`, which is separated, and `overlapping`, which moves down towards it.
-/// Newton's method, and bisection where it leaves the bracket or takes long.
+/// Returns a time of contact to rounding between `low`, which is separated, and `overlapping`, which moves into the
+/// surface. Uses Newton's method, and bisection if it leaves the bracket or takes long.
 ConservativeAdvancement::Separation ConservativeAdvancement::contact_between(const Separation& low,
                                                                              Separation& overlapping) const {
     double separated = low.time;
@@ -192,7 +195,8 @@ std::optional<double> ConservativeAdvancement::first_from_inside(double from) co
         const bool advances = safe > low.time;
         if (!advances && low.rate < 0.0) return low.time;
         if (advances) low = separation_at(safe);
-        // A long step needs no other end; after a short one half the interval is tried, which bends a quarter as much.
+        // After a long step the same end is kept. After a short step half the interval is tried, whose curvature term
+        // is a quarter.
         if (high.size <= 0.0 && *part >= kLongStep) continue;
         const double middle = middle_of(low.time, high.time);
         if (!(middle > low.time && middle < high.time)) return low.time;
@@ -210,7 +214,7 @@ ConservativeAdvancement::Overlap ConservativeAdvancement::follow_overlap() const
             low = high;
             continue;
         }
-        // Either the ball has separated or it has begun to approach: the first such time.
+        // The ball has either separated or begun to approach. The bisection finds the first such time.
         for (int halving = 0; halving < kMaxHalvings; ++halving) {
             const double s = middle_of(low.time, high.time);
             if (!(s > low.time && s < high.time)) break;
@@ -226,13 +230,14 @@ ConservativeAdvancement::Overlap ConservativeAdvancement::follow_overlap() const
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// A point at the rounded time of a crossing is on a cap or under it up to this fraction of the distance travelled and
-/// of the shape: a few ulp.
+/// Tolerance for a point on a cap or under it at the rounded time of a crossing: a few ulp. It is a fraction of the
+/// distance travelled and of the shape's size.
 constexpr double kPositionError = 0x1p-50;
 
 double first_time(const Times& times) { return times.count > 0 ? times[0] : kNever; }
 
-/// Height of the path over the cap on the side `up` (+1 or -1) of a cylinder, lowered by `inset`, times `sign`.
+/// Returns the height of the path above a cylinder's cap on the side `up` (+1 or -1), times `sign`. The cap is lowered
+/// by `inset`.
 Polynomial height_over_cap(const LocalShape& shape, const LocalPath& path, double up, const DoubleDouble& inset,
                            double sign) {
     Polynomial p;
@@ -243,7 +248,8 @@ Polynomial height_over_cap(const LocalShape& shape, const LocalPath& path, doubl
     return p;
 }
 
-/// First time at which a path from inside comes within `inset` of a part, which is 0 unless the part is round or flat.
+/// Returns the first time at which a path from inside comes within `inset` of a part. The inset is 0 unless the part is
+/// round or flat.
 double first_exit(const LocalShape& shape, const LocalPath& path, ShapePart part, double inset, double from) {
     if (part != ShapePart::side) {
         const double up = part == ShapePart::top ? 1.0 : -1.0;
@@ -256,9 +262,9 @@ double first_exit(const LocalShape& shape, const LocalPath& path, ShapePart part
     return first_time(down_crossings(clearance, from, path.duration));
 }
 
-/// First time at which a point from outside enters a cylinder: through the side while between the caps, or through a
-/// cap while inside the side. Both tests of the other feature allow for the rounding of the time, so that nothing
-/// passes between them at the edge.
+/// Returns the first time at which a point from outside enters a cylinder. It enters through the side while between the
+/// caps, or through a cap while inside the side. Both of these conditions allow for the rounding of the time, so no
+/// point slips between them at the edge.
 double first_entry_of_cylinder(const LocalShape& shape, const LocalPath& path) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
     const Polynomial side = ellipsoid.value_along(path, +1);
@@ -295,7 +301,7 @@ int first_sign(const Polynomial& p) {
     return 0;
 }
 
-/// Direction of a path that starts on the surface: +1 out, -1 in, 0 along it.
+/// Returns the direction of a path that starts on the surface: +1 out, -1 in, 0 along it.
 int heading(const LocalShape& shape, const LocalPath& path) {
     const LocalPoint near = shape.closest_point(path.position(0.0));
     if (shape.is_capped() && std::fabs(near.normal.z) > 0.5) {
@@ -321,8 +327,9 @@ double first_entry(const LocalShape& shape, const LocalPath& path) {
     return first_time(down_crossings(shape.ellipsoid().value_along(path, +1), 0.0, path.duration));
 }
 
-/// A sphere from outside is a point against the sphere that is larger by the radius; a sphere in a sphere, or in a
-/// circular cylinder, is one against the surface that is smaller by it.
+/// Returns the time of contact of a sphere from outside. A sphere against a sphere is a point against a sphere that is
+/// larger by the radius. A sphere inside a sphere or a circular cylinder is a point against a surface that is smaller
+/// by the radius.
 double contact_from_outside(const LocalShape& shape, const LocalPath& path, double radius,
                             const ConservativeAdvancement& advancement, double from) {
     const Ellipsoid& ellipsoid = shape.ellipsoid();
@@ -339,7 +346,8 @@ double contact_from_inside(const LocalShape& shape, const LocalPath& path, Shape
                            : advancement.first_contact(from).value_or(kNever);
 }
 
-/// First contact of a sphere; contact_after(from): the first after a time at which it is separated.
+/// Returns the first contact of a sphere. contact_after(from) returns the first contact after a time at which the
+/// sphere is separated.
 template <class ContactAfter>
 double contact_of_ball(const ConservativeAdvancement& advancement, double duration, const ContactAfter& contact_after) {
     if (!advancement.starts_in_overlap()) return contact_after(0.0);
@@ -387,7 +395,7 @@ LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double
             if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
         }
     } else if (!held.any()) {
-        // A point that starts on the surface is turned back from the side it heads for, as with planes.
+        // A point that starts on the surface is reflected from the side that it heads for, as with planes.
         double time = 0.0;
         if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);
         const int seen_from = side > 0 ? 1 : -heading(shape, path);

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the separation of moving triangles: polynomials in Bernstein's form, whose coefficients carry bounds of
-/// their rounding, and vectors of them.
+/// Polynomials in Bernstein form with bounds on the rounding of their coefficients, and vectors of such polynomials.
+/// Private to the separation tests of moving triangles.
 #pragma once
 
 #include <array>
@@ -11,26 +11,28 @@
 
 namespace ricochet::bernstein {
 
-/// Relative errors of a coefficient, with room to spare: some hundred roundings, each of 2^-53 and 7 x 2^-106.
+/// Relative error bound of a coefficient, with a safety factor. It covers some hundred roundings, each of 2^-53
+/// (double) or 7 x 2^-106 (double-double).
 template <class Real>
 constexpr double kError = 0x1p-44;
 template <>
 constexpr double kError<DoubleDouble> = 0x1p-92;
 
-/// Below this, products may have been rounded to zero, and nothing is certain.
+/// Smallest certain magnitude of a coefficient. Below it, products may have been rounded to zero, so no sign is
+/// certain.
 inline constexpr double kSmallestCoefficient = 0x1p-900;
 
 inline double high(double x) { return x; }
 inline double high(const DoubleDouble& x) { return x.hi; }
 
-/// A polynomial in Bernstein's form: its coefficients times the binomials, so that products are convolutions. size:
-/// the same of the magnitudes of all that was added.
+/// A polynomial in Bernstein form. The coefficients `c` are multiplied by the binomials, so products are convolutions.
+/// `size` has the same form and accumulates the magnitudes of all added terms.
 template <class Real, std::size_t Degree>
 struct Polynomial {
     std::array<Real, Degree + 1> c{};
     std::array<double, Degree + 1> size{};
 
-    /// All coefficients certainly have this sign, +1 or -1.
+    /// Returns true if all coefficients certainly have this sign, +1 or -1.
     [[nodiscard]] bool has_sign(int sign) const {
         for (std::size_t k = 0; k <= Degree; ++k) {
             const double value = static_cast<double>(sign) * high(c[k]);
@@ -53,7 +55,7 @@ Polynomial<Real, M + N> operator*(const Polynomial<Real, M>& a, const Polynomial
     return product;
 }
 
-/// a + factor b.
+/// Returns a + factor b.
 template <class Real, std::size_t N>
 Polynomial<Real, N> sum(const Polynomial<Real, N>& a, const Polynomial<Real, N>& b, const Real& factor) {
     Polynomial<Real, N> result;
@@ -64,7 +66,7 @@ Polynomial<Real, N> sum(const Polynomial<Real, N>& a, const Polynomial<Real, N>&
     return result;
 }
 
-/// The same polynomial with a higher degree.
+/// Returns the same polynomial with a higher degree.
 template <std::size_t To, class Real, std::size_t N>
 Polynomial<Real, To> raised(const Polynomial<Real, N>& p) {
     static_assert(To >= N);
@@ -96,7 +98,7 @@ Vector<Real, M + N> cross(const Vector<Real, M>& a, const Vector<Real, N>& b) {
     return {minor(1, 2), minor(2, 0), minor(0, 1)};
 }
 
-/// b of no higher degree.
+/// Returns a - b. The degree of b is at most that of a.
 template <class Real, std::size_t M, std::size_t N>
 Vector<Real, M> difference(const Vector<Real, M>& a, const Vector<Real, N>& b) {
     return {sum(a[0], raised<M>(b[0]), Real(-1.0)), sum(a[1], raised<M>(b[1]), Real(-1.0)),

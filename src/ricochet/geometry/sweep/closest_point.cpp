@@ -11,20 +11,21 @@
 namespace ricochet {
 namespace {
 
-/// A cross product this much smaller than its terms has lost too many digits in plain doubles.
+/// Relative size below which a cross product has lost too many digits in plain doubles.
 constexpr double kSlenderNormal = 0x1p-4;
 
-/// Error of a side in plain doubles, relative to the lengths it is made of: 2^-48 of the normal and some roundings.
+/// Error of a side in plain doubles, relative to the lengths it is computed from: 2^-48 of the normal and some
+/// roundings.
 constexpr double kSideError = 0x1p-47;
 
-/// Twice a triangle's area over its longest edge's square (within a factor 4) below which its barycentric coordinates
-/// lose digits in plain doubles.
+/// Slenderness below which barycentric coordinates lose digits in plain doubles. It is twice the triangle's area over
+/// the square of the longest edge, within a factor of 4.
 constexpr double kSlenderFace = 0x1p-10;
 
-/// Sine of a triangle's angle below which it has no face.
+/// Sine of a triangle's angle below which the triangle has no face.
 constexpr double kThinnestFace = 0x1p-80;
 
-/// Unit normal within some 2^-48; nothing for a degenerate triangle.
+/// Returns the unit normal within about 2^-48, or nullopt for a degenerate triangle.
 std::optional<Vec3> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     const detail::FilteredCross cross = detail::filtered_cross(b - a, c - a);
     const double largest = max_abs(cross.value);
@@ -33,23 +34,23 @@ std::optional<Vec3> normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
     return unit_normal(a, b, c);
 }
 
-/// Power of two that brings the largest component between 1 and 2.
+/// Scales by a power of two that brings the largest component between 1 and 2.
 PreciseVec3 scaled_to_one(const PreciseVec3& u) {
     const double largest = max_abs(rounded(u));
     return largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) * u : u;
 }
 
-/// Which side of an edge's upright plane p is on: +1 on the triangle's, in double-double.
+/// Returns the side of an edge's upright plane on which p lies, in double-double. +1 is the triangle's side.
 int precise_side_of_edge(const Vec3& p, const Vec3& from, const Vec3& to, const PreciseVec3& normal) {
     const PreciseVec3 d = scaled_to_one(difference<DoubleDouble>(to, from));
     return sign(dot_of(cross_of(normal, d), scaled_to_one(difference<DoubleDouble>(p, from))));
 }
 
-/// Offset of p from the face, where p projects into the triangle.
+/// Returns the offset of p from the face if p projects into the triangle.
 std::optional<Vec3> offset_from_face(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const std::optional<Vec3> normal = normal_of(a, b, c);
     if (!normal || !projects_into_triangle(p, a, b, c, *normal)) return std::nullopt;
-    // From the nearest vertex the height errs least.
+    // The height from the nearest vertex has the smallest error.
     const Vec3 pa = p - a, pb = p - b, pc = p - c;
     const double la = length_squared(pa), lb = length_squared(pb), lc = length_squared(pc);
     const Vec3& nearest = la <= lb && la <= lc ? pa : (lb <= lc ? pb : pc);
@@ -64,7 +65,7 @@ struct Edge {
     TriangleFeature second;
 };
 
-/// True when the first candidate is to be preferred.
+/// Returns true if candidate x is preferred over candidate y.
 bool is_nearer(const ClosestPointOnTriangle& x, const ClosestPointOnTriangle& y) {
     if (x.distance_squared != y.distance_squared) return x.distance_squared < y.distance_squared;
     return rank(x.feature) < rank(y.feature);
@@ -80,7 +81,8 @@ ClosestPointOnTriangle closest_point_on_edge(const Vec3& p, const Edge& e) {
     return {point, s.offset, squared, e.edge};
 }
 
-/// Weights of a point inside the face. Lengths are first divided by the longest, so that no product leaves the range.
+/// Returns the weights of a point inside the face. Lengths are first divided by the longest, so that no product leaves
+/// the range.
 Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const double longest = std::max({max_abs(b - a), max_abs(c - b), max_abs(a - c)});
     const double scale = std::ldexp(1.0, -std::ilogb(longest));
@@ -102,14 +104,14 @@ Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return {part(b, c), part(c, a), part(a, b)};
 }
 
-/// Rounding of a projection, relative to the vector that is projected: three products, two sums, the differences of the
-/// coordinates, the direction's length and a division make some ten times 2^-53.
+/// Rounding of a projection, relative to the projected vector. Three products, two sums, the coordinate differences,
+/// the direction's length and a division give about ten times 2^-53.
 constexpr double kProjectionError = 0x1p-49;
 
-/// Directions shorter than this, m, lose digits when they are squared.
+/// Length below which a direction loses digits when it is squared, in m.
 constexpr double kShortest = 0x1p-400;
 
-/// What is lost where a product leaves the range, m.
+/// Error of a product that leaves the range of doubles, in m.
 constexpr double kUnderflow = 0x1p-600;
 
 }  // namespace
@@ -128,7 +130,7 @@ bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     if (is_certain) return true;
     const PreciseVec3 precise =
         cross_of(scaled_to_one(difference<DoubleDouble>(b, a)), scaled_to_one(difference<DoubleDouble>(c, a)));
-    // Thinner than this, the edges are as near as the face to far below rounding.
+    // In a thinner triangle, the edges are as near as the face to far below rounding.
     if (max_abs(rounded(precise)) < kThinnestFace) return false;
     return precise_side_of_edge(p, a, b, precise) >= 0 && precise_side_of_edge(p, b, c, precise) >= 0 &&
            precise_side_of_edge(p, c, a, precise) >= 0;
@@ -181,7 +183,7 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
             break;
     }
     const Vec3 weights = face_weights(nearest.point, a, b, c);
-    // A triangle that is a line to rounding has no accurate weights: then those on an edge are nearer.
+    // A triangle that is a line to rounding has no accurate weights. The weights on an edge are then nearer.
     const std::array<Vec3, 4> candidates{
         Vec3{1.0 - along(a, b), along(a, b), 0}, Vec3{0, 1.0 - along(b, c), along(b, c)},
         Vec3{along(c, a), 0, 1.0 - along(c, a)}, weights / (weights.x + weights.y + weights.z)};
@@ -190,9 +192,9 @@ Vec3 barycentric_coordinates(const ClosestPointOnTriangle& nearest, const Vec3& 
                              [&](const Vec3& v, const Vec3& w) { return miss(v) < miss(w); });
 }
 
-// The smallest distance is that of an end from the other segment, or that of two inner points where the common
-// perpendicular meets both. Where the segments are almost parallel that point is ill-conditioned, but what is returned
-// is always the distance of two points of the segments, and there the ends are as near to rounding.
+// The smallest distance is either that of an end from the other segment or that of two inner points on the common
+// perpendicular. For almost parallel segments the inner points are ill-conditioned. Even then the result is the
+// distance of two points of the segments, and the ends are equally near to rounding.
 double squared_distance_of_segments(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b) {
     const double least = std::min({length_squared(closest_point_on_segment(p, a, b).offset),
                                    length_squared(closest_point_on_segment(q, a, b).offset),
@@ -214,8 +216,8 @@ double squared_distance_of_segment_from_triangle(const Vec3& p, const Vec3& q, c
                      squared_distance_of_segments(p, q, b, c), squared_distance_of_segments(p, q, c, a)});
 }
 
-// The regions of the triangle's plane by the signs of dot products and of barycentric coordinates (Ericson, section
-// 5.1.5).
+// The regions of the triangle's plane are found from the signs of dot products and of barycentric coordinates (Ericson,
+// section 5.1.5).
 Vec3 separating_direction(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = b - a;
     const Vec3 ac = c - a;

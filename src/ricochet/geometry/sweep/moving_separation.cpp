@@ -16,25 +16,25 @@ namespace {
 
 using namespace bernstein;
 
-/// Pieces of one pair that are looked at before its separation counts as not proved. Each contact takes some 2 for
-/// every halving of the gap that a single polynomial does not see.
+/// Number of intervals of one pair that are tested before its separation counts as not proved. Each contact takes about
+/// 2 for every halving of the gap that a single polynomial does not resolve.
 constexpr int kMostSeparationPieces = 512;
 
-/// Halvings of the time: to rounding, of a certificate and of a search.
+/// Maximum number of halvings of the time, down to rounding: for a certificate and for a search.
 constexpr int kDeepestProof = 40;
 constexpr int kDeepestSearch = 50;
 
-/// Halvings after which a change of sign is taken for the first one.
+/// Number of halvings after which a change of sign is taken for the first one.
 constexpr int kShallowRoot = 3;
 
-/// Halvings of the time after which a search takes for free what has a gap at both ends and in the middle, where that
-/// shows all: certificates see what bends in between.
+/// Number of halvings after which the search samples the gap. An interval with a gap at both ends and in the middle
+/// then counts as free, if these samples suffice. Certificates find any curved motion in between.
 constexpr int kSampledSearch = 6;
 
-/// Of the contact offset: a gap that is no contact.
+/// Smallest gap that is no contact, as a fraction of the contact offset.
 constexpr double kLeastGap = 0.25;
 
-/// The offset of two points that both move along lines, over a piece [s, t] of the time.
+/// Returns the offset of two points that both move along lines, over an interval [s, t] of the time.
 template <class Real>
 Vector<Real, 1> offset_on(const MovingPoint& from, const MovingPoint& to, double s, double t) {
     Vector<Real, 1> offset;
@@ -52,15 +52,16 @@ Vector<Real, 1> offset_on(const MovingPoint& from, const MovingPoint& to, double
     return offset;
 }
 
-/// What is asked of one piece of the time: w leads from the corner a to the point, whose path has this degree, u and v
-/// to the corners b and c.
+/// Separation tests on one interval of the time. w is the vector from corner a to the point, whose path has the given
+/// degree. u and v are the vectors from a to the corners b and c.
 template <class Real, std::size_t Degree>
 class Piece {
 public:
     Piece(const Vector<Real, Degree>& w, const Vector<Real, 1>& u, const Vector<Real, 1>& v, double radius)
         : w_(w), u_(u), v_(v), radius_(radius) {}
 
-    /// Proved by the part of the triangle that is nearest in the middle.
+    /// Returns true if the polynomials of a feature prove the interval free. The feature is the nearest one at
+    /// mid-time.
     [[nodiscard]] bool is_free_of(TriangleFeature feature) {
         normal_ = cross(u_, v_);
         switch (feature) {
@@ -83,7 +84,7 @@ public:
         return is_beyond_corner(difference(w_, v_), negative(v_), difference(u_, v_)) || is_beyond_bc() ||
                is_beyond_ca() || is_over_face();
     }
-    /// Proved by a direction, of any length.
+    /// Returns true if a direction, of any length, proves the interval free.
     [[nodiscard]] bool is_free_along(const Vec3& n) const {
         const double least = radius_ * length(n) * (1.0 + kError<double>);
         const Vector<Real, 0> direction{constant(n.x), constant(n.y), constant(n.z)};
@@ -95,7 +96,7 @@ public:
 
 private:
     [[nodiscard]] static Polynomial<Real, 0> constant(double value) { return {{Real(value)}, {std::fabs(value)}}; }
-    /// squared > radius^2 of the square of a length.
+    /// Returns true if a squared length exceeds radius^2 times the squared length `of`.
     template <std::size_t M, std::size_t N>
     [[nodiscard]] bool is_further(const Polynomial<Real, M>& squared, const Polynomial<Real, N>& of) const {
         const Real r(radius_);
@@ -133,8 +134,9 @@ ClosestPointOnTriangle nearest_at(const Vec3& p, const MovingTriangle& triangle,
     return closest_point_on_triangle(p, a.at(s), b.at(s), c.at(s));
 }
 
-/// n . (p - a) > radius |n| for all control points p of a path and the corners a where they are then: so it is between.
-/// rounding: of the points, relative to their coordinates; those of a line may be exact.
+/// Returns true if n . (p - a) > radius |n| for all control points p of a path and the corners a at their times. It
+/// then holds in between as well. `rounding` is the relative error of the points' coordinates. It is zero for a line
+/// with exact points.
 template <class Points>
 bool are_beyond(const Points& control, double rounding, double radius, const MovingTriangle& triangle) {
     const auto& [a, b, c] = triangle.corners;
@@ -169,8 +171,8 @@ public:
     }
 
 private:
-    /// To rounding: the sphere overlaps the triangle at an end or in the middle; the point is over its face at both
-    /// ends, on different sides. Searching on would not help.
+    /// Returns true if the bodies intersect, up to rounding, so that further search would not help. A sphere must
+    /// overlap the triangle at an end or in the middle. A point must be over the face at both ends and change sides.
     [[nodiscard]] bool meet_in(double s, double t) const {
         if (radius_ > 0.0) {
             const auto overlaps = [&](double at) {
@@ -243,7 +245,7 @@ private:
         return orient3d(a.at(s), b.at(s), c.at(s), position(s));
     }
 
-    /// The control points of the piece, by de Casteljau's algorithm.
+    /// Returns the control points of the interval, by de Casteljau's algorithm.
     template <std::size_t Degree>
     [[nodiscard]] std::array<Vec3, Degree + 1> piece_of(double s, double t) const {
         std::array<Vec3, Degree + 1> piece;
@@ -289,8 +291,8 @@ private:
         Piece<double, Degree> piece(w, u, v, radius_);
         return piece.is_free_along(nearest.offset) || piece.is_free_of(nearest.feature);
     }
-    /// The distance in the middle of a piece is more than what it moves by relative to any of the corners, and so of
-    /// the triangle's points, until its ends.
+    /// Returns true if the distance at mid-time exceeds the motion until either end, relative to every corner. It then
+    /// also exceeds the motion relative to every other point of the triangle.
     template <std::size_t Degree>
     [[nodiscard]] bool is_too_far_to_come(double s, double t, double distance) const {
         const double spare = distance - radius_ - kLeastGap * offset();
@@ -307,13 +309,14 @@ private:
         }
         return true;
     }
-    /// Of a sphere from the triangle; of a point above its plane.
+    /// Returns the gap of a sphere from the triangle, or the signed height of a point above its plane, in m.
     [[nodiscard]] double gap(double s) const {
         const auto& [a, b, c] = triangle_.corners;
         if (radius_ == 0.0) return signed_distance(position(s), a.at(s), b.at(s), c.at(s));
         return std::sqrt(nearest_at(position(s), triangle_, s).distance_squared) - radius_;
     }
-    /// Between the ball and the triangle at both ends and in the middle; and so in between, but for what bends there.
+    /// Returns true if there is a gap between ball and triangle at both ends and in the middle. The gap then exists in
+    /// between too, except for effects of curvature.
     [[nodiscard]] bool has_gap(double s, double t) const {
         const double least = radius_ + kLeastGap * offset();
         bool is_over_plane = true;
@@ -334,12 +337,13 @@ private:
             feature = nearest.feature;
         }
         if (radius_ == 0.0 || is_over_plane) return true;
-        // About an edge or a corner it dips between samples by less than an eighth of the way's square over the
-        // distance.
+        // Around an edge or a corner, the gap dips between samples by less than an eighth of the squared path length
+        // over the distance.
         const double way = way_past(s, t, is_one_feature ? feature : std::nullopt);
         return way * way <= 8.0 * radius_ * kLeastGap * offset();
     }
-    /// m, the ball's way past the triangle in a piece; along an edge that is nearest all the time it does not count.
+    /// Returns the ball's path length past the triangle in an interval, in m. If an edge is nearest all the time,
+    /// motion along it does not count.
     [[nodiscard]] double way_past(double s, double t, const std::optional<TriangleFeature>& nearest) const {
         const Vec3 moved = position(t) - position(s);
         const auto& corners = triangle_.corners;
@@ -354,11 +358,12 @@ private:
         }
         return way;
     }
-    /// m, the contact offset here.
+    /// Returns the contact offset here, in m.
     [[nodiscard]] double offset() const {
         return contact_offset({std::max(max_abs(path_.c[0]), max_abs(path_.end)), 0.0, 0.0});
     }
-    /// Where the gap changes its sign, by the Illinois variant of false position (M. Dowell, P. Jarratt, BIT 11, 1971).
+    /// Returns the time at which the gap changes its sign, by the Illinois variant of false position (M. Dowell, P.
+    /// Jarratt, BIT 11, 1971).
     [[nodiscard]] std::optional<double> root_in(double s, double t) const {
         double at_s = gap(s);
         double at_t = gap(t);

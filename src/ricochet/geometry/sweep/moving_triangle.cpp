@@ -11,18 +11,18 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of the time, to the last bit of numbers near 1.
+/// Number of halvings of the time, down to the last bit of numbers near 1.
 constexpr int kDeepest = 52;
 
-/// Pieces that are looked at before the search is given up. They are for what stays near a triangle that turns: the
-/// nearer, the shorter are the pieces for which one direction will do.
+/// Number of intervals that are tested before the search is given up. Many intervals are needed near a rotating
+/// triangle. The nearer it is, the shorter are the intervals that a single direction can separate.
 constexpr int kMostPieces = 1 << 15;
 
-/// Relative error of a length, and of the sum of three products of rounded factors, with room to spare.
+/// Relative error of a length and of the sum of three products of rounded factors, with a safety factor.
 constexpr double kLengthError = 0x1p-49;
 constexpr double kDotError = 0x1p-48;
 
-/// The exact difference of a point and a corner at both ends of the time.
+/// The exact difference of a point and a corner at the start and the end of the time.
 struct Arm {
     ExactDifference begin;
     ExactDifference end;
@@ -31,7 +31,7 @@ struct Arm {
         : begin(point.from, corner.from), end(point.to, corner.to) {}
 };
 
-/// n . ((1 - s) begin + s end) - least, exactly.
+/// Returns the exact sign of n . ((1 - s) begin + s end) - least.
 int exact_sign(const Vec3& n, const Arm& arm, double s, double least) {
     const double r = 1.0 - s;  // exact: s is a multiple of 2^-52
     const auto term = [&](double factor, const DoubleDouble& begin, const DoubleDouble& end) {
@@ -42,7 +42,7 @@ int exact_sign(const Vec3& n, const Arm& arm, double s, double least) {
     return (sum - Expansion<2>(DoubleDouble{least, 0.0})).sign();
 }
 
-/// True when n . arm > least at s.
+/// Returns true if n . arm > least at s.
 bool is_beyond(const Vec3& n, const Arm& arm, double s, double least) {
     const double r = 1.0 - s;
     const Vec3 begin = arm.begin.rounded();
@@ -53,7 +53,7 @@ bool is_beyond(const Vec3& n, const Arm& arm, double s, double least) {
     return exact_sign(n, arm, s, least) > 0;
 }
 
-/// One pair of a point or sphere and a triangle.
+/// A pair of a point or sphere and a triangle.
 class Pair {
 public:
     Pair(const MovingPoint& point, double radius, const MovingTriangle& triangle)
@@ -62,12 +62,12 @@ public:
           triangle_(triangle),
           arms_{Arm(point, triangle.corners[0]), Arm(point, triangle.corners[1]), Arm(point, triangle.corners[2])} {}
 
-    /// A direction proves a piece free.
+    /// Returns true if some direction proves the interval free.
     [[nodiscard]] bool is_apart(double s, double t) const {
         const double middle = s + 0.5 * (t - s);
         const ClosestPointOnTriangle nearest = nearest_at(middle);
         if (separates(nearest.offset, s, t)) return true;
-        // Beside an edge the rounding of a small offset must not lean towards the edge's ends.
+        // Beside an edge, the rounding of a small offset must not tilt the direction towards the edge's ends.
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3 a = triangle_.corners[k].at(middle);
             const Vec3 edge = triangle_.corners[(k + 1) % 3].at(middle) - a;
@@ -81,7 +81,7 @@ public:
         return false;
     }
 
-    /// The start of the first piece that is not proved free.
+    /// Returns the start of the first interval that is not proved free.
     [[nodiscard]] std::optional<double> first_doubt(double s, double t, int depth) {
         if (is_apart(s, t)) return std::nullopt;
         if (depth == kDeepest || ++pieces_ > kMostPieces) return s;
@@ -103,7 +103,8 @@ public:
     }
 
 private:
-    /// Scaled directions of any length: the largest component becomes 1.
+    /// Returns true if the direction, of any length, separates the pair on [s, t]. The direction is scaled so that its
+    /// largest component is 1.
     [[nodiscard]] bool separates(const Vec3& direction, double s, double t) const {
         const double size = max_abs(direction);
         if (!(size > 0.0) || !std::isfinite(size)) return false;
@@ -122,8 +123,8 @@ private:
         return cross(b.at(s) - a.at(s), c.at(s) - a.at(s));
     }
 
-    /// From the nearest point to a sphere's centre; for a point, which lies there, the triangle's own normal against
-    /// the point's motion.
+    /// Returns the direction from the nearest point to a sphere's centre. A point lies on the triangle, so its contact
+    /// normal is the triangle's normal, oriented against the point's relative motion.
     [[nodiscard]] Vec3 contact_normal(const MovingContact& contact, const Vec3& offset) const {
         if (radius_ > 0.0 && offset != Vec3{}) return normalized(offset);
         Vec3 motion = point_.to - point_.from;

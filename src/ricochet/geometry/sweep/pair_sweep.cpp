@@ -8,41 +8,41 @@
 namespace ricochet {
 namespace {
 
-/// Coefficients of a path seen from s on; the degree stays.
+/// Returns the coefficients of a path with its time origin moved to s. The degree is unchanged.
 std::array<Vec3, 4> shifted(const Path& path, double s) {
     if (s <= 0.0) return path.c;
     return {path.position(s), path.velocity(s), path.c[2] + (3.0 * s) * path.c[3], path.c[3]};
 }
 
-/// |d|^2 - distance^2 in a hundred bits.
+/// Returns |d|^2 - distance^2 to about 100 bits.
 DoubleDouble clearance(const Vec3& d, double distance) {
     return dot_of<DoubleDouble>(d, d) - two_product(distance, distance);
 }
 
-/// Part of the magnitudes that it is a difference of, below which the discriminant of a meeting is a graze's. Reason:
-/// doubles leave it an error of some 2^-48 of them. Smaller: rounding decides whether spheres that part meet again.
-/// Larger: more digits where doubles have enough.
+/// Relative size of the discriminant below which a meeting counts as grazing. The discriminant is a difference, and
+/// doubles leave it an error of about 2^-48 of the terms. With a smaller value, rounding would decide whether
+/// separating spheres meet again. With a larger value, double-doubles would be used although doubles suffice.
 constexpr double kGraze = 0x1p-40;
 
-/// Two centres as they move relative to each other.
+/// Limits for two centres that move relative to each other.
 struct Approach {
-    double distance;  ///< m, at which they meet
-    double slow;      ///< m/s, that does not count
+    double distance;  ///< in m, at which they meet
+    double slow;      ///< in m/s; slower approaches do not count
 
-    /// True where they touch or overlap and come nearer.
+    /// Returns true if the spheres touch or overlap and approach each other.
     [[nodiscard]] bool is_at_once(const Vec3& d, const Vec3& u, double c) const {
         return c <= 0.0 && -dot(d, u) > slow * length(d);
     }
 };
 
-/// d + u t: when |d + u t| falls to the distance, at most `duration` later.
+/// Returns the time at which |d + u t| falls to the distance, at most `duration`.
 std::optional<double> meeting_on_line(const Vec3& d, const Vec3& u, const Approach& approach, double duration) {
     const double b = dot(d, u);
     if (!(b < 0.0)) return std::nullopt;
     const DoubleDouble clear = clearance(d, approach.distance);
     const double c = clear.hi;
     if (c <= 0.0) return approach.is_at_once(d, u, c) ? std::optional(0.0) : std::nullopt;
-    // b^2 - a c loses digits in a graze; |d x u|^2 does not: b^2 - a |d|^2 = -|d x u|^2.
+    // b^2 - a c loses digits at grazing contacts. |d x u|^2 does not, because b^2 - a |d|^2 = -|d x u|^2.
     const double a = length_squared(u);
     double root = a * approach.distance * approach.distance - length_squared(cross(d, u));
     double speed = -b;

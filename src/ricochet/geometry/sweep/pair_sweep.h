@@ -1,5 +1,5 @@
 /// \file
-/// When two spheres that move along polynomial paths first meet.
+/// First contact of two spheres that move along polynomial paths.
 #pragma once
 
 #include <optional>
@@ -9,23 +9,24 @@
 
 namespace ricochet {
 
-/// A part of a path that a centre follows: from `begin`, at which it is at the path's start, until `end`, s.
+/// A piece of a path that a centre follows from `begin`, when it is at the path's start, until `end`. Times in s.
 struct TimedPath {
     const Path* path = nullptr;
     double begin = 0.0;
-    double end = 0.0;  ///< at most the path's own duration later
+    double end = 0.0;  ///< at most `begin` plus the path's duration
 };
 
-/// The first time, s, in the interval that both have in common, at which the distance of the centres is `distance` (m,
-/// > 0) and shrinks. Spheres that overlap at its begin meet at once where they approach faster than `slow`, m/s; else
-/// when they have been apart and meet again. Nothing where that does not happen before the interval ends.
+/// Returns the first time, in s, at which the distance of the centres equals `distance` (m, > 0) and shrinks. The
+/// search covers the interval that both paths have in common. Spheres that overlap at its start meet at once if they
+/// approach faster than `slow`, in m/s. Otherwise they must separate first and meet again. Returns nullopt if they do
+/// not meet before the interval ends.
 ///
-/// Under a common acceleration they move on a straight line relative to each other: the smaller root of a quadratic, as
-/// c / (-b + sqrt(b^2 - a c)), with c to 100 bits. Other paths: the first root of a polynomial of degree 6, bracketed
-/// (polynomial.h).
+/// Under a common acceleration, the relative motion is a straight line. The time is then the smaller root of a
+/// quadratic, computed as c / (-b + sqrt(b^2 - a c)) with c to 100 bits. For other paths it is the first root of a
+/// polynomial of degree 6, which is bracketed (polynomial.h).
 [[nodiscard]] std::optional<double> first_meeting(const TimedPath& a, const TimedPath& b, double distance, double slow);
 
-/// A box that holds the path from its start to s, s.
+/// Returns a box that contains the path from its start to time s, in s.
 [[nodiscard]] Box3 box_of(const Path& path, double s);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// A piece of a particle's path: a polynomial in time, at most cubic.
+/// A piece of a particle's path: a polynomial in time of degree at most 3.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-/// Bezier control points of a path: the path and its chords lie in their convex hull.
+/// Bezier control points of a path. Their convex hull contains the path and its chords.
 struct ControlPoints {
     std::array<Vec3, 4> point;
     int count = 0;
@@ -17,34 +17,34 @@ struct ControlPoints {
     [[nodiscard]] const Vec3* end() const { return point.data() + count; }
 };
 
-/// p(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3 for s in [0, duration], seconds and metres. The two end points are stored
-/// values: c[0] is the particle's position, `end` is the position that becomes the next state.
+/// A path p(s) = c[0] + c[1] s + c[2] s^2 + c[3] s^3 for s in [0, duration], in seconds and metres. Both end points are
+/// stored values: c[0] is the particle's position and `end` becomes its next position.
 struct Path {
     std::array<Vec3, 4> c;  ///< coefficients; c[k] = 0 for k > degree
     int degree = 1;         ///< 1 line, 2 parabola, 3 cubic
-    double duration = 0.0;  ///< s, >= 0
+    double duration = 0.0;  ///< in s, >= 0
     Vec3 end;               ///< position at s = duration, rounded once
 
-    /// Position at s; exactly c[0] at 0 and exactly `end` at duration.
+    /// Returns the position at time s: exactly c[0] at 0 and exactly `end` at `duration`.
     [[nodiscard]] Vec3 position(double s) const;
-    /// Derivative at s, m/s.
+    /// Returns the velocity at time s, in m/s.
     [[nodiscard]] Vec3 velocity(double s) const;
-    /// Upper bound of the distance between the path on [from, to] and its chord there, m.
+    /// Returns an upper bound on the distance between the path on [from, to] and its chord there, in m.
     [[nodiscard]] double sagitta(double from, double to) const;
     [[nodiscard]] ControlPoints control_points() const;
 };
 
-/// Where line_path() ends.
+/// Returns the end point of line_path().
 [[nodiscard]] Vec3 line_end(const Vec3& x, const Vec3& v, double duration);
-/// Where parabola_path() ends.
+/// Returns the end point of parabola_path().
 [[nodiscard]] Vec3 parabola_end(const Vec3& x, const Vec3& v, const Vec3& a, double duration);
 
-/// Straight flight from x with velocity v.
+/// Returns a straight path from x with velocity v.
 [[nodiscard]] Path line_path(const Vec3& x, const Vec3& v, double duration);
-/// Parabola from x with velocity v and constant acceleration a.
+/// Returns a parabola from x with velocity v and constant acceleration a.
 [[nodiscard]] Path parabola_path(const Vec3& x, const Vec3& v, const Vec3& a, double duration);
-/// The cubic with positions x0, x1 and velocities v0, v1 at its ends (Hermite interpolation); `end` is x1 itself. Of
-/// lower degree where its leading coefficients vanish exactly. The duration must be positive.
+/// Returns the cubic with positions x0, x1 and velocities v0, v1 at its ends (Hermite interpolation). `end` is x1
+/// itself. The degree is lower if leading coefficients vanish exactly. The duration must be positive.
 [[nodiscard]] Path hermite_path(const Vec3& x0, const Vec3& v0, const Vec3& x1, const Vec3& v1, double duration);
 
 }  // namespace ricochet

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnitRoundoff = 0x1p-53;
 
-/// A triangle as a surface: sides and intersections are exact, the normal is rounded.
+/// A triangle as a surface. Sides and intersections are exact, and the normal is rounded.
 struct TriangleSurface {
     const TrianglePlane& plane;
 
@@ -25,25 +25,25 @@ struct TriangleSurface {
     }
     [[nodiscard]] bool contains(const Vec3& p) const { return point_on_triangle(p, plane.a(), plane.b(), plane.c()); }
     [[nodiscard]] double fraction(const Vec3& p, const Vec3& q) const { return plane.crossing_fraction(p, q); }
-    /// No more than fraction(), in plain doubles, for points that are on different sides.
+    /// Returns a lower bound of fraction() in plain doubles, for points on different sides.
     [[nodiscard]] double least_fraction(const Vec3& p, const Vec3& q) const;
-    /// True when a direction certainly leads towards the given side, for the rounded normal as well.
+    /// Returns true if a direction certainly leads towards the given side, also with the rounded normal.
     [[nodiscard]] bool leads_to(int side, const Vec3& direction) const;
-    /// Fraction of a segment in the triangle's plane, which intersects the triangle, at which it enters: the last of
-    /// the crossings into the half planes of the edges (M. Cyrus, J. Beck, "Generalized Two- and Three-Dimensional
-    /// Clipping", Computers & Graphics 3, 1978).
+    /// Returns the fraction at which a segment enters the triangle. The segment lies in the triangle's plane and
+    /// intersects the triangle. The entry is the last crossing into a half plane of an edge (M. Cyrus, J. Beck,
+    /// "Generalized Two- and Three-Dimensional Clipping", Computers & Graphics 3, 1978).
     [[nodiscard]] double entry(const Vec3& p, const Vec3& q) const;
 };
 
-// In parts of the largest magnitude, the plain product errs by 8.5 u of the direction's components, the unit normal
-// by 1.1 u and its product with the direction by 3 u.
+// Errors are relative to the largest magnitude. The plain product has an error of 8.5 u of the direction's components,
+// the unit normal 1.1 u and its product with the direction 3 u.
 bool TriangleSurface::leads_to(int side, const Vec3& direction) const {
     const auto& [normal, magnitude] = plane.cross();
     const Vec3 d = abs(direction);
     return side * dot(normal, direction) > 16.0 * kUnitRoundoff * max_abs(magnitude) * (d.x + d.y + d.z);
 }
 
-// The heights err by no more than what the filter leaves for it.
+// The errors of the heights are within the filter's bound.
 double TriangleSurface::least_fraction(const Vec3& p, const Vec3& q) const {
     const auto& [normal, magnitude] = plane.cross();
     const Vec3 to_p = p - plane.a();
@@ -64,7 +64,7 @@ double TriangleSurface::entry(const Vec3& p, const Vec3& q) const {
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& from = *corners[k];
         const Vec3& to = *corners[(k + 1) % 3];
-        // The plane through the edge and parallel to the axis, exactly: only one coordinate differs.
+        // The plane through the edge and parallel to the axis is exact, because only one coordinate differs.
         Vec3 lifted = from;
         lifted[axis] += std::max(max_abs(to - from), ulp(from[axis]));
         const int inside = orient3d(from, to, lifted, *corners[(k + 2) % 3]);
@@ -106,14 +106,14 @@ std::optional<Crossing> first_crossing_of_line(const Path& path, const Surface& 
     if (before == after && before != 0) return std::nullopt;
     if (!surface.contains_crossing_of(path.c[0], path.end)) return std::nullopt;
     if (before == 0 && after == 0) return Crossing{surface.entry(path.c[0], path.end) * path.duration, 0};
-    // A particle that starts on the surface is turned back from the side it heads for.
+    // A particle that starts on the surface is reflected from the side that it heads for.
     if (before == 0) return Crossing{0.0, -after};
     if (surface.least_fraction(path.c[0], path.end) * path.duration > latest) return std::nullopt;
     return Crossing{surface.fraction(path.c[0], path.end) * path.duration, before};
 }
 
-/// Height over the plane along the path, g(s) = g0 + g1 s + g2 s^2 (+ g3 s^3), oriented so that the start is
-/// on the positive side.
+/// Height above the plane along the path, g(s) = g0 + g1 s + g2 s^2. Its sign is chosen so that the start is on the
+/// positive side.
 struct Height {
     double g0;
     double g1;
@@ -127,18 +127,18 @@ Height height_along(const Path& path, const Surface& surface, const Vec3& n, int
             sign * dot(n, path.c[2])};
 }
 
-/// Discriminant g1^2 - 4 g0 g2 without cancellation.
+/// Computes the discriminant g1^2 - 4 g0 g2 without cancellation.
 double discriminant(const Height& g) { return (two_product(g.g1, g.g1) - 4.0 * two_product(g.g0, g.g2)).hi; }
 
-/// The times at which the distance passes through zero: downwards first, then (a path that returns) upwards.
+/// Times at which the height passes through zero: first downwards, then upwards if the path returns.
 struct Roots {
     std::array<double, 2> time{};
     int count = 0;
 };
 
-/// Roots in [0, duration], given the exact sides of the end points; the number of crossings agrees with them.
-/// Method: the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and
-/// Stability of Numerical Algorithms", section 1.8).
+/// Returns the roots in [0, duration]. The number of crossings agrees with the exact sides of the end points. Method:
+/// the q-form of the quadratic formula, which never subtracts like quantities (e.g. Higham, "Accuracy and Stability of
+/// Numerical Algorithms", section 1.8).
 Roots crossings_of_parabola(const Height& g, bool ends_on_same_side, double duration) {
     const double d = discriminant(g);
     if (!ends_on_same_side) {
@@ -153,8 +153,8 @@ Roots crossings_of_parabola(const Height& g, bool ends_on_same_side, double dura
     return {{std::min(2.0 * g.g0 / q, duration), std::min(q / (2.0 * g.g2), duration)}, 2};
 }
 
-/// True when the path crosses the surface around time s, where it comes from the given exact side: two points of the
-/// path that bracket s lie on different sides and the segment between them intersects the surface.
+/// Returns true if the path crosses the surface around time s, coming from the given exact side. Two points of the path
+/// that bracket s must lie on different sides, and the segment between them must intersect the surface.
 template <class Surface>
 bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal, double s, int side) {
     const double size = length(path.c[1]) * s + max_abs(path.c[0]) + max_abs(path.c[0] - surface.origin());
@@ -171,8 +171,9 @@ bool crosses_around(const Path& path, const Surface& surface, const Vec3& normal
     return false;
 }
 
-/// A path that starts in the surface's plane. On the surface itself the particle is turned back from the side it heads
-/// for; beside it, one root is at the start and the other is where the height returns to zero.
+/// Returns the first crossing of a path that starts in the surface's plane. If the start is on the surface itself, the
+/// particle is reflected from the side that it heads for. Otherwise one root is at the start, and the other is where
+/// the height returns to zero.
 template <class Surface>
 std::optional<Crossing> first_crossing_from_plane(const Path& path, const Surface& surface) {
     const Vec3 normal = surface.normal();
@@ -194,7 +195,7 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     const int before = surface.side(path.c[0]);
     if (before == 0) return first_crossing_from_plane(path, surface);
     const int after = surface.side(path.end);
-    // It dips below the surface and comes back only where it begins downwards and bends upwards.
+    // The path dips below the surface and comes back only if it begins downwards and curves upwards.
     const bool dips = !surface.leads_to(before, path.c[1]) && !surface.leads_to(-before, path.c[2]);
     if (before == after && !dips) return std::nullopt;
     const Vec3 normal = surface.normal();
@@ -208,8 +209,8 @@ std::optional<Crossing> first_crossing_of_parabola(const Path& path, const Surfa
     return std::nullopt;
 }
 
-/// Times at which a cubic path passes through the plane, in order. At the ends the exact sides overrule the rounded
-/// distance: a crossing that rounding has pushed out of the interval is put back at its end.
+/// Returns the ordered times at which a cubic path passes through the plane. At the ends, the exact sides override the
+/// rounded distance. A crossing that rounding has moved out of the interval is placed at its end.
 template <class Surface>
 Times passes_of_cubic(const Path& path, const Surface& surface, const Vec3& normal, int before, int after) {
     Polynomial distance;
@@ -245,7 +246,8 @@ std::optional<Crossing> crossing_of(const Path& path, const Surface& surface, do
     return path.degree == 2 ? first_crossing_of_parabola(path, surface) : first_crossing_of_cubic(path, surface);
 }
 
-/// True when every control point is higher over the plane than bound(offset from its origin), or every one lower.
+/// Returns true if every control point is above the plane by more than bound(offset from its origin), or every one is
+/// below by more.
 template <class Bound>
 bool is_on_one_side(const Path& path, const Vec3& origin, const Vec3& normal, const Bound& bound) {
     int side = 0;
@@ -262,8 +264,8 @@ bool is_on_one_side(const Path& path, const Vec3& origin, const Vec3& normal, co
 
 }  // namespace
 
-// Filter: each difference errs by u relative, each product and sum by another u; 8 u times the sum of magnitudes covers
-// the 5 roundings.
+// Filter: each difference has a relative error of u, and each product and sum adds another u. 8 u times the sum of
+// magnitudes covers the 5 roundings.
 int side_of(const Plane& plane, const Vec3& p) {
     const Vec3 d = p - plane.point;
     const Vec3 terms{plane.normal.x * d.x, plane.normal.y * d.y, plane.normal.z * d.z};
@@ -280,8 +282,8 @@ bool stays_on_one_side(const Path& path, const Plane& plane, double slack) {
     });
 }
 
-// With e1, e2 the rounded edges, N = e1 x e2 errs componentwise by at most 4 u P, P = |e1| x |e2| with plus signs;
-// N . d adds 4 u |N| . |d|. 16 u P . |d| covers both twice over.
+// e1 and e2 are the rounded edges. N = e1 x e2 has a componentwise error of at most 4 u P, where P is |e1| x |e2| with
+// plus signs. N . d adds 4 u |N| . |d|. 16 u P . |d| is twice the sum of both.
 bool stays_on_one_side(const Path& path, const TrianglePlane& triangle, double slack) {
     const auto& [normal, magnitude] = triangle.cross();
     const double clearance = slack * (magnitude.x + magnitude.y + magnitude.z);
@@ -302,9 +304,9 @@ std::optional<Crossing> first_crossing(const Path& path, const Plane& plane) {
     return crossing_of(path, PlaneSurface{plane}, std::numeric_limits<double>::infinity());
 }
 
-// The height above an edge is computed as inward . d. Each component of d errs by u, of `inward` by some 4 u, and the
-// sum by 3 u more: 16 u of all |d| cover it. Next to the origin that is more than a slack in ulps of the coordinates,
-// and both triangles of a seam would have ended already.
+// The height above an edge is computed as inward . d. Each component of d has an error of u, `inward` of about 4 u, and
+// the sum adds 3 u. 16 u of the sum of all |d| covers them. Near the origin this exceeds a slack in ulps of the
+// coordinates. Without it, both triangles of a seam would already have ended.
 double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
                           double slack) {
     const std::array<Vec3, 3> corners{a, b, c};

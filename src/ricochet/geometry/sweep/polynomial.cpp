@@ -9,12 +9,12 @@ namespace {
 
 using std::size_t;
 
-/// Evaluations per root. Newton needs about five; every third step halves the bracket at least, and 60 halvings reach
-/// the last place of the duration.
+/// Maximum number of evaluations per root. Newton needs about five. Every third step at least halves the bracket, and
+/// 60 halvings reach the last place of the duration.
 constexpr int kMaxRootSteps = 200;
 
-/// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes: at
-/// most 7 additions and 9 products act on a term, 16 u; twice that is used.
+/// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes. At
+/// most 7 additions and 9 products act on a term, which gives 16 u. Twice that is used.
 constexpr double kDoubleError = 0x1p-48;
 
 const DoubleDouble& coefficient(const Polynomial& p, int k) { return p.coefficients[static_cast<size_t>(k)]; }
@@ -25,7 +25,8 @@ constexpr double choose(int n, int k) {
     return result;
 }
 
-/// kBernsteinWeights[n][i][k] = C(i, k) / C(n, k): what the monomial t^k contributes to Bernstein coefficient i.
+/// Weights kBernsteinWeights[n][i][k] = C(i, k) / C(n, k), the contribution of the monomial t^k to Bernstein
+/// coefficient i.
 using BernsteinWeights = std::array<std::array<std::array<double, 7>, 7>, 7>;
 constexpr BernsteinWeights bernstein_weights() {
     BernsteinWeights weights{};
@@ -41,7 +42,7 @@ constexpr BernsteinWeights bernstein_weights() {
 }
 constexpr BernsteinWeights kBernsteinWeights = bernstein_weights();
 
-/// Bernstein coefficients on [0, to] in doubles, with a bound of their rounding error.
+/// Bernstein coefficients on [0, to] in doubles, with a bound on their rounding error.
 struct Bernstein {
     std::array<double, 7> b{};
     int degree = 0;
@@ -68,7 +69,8 @@ Bernstein bernstein_on(const Polynomial& p, double to) {
 
 enum class Variation { kPositive, kNegative, kOneChange, kUnknown };
 
-/// Signs of the Bernstein coefficients on [0, to]; a coefficient within its rounding error of zero has none.
+/// Classifies the signs of the Bernstein coefficients on [0, to]. A coefficient within its rounding error of zero has
+/// no certain sign.
 Variation variation_on(const Polynomial& p, double to) {
     const Bernstein bernstein = bernstein_on(p, to);
     int previous = 0;
@@ -84,8 +86,8 @@ Variation variation_on(const Polynomial& p, double to) {
     return changes == 1 ? Variation::kOneChange : Variation::kUnknown;
 }
 
-/// True when every coefficient, after at most `depth` halvings of the interval (de Casteljau), exceeds the error. The
-/// halvings add means of what is there, whose rounding the factor 2 in kDoubleError covers.
+/// Returns true if every coefficient exceeds the error after at most `depth` halvings of the interval (de Casteljau).
+/// The halvings average coefficients, and the factor 2 in kDoubleError covers their rounding.
 bool exceeds_error(const Bernstein& bernstein, int depth) {
     const auto n = static_cast<size_t>(bernstein.degree);
     if (!(bernstein.b[0] > bernstein.error) || !(bernstein.b[n] > bernstein.error)) return false;
@@ -101,7 +103,7 @@ bool exceeds_error(const Bernstein& bernstein, int depth) {
     return exceeds_error(early, depth - 1) && exceeds_error(late, depth - 1);
 }
 
-/// Horner's rule in doubles, with a bound of its error.
+/// Value by Horner's rule in doubles, with a bound on its error.
 struct BoundedValue {
     double value;
     double error;
@@ -116,7 +118,7 @@ BoundedValue bounded_value(const Polynomial& p, double s) {
     return {value, kDoubleError * magnitude};
 }
 
-/// Value with a certain sign: in doubles where that suffices, else in double-double.
+/// Returns a value with a certain sign: in doubles if they suffice, else in double-double.
 double signed_value(const Polynomial& p, double s) {
     const BoundedValue rough = bounded_value(p, s);
     return std::fabs(rough.value) > rough.error ? rough.value : p.value(s).hi;
@@ -124,8 +126,8 @@ double signed_value(const Polynomial& p, double s) {
 
 int sign_of(double x) { return static_cast<int>(x > 0.0) - static_cast<int>(x < 0.0); }
 
-/// The root in [low, high], where p has the given non-zero sign at `low` and the opposite one at `high`. It may be off
-/// by `enough` seconds.
+/// Returns the root in [low, high]. p has the given nonzero sign at `low` and the opposite one at `high`. The root may
+/// be off by `enough` seconds.
 double bracketed_root(const Polynomial& p, double low, double high, int sign_at_low, double enough) {
     double s = 0.5 * (low + high);
     double width = high - low;
@@ -150,8 +152,8 @@ double bracketed_root(const Polynomial& p, double low, double high, int sign_at_
     return s;
 }
 
-/// c[0] + c[1] s + c[2] s^2, scaled by a power of two so that the squares of its coefficients stay inside the range of
-/// doubles.
+/// Returns the coefficients of c[0] + c[1] s + c[2] s^2, scaled by a power of two. The squares of the scaled
+/// coefficients stay inside the range of doubles.
 std::array<DoubleDouble, 3> quadratic_coefficients(const Polynomial& p) {
     std::array<DoubleDouble, 3> c{p.coefficients[0], p.coefficients[1], p.coefficients[2]};
     const double largest = std::max({std::fabs(c[0].hi), std::fabs(c[1].hi), std::fabs(c[2].hi)});
@@ -161,7 +163,7 @@ std::array<DoubleDouble, 3> quadratic_coefficients(const Polynomial& p) {
     return c;
 }
 
-/// The roots of a polynomial of degree 1 or 2: where it falls, where it rises (NaN: nowhere). A double root of a
+/// Roots of a polynomial of degree 1 or 2: the falling root and the rising root (NaN: none). A double root of a
 /// polynomial that is positive elsewhere counts as falling only. The q-form never subtracts like quantities (e.g.
 /// Higham, "Accuracy and Stability of Numerical Algorithms", section 1.8).
 struct QuadraticRoots {
@@ -186,7 +188,7 @@ QuadraticRoots quadratic_roots(const Polynomial& p) {
         if (a.hi > 0.0) roots.falling = -0.5 * (b / a).hi;
         return roots;
     }
-    // The slope at q / (2 a) is -root for b >= 0, else +root; at 2 c / q it is the opposite.
+    // The slope at q / (2 a) is -root for b >= 0, else +root. At 2 c / q it is the opposite.
     const DoubleDouble root = sqrt(discriminant);
     const bool is_up = b.hi >= 0.0;
     const DoubleDouble q = is_up ? -(b + root) : root - b;
@@ -227,15 +229,16 @@ Pieces pieces_between(double from, const Times& cuts, double to) {
     return pieces;
 }
 
-/// How far off, relative to the duration, a cut may lie: p is flat there, and its value changes by the square.
+/// Allowed error of a cut, relative to the duration. p is flat at a cut, so its value changes by the square of the
+/// error.
 constexpr double kCutError = 0x1p-45;
 
 Times sign_changes_within(const Polynomial& p, double enough);
 
-/// Times that cut the duration into pieces on which p is monotone.
+/// Returns times that cut the duration into pieces on which p is monotone.
 Times monotone_cuts(const Polynomial& p) { return sign_changes_within(p.derivative(), kCutError * p.duration); }
 
-/// sign_changes with roots that may be off by `enough` seconds.
+/// Computes sign_changes with roots that may be off by `enough` seconds.
 Times sign_changes_within(const Polynomial& p, double enough) {
     if (p.degree <= 2) return sign_changes_of_quadratic(p);
     const Variation variation = variation_on(p, p.duration);
@@ -243,8 +246,8 @@ Times sign_changes_within(const Polynomial& p, double enough) {
     const Pieces pieces =
         pieces_between(0.0, variation == Variation::kOneChange ? Times{} : monotone_cuts(p), p.duration);
     Times times;
-    int sign = 0;      // the last sign that was not zero,
-    double low = 0.0;  // and where it was seen
+    int sign = 0;      // the last nonzero sign
+    double low = 0.0;  // and the time at which it was seen
     for (int i = 0; i < pieces.count; ++i) {
         const double high = pieces[i];
         const int sign_at_high = sign_of(signed_value(p, high));
@@ -282,14 +285,14 @@ Polynomial Polynomial::derivative() const {
 
 Times sign_changes(const Polynomial& p) { return sign_changes_within(p, 0.0); }
 
-// The pieces are those of the whole duration, so that `from` and `to` select roots and do not change them.
+// The pieces cover the whole duration, so `from` and `to` select roots without changing them.
 Times down_crossings(const Polynomial& p, double from, double to) {
     Times times;
     const auto select = [&](double root) {
         if (root > from && root <= to) times.append(root);
     };
     if (p.degree <= 2) {
-        // A root that was rounded onto an end of the interval may lie on either side of it.
+        // A root that was rounded onto an end of the interval may lie on either side of that end.
         const double root = quadratic_roots(p).falling;
         if (root == to && p.value(to).hi > 0.0) return times;
         if (root == from && p.value(from).hi > 0.0) times.append(root);

@@ -1,13 +1,13 @@
 /// \file
-/// Polynomials in time: distances of a moving point from points, lines and planes, and their real roots.
+/// Polynomials in time and their real roots. They describe distances of a moving point from points, lines and planes.
 ///
-/// A distance squared along a cubic path has degree 6. Coefficients are double-doubles, so that a difference of squares
-/// (distance^2 - radius^2) keeps its meaning where it almost vanishes. Roots are isolated by the sign variations of the
-/// Bernstein coefficients, else by cutting the interval at the roots of the derivative, and polished by Newton's method
-/// inside their bracket. Degrees 1 and 2 have closed forms. Sources and error bounds: docs/exactness.md.
+/// A squared distance along a cubic path has degree 6. Coefficients are double-doubles, so that a difference of squares
+/// (distance^2 - radius^2) stays accurate near zero. Roots are isolated by the sign variations of the Bernstein
+/// coefficients. If these are inconclusive, the interval is cut at the roots of the derivative. Newton's method refines
+/// each root inside its bracket. Degrees 1 and 2 have closed forms. Sources and error bounds: docs/exactness.md.
 ///
-/// A pair of roots may be missed when the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The
-/// work is bounded, without heap.
+/// A pair of roots may be missed if the polynomial stays below B = 2^-76 * sum |c_k| duration^k between them. The work
+/// is bounded and needs no heap memory.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@
 
 namespace ricochet {
 
-/// p(s) = sum of coefficients[k] s^k on [0, duration]; s and duration in seconds.
+/// A polynomial p(s) = sum of coefficients[k] s^k on [0, duration]. s and duration are in seconds.
 struct Polynomial {
     static constexpr int kLargestDegree = 6;
 
     std::array<DoubleDouble, kLargestDegree + 1> coefficients{};  ///< ascending; zero above the degree
     int degree = 0;                                               ///< 0 to 6; the leading coefficient may be zero
-    double duration = 0.0;                                        ///< s, >= 0
+    double duration = 0.0;                                        ///< in s, >= 0
 
-    /// Value with an error below 2^-99 * sum |c_k| s^k.
+    /// Returns the value with an error below 2^-99 * sum |c_k| s^k.
     [[nodiscard]] DoubleDouble value(double s) const;
-    /// dp/ds in plain doubles.
+    /// Returns dp/ds in plain doubles.
     [[nodiscard]] double slope(double s) const;
     [[nodiscard]] Polynomial derivative() const;
 };
@@ -44,18 +44,21 @@ struct Times {
     double operator[](int i) const { return time[static_cast<std::size_t>(i)]; }
 };
 
-/// Every time inside (0, duration) at which p changes sign, within two ulp of a root of the given coefficients or, at a
-/// multiple root, where |p| is below 2^-97 sum |c_k| duration^k. None where p only touches zero or is zero throughout.
+/// Returns every time inside (0, duration) at which p changes sign. Each is within two ulp of a root of the given
+/// coefficients. At a multiple root, |p| is below 2^-97 sum |c_k| duration^k instead. Times at which p only touches
+/// zero are not included, and a zero polynomial has none.
 [[nodiscard]] Times sign_changes(const Polynomial& p);
 
-/// Every time in (from, to] at which p falls from positive values to zero, or touches it (as the rounded coefficients
-/// say). 0 <= from <= to <= duration; the times do not depend on where the interval is cut.
+/// Returns every time in (from, to] at which p falls from positive values to zero or touches zero, for the rounded
+/// coefficients. Requires 0 <= from <= to <= duration. The times do not depend on where the interval is cut.
 [[nodiscard]] Times down_crossings(const Polynomial& p, double from, double to);
 
-/// True when p is certainly positive on [0, to], by Bernstein coefficients in plain doubles. False decides nothing.
+/// Returns true if p is certainly positive on [0, to], by Bernstein coefficients in plain doubles. False is
+/// inconclusive.
 [[nodiscard]] bool is_certainly_positive(const Polynomial& p, double to);
 
-/// A vector of doubles (to cull) or double-doubles (to decide: |w|^2 - r^2 keeps an error of some 2^-100 |w|^2).
+/// A vector of doubles (to cull) or of double-doubles (to decide). With double-doubles, |w|^2 - r^2 has an error of
+/// about 2^-100 |w|^2.
 template <class Scalar>
 struct VectorOf {
     Scalar x{};
@@ -73,7 +76,7 @@ inline void set_difference(DoubleDouble& result, double x, double y) { result = 
 
 }  // namespace detail
 
-/// p - q; exact for double-doubles.
+/// Returns p - q. Exact for double-doubles.
 template <class Scalar>
 [[nodiscard]] VectorOf<Scalar> difference(const Vec3& p, const Vec3& q) {
     VectorOf<Scalar> d;
@@ -111,11 +114,11 @@ template <class Factor>
 }
 [[nodiscard]] inline Vec3 rounded(const PreciseVec3& u) { return {u.x.hi, u.y.hi, u.z.hi}; }
 
-/// Ascending coefficients; those above the degree are zero.
+/// Ascending coefficients. Coefficients above the degree are zero.
 template <class Scalar>
 using Coefficients = std::array<Scalar, Polynomial::kLargestDegree + 1>;
 
-/// With w(s) = p(s) - a for a path p: the part of |w|^2 that does not depend on a.
+/// Returns the part of |w|^2 that does not depend on a, with w(s) = p(s) - a for a path p.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> squared_displacement(const Path& path) {
     Coefficients<Scalar> q{};
@@ -130,7 +133,7 @@ template <class Scalar>
     return q;
 }
 
-/// |w|^2 - radius^2, given squared_displacement and the start w(0).
+/// Returns |w|^2 - radius^2, given squared_displacement and the start w(0).
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> point_clearance(const Path& path, Coefficients<Scalar> q,
                                                    const VectorOf<Scalar>& start, double radius) {
@@ -144,7 +147,7 @@ template <class Scalar>
     return q;
 }
 
-/// Scalar product of w with a fixed vector: height over a plane, or position along a line.
+/// Returns the scalar product of w with a fixed vector: the height above a plane or the position along a line.
 template <class Scalar, class Direction>
 [[nodiscard]] std::array<Scalar, 4> component_along(const Path& path, const VectorOf<Scalar>& start,
                                                     const Direction& direction) {
@@ -160,7 +163,7 @@ template <class Scalar, class Direction>
     return m;
 }
 
-/// q - m^2: from the distance from a point to that from the line through it.
+/// Returns q - m^2, which turns the squared distance from a point into that from the line through it.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> line_clearance(Coefficients<Scalar> q, const std::array<Scalar, 4>& m, int degree) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {

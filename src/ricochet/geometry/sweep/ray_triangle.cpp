@@ -11,9 +11,9 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Relative error up to which a determinant in double-double serves for the place of a meeting.
+/// Relative error up to which a determinant in double-double is accurate enough for the position of an intersection.
 constexpr double kAccuracy = 0x1p-60;
-/// Quotients of two such numbers that differ by more are certainly in that order.
+/// Relative difference above which two quotients of such numbers are certainly in order.
 constexpr double kSeparated = 0x1p-48;
 
 const Vec3& corner(const Corners& triangle, std::size_t k) { return triangle[k % 3]; }
@@ -23,7 +23,7 @@ TriangleFeature edge(std::size_t k) {
 TriangleFeature vertex(std::size_t k) {
     return static_cast<TriangleFeature>(static_cast<std::size_t>(TriangleFeature::kVertexA) + k % 3);
 }
-/// The first corner of an edge, or the corner.
+/// Returns the index of a corner, or of the first corner of an edge.
 std::size_t number_of(TriangleFeature feature) {
     const auto first = rank(feature) == 2 ? TriangleFeature::kVertexA : TriangleFeature::kEdgeAB;
     return static_cast<std::size_t>(feature) - static_cast<std::size_t>(first);
@@ -31,7 +31,7 @@ std::size_t number_of(TriangleFeature feature) {
 
 ExactDifference exact(const Vec3& direction) { return {direction, Vec3{}}; }
 
-/// Sign of (u x v) . w beyond the filter.
+/// Returns the sign of (u x v) . w for cases that the filter does not decide.
 int exact_sign(const ExactDifference& u, const ExactDifference& v, const ExactDifference& w) {
     const BoundedValue bounded = BoundedCross(u, v).dot(w);
     return bounded.sign_is_known() ? sign(bounded.value) : detail::exact_determinant(u, v, w).sign();
@@ -46,15 +46,15 @@ DoubleDouble quotient(const DoubleDouble& x, const DoubleDouble& y) {
     return scaled(scaled(x, -x_exponent) / scaled(y, -y_exponent), x_exponent - y_exponent);
 }
 
-// A ray in the plane of a triangle, or one that meets a triangle without area, seen along an axis along which nothing
-// that matters falls together.
+// The next functions handle a ray in the plane of a triangle and a triangle without area. They project along an axis on
+// which no relevant points coincide.
 
-/// Sign of component `axis` of u x v.
+/// Returns the sign of component `axis` of u x v.
 int cross_sign(const ExactDifference& u, const ExactDifference& v, int axis) {
     return detail::exact_cross_component(u, v, axis).sign();
 }
 
-/// Of the corner of a triangle from the ray's line.
+/// Returns the sides of the ray's line on which the triangle's corners lie.
 std::array<int, 3> sides_of(const Ray& ray, const Corners& triangle, int axis) {
     std::array<int, 3> sides{};
     const ExactDifference along = exact(ray.direction);
@@ -64,7 +64,7 @@ std::array<int, 3> sides_of(const Ray& ray, const Corners& triangle, int axis) {
     return sides;
 }
 
-/// An axis along which not all corners are on the line; the dominant one of the direction where all are on it.
+/// Returns an axis along which not all corners project onto the line. Returns 0 if all corners are on the line.
 int axis_of(const Ray& ray, const Corners& triangle) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto sides = sides_of(ray, triangle, axis);
@@ -79,7 +79,7 @@ int dominant_axis(const Vec3& v) {
     return size.y >= size.z ? 1 : 2;
 }
 
-/// t of a corner on the line, or of an edge that crosses it, as a quotient.
+/// Returns t of a corner on the line, or of an edge that crosses the line, as a quotient.
 ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeature feature, int axis) {
     const std::size_t k = number_of(feature);
     const ExactDifference from_origin(triangle[k], ray.origin);
@@ -95,7 +95,7 @@ ExactRatio place_in_plane(const Ray& ray, const Corners& triangle, TriangleFeatu
 
 int sign_of(const ExactRatio& ratio) { return ratio.numerator.sign() * ratio.denominator.sign(); }
 
-/// The common part of ray and triangle in the order along the ray, at most five places.
+/// The common points of ray and triangle, at most five.
 struct Places {
     std::array<TriangleFeature, 5> feature{};
     std::array<ExactRatio, 5> t;
@@ -108,7 +108,8 @@ struct Places {
     }
 };
 
-/// The part of the triangle on which the ray's origin lies, which is strictly between two places of the line.
+/// Returns the feature of the triangle on which the ray's origin lies. The origin is strictly between two common points
+/// of the line.
 TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return edge(k);
@@ -116,8 +117,8 @@ TriangleFeature feature_of_origin(const std::array<int, 3>& sides) {
     return TriangleFeature::kFace;
 }
 
-/// All determinants of line and edges are zero: the line lies in the triangle's plane, or meets the line of one without
-/// area.
+/// Intersects a line with a triangle if all determinants of line and edges are zero. Either the line lies in the
+/// triangle's plane, or the triangle has no area and the line intersects its line.
 std::optional<RayMeeting> meet_in_plane(const Ray& ray, const Corners& triangle) {
     const int axis = axis_of(ray, triangle);
     const auto sides = sides_of(ray, triangle, axis);
@@ -152,7 +153,7 @@ std::optional<RayMeeting> meet_in_plane(const Ray& ray, const Corners& triangle)
     return meeting;
 }
 
-/// t where the line crosses the plane of a triangle with an area.
+/// Returns t at which the line crosses the plane of a triangle with an area.
 DoubleDouble crossing(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
     const ExactDifference u(b, a);
     const ExactDifference v(c, a);
@@ -165,7 +166,7 @@ DoubleDouble crossing(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& 
     return quotient(accurate(w), accurate(exact(ray.direction)));
 }
 
-/// The part of the triangle whose edges the line passes on these sides.
+/// Returns the feature of the triangle through which a line passes, given the line's sides of the edges.
 TriangleFeature feature_of_sides(const std::array<int, 3>& sides) {
     for (std::size_t k = 0; k < 3; ++k) {
         if (sides[k] != 0) continue;
@@ -176,7 +177,7 @@ TriangleFeature feature_of_sides(const std::array<int, 3>& sides) {
     return TriangleFeature::kFace;
 }
 
-/// t of a meeting, exactly.
+/// Returns the exact t of an intersection.
 ExactRatio place_of(const Ray& ray, const MetTriangle& met) {
     const auto& [a, b, c] = met.corners;
     if (met.meeting.from_origin) return {{}, widened(Expansion<2>(DoubleDouble{1.0, 0.0}))};
@@ -213,7 +214,7 @@ double Ray::distance(const DoubleDouble& t) const {
 }
 
 std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
-    // Cheap filters reject nearly everything before anything is computed exactly.
+    // Cheap filters reject nearly everything before any exact computation.
     const Vec3& d = ray.direction;
     const Vec3 oa = a - ray.origin;
     const Vec3 ob = b - ray.origin;

@@ -1,10 +1,10 @@
 /// \file
-/// A ray against a triangle, exactly: whether they meet, in which part of the triangle, and which of two triangles the
-/// ray meets first. The ray is the one that its origin and direction say, all of origin + t direction for t >= 0; no
-/// end point is rounded.
+/// Exact intersection of a ray and a triangle: whether they intersect, on which feature of the triangle, and which of
+/// two triangles comes first. The ray is the set of all points origin + t direction with t >= 0. No end point is
+/// rounded.
 ///
 /// The line's side of each edge is the sign of a determinant, as in T. Moeller, B. Trumbore, "Fast, Minimum Storage
-/// Ray/Triangle Intersection", Journal of Graphics Tools 2, 1997, decided as docs/exactness.md says.
+/// Ray/Triangle Intersection", Journal of Graphics Tools 2, 1997. The signs are decided as in docs/exactness.md.
 #pragma once
 
 #include <array>
@@ -19,20 +19,20 @@ namespace ricochet {
 
 /// A ray within the predicates' range.
 struct Ray {
-    Vec3 origin;     ///< m
-    Vec3 direction;  ///< the largest component at least 1 and below 2 in magnitude
+    Vec3 origin;     ///< in m
+    Vec3 direction;  ///< the largest component is at least 1 and below 2 in magnitude
 
     Ray() = default;
-    /// Scales the direction, finite and not zero, by a power of two. Components below 2^-287 (of the direction: of its
-    /// largest) become zero; everything else is kept to the bit.
+    /// Scales the direction, which is finite and not zero, by a power of two. Origin components below 2^-287 become
+    /// zero, and so do direction components below 2^-287 of the largest. All others are kept to the bit.
     Ray(const Vec3& from, const Vec3& along);
-    /// origin + t direction, rounded once from double-double.
+    /// Returns origin + t direction, rounded once from double-double.
     [[nodiscard]] Vec3 at(const DoubleDouble& t) const;
-    /// Of that point from the origin, m, rounded alike.
+    /// Returns the distance of that point from the origin, in m, rounded in the same way.
     [[nodiscard]] double distance(const DoubleDouble& t) const;
 };
 
-/// The parts of a triangle that a ray's line passes through: edges without their ends, and corners.
+/// The features of a triangle that a ray's line passes through: edges without their ends, and corners.
 class FeatureSet {
 public:
     void add(TriangleFeature feature) { bits_ |= 1U << static_cast<unsigned>(feature); }
@@ -44,37 +44,39 @@ private:
     unsigned bits_ = 0;
 };
 
-/// How a ray meets a closed triangle.
+/// The intersection of a ray and a closed triangle.
 struct RayMeeting {
-    DoubleDouble t;                                    ///< of the first common point, within 2^-58 of itself
-    TriangleFeature feature = TriangleFeature::kFace;  ///< of the triangle, that the point lies on
-    int speed = 0;             ///< +1 where the ray goes along the triangle's normal, -1 against it, 0 where in_plane
+    DoubleDouble t;                                    ///< of the first common point, with a relative error of 2^-58
+    TriangleFeature feature = TriangleFeature::kFace;  ///< of the triangle, on which the point lies
+    int speed = 0;             ///< +1 if the ray goes along the triangle's normal, -1 if against it, 0 if in_plane
     bool in_plane = false;     ///< the ray runs in the triangle's plane, or the triangle has no area
-    FeatureSet features;       ///< where in_plane: all that the ray passes through from there on
-    int axis = 0;              ///< where in_plane: along which the plane is projected, without loss
-    bool from_origin = false;  ///< where in_plane: the ray begins on the triangle, t is 0
+    FeatureSet features;       ///< if in_plane: all features that the ray passes through from its origin on
+    int axis = 0;              ///< if in_plane: axis of a one-to-one projection of the plane
+    bool from_origin = false;  ///< if in_plane: the ray begins on the triangle, and t is 0
 };
 
-/// Nothing when ray and triangle certainly have no point in common; exact. A triangle without area is the segment or
-/// point that its corners span.
+/// Returns the intersection, or nullopt if ray and triangle certainly have no common point. Exact. A triangle without
+/// area counts as the segment or point that its corners span.
 [[nodiscard]] std::optional<RayMeeting> meet(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// A triangle that a ray meets.
+/// A triangle that a ray intersects.
 struct MetTriangle {
     std::array<Vec3, 3> corners;
     RayMeeting meeting;
 };
 
-/// A part of a triangle by what it is: its corners in order of coordinates, so that triangles agree on what they share.
+/// The identity of a triangle's feature. Its corners are sorted by coordinates, so that triangles agree on shared
+/// features.
 struct FeatureKey {
     int count = 0;  ///< 1 vertex, 2 edge, 3 face
     std::array<Vec3, 3> corners;
 
     FeatureKey(const std::array<Vec3, 3>& triangle, TriangleFeature feature);
-    [[nodiscard]] static int order(const FeatureKey& x, const FeatureKey& y);  ///< -1, 0 (the same), 1
+    [[nodiscard]] static int order(const FeatureKey& x, const FeatureKey& y);  ///< -1, 0 (equal) or 1
 };
 
-/// Which first common point comes first along the ray: -1 that of x, 1 that of y, 0 neither. Exact.
+/// Compares the first common points along the ray: -1 if that of x comes first, 1 if that of y does, 0 if neither.
+/// Exact.
 [[nodiscard]] int compare_along(const Ray& ray, const MetTriangle& x, const MetTriangle& y);
 
 }  // namespace ricochet

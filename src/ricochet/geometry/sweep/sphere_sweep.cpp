@@ -11,17 +11,18 @@
 namespace ricochet {
 namespace {
 
-/// At most the squared distance of a point from a triangle: that from its box.
+/// Returns a lower bound on the squared distance of a point from a triangle: its squared distance from the triangle's
+/// box.
 double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 lower = min(a, min(b, c));
     const Vec3 upper = max(a, max(b, c));
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
 }
 
-/// The slack of a whole path over that of what is left of it from which on a cull by the latter pays.
+/// Ratio of the whole path's slack to that of its remaining part above which culling by the latter pays off.
 constexpr double kWideSlack = 0x1p10;
 
-/// Slope at which a height leaves the value zero: its first coefficient that does not vanish.
+/// Returns the sign of a height just after the start: that of its first nonzero coefficient.
 int side_ahead(const std::array<DoubleDouble, 4>& height) {
     for (const DoubleDouble& coefficient : height) {
         if (coefficient.hi != 0.0) return sign(coefficient);
@@ -45,7 +46,7 @@ SphereSweep::SphereSweep(const Path& path, double radius, double beside)
     max_distance_ = h * (length(path.c[1]) + h * (length(path.c[2]) + h * length(path.c[3])));
 }
 
-/// Control points of the path until latest_, and their box.
+/// Computes the control points of the path until latest_, and their box.
 void SphereSweep::update_bounds() {
     const Vec3& start = path_.c[0];
     const double h = latest_;
@@ -58,7 +59,7 @@ void SphereSweep::update_bounds() {
     }
 }
 
-// A contact with an edge may turn out to be one with the face, at a time that differs by rounding.
+// A contact with an edge can turn out to be one with the face, at a time that differs by rounding.
 void SphereSweep::shorten_to(double latest) {
     const double until = latest + 2.0 * kCandidateSlack * path_.duration;
     if (!(until < latest_)) return;
@@ -115,7 +116,7 @@ double SphereSweep::separating_speed(const Vec3& a, const Vec3& b, const Vec3& c
     return speed > kCandidateSlack * length(path_.c[1]) ? speed : 0.0;
 }
 
-// The offset errs by some roundings of the largest coordinate.
+// The offset has an error of some roundings of the largest coordinate.
 bool SphereSweep::is_separating_from(const ClosestPointOnTriangle& closest_to_start, const Vec3& a, const Vec3& b,
                                      const Vec3& c) const {
     if (path_.degree > 1) return false;
@@ -128,7 +129,7 @@ std::optional<SphereContact> SphereSweep::first_contact(const Vec3& a, const Vec
     return narrow_phase_contact(TrianglePlane(a, b, c));
 }
 
-/// Nothing is said of its chords.
+/// The chords of the path are not tested.
 bool SphereSweep::stays_clear(const Vec3& a, const Vec3& b, const Vec3& c) const {
     const double largest = std::max({max_abs(lower_), max_abs(upper_), max_abs(a), max_abs(b), max_abs(c)}) + radius_;
     const double margin = kCandidateSlack * largest;
@@ -174,8 +175,8 @@ std::optional<SphereContact> SphereSweep::first_contact(const Plane& plane) cons
     return contact_at(crossings[0]);
 }
 
-// The distance from a convex set is convex along a line, so an end from which the segment recedes decides for all of
-// it.
+// The distance from a convex set is convex along a line. An end from which the segment recedes therefore decides for
+// the whole segment.
 bool sphere_segment_is_clear(const Vec3& p, const Vec3& q, double radius, double tolerance, const Vec3& a,
                              const Vec3& b, const Vec3& c) {
     const double least = std::max(0.0, radius - tolerance);

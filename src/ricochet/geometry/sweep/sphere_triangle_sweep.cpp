@@ -7,8 +7,8 @@ namespace {
 
 using std::size_t;
 
-/// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares it is made of:
-/// some 20 roundings of a term; 64 u is used.
+/// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares it is computed
+/// from. A term has about 20 roundings, and 64 u is used.
 constexpr double kClearanceError = 0x1p-47;
 
 TriangleFeature edge_feature(int i) {
@@ -28,11 +28,11 @@ bool is_axis(const Vec3& n) {
     return static_cast<int>(n.x == 0.0) + static_cast<int>(n.y == 0.0) + static_cast<int>(n.z == 0.0) == 2;
 }
 
-/// Power of two that brings x between 1 and 2.
+/// Returns the power of two that brings x between 1 and 2.
 double scale_to_one(double x) { return std::ldexp(1.0, -std::ilogb(x)); }
 
-/// (b - a) x (c - a) times a power of two, with a relative error below 2^-60; nothing for a triangle so slender that
-/// double-doubles do not give that.
+/// Returns (b - a) x (c - a) times a power of two, with a relative error below 2^-60. Returns nullopt for a triangle so
+/// slender that double-doubles do not reach that accuracy.
 std::optional<PreciseVec3> precise_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
     PreciseVec3 u = difference<DoubleDouble>(b, a);
     PreciseVec3 v = difference<DoubleDouble>(c, a);
@@ -49,7 +49,7 @@ double evaluated(const std::array<DoubleDouble, 4>& m, int degree, double s) {
     return sum.hi;
 }
 
-/// Certain by the smallest value of a quadratic on [0, to].
+/// Returns true if the smallest value of a quadratic on [0, to] exceeds the margin.
 bool quadratic_exceeds(const Coefficients<double>& q, double margin, double to) {
     const double at_ends = std::min(q[0], q[0] + to * (q[1] + to * q[2]));
     if (at_ends <= margin) return false;
@@ -85,7 +85,7 @@ std::optional<SphereContact> SphereTriangleSweep::first() {
     return contact_at(*best_);
 }
 
-/// Face and vertices first: what they find shortens the search along the edges, the costliest.
+/// Searches face and vertices first. Their contacts shorten the search along the edges, which costs most.
 void SphereTriangleSweep::search(double from) {
     best_.reset();
     limit_ = sphere_.latest_;
@@ -113,8 +113,8 @@ double SphereTriangleSweep::seam_slack(const Vec3& p) const {
     return kSeamSlack * (std::max(max_abs(p), largest_coordinate_) + radius_);
 }
 
-/// Height over the face along a normal of some length; the radius times that length. An axis is exact and used as it
-/// is, so that any triangle in an axis-aligned plane gives the same bits.
+/// Returns the height above the face along a normal of some length, and the radius times that length. An axis is exact
+/// and used directly, so any triangle in an axis-aligned plane gives the same bits.
 std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& scaled_radius) {
     const PreciseVec3 start = difference<DoubleDouble>(path_.c[0], corners_[0]);
     scaled_radius = DoubleDouble(radius_);
@@ -125,7 +125,7 @@ std::array<DoubleDouble, 4> SphereTriangleSweep::height_over_face(DoubleDouble& 
     return component_along(path_, start, *precise);
 }
 
-/// Times at which the sphere comes down on the face's plane from either side.
+/// Returns the times at which the sphere comes down on the face's plane from either side.
 Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& height, const DoubleDouble& scaled_radius,
                                           double from) const {
     const Times above = down_crossings(face_clearance(path_, height, scaled_radius, +1), from, path_.duration);
@@ -136,7 +136,7 @@ Times SphereTriangleSweep::face_crossings(const std::array<DoubleDouble, 4>& hei
     return all;
 }
 
-/// True when some edge has the whole path on its outer side, so that no point of it projects onto the face.
+/// Returns true if the whole path is on the outer side of some edge, so that no point of it projects onto the face.
 bool SphereTriangleSweep::certainly_passes_beside_face() const {
     const double normal_size = length(plane_.cross().magnitude);
     for (int i = 0; i < 3; ++i) {
@@ -155,7 +155,7 @@ bool SphereTriangleSweep::certainly_passes_beside_face() const {
     return false;
 }
 
-/// True when p projects onto the face, or beside it by no more than the seam slack.
+/// Returns true if p projects onto the face, or beside it by no more than the seam slack.
 bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     const auto& [a, b, c] = corners_;
     if (projects_into_triangle(p, a, b, c, *normal_)) return true;
@@ -168,7 +168,7 @@ bool SphereTriangleSweep::projects_onto_face(const Vec3& p) {
     return false;
 }
 
-/// True when an offset from the triangle deviates from the normal by no more than the slack.
+/// Returns true if an offset from the triangle deviates from the normal by no more than the slack.
 bool SphereTriangleSweep::is_along_normal(const Vec3& offset, double slack) const {
     return length_squared(offset - dot(*normal_, offset) * *normal_) <= slack * slack;
 }
@@ -186,7 +186,8 @@ void SphereTriangleSweep::search_face(double from) {
     }
 }
 
-/// Discards a point or line that the path cannot reach before the limit. `clearance` is of degree twice the path's.
+/// Returns true if the path cannot reach a point or line before the limit. The degree of `clearance` is twice that of
+/// the path.
 bool SphereTriangleSweep::certainly_clears(const Coefficients<double>& clearance, double start_distance) const {
     const double extent = start_distance + sphere_.max_distance_;
     const double margin = kClearanceError * (extent * extent + radius_ * radius_);
@@ -207,7 +208,7 @@ Polynomial SphereTriangleSweep::polynomial(const Coefficients<DoubleDouble>& coe
     return p;
 }
 
-/// Nothing for an edge without length: its vertices represent it.
+/// Returns nullopt for an edge without length, because its vertices represent it.
 std::optional<SphereTriangleSweep::EdgeLine> SphereTriangleSweep::edge_line(int i) const {
     const bool in_order = is_before(corner(i), corner(next(i)));
     const int first = in_order ? i : next(i);
@@ -228,7 +229,8 @@ SphereTriangleSweep::EdgeClearance SphereTriangleSweep::edge_clearance(const Edg
     return {polynomial(line_clearance(around_end, along, path_.degree)), along};
 }
 
-/// Discards an edge by plain doubles: until the limit the path stays beyond one of its ends, or away from its line.
+/// Returns true if the path stays beyond one of the edge's ends, or away from its line, until the limit. Uses plain
+/// doubles.
 bool SphereTriangleSweep::certainly_misses_edge(int i) const {
     const Vec3& origin = corner(i);
     const Vec3 edge = corner(next(i)) - origin;
@@ -321,7 +323,8 @@ PreciseVec3 SphereTriangleSweep::position_from(const Vec3& origin, double time) 
     return time * w + difference<DoubleDouble>(path_.c[0], origin);
 }
 
-/// From the nearest point of an edge or vertex to the centre, not rounded to the coordinates' last place.
+/// Returns the offset from the nearest point of an edge or vertex to the centre, not rounded to the coordinates' last
+/// place.
 Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     const int i = index_of(candidate.feature);
     if (rank(candidate.feature) == 2) return rounded(position_from(corner(i), candidate.time));
@@ -330,8 +333,9 @@ Vec3 SphereTriangleSweep::offset_at(const Candidate& candidate) const {
     return rounded(w - dot_of(w, line->direction) * line->direction);
 }
 
-/// A contact with an edge or vertex along the face's normal to rounding is reported as one with the face: with its
-/// normal, and with its time where the plane is reached at that time to rounding.
+/// Converts a candidate into a contact. A contact with an edge or vertex along the face's normal, to rounding, is
+/// reported as one with the face. It has the face's normal, and the face's time if the sphere reaches the plane at that
+/// time to rounding.
 SphereContact SphereTriangleSweep::contact_at(const Candidate& candidate) {
     const Vec3 p = path_.position(candidate.time);
     if (candidate.feature != TriangleFeature::kFace) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to SphereSweep: the narrow phase of one moving sphere against the features of one triangle.
+/// Narrow phase of one moving sphere against the features of one triangle. Private to SphereSweep.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace ricochet {
 
-/// side * height - radius as a polynomial: positive while the sphere is clear of the plane on that side.
+/// Returns side * height - radius as a polynomial. It is positive while the sphere is clear of the plane on that side.
 [[nodiscard]] Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& height,
                                         const DoubleDouble& radius, int side);
 [[nodiscard]] inline Polynomial face_clearance(const Path& path, const std::array<DoubleDouble, 4>& height,
@@ -25,12 +25,12 @@ namespace ricochet {
     return face_clearance(path, height, DoubleDouble(radius), side);
 }
 
-/// How a sphere that starts in overlap continues.
+/// The continuation of a sphere that starts in overlap.
 struct OverlapEnd {
     enum Kind {
         kStopped,  ///< the distance shrinks from `time` on, while it is at most the radius
-        kFree,     ///< it grows until at `time` it exceeds the radius
-        kNever     ///< it grows, or stays, to the end of the path
+        kFree,     ///< it grows until it exceeds the radius at `time`
+        kNever     ///< it grows, or stays constant, to the end of the path
     };
     Kind kind = kNever;
     double time = 0.0;
@@ -39,14 +39,14 @@ struct OverlapEnd {
 /// Times at which the distance from a surface may have an extremum.
 class Extrema {
 public:
-    /// Those of the distance from a point or a line, given its clearance.
+    /// Adds the extrema of the distance from a point or a line, given its clearance.
     void add_of(const Polynomial& clearance) { add(sign_changes(clearance.derivative())); }
-    /// Those of the distance from a plane, given the height over it: its extrema and its zeros.
+    /// Adds the extrema of the distance from a plane, given the height above it: the height's extrema and zeros.
     void add_of_height(const Polynomial& height) {
         add_of(height);
         add(sign_changes(height));
     }
-    /// In ascending order.
+    /// Returns the times in ascending order.
     [[nodiscard]] std::span<const double> sorted() {
         std::sort(times_.begin(), times_.begin() + count_);
         return {times_.data(), static_cast<std::size_t>(count_)};
@@ -60,9 +60,9 @@ private:
     int count_ = 0;
 };
 
-/// Follows a path that starts in overlap, which is a distance up to `radius` (with its rounding). `cuts` are the times,
-/// in order, at which the distance from the surface may have an extremum, so that it is monotone between two cuts and
-/// the middle tells its direction; offset_at(p) is the vector from the surface's closest point to p.
+/// Follows a path that starts in overlap, at a distance up to `radius` (including its rounding). `cuts` are the ordered
+/// times at which the distance from the surface may have an extremum. The distance is monotone between two cuts, so its
+/// direction in the middle decides. offset_at(p) is the vector from the surface's closest point to p.
 template <class OffsetAt>
 [[nodiscard]] OverlapEnd follow_overlap(const Path& path, double radius, std::span<const double> cuts,
                                         const OffsetAt& offset_at) {
@@ -82,7 +82,7 @@ template <class OffsetAt>
     return {};
 }
 
-/// One test; see SphereSweep::narrow_phase_contact.
+/// One narrow-phase test; see SphereSweep::narrow_phase_contact.
 class SphereTriangleSweep {
 public:
     SphereTriangleSweep(const SphereSweep& sphere, const TrianglePlane& plane);
@@ -94,16 +94,16 @@ private:
         double time;
         TriangleFeature feature;
     };
-    /// The line through an edge, from its lexicographically first end, so that triangles that share it agree to the
-    /// bit.
+    /// The line through an edge. It starts at the lexicographically first end, so that triangles that share the edge
+    /// agree to the bit.
     struct EdgeLine {
-        int first;  ///< corner it starts from
+        int first;  ///< corner at which it starts
         PreciseVec3 direction;
         double length;
     };
     struct EdgeClearance {
         Polynomial polynomial;              ///< squared distance from the line minus squared radius
-        std::array<DoubleDouble, 4> along;  ///< position along the line, m from its start
+        std::array<DoubleDouble, 4> along;  ///< position along the line, in m from its start
     };
 
     void search(double from);
@@ -142,7 +142,7 @@ private:
     std::optional<Vec3> normal_;
     bool normal_is_known_ = false;
     std::optional<Candidate> best_;
-    double limit_;  ///< later contacts do not matter
+    double limit_;  ///< in s; later contacts do not matter
     bool starts_in_overlap_ = false;
 };
 

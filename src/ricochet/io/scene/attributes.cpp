@@ -1,4 +1,4 @@
-// What particles carry besides position and motion: attributes, appearance and their curves over life.
+// Attributes and appearance of particles, and their curves over life.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 namespace ricochet::detail {
 namespace {
 
-// Keys of appearance, as emitters and particles name them, with their columns.
+// A key for appearance in emitters and particles, with its column.
 struct Look {
     std::string_view key;
     std::string_view column;
@@ -27,14 +27,15 @@ constexpr Look kCurveLooks[] = {{"color", kColorAttribute}, {"opacity", kOpacity
 const ObjectSpec& life_curves_spec() {
     static const ObjectSpec spec = object<Unbound>(
         "curves over life",
-        "Factors for what a particle was born with, as its age goes on; evaluated where a state is written, never "
-        "stored. In `over_life` a key's `time` is the part of the lifetime that has passed, from 0 to 1; in `over_age` "
-        "it is the age in s.",
-        {{"color", ValueType::object, "Of the colour, for red, green and blue.", &vector_curve_spec()},
-         {"opacity", ValueType::object, "Of the opacity.", &number_curve_spec()},
-         {"size", ValueType::object, "Of the size drawn.", &number_curve_spec()},
-         {"attributes", ValueType::table, "Of attributes of one component, by name.", &number_curve_spec()},
-         {"vector_attributes", ValueType::table, "Of attributes of three components, by name.", &vector_curve_spec()}});
+        "Factors that multiply the values of a particle at birth as it ages. They are evaluated when a state is "
+        "written and never stored. In `over_life` the `time` of a key is the elapsed fraction of the lifetime, from 0 "
+        "to 1. In `over_age` it is the age in s.",
+        {{"color", ValueType::object, "Factors of the colour, for red, green and blue.", &vector_curve_spec()},
+         {"opacity", ValueType::object, "Factor of the opacity.", &number_curve_spec()},
+         {"size", ValueType::object, "Factor of the drawn size.", &number_curve_spec()},
+         {"attributes", ValueType::table, "Factors of attributes with one component, by name.", &number_curve_spec()},
+         {"vector_attributes", ValueType::table, "Factors of attributes with three components, by name.",
+          &vector_curve_spec()}});
     return spec;
 }
 
@@ -44,7 +45,7 @@ const AttributeDescription* find_declared(const SimulationSetup& setup, std::str
     return found == setup.attributes.end() ? nullptr : &*found;
 }
 
-// Null pointer after reporting.
+// Returns the declared attribute with this name, or a null pointer after reporting an error.
 const AttributeDescription* declared(const SceneContext& context, const SimulationSetup& setup,
                                      const SourceLocation& location, const std::string& path, const std::string& name) {
     const AttributeDescription* found = find_declared(setup, name);
@@ -77,14 +78,14 @@ std::optional<Vec3> three_numbers(const JsonNode& node) {
     return value;
 }
 
-// A value of so many components; nothing where the node is none.
+// Returns a value with this number of components, or nothing if the node is no such value.
 std::optional<Vec3> value_of(const JsonNode& node, int components) {
     if (components == 3) return three_numbers(node);
     if (const auto number = node.number()) return Vec3{*number, 0.0, 0.0};
     return std::nullopt;
 }
 
-// The same, or [mean, spread].
+// Returns such a value or a pair [mean, spread] of such values.
 std::optional<AttributeSpread> spread_of(const JsonNode& node, int components) {
     if (const auto value = value_of(node, components)) return AttributeSpread{{}, *value, {}};
     const JsonNode::Array* items = node.array();
@@ -100,13 +101,13 @@ std::string shape_words(int components, bool spread) {
     return spread ? "[x, y, z] or [[x, y, z], [spread, spread, spread]]" : "[x, y, z]";
 }
 
-/// One of the columns that tables give to a vector.
+/// Returns true if the name is one of the columns that tables use for this vector.
 bool is_column_of(const AttributeDescription& vector, const std::string& name) {
     return vector.components == 3 && name.size() == vector.name.size() + 2 && name.starts_with(vector.name) &&
            (name.ends_with("_x") || name.ends_with("_y") || name.ends_with("_z"));
 }
 
-/// Why an attribute cannot be named so beside others; empty where it can.
+/// Returns the reason why an attribute cannot have its name beside the others. Empty if it can.
 std::string name_problem(const AttributeDescription& attribute, const std::vector<AttributeDescription>& others) {
     if (!is_column_name(attribute.name)) {
         return "the name has control characters, commas or quotes, expected that of a column";
@@ -146,7 +147,7 @@ void build_declared(const SceneContext& context, const NamedObject& named, Simul
     setup.attributes.push_back(std::move(attribute));
 }
 
-/// Where spheres that meet are of several.
+/// Declares the material attribute if spheres can have several materials.
 void declare_material(const SceneContext& context, SimulationSetup& setup) {
     if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) return;
     if (find_declared(setup, kMaterialAttribute) != nullptr) {
@@ -159,7 +160,7 @@ void declare_material(const SceneContext& context, SimulationSetup& setup) {
     setup.attributes.push_back({std::string(kMaterialAttribute), 1, {}});
 }
 
-/// Where emitters say what their particles are drawn as.
+/// Declares the drawing attribute if an emitter has the key "drawing".
 void declare_drawing(const SceneContext& context, SimulationSetup& setup) {
     const std::vector<ObjectView> emitters = context.objects("emitters");
     if (std::none_of(emitters.begin(), emitters.end(), [](const ObjectView& view) { return view.has("drawing"); })) {
@@ -222,8 +223,8 @@ void read_curves(const SceneContext& context, const SimulationSetup& setup, cons
     read_named_curves(context, setup, view, 3, of_lifetime, emitter);
 }
 
-// Gives every value of the key "attributes" to use(attribute, value), which returns false where the value is not of
-// the attribute's shape: that is reported.
+// Calls use(attribute, value) for every value of the key "attributes". It reports a value if use() returns false,
+// because the value does not have the attribute's shape.
 template <class Use>
 void for_each_attribute(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view, bool spread,
                         const Use& use) {
@@ -242,31 +243,34 @@ void for_each_attribute(const SceneContext& context, const SimulationSetup& setu
 }  // namespace
 
 const ObjectSpec& attribute_spec() {
-    static const ObjectSpec spec = object<AttributeDescription>(
-        "attribute", "A value of your own that every particle carries, is written to frames and goes into no force.",
-        {{"components", &AttributeDescription::components, between(1.0, 3.0), "", "1, or 3 for a vector."},
-         {"default", ValueType::quantity, kCoordinate, "", "What particles have that nobody gives another value.",
-          Without{"0"}}});
+    static const ObjectSpec spec =
+        object<AttributeDescription>("attribute",
+                                     "A user-defined value of every particle. It is written to frames. Only forces "
+                                     "that read an attribute depend on it, for example `charge`.",
+                                     {{"components", &AttributeDescription::components, between(1.0, 3.0), "",
+                                       "Number of components: 1, or 3 for a vector."},
+                                      {"default", ValueType::quantity, kCoordinate, "",
+                                       "Value of particles without a value of their own.", Without{"0"}}});
     return spec;
 }
 
 std::vector<KeySpec> emitter_look_keys() {
     const Fields<Unbound> fields = {
         {"color", ValueType::vector_pair, kFraction, "",
-         "Red, green and blue, 0 to 1 (linear light); what spreads beyond is clamped.",
-         Without{"[1, 1, 1] where other particles have colours; no column otherwise"}},
+         "Red, green and blue, 0 to 1 (linear light). Values that spread beyond are clamped.",
+         Without{"[1, 1, 1] if other particles have colours; no column otherwise"}},
         {"opacity", ValueType::pair, kFraction, "",
-         "How much it covers what is behind, 0 to 1; what spreads beyond is clamped.",
-         Without{"1 where others have one; no column otherwise"}},
-        {"particle_size", ValueType::pair, kLengthOrZero, "m", "Radius that is drawn; collisions use particle_radius.",
+         "Opacity from 0 (invisible) to 1 (covers everything behind). Values that spread beyond are clamped.",
+         Without{"1 if others have one; no column otherwise"}},
+        {"particle_size", ValueType::pair, kLengthOrZero, "m", "Drawn radius. Collisions use `particle_radius`.",
          LowEnd{kNotNegative}, Without{"particle_radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "", "Values of the scene's `attributes`, by name.",
          Without{"their defaults"}},
-        {"material", ValueType::text, "Of which of `particle_contacts.materials` the particles are.",
+        {"material", ValueType::text, "Material of the particles: a name in `particle_contacts.materials`.",
          Without{"the parent's, else the first"}},
-        {"drawing", ValueType::object, "What its particles are drawn as.", &drawing_spec(),
-         Without{"the parent's, else what `picture` says"}},
-        {"over_life", ValueType::object, "Factors over the lifetime; keys from 0 (birth) to 1 (end of life).",
+        {"drawing", ValueType::object, "How its particles are drawn.", &drawing_spec(),
+         Without{"the parent's, else the one of `picture`"}},
+        {"over_life", ValueType::object, "Factors over the lifetime. Keys go from 0 (birth) to 1 (end of life).",
          &life_curves_spec(), Without{"none"}},
         {"over_age", ValueType::object, "Factors over the age in s.", &life_curves_spec(), Without{"none"}}};
     return {fields.begin(), fields.end()};
@@ -275,13 +279,14 @@ std::vector<KeySpec> emitter_look_keys() {
 std::vector<KeySpec> particle_look_keys() {
     const Fields<Unbound> fields = {
         {"color", ValueType::vector, kFraction, "", "Red, green and blue, 0 to 1 (linear light).",
-         Without{"[1, 1, 1] where others have colours"}},
-        {"opacity", ValueType::number, kFraction, "", "How much it covers what is behind.",
-         Without{"1 where others have one"}},
-        {"size", ValueType::number, kLengthOrZero, "m", "Radius that is drawn.", Without{"its radius"}},
+         Without{"[1, 1, 1] if others have colours"}},
+        {"opacity", ValueType::number, kFraction, "", "Opacity from 0 (invisible) to 1 (covers everything behind).",
+         Without{"1 if others have one"}},
+        {"size", ValueType::number, kLengthOrZero, "m", "Drawn radius.", Without{"its radius"}},
         {"attributes", ValueType::quantity_table, kCoordinate, "",
-         "Values of the scene's `attributes`, by name; no spread.", Without{"their defaults"}},
-        {"material", ValueType::text, "Of which of `particle_contacts.materials` it is.", Without{"the first"}}};
+         "Values of the scene's `attributes`, by name, without a spread.", Without{"their defaults"}},
+        {"material", ValueType::text, "Material of the particle: a name in `particle_contacts.materials`.",
+         Without{"the first"}}};
     return {fields.begin(), fields.end()};
 }
 

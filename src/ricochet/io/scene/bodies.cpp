@@ -1,4 +1,4 @@
-// Bodies that impulses move: the key "body" of a frame.
+// Rigid bodies that impulses move: the key "body" of a frame.
 #include <fmt/format.h>
 
 #include <optional>
@@ -16,7 +16,7 @@
 namespace ricochet::detail {
 namespace {
 
-/// What the keys say that a description does not hold as it is.
+/// Values of the keys. Some of them must be converted for a BodyDescription.
 struct BodyKeys {
     BodyDescription body;
     std::optional<double> mass;
@@ -36,57 +36,59 @@ auto of_joint(double JointSettings::*member) {
 
 Fields<BodyKeys> mass_fields() {
     using B = BodyKeys;
-    return {{"mass", &B::mass, kPositive, "kg", "Its mass. Either this or `density`.", Without{"made from `density`"}},
-            {"density", &B::density, kPositive, "kg/m^3",
-             "Its mass over its volume: that of the closed colliders that stand in the frame, which must not overlap.",
-             Without{"made from `mass`"}},
-            {"center", &B::center, kCoordinate, "m", "Its centre of mass, in the frame's coordinates.",
-             Without{"that of its closed colliders, as of one density"}},
-            {"inertia", &B::inertia, kPositive, "kg m^2",
-             "Its moments of inertia about the axes of the frame through its centre of mass: [xx, yy, zz].",
-             Without{"that of its closed colliders, as of one density"}},
-            {"inertia_products", &B::inertia_products, kAnyNumber, "kg m^2",
-             "The elements xy, xz and yz of its inertia: minus the sums of mass times x y, x z and y z.",
-             Needs{"inertia"}}};
+    return {
+        {"mass", &B::mass, kPositive, "kg", "Mass. Give either this or `density`.", Without{"computed from `density`"}},
+        {"density", &B::density, kPositive, "kg/m^3",
+         "Mass per volume. The volume is that of the closed colliders in the frame, which must not overlap.",
+         Without{"computed from `mass`"}},
+        {"center", &B::center, kCoordinate, "m", "Centre of mass, in the frame's coordinates.",
+         Without{"from its closed colliders, at uniform density"}},
+        {"inertia", &B::inertia, kPositive, "kg m^2",
+         "Moments of inertia about the axes of the frame through the centre of mass: [xx, yy, zz].",
+         Without{"from its closed colliders, at uniform density"}},
+        {"inertia_products", &B::inertia_products, kAnyNumber, "kg m^2",
+         "Elements xy, xz and yz of the inertia tensor: minus the sums of mass times x y, x z and y z.",
+         Needs{"inertia"}}};
 }
 
 Fields<BodyKeys> joint_fields() {
     using B = BodyDescription;
     using J = JointSettings;
-    return {{"joint", of_body(&B::joint), "What holds it.",
-             Choices{choice(JointKind::free, "free", "nothing"),
-                     choice(JointKind::hinge, "hinge", "it turns about an axis through the frame's origin"),
-                     choice(JointKind::slider, "slider", "it moves along an axis, without turning")}},
-            {"axis", of_body(&B::axis), kCoordinate, "",
-             "Direction of a hinge's or slider's axis, of any length, in the frame's axes at 0 s.", kNotZero},
-            {"velocity", of_body(&B::velocity), between(-kMaxSpeed, kMaxSpeed), "m/s",
-             "Of the centre of mass of a free body at 0 s."},
-            {"angular_velocity", of_body(&B::angular_velocity), between(-kMaxSpeed, kMaxSpeed), "rad/s",
-             "Of a free body at 0 s."},
-            {"rate", of_body(&B::rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
-             "At 0 s: how fast a body turns on its hinge, by the right-hand rule, or moves along its slider."},
-            {"spring", of_joint(&J::spring), kNotNegative, "N m/rad or N/m",
-             "Of a hinge or slider: the moment or force towards `spring_rest` over the angle or the way from there."},
-            {"spring_rest", of_joint(&J::spring_rest), kAnyNumber, "rad or m",
-             "Where the spring does not pull; 0 is where the body is at 0 s."},
-            {"damping", of_joint(&J::damping), kNotNegative, "N m s/rad or N s/m",
-             "Of a hinge or slider: the moment or force against the motion over its speed."},
-            {"drive", of_joint(&J::drive), kAnyNumber, "N m or N",
-             "A constant moment about a hinge's axis, or force along a slider's."},
-            {"friction", of_joint(&J::friction), kNotNegative, "N m or N",
-             "Dry friction of a hinge or slider: at most this moment or force, against the motion."},
-            {"motor_rate", of_joint(&J::motor_rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
-             "What a motor on the hinge or slider aims at.", Needs{"motor_most"}},
-            {"motor_most", of_joint(&J::motor_most), kNotNegative, "N m or N",
-             "The largest moment or force of the motor; 0: there is none."}};
+    return {
+        {"joint", of_body(&B::joint), "Joint that constrains the body.",
+         Choices{choice(JointKind::free, "free", "no joint"),
+                 choice(JointKind::hinge, "hinge", "rotation about an axis through the frame's origin"),
+                 choice(JointKind::slider, "slider", "translation along an axis, without rotation")}},
+        {"axis", of_body(&B::axis), kCoordinate, "",
+         "Direction of the axis of a hinge or slider, of any length, in the frame's axes at 0 s.", kNotZero},
+        {"velocity", of_body(&B::velocity), between(-kMaxSpeed, kMaxSpeed), "m/s",
+         "Velocity of the centre of mass of a free body at 0 s."},
+        {"angular_velocity", of_body(&B::angular_velocity), between(-kMaxSpeed, kMaxSpeed), "rad/s",
+         "Angular velocity of a free body at 0 s."},
+        {"rate", of_body(&B::rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
+         "Speed at 0 s: of the rotation on a hinge, by the right-hand rule, or of the motion along a slider."},
+        {"spring", of_joint(&J::spring), kNotNegative, "N m/rad or N/m",
+         "Spring constant of a hinge or slider: moment or force towards `spring_rest`, per angle or distance from it."},
+        {"spring_rest", of_joint(&J::spring_rest), kAnyNumber, "rad or m",
+         "Angle or offset at which the spring exerts no force. 0 is the pose at 0 s."},
+        {"damping", of_joint(&J::damping), kNotNegative, "N m s/rad or N s/m",
+         "Damping of a hinge or slider: moment or force against the motion, per speed."},
+        {"drive", of_joint(&J::drive), kAnyNumber, "N m or N",
+         "Constant moment about the axis of a hinge, or force along the axis of a slider."},
+        {"friction", of_joint(&J::friction), kNotNegative, "N m or N",
+         "Dry friction of a hinge or slider: largest moment or force against the motion."},
+        {"motor_rate", of_joint(&J::motor_rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
+         "Target speed of a motor on the hinge or slider.", Needs{"motor_most"}},
+        {"motor_most", of_joint(&J::motor_most), kNotNegative, "N m or N",
+         "Largest moment or force of the motor. 0 means no motor."}};
 }
 
 Fields<BodyKeys> force_fields() {
     return {{"feels_forces", of_body(&BodyDescription::feels_forces),
-             "The scene's forces act on it, as on a particle of its mass and without a radius at its centre of mass."}};
+             "true: the scene's forces act on it like on a point particle with its mass, at its centre of mass."}};
 }
 
-/// Of all colliders that stand in a frame; nothing after reporting why there are none.
+/// Computes the mass moments of all colliders in a frame. Reports colliders without a volume.
 class FrameMoments {
 public:
     FrameMoments(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view)
@@ -116,7 +118,7 @@ private:
         const TopologyReport report = MeshTopology(surface).report();
         if (!report.closed || !report.consistently_oriented) return std::nullopt;
         const MassMoments found = moments_of(transformed(surface, shape.placement));
-        return found.volume < 0.0 ? negative(found) : found;  // wound inward
+        return found.volume < 0.0 ? negative(found) : found;  // its triangles are wound inward
     }
     [[nodiscard]] static std::optional<MassMoments> moments(const BallShape& shape) {
         return moments_of_ball(world_from_unit(shape));
@@ -134,7 +136,7 @@ private:
     const ObjectView& view_;
 };
 
-/// What only free bodies, or only those on a joint, have.
+/// Refuses keys that belong to another kind of joint.
 void refuse_other_joints_keys(const SceneContext& context, const ObjectView& view, JointKind joint) {
     const std::vector<std::string_view> keys =
         joint == JointKind::free
@@ -149,7 +151,8 @@ void refuse_other_joints_keys(const SceneContext& context, const ObjectView& vie
     }
 }
 
-/// Sets mass, centre and inertia; false after reporting. has_volume: set to true where that of the colliders matters.
+/// Sets mass, centre and inertia. Returns false after reporting an error. has_volume: set to true if the volume of the
+/// colliders is used.
 bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& keys, bool& has_volume) {
     BodyDescription& body = keys.body;
     const bool is_given = keys.mass && keys.center && keys.inertia;
@@ -168,14 +171,16 @@ bool set_mass(const FrameMoments& moments, const std::string& frame, BodyKeys& k
     return true;
 }
 
-/// What could not be followed.
+/// Refuses frames and materials that cannot be combined with a body.
 void refuse_company(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                     const std::vector<FrameDescription>& frames, const std::string& frame) {
     for (const FrameDescription& other : frames) {
         if (other.parent != frame) continue;
-        context.error(view, fmt::format("the frame \"{}\" stands on this body, expected none: what belongs to a body "
-                                        "stands in its own frame",
-                                        other.name));
+        context.error(
+            view,
+            fmt::format(
+                "the frame \"{}\" stands on this body, expected none: all colliders of a body stand in its own frame",
+                other.name));
     }
     for (const ColliderDescription& collider : setup.colliders) {
         if (collider.frame != frame) continue;
@@ -193,12 +198,12 @@ void refuse_company(const SceneContext& context, const SimulationSetup& setup, c
 }  // namespace
 
 const ObjectSpec& body_spec() {
-    static const ObjectSpec spec = object<BodyKeys>(
-        "body",
-        "What makes a frame a rigid body that the impulses of particles move, and the scene's forces. The frame stands "
-        "in the world and has no motions; its translation and rotation say where it starts. Bodies meet neither each "
-        "other nor colliders at rest.",
-        joined<BodyKeys>({mass_fields(), joint_fields(), force_fields()}));
+    static const ObjectSpec spec =
+        object<BodyKeys>("body",
+                         "A rigid body that impulses of particles and the scene's forces move. Its frame stands in the "
+                         "world and has no motions. The frame's translation and rotation give the start pose. Bodies "
+                         "collide neither with each other nor with colliders at rest.",
+                         joined<BodyKeys>({mass_fields(), joint_fields(), force_fields()}));
     return spec;
 }
 
@@ -208,7 +213,7 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
         const ObjectView view = named.view.object("body");
         for (const std::string_view key : {"parent", "motions"}) {
             if (!named.view.has(std::string(key))) continue;
-            context.error(named.view, key, "a body moves by what acts on it, in the world; expected no such key");
+            context.error(named.view, key, "forces and impulses move a body in the world; expected no such key");
         }
         auto keys = view.read<BodyKeys>();
         if (!context.objects("springs").empty()) {
@@ -216,7 +221,7 @@ void build_bodies(const SceneContext& context, SimulationSetup& setup, const std
                           "bodies that impulses move and springs do not go together yet, expected "
                           "a scene without the one or the other");
         }
-        const bool is_refused = context.failed();  // a value that is refused is not there
+        const bool is_refused = context.failed();  // refused values count as absent
         if (view.has("mass") == view.has("density") && !(is_refused && !view.has("mass"))) {
             context.error(view, view.has("mass") ? "found both \"mass\" and \"density\", expected one of them"
                                                  : "found neither \"mass\" nor \"density\", expected one of them");

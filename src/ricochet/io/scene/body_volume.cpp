@@ -19,15 +19,15 @@
 namespace ricochet::detail {
 namespace {
 
-/// Triangles times points that are looked at.
+/// Largest product of triangles and test points.
 constexpr double kMostSolidAngles = 1e7;
 constexpr double kMostPoints = 4096;
 constexpr double kLeastPoints = 64;
 
-/// Part of the points inside that may be so more than once.
+/// Share of the points inside above which points inside more than once are reported.
 constexpr double kNegligibleShare = 0.01;
 
-/// One closed collider in its frame's coordinates.
+/// One closed collider in the coordinates of its frame.
 class ClosedPart {
 public:
     explicit ClosedPart(const ColliderDescription& collider) : name_(collider.name) {
@@ -45,7 +45,7 @@ public:
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] const Box3& box() const { return box_; }
     [[nodiscard]] std::size_t triangles() const { return mesh_.triangles.size(); }
-    /// How often it encloses a point.
+    /// Returns how many times the collider encloses a point.
     [[nodiscard]] int count(const Vec3& p) const {
         if (!box_.contains(p)) return 0;
         if (queries_) return queries_->is_inside(p) ? 1 : 0;
@@ -72,12 +72,12 @@ private:
     Box3 box_;
 };
 
-/// What the points say.
+/// Results of the test points.
 struct Shares {
-    std::size_t inside = 0;
-    std::size_t again = 0;
-    std::string first;   ///< that the first of those is in
-    std::string second;  ///< and this; empty: several times in the first alone
+    std::size_t inside = 0;  ///< points inside a collider
+    std::size_t again = 0;   ///< points inside more than once
+    std::string first;       ///< a collider around the first of these points
+    std::string second;      ///< another collider around it; empty if `first` alone encloses it several times
 };
 
 void look_at(const Vec3& p, const std::vector<ClosedPart>& parts, Shares& shares) {

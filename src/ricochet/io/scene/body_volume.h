@@ -1,5 +1,5 @@
 /// \file
-/// Whether the colliders of a body fill space more than once: its mass by density would count that again.
+/// Test for colliders of a body that overlap. A mass from a density would count the overlap twice.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace ricochet::detail {
 
-/// A sentence about the closed colliders that stand in a frame, where some hundredth of their inside or more is in
-/// several of them, or enclosed several times by a mesh that crosses itself; nothing otherwise. By points drawn in
-/// their box, always the same; a share below that may be missed.
+/// Returns a message if closed colliders in a frame overlap, or if one of them is a mesh that crosses itself. Returns
+/// nothing otherwise. It tests points drawn in the bounding box, always the same ones. It can miss overlaps below about
+/// one hundredth of the volume inside.
 [[nodiscard]] std::optional<std::string> doubly_filled(const SimulationSetup& setup, const std::string& frame);
 
 }  // namespace ricochet::detail

@@ -1,4 +1,4 @@
-// The scene as a whole, and its parts that are plain settings: simulation, bounds, cameras and output.
+// The scene as a whole, and its plain settings: simulation, bounds, cameras and output.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr double kMostSteps = 1e12;
 
 enum class Motion { forces, flow };
 
-// What "simulation" says.
+// Values of the key "simulation".
 struct SimulationKeys : SimulationOptions {
     Motion motion = Motion::forces;
 };
@@ -27,164 +27,162 @@ constexpr Range kTolerance = between(kSmallestTolerance, kLargestCoordinate);
 
 const ObjectSpec& tolerance_spec() {
     using T = ErrorTolerance;
-    static const ObjectSpec spec =
-        object<T>("tolerance", "What one sub-step of an adaptive integrator may be wrong by.",
-                  {{"position", &T::position, kTolerance, "m", "Of the position, also between a sub-step's ends."},
-                   {"velocity", &T::velocity, kTolerance, "m/s", "Of the velocity."}});
+    static const ObjectSpec spec = object<T>(
+        "tolerance", "Largest error of one sub-step of an adaptive integrator.",
+        {{"position", &T::position, kTolerance, "m", "Error of the position, also between the ends of a sub-step."},
+         {"velocity", &T::velocity, kTolerance, "m/s", "Error of the velocity."}});
     return spec;
 }
 
 const ObjectSpec& rollback_spec() {
     using R = RollbackSettings;
-    static const ObjectSpec spec = object<R>(
-        "rollback", "Settings of the rollback response.",
-        {{"time_tolerance", &R::time_tolerance, kPositive, "s", "How closely bisection brackets the time of contact."},
-         {"global", &R::global,
-          "The whole system goes back to the earliest contact, as in textbooks, and not each particle for itself. "
-          "Costs grow with particles times contacts."}});
+    static const ObjectSpec spec =
+        object<R>("rollback", "Settings of the rollback response.",
+                  {{"time_tolerance", &R::time_tolerance, kPositive, "s",
+                    "Largest error of the time of contact, which bisection brackets."},
+                   {"global", &R::global,
+                    "true: the whole system goes back to the earliest contact, as in textbooks. Costs grow with "
+                    "particles times contacts. false: each particle goes back by itself."}});
     return spec;
 }
 
 const ObjectSpec& project_spec() {
-    static const ObjectSpec spec = object<ProjectSettings>(
-        "project", "Settings of the project response.",
-        {{"offset", &ProjectSettings::offset, kLength, "m",
-          "Thickness of the layer on surfaces in which a particle counts as in contact, and to whose top it is put "
-          "back."}});
+    static const ObjectSpec spec = object<ProjectSettings>("project", "Settings of the project response.",
+                                                           {{"offset", &ProjectSettings::offset, kLength, "m",
+                                                             "Thickness of the contact layer on surfaces. A particle "
+                                                             "in the layer is in contact and is moved to its top."}});
     return spec;
 }
 
 const ObjectSpec& penalty_spec() {
     using P = PenaltySettings;
-    static const ObjectSpec spec =
-        object<P>("penalty", "Settings of the penalty response.",
-                  {{"stiffness", &P::stiffness, kPositive, "N/m", "Spring constant of contacts.",
-                    Without{"for each particle the one with which an undamped contact lasts contact_steps sub-steps"}},
-                   {"contact_steps", &P::contact_steps, kPositive, "",
-                    "Sub-steps that an undamped contact lasts, where no stiffness is given."},
-                   {"substeps", &P::substeps, between(1, 1e6), "", "Equal parts that every step is cut into."},
-                   {"friction_speed", &P::friction_speed, kPositive, "m/s",
-                    "Friction grows linearly with the slip up to this speed."}});
+    static const ObjectSpec spec = object<P>(
+        "penalty", "Settings of the penalty response.",
+        {{"stiffness", &P::stiffness, kPositive, "N/m", "Spring constant of contacts.",
+          Without{"a value for each particle: an undamped contact lasts `contact_steps` sub-steps"}},
+         {"contact_steps", &P::contact_steps, kPositive, "",
+          "Duration of an undamped contact, in sub-steps, if no stiffness is given."},
+         {"substeps", &P::substeps, between(1, 1e6), "", "Number of equal sub-steps in every step."},
+         {"friction_speed", &P::friction_speed, kPositive, "m/s", "Slip speed up to which friction grows linearly."}});
     return spec;
 }
 
 Choices integrator_choices() {
     using I = IntegratorKind;
-    return {
-        choice(I::forward_euler, "straight lines; the velocity changes afterwards: first order"),
-        choice(I::symplectic_euler, "the step's force first, then a straight line"),
-        choice(I::implicit_euler,
-               "the force of the step's end first, then a straight line: first order, stable however stiff "
-               "springs and forces are"),
-        choice(I::ballistic, "a parabola: exact when the acceleration is constant"),
-        choice(I::midpoint, "the explicit midpoint method: second order"),
-        choice(I::velocity_verlet,
-               "a parabola, then the mean of both ends' forces: second order, keeps energy bounded where forces "
-               "depend on position only"),
-        choice(I::rk4, "the classical Runge-Kutta method: fourth order"),
-        choice(I::dormand_prince, "adaptive Runge-Kutta of order 5(4): each particle cuts the step by its own error")};
+    return {choice(I::forward_euler, "a straight line, then the change of velocity: first order"),
+            choice(I::symplectic_euler, "the change of velocity, then a straight line: first order"),
+            choice(I::implicit_euler,
+                   "the change of velocity by the force at the end of the step, then a straight line: first order, "
+                   "stable for any stiffness"),
+            choice(I::ballistic, "a parabola: exact for constant acceleration"),
+            choice(I::midpoint, "the explicit midpoint method: second order"),
+            choice(I::velocity_verlet,
+                   "a parabola, then the mean of the forces at both ends: second order, bounded energy if forces "
+                   "depend on position only"),
+            choice(I::rk4, "the classical Runge-Kutta method: fourth order"),
+            choice(I::dormand_prince,
+                   "adaptive Runge-Kutta of order 5(4): each particle chooses its sub-steps by its own error")};
 }
 
 Choices response_choices() {
     using R = ResponseKind;
     return {choice(R::exact, "finds the time of impact and reflects inside the step"),
-            choice(R::rollback, "finds a collision after the step and goes back to it"),
-            choice(R::project, "tests at the end of the step and puts the particle back"),
-            choice(R::penalty, "a spring and damper on the penetration")};
+            choice(R::rollback, "detects a collision after the step and goes back to it"),
+            choice(R::project, "tests at the end of the step and moves the particle back"),
+            choice(R::penalty, "a spring and damper on the penetration depth")};
 }
 
 Choices motion_choices() {
     return {choice(Motion::forces, "forces", "the forces, by Newton's second law"),
             choice(Motion::flow, "flow",
-                   "the flow that `flow` says carries them: their velocity is the flow's. Forces, materials and "
-                   "responses other than `exact` have no part in it")};
+                   "the flow of the key `flow`: particles have its velocity. Forces, materials and responses other "
+                   "than `exact` do not apply")};
 }
 
 Fields<SimulationKeys> time_fields() {
     using S = SimulationKeys;
-    return {
-        {"time_step", &S::time_step, kPositive, "s", "Length of a step."},
-        {"duration", &S::duration, kNotNegative, "s",
-         "Simulated time. The number of steps is ceil(duration / time_step - 1e-6), at least 1 where it is above 0; "
-         "the last one ends there."},
-        {"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
-         "How particles move inside a step. Of these only `forward_euler`, `midpoint`, `rk4` and `dormand_prince` have "
-         "a meaning where a flow carries the particles.",
-         integrator_choices(), Without{"`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"}},
-        {"tolerance", [](S& s) -> ErrorTolerance& { return s.integrator.tolerance; },
-         "What one sub-step of dormand_prince may be wrong by.", &tolerance_spec(), Without{"its defaults"}},
-        {"response", &S::response, "How impacts are answered.", response_choices()},
-        {"motion", &S::motion, "What moves the particles.", motion_choices()},
-        {"flow", ValueType::named_object,
-         "What carries the particles where `motion` is `flow`: a flow, or the name of one in `flows`.", &flow_spec(),
-         NamedIn{"flows"}, Without{"none"}},
-        {"walls", &S::walls, "What happens to particles that the flow carries into a wall.",
-         Choices{choice(WallRule::slide, "slide", "they go on along it"),
-                 choice(WallRule::stop, "stop", "they stay there until the flow turns away")}}};
+    return {{"time_step", &S::time_step, kPositive, "s", "Length of a step."},
+            {"duration", &S::duration, kNotNegative, "s",
+             "Simulated time. The number of steps is ceil(duration / time_step - 1e-6), and at least 1 if the duration "
+             "is above 0. The last step ends at the duration."},
+            {"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
+             "Method that moves particles inside a step. If a flow carries the particles, only `forward_euler`, "
+             "`midpoint`, `rk4` and `dormand_prince` are allowed.",
+             integrator_choices(), Without{"`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"}},
+            {"tolerance", [](S& s) -> ErrorTolerance& { return s.integrator.tolerance; },
+             "Largest error of one sub-step of `dormand_prince`.", &tolerance_spec(), Without{"its defaults"}},
+            {"response", &S::response, "Method that handles impacts.", response_choices()},
+            {"motion", &S::motion, "Cause of the particles' motion.", motion_choices()},
+            {"flow", ValueType::named_object,
+             "Flow that carries the particles if `motion` is `flow`: a flow, or the name of one in `flows`.",
+             &flow_spec(), NamedIn{"flows"}, Without{"none"}},
+            {"walls", &S::walls, "Behaviour of particles that the flow carries into a wall.",
+             Choices{choice(WallRule::slide, "slide", "they slide along it"),
+                     choice(WallRule::stop, "stop", "they stay there until the flow turns away")}}};
 }
 
 Fields<SimulationKeys> rule_fields() {
     using S = SimulationKeys;
-    return {
-        {"seed", &S::seed, kSeed, "", "Start of all random numbers: the same seed gives the same run, to the bit."},
-        {"resting_speed", &S::resting_speed, kNotNegative, "m/s",
-         "A rebound slower than this becomes resting or sliding contact, where the bounces lose energy and something "
-         "presses the particle on."},
-        {"frame_rate", &S::frame_rate, positive_up_to(1e6), "1/s",
-         "Frames a second of emitters' rates per frame; neither the output's nor the time step's."},
-        {"max_depth", &S::max_depth, kCount, "",
-         "Highest generation of particles born of particles; births beyond are refused and counted."},
-        {"most_particles", &S::most_particles, kCount, "",
-         "Most particles alive at a time; births beyond are refused and counted. A fixed number, so that a run is the "
-         "same "
-         "on every machine; it must fit the memory all the same."},
-        {"bounce_budget", &S::bounce_budget, between(1.0, 4294967295.0), "",
-         "Most impacts of one particle in one step; beyond 64 intervals of contact every four count as one. A particle "
-         "that spends it stays where it is for the rest of the step, and the time left out is counted."},
-        {"rollback", &S::rollback, "Of the rollback response.", &rollback_spec(), Without{"its defaults"}},
-        {"project", &S::project, "Of the project response.", &project_spec(), Without{"its defaults"}},
-        {"penalty", &S::penalty, "Of the penalty response.", &penalty_spec(), Without{"its defaults"}}};
+    return {{"seed", &S::seed, kSeed, "", "Seed of all random numbers. The same seed gives the same run, bit for bit."},
+            {"resting_speed", &S::resting_speed, kNotNegative, "m/s",
+             "Rebound speed below which resting or sliding contact begins, if bounces lose energy and a force presses "
+             "the particle on."},
+            {"frame_rate", &S::frame_rate, positive_up_to(1e6), "1/s",
+             "Frames per second for emitter rates per frame. It affects neither the output nor the time step."},
+            {"max_depth", &S::max_depth, kCount, "",
+             "Highest generation of particles that are born of particles. Births beyond it are refused and counted."},
+            {"most_particles", &S::most_particles, kCount, "",
+             "Largest number of particles alive at a time. Births beyond it are refused and counted. It is a fixed "
+             "number, so that a run is the same on every machine. It must still fit the memory."},
+            {"bounce_budget", &S::bounce_budget, between(1.0, 4294967295.0), "",
+             "Largest number of impacts of one particle in one step. Beyond 64 contact intervals, every four intervals "
+             "count as one impact. A particle that spends the budget stops for the rest of the step, and the omitted "
+             "time is counted."},
+            {"rollback", &S::rollback, "Settings of the rollback response.", &rollback_spec(), Without{"its defaults"}},
+            {"project", &S::project, "Settings of the project response.", &project_spec(), Without{"its defaults"}},
+            {"penalty", &S::penalty, "Settings of the penalty response.", &penalty_spec(), Without{"its defaults"}}};
 }
 
 const ObjectSpec& simulation_spec() {
-    static const ObjectSpec spec = object("simulation", "How time is stepped and how impacts are answered.",
-                                          joined({time_fields(), rule_fields()}));
+    static const ObjectSpec spec =
+        object("simulation", "Time steps and the handling of impacts.", joined({time_fields(), rule_fields()}));
     return spec;
 }
 
 const ObjectSpec& bounds_spec() {
-    static const ObjectSpec spec = object("bounds", "A box in world coordinates; particles that leave it are retired.",
-                                          box_fields("Its corner with the largest coordinates, each above `lower`'s."));
+    static const ObjectSpec spec =
+        object("bounds", "A box in world coordinates. Particles that leave it are retired.",
+               box_fields("Corner with the largest coordinates. Each is above that of `lower`."));
     return spec;
 }
 
 const ObjectSpec& reference_camera_spec() {
     using C = ReferenceCamera;
-    static const ObjectSpec spec = object<C>(
-        "reference camera", "On whose screen emitters are measured; part of the scene, not of any picture.",
-        {{"position", &C::position, kCoordinate, "m", "Where it stands.", kRequired},
-         {"target", &C::target, kCoordinate, "m", "The point in the middle of its picture.", kRequired},
-         {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
-         {"image_height", &C::image_height, between(1.0, 1e6), "", "Pixels from the lower to the upper edge."}});
+    static const ObjectSpec spec =
+        object<C>("reference camera",
+                  "Camera whose image defines emitter rates per pixel. It is part of the scene, not of any picture.",
+                  {{"position", &C::position, kCoordinate, "m", "Position of the camera.", kRequired},
+                   {"target", &C::target, kCoordinate, "m", "Point in the middle of its image.", kRequired},
+                   {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
+                   {"image_height", &C::image_height, between(1.0, 1e6), "", "Height of the image, in pixels."}});
     return spec;
 }
 
 const ObjectSpec& output_spec() {
     using O = OutputKeys;
     static const ObjectSpec spec = object<O>(
-        "output", "What a run writes.",
-        {{"format", &O::format, "Of the frames.",
+        "output", "Files that a run writes.",
+        {{"format", &O::format, "File format of the frames.",
           Choices{{"vtp", "VTK XML polygon data, with a .pvd index, for ParaView and Blender"}}},
          {"every", &O::every, between(1.0, 4294967295.0), "",
           "Steps from one frame to the next. The last state is always written."},
          {"checkpoint_every", &O::checkpoint_every, kCount, "",
-          "Steps from one checkpoint to the next, each made with the frame that follows. An interrupted run leaves one "
-          "in any case; `ricochet run --resume` goes on from it."},
+          "Steps from one checkpoint to the next. Each is written together with the next frame. An interrupted run "
+          "always leaves a checkpoint, from which `ricochet run --resume` continues."},
          {"pieces", &O::pieces,
-          "Each process of a run that several share writes its own part of the frames, with a .pvtp index over them, "
-          "and "
-          "of the checkpoints. Otherwise the first process gathers and writes them."},
-         {"contacts", &O::contacts, "Write every impact, as points with their columns, once a frame."}});
+          "true: each process of a shared run writes its own part of the frames and checkpoints, with a .pvtp index "
+          "for the frames. false: the first process gathers and writes them."},
+         {"contacts", &O::contacts, "true: the run writes every impact as a point with its columns, once per frame."}});
     return spec;
 }
 
@@ -193,29 +191,29 @@ Fields<Unbound> scene_fields() {
     return {
         {"ricochet", ValueType::integer, between(kSceneVersion, kSceneVersion), "", "Version of the scene format.",
          kRequired},
-        {"$schema", ValueType::text, "For editors; not used here.", Without{"no help from the editor"}},
-        {"simulation", ValueType::object, "Time and impacts.", &simulation_spec(), Without{kDefaults}},
+        {"$schema", ValueType::text, "Schema for editors. Ricochet ignores it.", Without{"no help from the editor"}},
+        {"simulation", ValueType::object, "Time steps and impacts.", &simulation_spec(), Without{kDefaults}},
         {"forces", ValueType::list, "Forces on the particles.", &force_spec()},
         {"particle_forces", ValueType::list, "Forces between the particles.", &particle_force_spec()},
-        {"flows", ValueType::table, "Flows by name, for several forces to share.", &flow_spec()},
+        {"flows", ValueType::table, "Flows by name, which several forces can share.", &flow_spec()},
         {"materials", ValueType::table, "Materials by name.", &material_spec()},
-        {"colliders", ValueType::list, "What particles bounce off.", &collider_spec()},
+        {"colliders", ValueType::list, "Surfaces that particles bounce off.", &collider_spec()},
         {"frames", ValueType::table, "Moving frames of reference by name.", &frame_spec()},
-        {"emitters", ValueType::list, "Where particles are born.", &emitter_spec()},
-        {"particles", ValueType::list_or_file, "Particles that are there from the start, one by one or from a table.",
+        {"emitters", ValueType::list, "Sources of particles.", &emitter_spec()},
+        {"particles", ValueType::list_or_file, "Particles that exist from the start, one by one or from a table.",
          &particle_spec()},
-        {"springs", ValueType::list, "Springs between particles; ropes, chains and cloth with particles of their own.",
-         &springs_spec()},
-        {"particle_contacts", ValueType::object, "Spheres meet each other.", &particle_contacts_spec(),
-         Without{"they pass through each other"}},
-        {"heat", ValueType::object, "What changes the temperature of particles.", &heat_spec(),
-         Without{"nothing but curves over life"}},
-        {"attributes", ValueType::table, "Values of your own that particles carry, by name.", &attribute_spec()},
-        {"reference_camera", ValueType::object, "For emitters' rates per screen area.", &reference_camera_spec(),
+        {"springs", ValueType::list,
+         "Springs between particles, and ropes, chains and cloth with particles of their own.", &springs_spec()},
+        {"particle_contacts", ValueType::object, "Contacts between spheres.", &particle_contacts_spec(),
+         Without{"spheres pass through each other"}},
+        {"heat", ValueType::object, "Processes that change the temperature of particles.", &heat_spec(),
+         Without{"only curves over life change it"}},
+        {"attributes", ValueType::table, "User-defined values of particles, by name.", &attribute_spec()},
+        {"reference_camera", ValueType::object, "Camera for emitter rates per screen area.", &reference_camera_spec(),
          Without{"no such rates"}},
-        {"bounds", ValueType::object, "Where particles are retired.", &bounds_spec(), Without{"nowhere"}},
-        {"output", ValueType::object, "What is written.", &output_spec(), Without{kDefaults}},
-        {"camera", ValueType::object, "For pictures.", &camera_spec(), Without{"a camera that sees everything"}},
+        {"bounds", ValueType::object, "Box outside which particles are retired.", &bounds_spec(), Without{"no box"}},
+        {"output", ValueType::object, "Files that a run writes.", &output_spec(), Without{kDefaults}},
+        {"camera", ValueType::object, "Camera of pictures.", &camera_spec(), Without{"a camera that sees everything"}},
         {"picture", ValueType::object, "Light and surroundings of pictures.", &picture_spec(), Without{"a clear day"}}};
 }
 
@@ -230,7 +228,7 @@ void build_simulation(const SceneContext& context, SimulationOptions& options) {
     }
 }
 
-// First-order motion: the flow that carries the particles, and what does not go with it.
+// Reads first-order motion: sets the flow that carries the particles, and refuses settings that do not apply.
 void build_motion(const SceneContext& context, const ForceBuilder& forces, SimulationOptions& options) {
     const ObjectView view = context.root().object("simulation");
     const FlowPointer flow = forces.flow_at(view);
@@ -263,7 +261,7 @@ void build_motion(const SceneContext& context, const ForceBuilder& forces, Simul
     }
 }
 
-/// What is carried has no momentum that walls could take, or share out.
+/// Warns of wall settings that do nothing, because particles that a flow carries have no momentum to absorb or share.
 void warn_of_walls_along_flows(const SceneContext& context, const SimulationSetup& setup) {
     if (setup.options.flow == nullptr) return;
     for (const NamedObject& named : context.root().named_objects("materials")) {
@@ -307,11 +305,11 @@ const ObjectSpec& scene_spec() {
 }
 
 Fields<Box3> box_fields(std::string_view upper_meaning) {
-    return {{"lower", &Box3::lower, kCoordinate, "m", "Its corner with the smallest coordinates.", kRequired},
+    return {{"lower", &Box3::lower, kCoordinate, "m", "Corner with the smallest coordinates.", kRequired},
             {"upper", &Box3::upper, kCoordinate, "m", upper_meaning, kRequired}};
 }
 
-/// Groups of the colliders' triangles. What keeps a mesh from being read has been reported.
+/// Returns the groups of the colliders' triangles. Errors of the mesh files have been reported before.
 static std::vector<TriangleGroups> groups_of_colliders(SceneContext& context) {
     std::vector<TriangleGroups> groups;
     for (const ObjectView& view : context.objects("colliders")) {

@@ -1,4 +1,4 @@
-// Checks a document against the table of keys.
+// Check of a document against the tables of keys.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@
 namespace ricochet::detail {
 namespace {
 
-// A direction must survive normalization: its square may neither vanish nor overflow.
+// A direction must survive normalization: its square must neither vanish nor overflow.
 constexpr double kShortestDirection = 1e-75;
 
 using Problem = std::optional<std::string>;
@@ -28,7 +28,7 @@ std::string found_expected(const JsonNode& node, const KeySpec& key) {
 
 std::string number_text(double x) { return fmt::format("{}", x); }
 
-// A number outside the range; the largest coordinate is only told to those who pass it.
+// Returns the message for a number out of range. It names the largest coordinate only if the number exceeds that.
 std::string out_of_range(const std::string& found, const KeySpec& key, double value) {
     if (std::fabs(value) > kLargestCoordinate && std::fabs(key.range.upper) == kLargestCoordinate) {
         return fmt::format("found {}, expected at most {} in magnitude", found, kLargestCoordinate);
@@ -60,7 +60,7 @@ Problem choice_problem(const JsonNode& node, const KeySpec& key) {
     return found_expected(node, key) + (meant.empty() ? "" : "; " + meant);
 }
 
-// The numbers of a list of three; what is wrong with it otherwise.
+// Sets the components from a list of three numbers. Returns the problem if the node is no such list.
 Problem components_problem(const JsonNode& node, const KeySpec& key, Vec3& components) {
     const JsonNode::Array* items = node.array();
     if (items == nullptr || items->size() != 3) return found_expected(node, key);
@@ -153,13 +153,13 @@ Problem vector_pair_problem(const JsonNode& node, const KeySpec& key) {
     return std::nullopt;
 }
 
-// A number or a vector.
+// Returns the problem of a number or a vector.
 Problem quantity_problem(const JsonNode& node, const KeySpec& key) {
     Vec3 components;
     return node.number() ? number_problem(node, key) : components_problem(node, key, components);
 }
 
-// The same, or a pair of these.
+// Returns the problem of a number, a vector, or a pair of two numbers or two vectors.
 Problem spread_problem(const JsonNode& node, const KeySpec& key) {
     const JsonNode::Array* items = node.array();
     if (items == nullptr || items->size() != 2) return quantity_problem(node, key);
@@ -179,7 +179,7 @@ Problem spread_problem(const JsonNode& node, const KeySpec& key) {
     return std::nullopt;
 }
 
-// For values that hold no objects.
+// Returns the problem of a value that contains no objects.
 Problem plain_problem(const JsonNode& node, const KeySpec& key) {
     switch (key.type) {
         case ValueType::number:
@@ -302,7 +302,7 @@ private:
         for (JsonMember& member : *members) {
             if (member.key.empty())
                 diagnostics_.error(member.key_location, path, "found an empty name, expected a name");
-            // Names of a file are its own; those of a scene become columns and lines of reports.
+            // Names in a mesh file can have any characters. Names in a scene become columns and lines of reports.
             if (key.type != ValueType::text_table && has_control_character(member.key)) {
                 diagnostics_.error(member.key_location, path,
                                    fmt::format("the name \"{}\" contains a control character, expected plain text",
@@ -321,7 +321,7 @@ private:
         }
     }
 
-    // The variant named by "type", with its errors reported.
+    // Returns the variant that "type" names, after reporting its errors.
     const Variant* checked_variant(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         correct_type_key(node, spec, path);
         KeySpec key{.name = "type", .type = ValueType::choice, .description = "", .required = true};
@@ -335,7 +335,7 @@ private:
         return variant_of(node, spec);
     }
 
-    // "type" has to be found first, since the other known names depend on it.
+    // Corrects "type" before all other keys, because the other known names depend on it.
     void correct_type_key(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         if (node.find("type") != nullptr) return;
         const std::vector<std::string_view> known = all_names(spec);
@@ -360,7 +360,7 @@ private:
         return names;
     }
 
-    // Nearest known names, those that are not there yet before those that are.
+    // Returns the nearest known names. Names that the object has already are left out if there are others.
     static std::vector<std::string_view> nearest_absent(const std::string& word,
                                                         const std::vector<std::string_view>& known,
                                                         const JsonNode& node) {
@@ -378,7 +378,7 @@ private:
         diagnostics_.error(member.key_location, path_of_key(path, member.key), "unknown key; " + help);
     }
 
-    // Without a type there is no telling what values are good, but names that no type knows are wrong.
+    // Without a type, values cannot be checked. But names that no type has are wrong.
     void check_only_names(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         const std::vector<std::string_view> known = all_names(spec);
         for (const JsonMember& member : *node.object()) {
@@ -398,7 +398,7 @@ private:
             if (key != nullptr) {
                 check_value(member.value, *key, path_of_key(path, member.key));
             } else {
-                member.value.value = std::monostate{};  // nobody knows what it would be
+                member.value.value = std::monostate{};  // no rule applies to an unknown key
             }
         }
         for (const KeySpec* key : keys) {
@@ -411,7 +411,7 @@ private:
         for (const KeySpec* key : keys_of(spec, variant)) check_company(node, *key, path, excused);
     }
 
-    // Reports an unknown key and, where only one name can be meant, gives it that name.
+    // Reports an unknown key. If only one name is possible, gives the key that name.
     void correct_key(JsonMember& member, const JsonNode& node, const ObjectSpec& spec, const Variant* variant,
                      const std::string& path, std::set<std::string_view>& excused) {
         if (find_key(spec, variant, member.key) != nullptr) return;
@@ -430,7 +430,7 @@ private:
         if (nearest.size() == 1 && node.find(nearest[0]) == nullptr) member.key = nearest[0];
     }
 
-    // Names that say more exactly what the word says: particle_size of size.
+    // Returns known names that end with the word, for example particle_size for size.
     static std::vector<std::string_view> longer_names(const std::string& word,
                                                       const std::vector<std::string_view>& known) {
         std::vector<std::string_view> longer;

@@ -1,4 +1,4 @@
-// Emitters of the type child: particles that are born of particles, and clouds that go with them.
+// Emitters of type child: particles that are born of particles, and the clouds that they can form.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ricochet::detail {
 namespace {
 
-// What an emitter of type child says; its parent's number is found when all emitters are known.
+// Keys of an emitter of type child. The number of its parent is found when all emitters are known.
 struct ChildKeys : ParentRule {
     std::string parent;
 };
@@ -33,9 +33,10 @@ Variant cone_variant() {
     using C = ConeShape;
     return variant<C>(
         "cone", "Uniform in a cone, launched along the line from its tip.",
-        {{"apex", &C::apex, kCoordinate, "m", "Its tip."},
-         {"axis", &C::axis, kCoordinate, "", "From the tip into the cone, of any length.", kRequired, kNotZero},
-         {"angle", &C::angle_degrees, between(0.0, 89.9), "degrees", "Between the axis and the side.", kRequired},
+        {{"apex", &C::apex, kCoordinate, "m", "Tip of the cone."},
+         {"axis", &C::axis, kCoordinate, "", "Direction from the tip into the cone, of any length.", kRequired,
+          kNotZero},
+         {"angle", &C::angle_degrees, between(0.0, 89.9), "degrees", "Angle between the axis and the side.", kRequired},
          {"height", &C::height, kLength, "m", "Its height.", kRequired}});
 }
 
@@ -48,7 +49,8 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
         const std::string name = views[k].text("parent");
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end()) {
-            std::vector<std::string_view> others = names;  // it may be its own parent, but is no help
+            std::vector<std::string_view> others =
+                names;  // an emitter can be its own parent, but is no useful suggestion
             others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
             context.error(views[k], "parent", unknown_name("emitter", name, others.empty() ? names : others));
         } else {
@@ -57,7 +59,7 @@ void find_parents(const SceneContext& context, SimulationSetup& setup) {
     }
 }
 
-// Children whose ancestors lead back to themselves wait for each other for ever.
+// Warns of emitters whose ancestors lead back to themselves. They wait for each other and never emit.
 void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     for (std::size_t k = 0; k < views.size() && !context.failed(); ++k) {
@@ -71,7 +73,7 @@ void warn_of_circles(const SceneContext& context, const SimulationSetup& setup) 
     }
 }
 
-// Two emitters cannot have the same parents to share out.
+// Reports two emitters that share out the same parents at the same event.
 void check_shares(const SceneContext& context, const SimulationSetup& setup) {
     const std::vector<ObjectView> views = context.objects("emitters");
     std::set<std::pair<std::uint32_t, BirthEvent>> taken;
@@ -92,14 +94,15 @@ const ObjectSpec& cloud_spec() {
     using C = CloudRule;
     static const ObjectSpec spec = object<C>(
         "cloud",
-        "Children that go with their parent. The shape, in coordinates about the parent, says where their places are.",
-        {{"turning", &C::turning, kCoordinate, "rad/s", "How fast places turn about the parent, along the axis."},
+        "Children that follow their parent. The shape, in coordinates relative to the parent, gives their target "
+        "positions.",
+        {{"turning", &C::turning, kCoordinate, "rad/s", "Angular velocity of the target positions about the parent."},
          {"pull", &C::pull, kNotNegative, "1/s^2",
-          "Acceleration towards its place of what has been pushed off it, for each metre that it is off."},
+          "Acceleration of a child towards its target position, per metre of distance from it."},
          {"damping", &C::damping, kNotNegative, "1/s",
-          "Acceleration against the velocity relative to its place, for each m/s."},
-         {"parent_ends", &C::end, "What the children do from their parent's end on.",
-          Choices{choice(CloudEnd::free, "free", "they fly on by themselves, as any particles"),
+          "Acceleration against the velocity relative to the target position, per m/s."},
+         {"parent_ends", &C::end, "Behaviour of the children after the end of their parent.",
+          Choices{choice(CloudEnd::free, "free", "they fly on as free particles"),
                   choice(CloudEnd::die, "die", "they end with it")}}},
         simple_shapes());
     return spec;
@@ -130,7 +133,7 @@ EmitterShape simple_shape_of(const ObjectView& view) {
     if (view.type() == "sphere") return view.read<SphereShape>();
     if (view.type() == "cone") return view.read<ConeShape>();
     if (view.type() == "point") return view.read<PointShape>();
-    return PointShape{};  // of one that was refused
+    return PointShape{};  // the shape was refused
 }
 
 Variant child_variant() {
@@ -138,33 +141,35 @@ Variant child_variant() {
     using On = BirthEvent;
     return variant<C>(
         "child",
-        "Where another emitter's particles are, launched from their position and velocity; `burst`, `start`, `stop`, "
-        "`rate_per_frame` and `rate_per_area` do not apply.",
+        "Born of the particles of another emitter, at their position and with their velocity. `burst`, `start`, "
+        "`stop`, `rate_per_frame` and `rate_per_area` do not apply.",
         {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
-         {"on", &C::on, "When parents give birth.",
-          Choices{choice(On::life, "life", "all their life long, `rate` a second, one draw for each parent"),
-                  choice(On::death, "death", "at the end of their lifetime, or absorbed by a surface"),
+         {"on", &C::on, "Event at which parents give birth.",
+          Choices{choice(On::life, "life", "during their whole life, at `rate`, which is drawn once per parent"),
+                  choice(On::death, "death", "at the end of their lifetime, or when a surface absorbs them"),
                   choice(On::impact, "impact", "at impacts of at least `threshold_impulse`"),
-                  choice(On::birth, "birth", "when they are born themselves")}},
+                  choice(On::birth, "birth", "at their own birth")}},
          {"count", &C::count, between(0.0, 1e6), "",
-          "Children of one death, impact or birth, rounded to whole numbers."},
+          "Number of children per death, impact or birth, rounded to a whole number."},
          {"threshold_impulse", &C::threshold_impulse, kNotNegative, "N s",
-          "Least impulse of an impact that gives birth."},
+          "Smallest impulse of an impact that gives birth."},
          {"share", &C::share,
-          "true: the parent ends and its children share its mass and momentum; `mass` is then the weight of a share, "
-          "radii follow at the same density, and `speed` says how fast they fly apart.",
+          "true: the parent ends and its children share its mass and momentum. `mass` is the weight of a share. Radii "
+          "follow from the same density. `speed` sets how fast the children fly apart.",
           Without{"true for impact, false otherwise"}},
-         {"recursive", &C::recursive, "true: the children are parents too, in turn, up to `simulation.max_depth`."},
+         {"recursive", &C::recursive, "true: the children become parents, too, up to `simulation.max_depth`."},
          {"inherit_velocity", &C::inherit_velocity, kCoordinate, "",
-          "Part of the parent's velocity that a child begins with; 1 when sharing."},
+          "Fraction of the parent's velocity that a child starts with. It is 1 for shares."},
          {"inherit_color", &C::inherit_color, kFraction, "",
-          "Part of the parent's colour in the child's own `color`; without a `color` the parent's is taken."},
+          "Fraction of the parent's colour in the child's own `color`. Without a `color`, the child has the parent's "
+          "colour."},
          {"cloud", &C::cloud,
-          "The children go with their parent wherever it flies and bounces, each at a place of its own about it.",
-          &cloud_spec(), Without{"they fly by themselves"}}});
+          "The children follow their parent through flights and impacts. Each has its own target position near the "
+          "parent.",
+          &cloud_spec(), Without{"they fly freely"}}});
 }
 
-// The rule of an emitter of type child. The parent's number is found when all emitters are known.
+// Returns the rule of an emitter of type child. The number of the parent is found when all emitters are known.
 ParentRule rule_of(const SceneContext& context, const ObjectView& view, const EmitterDescription& emitter) {
     ParentRule rule = view.read<ChildKeys>();
     if (!view.has("share")) rule.share = rule.on == BirthEvent::impact && !rule.cloud;
@@ -188,7 +193,8 @@ ParentRule rule_of(const SceneContext& context, const ObjectView& view, const Em
             "\"share\"");
     }
     if (rule.cloud && rule.inherit_velocity != 1.0) {
-        context.error(view, "inherit_velocity", "what goes with its parent has all of its velocity, leave it out");
+        context.error(view, "inherit_velocity",
+                      "children of a cloud have all of their parent's velocity, leave it out");
     }
     if (rule.on == BirthEvent::life && emitter.rate.mean + emitter.rate.spread == 0.0) {
         context.warn(view, "emits nothing: it has no rate");

@@ -22,19 +22,19 @@ Fields<MeshShape> mesh_fields() {
         {{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<MeshShape>()},
          placement_fields(&MeshShape::placement),
          {{"group_materials", ValueType::text_table,
-           "Materials of parts of an OBJ, glTF or ASCII STL mesh: names that the file gives to its faces, each with "
-           "one "
-           "of the names in `materials`. A face goes by its `usemtl` name (the material's); where that is not listed "
-           "by its `g` name (the whole line, then word by word; of glTF the mesh's, of ASCII STL the solid's), then by "
-           "its `o` name (the node's). Faces without a listed name take the collider's material.",
+           "Materials for parts of an OBJ, glTF or ASCII STL mesh. Each key is a name that the file gives to faces, "
+           "and each value is a name in `materials`. The material name (`usemtl`) of a face comes first. The next is "
+           "its `g` name: the whole line, then word by word. In glTF this is the name of the mesh, in ASCII STL that "
+           "of the solid. The last is its `o` name, in glTF that of the node. Faces without a listed name take the "
+           "collider's material.",
            Without{"the collider's material everywhere"}},
           {"deformation", ValueType::object,
-           "Its vertices move: `file` says the faces only. Only with the response \"exact\", and without `frame` and "
-           "`motion`.",
+           "Motion of the vertices. `file` then gives only the faces. Requires the response \"exact\", and no `frame` "
+           "or `motion`.",
            &deformation_spec(), Without{"it keeps its shape"}}}});
 }
 
-// A shape's own measures, then where it stands.
+// Returns a variant with the dimensions of a shape and its placement.
 template <class Shape>
 Variant placed_variant(std::string_view name, std::string_view description, const Fields<Shape>& measures) {
     return variant(name, description, joined<Shape>({measures, placement_fields(&Shape::placement)}));
@@ -44,20 +44,20 @@ std::vector<Variant> shapes() {
     using Plane = PlaneShape;
     using Cylinder = CylinderShape;
     constexpr std::string_view kRadius = "Its radius.";
-    return {
-        variant<Plane>(
-            "plane", "An infinite plane.",
-            {{"point", &Plane::point, kCoordinate, "m", "A point of the plane."},
-             {"normal", &Plane::normal, kCoordinate, "", "Its normal, of any length.", kRequired, kNotZero}}),
-        variant("mesh", "A triangle mesh from a file, open or closed.", mesh_fields()),
-        placed_variant<BallShape>("sphere", "A ball about its own origin; an ellipsoid when the scale differs by axis.",
-                                  {{"radius", &BallShape::radius, kLength, "m", kRadius, kRequired}}),
-        placed_variant<Cylinder>("cylinder",
-                                 "A cylinder with flat caps about its own z axis, its middle at the origin.",
-                                 {{"radius", &Cylinder::radius, kLength, "m", kRadius, kRequired},
-                                  {"height", &Cylinder::height, kLength, "m", "Its height.", kRequired}}),
-        placed_variant<CuboidShape>("box", "A box about its own origin.",
-                                    {{"size", &CuboidShape::size, kLength, "m", "Full edge lengths.", kRequired}})};
+    return {variant<Plane>("plane", "An infinite plane.",
+                           {{"point", &Plane::point, kCoordinate, "m", "A point on the plane."},
+                            {"normal", &Plane::normal, kCoordinate, "", "Normal of the plane, of any length.",
+                             kRequired, kNotZero}}),
+            variant("mesh", "A triangle mesh from a file, open or closed.", mesh_fields()),
+            placed_variant<BallShape>("sphere",
+                                      "A ball about its own origin. It is an ellipsoid if the scale differs by axis.",
+                                      {{"radius", &BallShape::radius, kLength, "m", kRadius, kRequired}}),
+            placed_variant<Cylinder>("cylinder",
+                                     "A cylinder with flat caps about its own z axis, centred on its own origin.",
+                                     {{"radius", &Cylinder::radius, kLength, "m", kRadius, kRequired},
+                                      {"height", &Cylinder::height, kLength, "m", "Its height.", kRequired}}),
+            placed_variant<CuboidShape>("box", "A box centred on its own origin.",
+                                        {{"size", &CuboidShape::size, kLength, "m", "Full edge lengths.", kRequired}})};
 }
 
 constexpr Range kSurfaceSpeed = between(-kMaxSpeed, kMaxSpeed);
@@ -66,13 +66,13 @@ const ObjectSpec& surface_motion_spec() {
     using S = SurfaceMotion;
     static const ObjectSpec spec =
         object<S>("surface motion",
-                  "How the material of the surface moves while its geometry stands still: a belt, or the wall of a "
-                  "drum that turns about its own axis. Friction, resistance to rolling and spinning, and diffuse "
-                  "reflection are relative to it; only the part of the velocity along the surface counts.",
-                  {{"velocity", &S::velocity, kSurfaceSpeed, "m/s", "The same everywhere."},
+                  "Motion of the surface material while the geometry stands still: a conveyor belt, or the wall of a "
+                  "drum that turns about its own axis. Friction, rolling and spinning resistance, and diffuse "
+                  "reflection act relative to it. Only the velocity component along the surface counts.",
+                  {{"velocity", &S::velocity, kSurfaceSpeed, "m/s", "Uniform velocity."},
                    {"angular_velocity", &S::angular_velocity, kSurfaceSpeed, "rad/s",
-                    "Turning by the right-hand rule about an axis through `center`, added to `velocity`."},
-                   {"center", &S::center, kCoordinate, "m", "A point of the axis, in world coordinates."}});
+                    "Rotation by the right-hand rule about an axis through `center`, added to `velocity`."},
+                   {"center", &S::center, kCoordinate, "m", "A point on the axis, in world coordinates."}});
     return spec;
 }
 
@@ -115,7 +115,8 @@ private:
                                        "diffuse reflection");
     }
 
-    // Index of a collider's material; colliders without one share a perfect one after those of the scene.
+    // Returns the index of a collider's material. Colliders without one share a perfect material behind the scene's
+    // own.
     std::uint32_t material_of(const ObjectView& view) {
         if (!view.has("material")) {
             if (setup_.materials.size() == used_.size()) setup_.materials.emplace_back();
@@ -124,7 +125,8 @@ private:
         return index_of_material(view.text("material"), view.location_of("material"), view.path_of("material"));
     }
 
-    // The material of that name, which counts as used from now on; 0 after reporting that there is none.
+    // Returns the index of the material with this name, and marks it as used. Returns 0 after reporting an unknown
+    // name.
     std::uint32_t index_of_material(const std::string& name, const SourceLocation& location, const std::string& path) {
         std::vector<std::string_view> names;
         for (std::size_t i = 0; i < used_.size(); ++i) {
@@ -137,7 +139,7 @@ private:
         return 0;
     }
 
-    // Material of every triangle; empty where the collider's own is that of all.
+    // Returns the material of every triangle. Empty if all triangles have the collider's own material.
     std::vector<std::uint32_t> triangle_materials(const ObjectView& view, std::uint32_t otherwise) {
         const JsonNode::Object* members = view.node("group_materials").object();
         const MeshGroups* groups = context_.load_groups(view);
@@ -180,7 +182,7 @@ private:
                            some.size() < known.size() ? fmt::format(" and {} more", known.size() - some.size()) : "");
     }
 
-    // A name of the mesh by which no triangle takes its material: other names of its faces come first.
+    // Warns of names that no triangle takes its material from, because other names of its faces have priority.
     void warn_about_unused_groups(const ObjectView& view, const JsonNode::Object& members,
                                   const std::vector<std::string_view>& not_used,
                                   const std::vector<std::string_view>& known) {
@@ -208,7 +210,7 @@ private:
         return mesh;
     }
 
-    // What a mesh that deforms does not go together with.
+    // Refuses keys and responses that cannot be combined with a deforming mesh.
     void require_exact(const ObjectView& view) {
         for (const char* key : {"frame", "motion"}) {
             if (view.has(key)) context_.error(view, key, "a mesh that deforms stands in the world, expected none");
@@ -223,7 +225,8 @@ private:
         }
     }
 
-    // The name of the frame that it stands in; its own keys make one more. What is scaled is a mesh that deforms.
+    // Returns the name of the collider's frame. Its own keys make one more frame. A scaled collider becomes a deforming
+    // mesh.
     std::string frame_of(const ObjectView& view, ColliderDescription& collider) {
         if (view.has("deformation")) {
             require_exact(view);
@@ -264,61 +267,59 @@ private:
     SimulationSetup& setup_;
     std::vector<FrameDescription>& frames_;
     FrameTree scene_frames_;
-    std::vector<bool> used_;  // one for every material of the scene
+    std::vector<bool> used_;  // one per material of the scene
 };
 
 }  // namespace
 
 const ObjectSpec& material_spec() {
     using M = Material;
-    static const ObjectSpec spec =
-        object<M>("material", "What a surface does to what hits it.",
-                  {{"restitution", &M::restitution, kFraction, "",
-                    "Speed of the rebound over speed of the approach, along the normal."},
-                   {"restitution_threshold", &M::restitution_threshold, kNotNegative, "m/s",
-                    "Below this speed of approach the restitution falls linearly to 0."},
-                   {"friction", &M::friction, kNotNegative, "", "Coulomb's coefficient, for impacts and for sliding."},
-                   {"rolling_friction", &M::rolling_friction, kNotNegative, "",
-                    "Moment that resists rolling, over radius times normal force; for particles with a radius."},
-                   {"spinning_friction", &M::spinning_friction, kLengthOrZero, "m",
-                    "Moment that resists spinning about the normal, over normal force; for particles with a radius."},
-                   {"diffuse", &M::diffuse, kFraction, "",
-                    "Accommodation: fraction of the impacts that are reflected by the cosine law."},
-                   {"wall_temperature", &M::wall_temperature, kPositive, "K",
-                    "Diffuse reflections leave with the thermal speeds of a wall of this temperature.",
-                    Without{"diffuse reflections keep the speed of arrival"}},
-                   {"absorption", &M::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
-                   {"surface_motion", ValueType::object, "How the surface's own material moves.",
-                    Without{"the material is at rest"}, &surface_motion_spec()}});
+    static const ObjectSpec spec = object<M>(
+        "material", "Response of a surface to impacts and contacts.",
+        {{"restitution", &M::restitution, kFraction, "", "Rebound speed divided by approach speed, along the normal."},
+         {"restitution_threshold", &M::restitution_threshold, kNotNegative, "m/s",
+          "Approach speed below which the restitution falls linearly to 0."},
+         {"friction", &M::friction, kNotNegative, "", "Coulomb coefficient, for impacts and sliding."},
+         {"rolling_friction", &M::rolling_friction, kNotNegative, "",
+          "Moment that resists rolling, divided by radius times normal force. For particles with a radius."},
+         {"spinning_friction", &M::spinning_friction, kLengthOrZero, "m",
+          "Moment that resists spinning about the normal, divided by normal force. For particles with a radius."},
+         {"diffuse", &M::diffuse, kFraction, "",
+          "Accommodation: fraction of the impacts that reflect by the cosine law."},
+         {"wall_temperature", &M::wall_temperature, kPositive, "K",
+          "Temperature of the wall. Diffuse reflections leave with its thermal speeds.",
+          Without{"diffuse reflections keep their impact speed"}},
+         {"absorption", &M::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
+         {"surface_motion", ValueType::object, "Motion of the surface material.", Without{"the material is at rest"},
+          &surface_motion_spec()}});
     return spec;
 }
 
 const ObjectSpec& rotation_spec() {
     using R = RotationTarget;
-    static const ObjectSpec spec =
-        object<R>("rotation", "A turn about an axis through the own origin, by the right-hand rule.",
-                  {{"axis", [](R& r) -> Vec3& { return r.axis; }, kCoordinate, "",
-                    "Direction of the axis, of any length.", kRequired, kNotZero},
-                   {"degrees", [](R& r) -> double& { return r.degrees; }, kAnyNumber, "degrees", "Angle.", kRequired}});
+    static const ObjectSpec spec = object<R>(
+        "rotation", "A rotation about an axis through the object's own origin, by the right-hand rule.",
+        {{"axis", [](R& r) -> Vec3& { return r.axis; }, kCoordinate, "", "Direction of the axis, of any length.",
+          kRequired, kNotZero},
+         {"degrees", [](R& r) -> double& { return r.degrees; }, kAnyNumber, "degrees", "Rotation angle.", kRequired}});
     return spec;
 }
 
 const ObjectSpec& collider_spec() {
     static const ObjectSpec spec = object<Unbound>(
-        "collider", "What particles bounce off. Both sides are solid.",
-        {{"name", ValueType::text, "For messages, reports and emitters; no two colliders share one.",
+        "collider", "A surface that particles bounce off. Both sides are solid.",
+        {{"name", ValueType::text, "Unique name for messages, reports and emitters.",
           Without{"made from type and index in the list"}},
-         {"material", ValueType::text, "One of the names in `materials`.", Without{"restitution 1, no friction"}},
-         {"looks", ValueType::object, "How pictures show it.", Without{"in the renderer's own colours"},
+         {"material", ValueType::text, "Name of a material in `materials`.", Without{"restitution 1, no friction"}},
+         {"looks", ValueType::object, "Appearance in pictures.", Without{"the renderer's own colours"},
           &collider_looks_spec()},
          {"frame", ValueType::text,
-          "One of the names in `frames`: the collider stands in it and moves with it. Only with the response "
-          "\"exact\".",
-          Without{"it stands in the world"}},
+          "Name of a frame in `frames`. The collider stands in it and moves with it. Requires the response \"exact\".",
+          Without{"the world"}},
          {"motion", ValueType::list,
-          "A frame of its own: poses in the order of time, at least one, each `{\"time\": ..., \"position\": ..., "
-          "\"rotation\": ..., \"scale\": ...}`, within `frame` where that is given too. The collider's own position "
-          "and rotation are within that.",
+          "Poses of a frame of its own in order of time, at least one: `{\"time\": ..., \"position\": ..., "
+          "\"rotation\": ..., \"scale\": ...}`. They are relative to `frame` if that is given, too. The collider's own "
+          "position and rotation are relative to the poses.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
         shapes());
     return spec;

@@ -94,7 +94,7 @@ const MeshGroups* SceneContext::load_groups(const ObjectView& view) {
     try {
         return &meshes_.groups(file_of(view));
     } catch (const InputError&) {
-        return nullptr;  // load_mesh() says why
+        return nullptr;  // load_mesh() reports the reason
     }
 }
 
@@ -111,7 +111,7 @@ std::string SceneContext::unique_name(const ObjectView& view, std::size_t index,
 }
 
 std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& all) {
-    // A scene may have as many names as errors: each error looks at some of them.
+    // A scene can have many names and many errors, so each error compares with a limited number of names.
     constexpr std::size_t kMostNames = 200;
     const std::vector<std::string_view> known(all.begin(), all.begin() + std::min(all.size(), kMostNames));
     const std::string unknown = fmt::format("there is no {} \"{}\"", kind, printable(name, 60));

@@ -1,5 +1,5 @@
 /// \file
-/// The parts of a scene: the table of keys of each, what builds each, and what all of these need.
+/// The parts of a scene: their tables of keys, the functions that build them, and helpers that they share.
 #pragma once
 
 #include <algorithm>
@@ -28,17 +28,17 @@
 
 namespace ricochet::detail {
 
-/// Where the document and its files are, and where to report.
+/// The document, the folder of its files, and the diagnostics that errors go to.
 class SceneContext {
 public:
     SceneContext(const JsonNode& root, std::filesystem::path folder, Diagnostics& diagnostics);
 
     [[nodiscard]] const ObjectView& root() const { return root_; }
     [[nodiscard]] Diagnostics& diagnostics() const { return diagnostics_; }
-    /// True when something was refused already; defaults may stand instead of it.
+    /// Returns true if an error has been reported. Defaults may then replace refused values.
     [[nodiscard]] bool failed() const { return diagnostics_.failed(); }
 
-    /// The objects of one of the scene's lists, with the paths that messages give them.
+    /// Returns the objects of one of the scene's lists, with their paths for messages.
     [[nodiscard]] std::vector<ObjectView> objects(std::string_view list) const { return root_.objects(list); }
 
     void error(const ObjectView& view, std::string_view key, const std::string& what) const;
@@ -46,36 +46,36 @@ public:
     void warn(const ObjectView& view, std::string_view key, const std::string& what) const;
     void warn(const ObjectView& view, const std::string& what) const;
 
-    /// The path that the key "file" means; noted among files().
+    /// Returns the path that the key "file" names, and adds it to files().
     [[nodiscard]] std::filesystem::path file_of(const ObjectView& view) const;
-    /// That which a name means.
+    /// Returns the path of a file with this name, which is relative to the scene's folder.
     [[nodiscard]] std::filesystem::path path_of_file(const std::string& name) const {
         return (folder_ / name).lexically_normal();
     }
-    /// Among files().
+    /// Adds a path to files().
     void note(const std::filesystem::path& path) const { files_.insert(path); }
-    /// Notes memory that the scene itself holds, bytes.
+    /// Adds memory that the scene itself occupies, in bytes.
     void add_memory(double bytes) const { memory_bytes_ += bytes; }
-    /// All that was noted.
+    /// Returns the sum of the memory that was added, in bytes.
     [[nodiscard]] double memory_bytes() const { return memory_bytes_; }
-    /// Every path that file_of() has given, each once.
+    /// Returns every path that was added, each once.
     [[nodiscard]] std::vector<std::filesystem::path> files() const { return {files_.begin(), files_.end()}; }
-    /// The mesh that the key "file" names, with the axis up that "up" says; null pointer after reporting why there is
-    /// none.
+    /// Loads the mesh that the key "file" names, with the up axis that "up" selects. Returns a null pointer if there is
+    /// no such mesh, after reporting the reason.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load_mesh(const ObjectView& view);
-    /// A mesh in world coordinates; null pointer after reporting, for this key, that a vertex is out of range.
+    /// Returns a mesh in world coordinates. Returns a null pointer after reporting a vertex out of range for this key.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> placed_mesh(const ObjectView& view, std::string_view key,
                                                                   const TriangleMesh& mesh,
                                                                   const Placement& placement) const;
-    /// The groups of the mesh that the key "file" names; null pointer where load_mesh() gives one.
+    /// Returns the groups of the mesh that the key "file" names, or a null pointer if load_mesh() returns one.
     [[nodiscard]] const MeshGroups* load_groups(const ObjectView& view);
 
-    /// The name given, or one made from the type and the index in the list; reports a name that is taken.
+    /// Returns the given name, or one made from the type and the index in the list. Reports a name that is taken.
     [[nodiscard]] std::string unique_name(const ObjectView& view, std::size_t index, std::string_view kind,
                                           std::set<std::string>& taken) const;
 
 private:
-    /// Warns of an implausible size of a mesh, unless a scale is stated.
+    /// Warns of an implausible size of a mesh, unless the scene states a scale.
     void warn_of_size(const ObjectView& view, const TriangleMesh& mesh, const std::filesystem::path& path) const;
 
     ObjectView root_;
@@ -86,13 +86,13 @@ private:
     mutable double memory_bytes_ = 0.0;
 };
 
-/// `there is no material "ruber"; did you mean "rubber"?`
+/// Returns a message such as `there is no material "ruber"; did you mean "rubber"?`.
 [[nodiscard]] std::string unknown_name(std::string_view kind, const std::string& name,
                                        const std::vector<std::string_view>& known);
 
-// The tables of keys.
+// Tables of keys.
 
-/// The whole scene.
+/// Table of the whole scene.
 [[nodiscard]] const ObjectSpec& scene_spec();
 [[nodiscard]] const ObjectSpec& flow_spec();
 [[nodiscard]] const ObjectSpec& force_spec();
@@ -105,92 +105,94 @@ private:
 [[nodiscard]] const ObjectSpec& body_spec();
 [[nodiscard]] const ObjectSpec& emitter_spec();
 [[nodiscard]] const ObjectSpec& particle_spec();
-/// {"file": ...} instead of a particle list.
+/// Table of {"file": ...}, which can replace a list of particles.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 [[nodiscard]] const ObjectSpec& springs_spec();
 [[nodiscard]] const ObjectSpec& camera_spec();
 [[nodiscard]] const ObjectSpec& picture_spec();
 [[nodiscard]] const ObjectSpec& collider_looks_spec();
-/// A declared attribute: `{"components": ..., "default": ...}`.
+/// Table of a declared attribute: `{"components": ..., "default": ...}`.
 [[nodiscard]] const ObjectSpec& attribute_spec();
-/// {"lower": ..., "upper": ...}, which sets a Box3.
+/// Returns the keys of {"lower": ..., "upper": ...}, which set a Box3.
 [[nodiscard]] Fields<Box3> box_fields(std::string_view upper_meaning);
 
 inline constexpr Range kFieldOfView = between(1.0, 170.0);
 inline constexpr std::string_view kFieldOfViewMeaning = "Angle from the lower to the upper edge.";
-/// Reports a camera, whose keys the view has, that stands on its own target.
+/// Reports a camera whose position is its target. The view has the keys of the camera.
 void refuse_camera_on_target(const SceneContext& context, const ObjectView& view);
 
-/// The members of a placement or a frame that a turn about an axis sets.
+/// Members of a placement or a frame that a rotation about an axis sets.
 struct RotationTarget {
     Vec3& axis;
     double& degrees;
 };
 [[nodiscard]] const ObjectSpec& rotation_spec();
 
-/// position, rotation and scale, which set a Placement that is a member. needs: the key that must stand beside them.
+/// Returns the keys position, rotation and scale, which set a Placement member. needs: key that must be present too.
 template <class Struct>
 [[nodiscard]] Fields<Struct> placement_fields(Placement Struct::*placement, Needs needs = {}) {
-    return {{"position", [placement](Struct& s) -> Vec3& { return (s.*placement).position; }, kCoordinate, "m",
-             "Where its origin is put; scale and rotation come first.", needs},
-            {"rotation",
-             [placement](Struct& s) {
-                 return RotationTarget{(s.*placement).rotation_axis, (s.*placement).rotation_degrees};
-             },
-             "Turns it.", Without{"not turned"}, needs, &rotation_spec()},
-            {"scale", [placement](Struct& s) -> Vec3& { return (s.*placement).scale; }, kCoordinate, "",
-             "Factor, or one for each of its own axes; a negative one mirrors.", ValueType::scale, needs}};
+    return {
+        {"position", [placement](Struct& s) -> Vec3& { return (s.*placement).position; }, kCoordinate, "m",
+         "Position of its origin. Scale and rotation are applied first.", needs},
+        {"rotation",
+         [placement](Struct& s) {
+             return RotationTarget{(s.*placement).rotation_axis, (s.*placement).rotation_degrees};
+         },
+         "Rotation about its origin.", Without{"no rotation"}, needs, &rotation_spec()},
+        {"scale", [placement](Struct& s) -> Vec3& { return (s.*placement).scale; }, kCoordinate, "",
+         "Scale factor, or one factor for each of its own axes. A negative factor mirrors.", ValueType::scale, needs}};
 }
 
-inline constexpr std::string_view kMeshFileMeaning = "The mesh: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).";
+inline constexpr std::string_view kMeshFileMeaning = "Mesh file: OBJ, PLY, STL, OFF or glTF (.gltf, .glb).";
 
-/// The axis of a mesh file that points up, for load_mesh().
+/// Returns the key for the axis of a mesh file that points up, for load_mesh().
 template <class Struct>
 [[nodiscard]] Field<Struct> up_field(Needs needs = {}) {
     return {"up",
             ValueType::choice,
-            "Axis of the file that points up; z does in scenes. Where y does, (x, y, z) is read as (x, -z, y), before "
-            "the scale.",
-            Choices{choice(MeshUp::z, "z", "coordinates are taken as they are in the file"),
-                    choice(MeshUp::y, "y", "a quarter turn about x")},
-            Without{"`y` for glTF files, as their standard says, `z` for all others"},
+            "Axis of the file that points up. In scenes it is z. With y, (x, y, z) is read as (x, -z, y), before the "
+            "scale.",
+            Choices{choice(MeshUp::z, "z", "coordinates are used as they are in the file"),
+                    choice(MeshUp::y, "y", "coordinates are rotated by 90 degrees about x")},
+            Without{"`y` for glTF files, as their standard says; `z` for all others"},
             needs};
 }
-/// What the key "up" of an object says.
+/// Returns the value of the key "up" of an object.
 [[nodiscard]] MeshUp up_of(const ObjectView& view);
 
-/// {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}; the unit is that of the key that
-/// holds the curve.
+/// Table of {"interpolation": ..., "keys": [{"time": ..., "value": NUMBER}], "ends": ...}. The values have the unit of
+/// the key that contains the curve.
 [[nodiscard]] const ObjectSpec& number_curve_spec();
-/// The same with "value": [x, y, z].
+/// Table of a curve with "value": [x, y, z].
 [[nodiscard]] const ObjectSpec& vector_curve_spec();
-/// The same with "value": a factor above 0, or [x, y, z] of these.
+/// Table of a curve with "value": a factor above 0, or [x, y, z] of such factors.
 [[nodiscard]] const ObjectSpec& scale_curve_spec();
-/// The curve of an object of number_curve_spec(). What is wrong is reported with its path ("frames.arm.motions[0]"),
-/// and a constant zero returned.
+/// Returns the curve of an object of number_curve_spec(). After an error, which it reports with the object's path
+/// ("frames.arm.motions[0]"), it returns a constant zero.
 [[nodiscard]] KeyedCurve<double> number_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 [[nodiscard]] KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostics);
 
-/// color, opacity, particle_size, attributes, over_life and over_age of an emitter; read by read_looks().
+/// Returns the keys of an emitter for appearance and attributes, for example color and over_life. read_looks() reads
+/// them.
 [[nodiscard]] std::vector<KeySpec> emitter_look_keys();
-/// color, opacity, size and attributes of an explicit particle; read by particle_values().
+/// Returns the keys of an explicit particle for appearance and attributes. particle_values() reads them.
 [[nodiscard]] std::vector<KeySpec> particle_look_keys();
 
-// What builds the parts, in the order in which they are built.
+// Functions that build the parts of a scene.
 
-/// Builds the scene from a document that check_scene() has seen, and reports what only shows here: names that refer to
-/// nothing, files, values that contradict each other. folder: where relative paths begin.
+/// Builds the scene from a document that check_scene() has checked. Reports errors that only show here: unknown names,
+/// faults of files, and values that contradict each other. folder: start of relative paths.
 [[nodiscard]] SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& folder,
                                            Diagnostics& diagnostics);
 
-/// Makes the forces and flows.
+/// Builder of forces and flows.
 class ForceBuilder {
 public:
     explicit ForceBuilder(const SceneContext& context);
 
-    /// The forces that could be made; reports what is wrong with the others.
+    /// Returns the valid forces and reports the errors of the others.
     [[nodiscard]] std::vector<std::unique_ptr<Force>> forces() const;
-    /// What the key "flow" says: an object, or the name of one. Null pointer where there is none, or after reporting.
+    /// Returns the flow that the key "flow" describes or names. Returns a null pointer if it is absent or invalid.
     [[nodiscard]] FlowPointer flow_at(const ObjectView& view) const;
 
 private:
@@ -201,107 +203,109 @@ private:
     std::map<std::string, FlowPointer, std::less<>> flows_;
 };
 
-/// Where the vertices of a mesh that deforms are in time: a key of colliders of the type mesh.
+/// Table of the key "deformation" of mesh colliders: positions of the vertices over time.
 [[nodiscard]] const ObjectSpec& deformation_spec();
-/// What a collider's key "deformation" says; null pointer where there is none, or after reporting.
+/// Returns the motion that a collider's key "deformation" describes. Null pointer if it is absent or invalid.
 [[nodiscard]] std::shared_ptr<const MeshMotion> deformation_of(SceneContext& context, const ObjectView& collider);
 
-/// Where its own frame, which is not one of `frames`, or one that this stands on, scales a collider, makes it the mesh
-/// that deforms so; false where none does. Reports shapes that keep their size.
+/// Turns a collider into a deforming mesh if its frame or a parent frame is scaled. `own` is the collider's own frame,
+/// which is not in `frames`. Returns false if no frame is scaled. Reports shapes that cannot be scaled.
 [[nodiscard]] bool stretch(SceneContext& context, const ObjectView& view, const SimulationOptions& options,
                            const FrameTree& frames, const FrameDescription& own, ColliderDescription& collider);
 
-/// frames: those of the scene; the ones that colliders move in by their own keys are added.
+/// Builds the colliders. frames: the frames of the scene. Adds the frames that colliders define by their own keys.
 void build_colliders(SceneContext& context, SimulationSetup& setup, std::vector<FrameDescription>& frames);
-/// The bodies among the frames, with the mass of the colliders that stand in them.
+/// Builds the bodies among the frames. Their mass can come from the colliders in the frame.
 void build_bodies(const SceneContext& context, SimulationSetup& setup, const std::vector<FrameDescription>& frames);
-/// The declared attributes, and those of appearance that emitters and explicit particles use. Reports names and
-/// defaults that cannot be.
+/// Builds the declared attributes, and the appearance attributes that emitters and explicit particles use. Reports
+/// invalid names and defaults.
 void build_attributes(const SceneContext& context, SimulationSetup& setup);
-/// The scene's frames; without errors so far only, their parents too.
+/// Returns the scene's frames. If errors have been reported, the frames have no parents.
 [[nodiscard]] std::vector<FrameDescription> frames_of(const SceneContext& context);
-/// The keys of a frame that a collider has for itself, and what they say.
+/// Table of the poses in a collider's key "motion".
 [[nodiscard]] const ObjectSpec& key_pose_spec();
+/// Returns a frame that moves through poses.
 [[nodiscard]] FrameDescription frame_through(const std::vector<ObjectView>& keys, Diagnostics& diagnostics);
-/// True when a key "frame" names one of them; reports otherwise.
+/// Returns true if the key "frame" names one of these frames. Reports an unknown name.
 [[nodiscard]] bool is_frame_named(const SceneContext& context, const ObjectView& view, const FrameTree& frames);
-/// In setup.frames.
+/// Builds the emitters. Needs the frames and colliders of the setup.
 void build_emitters(SceneContext& context, SimulationSetup& setup);
-/// The shapes of emitters that need no file: keys and values. One that was refused is a point.
+/// Returns the emitter shapes that need no file, with their keys.
 [[nodiscard]] std::vector<Variant> simple_shapes();
+/// Returns such a shape, or a point if it was refused.
 [[nodiscard]] EmitterShape simple_shape_of(const ObjectView& view);
-/// The key "cloud" of an emitter of type child.
+/// Table of the key "cloud" of an emitter of type child.
 [[nodiscard]] const ObjectSpec& cloud_spec();
-/// Emitters whose particles are born of particles: their keys, their rule (the parent's number is found when all are
-/// known), and what shows when they are.
+/// Returns the keys of an emitter whose particles are born of other particles.
 [[nodiscard]] Variant child_variant();
+/// Returns the rule of such an emitter. check_parents() sets the number of the parent, when all emitters are known.
 [[nodiscard]] ParentRule rule_of(const SceneContext& context, const ObjectView& view,
                                  const EmitterDescription& emitter);
+/// Finds the parent emitters, and reports unknown names, cycles and parents that are shared out twice.
 void check_parents(const SceneContext& context, SimulationSetup& setup);
-/// After all else of the setup: refuses what does not go together with clouds.
+/// Refuses settings that clouds cannot be combined with. Needs all other parts that they depend on.
 void check_clouds(const SceneContext& context, const SimulationSetup& setup);
-/// Sets an emitter's attributes and curves; reports those that are not declared or have other components.
+/// Sets the attributes and curves of an emitter. Reports undeclared attributes and wrong numbers of components.
 void read_looks(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                 EmitterDescription& emitter);
 void build_particles(SceneContext& context, SimulationSetup& setup);
-/// What spheres do when they meet; before the attributes, which hold their materials.
+/// Reads the settings for contacts between spheres. Runs before build_attributes(), which needs their materials.
 void read_particle_contacts(const SceneContext& context, SimulationOptions& options);
-/// After the springs: refuses what does not go together with spheres that meet.
+/// Refuses settings that contacts between spheres cannot be combined with. Runs after build_springs().
 void check_particle_contacts(const SceneContext& context, const SimulationSetup& setup);
-/// The value of kMaterialAttribute that an emitter's or a particle's key "material" says; nothing where it has none, or
-/// after reporting.
+/// Returns the value of kMaterialAttribute for the key "material" of an emitter or a particle. Returns nothing if the
+/// key is absent, or after reporting an error.
 [[nodiscard]] std::optional<AttributeValue> material_of(const SceneContext& context, const SimulationSetup& setup,
                                                         const ObjectView& view);
-/// After the attributes, bodies and emitters.
+/// Builds the forces between particles. Runs after the attributes, bodies and emitters.
 void build_particle_forces(const SceneContext& context, SimulationSetup& setup);
-/// After all else of the setup.
+/// Builds the heat settings. Runs after all other parts of the setup.
 void build_heat(const SceneContext& context, const ForceBuilder& forces, SimulationSetup& setup);
-/// The values of an explicit particle, one a column; empty when the scene has no columns.
+/// Returns the attribute values of an explicit particle, one per column. Empty if the scene has no columns.
 [[nodiscard]] std::vector<AttributeValue> particle_values(const SceneContext& context, const SimulationSetup& setup,
                                                           const ObjectView& view);
-/// After the particles: adds those of ropes, chains and cloth behind them.
+/// Builds the springs. Appends the particles of ropes, chains and cloth to the particles of the scene.
 void build_springs(SceneContext& context, SimulationSetup& setup);
-/// Sets what a run needs, and reports the part that asks for most where it is more than this process may have, and
-/// bursts that are larger than the population may be.
+/// Sets the memory that a run needs. If it exceeds the limit of this process, reports the part that needs most. Warns
+/// of bursts above the largest population.
 void check_memory(const SceneContext& context, SceneDescription& scene);
-/// The key "drawing" of an emitter.
+/// Table of the key "drawing" of an emitter.
 [[nodiscard]] const ObjectSpec& drawing_spec();
-/// Which of the scene's drawings an emitter that has this key brings, from 1 on.
+/// Returns the number, from 1, of the drawing that an emitter with this key adds to the scene.
 [[nodiscard]] std::size_t drawing_number(const SceneContext& context, const ObjectView& emitter);
-/// The camera, the picture's settings and the emitters' drawings; after the frames.
+/// Builds the camera, the picture settings and the drawings of emitters. Runs after the frames.
 void build_pictures(const SceneContext& context, SceneDescription& scene);
-/// Ids of a list that no particle of the setup has or will have.
+/// Warns of ids in a list that no particle of the setup has or will have.
 void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
                          std::span<const std::uint64_t> ids);
-/// The same of the scene's forces on single particles.
+/// Warns of unknown ids in the scene's forces on single particles.
 void warn_of_forces_on_nobody(const SceneContext& context, const SimulationSetup& setup);
-/// Forces that grow with a particle's radius, in a scene of points only.
+/// Warns of forces that grow with the particle radius, if all particles are points.
 void warn_of_forces_without_radius(const SceneContext& context, const SimulationSetup& setup);
 
-// Tables of particles.
+// Particle tables.
 
-/// What a table holds, and what is wrong with it.
+/// Contents of a particle table, with its errors.
 struct ParticleTable {
     std::vector<Particle> particles;
-    std::vector<std::string> errors;  ///< "start.csv:12: found ..., expected ..."; the first few
-    std::vector<AttributeDescription>
-        attributes;                           ///< those that were declared, and those of appearance that the table has
-    std::vector<std::string> unused_columns;  ///< of a run's own final state, which mean nothing at a start
+    std::vector<std::string> errors;               ///< "start.csv:12: found ..., expected ..."; the first few
+    std::vector<AttributeDescription> attributes;  ///< the declared ones, and appearance attributes of the table
+    std::vector<std::string> unused_columns;       ///< columns of a final state that mean nothing at a start
 };
 
-/// Comma-separated values: a header line with the columns x, y, z and, where wanted, vx, vy, vz, mass, radius in any
-/// order, and attributes (name, or name_x, name_y, name_z): those declared, and those of appearance; then a line a
-/// particle. The final state that a run writes can be read back. Never throws for bad contents.
+/// Parses comma-separated values: a header line that names the columns, then one line per particle. The columns x, y
+/// and z are required. vx, vy, vz, mass, radius, spin_x, spin_y, spin_z and lifetime are optional, in any order. More
+/// columns are declared attributes (name, or name_x, name_y, name_z) and appearance. The final state that a run writes
+/// can be read back. Never throws for bad contents.
 [[nodiscard]] ParticleTable parse_particle_table(std::string_view text, const std::string& name,
                                                  std::vector<AttributeDescription> declared = {});
-/// Reads a .csv file. Throws InputError when it cannot be read or is another kind of file.
+/// Reads a .csv file. Throws InputError if it cannot be read or has another ending.
 [[nodiscard]] ParticleTable read_particle_table(const std::filesystem::path& path,
                                                 std::vector<AttributeDescription> declared = {});
 
-// Flows and forces by their "type": the keys of each beside its maker, and the lines that several of these tables
-// share.
+// Flows and forces by "type": the keys and the maker of each type, and table lines that several types share.
 
-/// The keys of a type, and its maker from an object of these keys.
+/// Keys of a type, and the function that makes the object from them.
 template <class Made, class... Others>
 struct Law {
     Variant variant;
@@ -315,7 +319,7 @@ std::vector<Variant> variants_of(const std::vector<AnyLaw>& laws) {
     return variants;
 }
 
-/// Null pointer for a type that was refused.
+/// Returns the law of the view's type, or a null pointer if the type was refused.
 template <class AnyLaw>
 const AnyLaw* law_of(const std::vector<AnyLaw>& laws, const ObjectView& view) {
     const auto found =
@@ -323,8 +327,8 @@ const AnyLaw* law_of(const std::vector<AnyLaw>& laws, const ObjectView& view) {
     return found == laws.end() ? nullptr : &*found;
 }
 
-/// What a maker refuses is reported with its source location. Where values were refused before, defaults stand instead
-/// of them, and what is said about those means nothing.
+/// Calls a maker and reports the InputError that it throws, with the source location of the view. If values have been
+/// refused before, the error is not reported, because it may concern the defaults in their place.
 template <class Make>
 auto made(const SceneContext& context, const ObjectView& view, const Make& make) -> decltype(make()) {
     try {
@@ -341,11 +345,11 @@ Field<Struct> center(Vec3 Struct::*member) {
 }
 template <class Struct>
 Field<Struct> axis_point(Vec3 Struct::*member) {
-    return {"point", member, kCoordinate, "m", "A point of the axis."};
+    return {"point", member, kCoordinate, "m", "A point on the axis."};
 }
 template <class Struct>
 Field<Struct> axis(Vec3 Struct::*member) {
-    constexpr std::string_view kMeaning = "Direction of the axis, of any length; right-hand rule.";
+    constexpr std::string_view kMeaning = "Direction of the axis, of any length. Rotation follows the right-hand rule.";
     return {"axis", member, kCoordinate, "", kMeaning, kRequired, kNotZero};
 }
 

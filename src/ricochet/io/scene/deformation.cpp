@@ -1,4 +1,4 @@
-// Meshes that deform: where their vertices are in time, from files.
+// Deforming meshes: positions of their vertices over time, from files.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,30 +37,30 @@ struct MeshKey {
 
 const ObjectSpec& mesh_key_spec() {
     static const ObjectSpec spec = object<MeshKey>(
-        "mesh key", "The vertices of a mesh at a time.",
-        {{"time", &MeshKey::time, kCoordinate, "s", "When; later than the key before.", kRequired},
-         {"file", ValueType::file, "OBJ, PLY or OFF, with the faces of the collider's `file`.", kRequired}});
+        "mesh key", "Vertices of a mesh at a time.",
+        {{"time", &MeshKey::time, kCoordinate, "s", "Time of the key, later than the previous key.", kRequired},
+         {"file", ValueType::file, "OBJ, PLY or OFF file with the faces of the collider's `file`.", kRequired}});
     return spec;
 }
 
-/// Positions at times, one by one.
+/// Vertex positions at a sequence of times.
 struct Series {
     std::vector<double> times;
     std::vector<std::vector<Vec3>> positions;
 };
 
-/// A file of a numbered series.
+/// One file of a numbered series.
 struct NumberedFile {
     std::uint64_t number = 0;
     fs::path path;
 };
 
-/// Thrown where what is wrong has been reported, with its place.
+/// Thrown after an error has been reported with its source location.
 struct Reported {};
 
 constexpr std::string_view kSeriesName = "a file name with one * for the number, such as \"flag_*.obj\"";
 
-// "1 vertex", "2 vertices".
+// Returns a count with its noun, for example "1 vertex" or "2 vertices".
 std::string counted(std::size_t count, std::string_view one, std::string_view many) {
     return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -70,7 +70,7 @@ public:
     DeformationBuilder(SceneContext& context, const ObjectView& collider, const ObjectView& view)
         : context_(context), collider_(collider), view_(view), base_(context.file_of(collider)), up_(up_of(collider)) {}
 
-    /// Throws InputError with what is wrong as a whole, Reported after telling what is wrong with a key.
+    /// Throws InputError for a fault of the whole deformation. Throws Reported after reporting a fault of a key.
     [[nodiscard]] MeshMotion build() {
         Series series = view_.type() == "series" ? of_series() : view_.type() == "keys" ? of_keys() : of_cache();
         if (up_ == MeshUp::y) {
@@ -93,8 +93,8 @@ private:
         return times.start + frame / times.frame_rate;
     }
 
-    /// What read() gives of a key's value. What it refuses is told with the key's place; that a value is missing or was
-    /// refused is told already.
+    /// Returns the result of read(). Reports the InputError of read() for this key. Throws Reported after that, and
+    /// also if the key is absent, because an absent key has been reported already.
     template <class Read>
     auto from(const ObjectView& view, std::string_view key, const Read& read) const {
         if (!view.has(key)) throw Reported();
@@ -129,7 +129,7 @@ private:
         return series;
     }
 
-    /// Of the key that follows those with these times.
+    /// Returns the time of a key. The previous keys have the times `before`.
     [[nodiscard]] double time_of(const ObjectView& key, const std::vector<double>& before) const {
         return from(key, "time", [&] {
             const double time = key.read<MeshKey>().time;
@@ -153,7 +153,7 @@ private:
         return series;
     }
 
-    /// Those that a name with one * for a number means, by number.
+    /// Returns the files that match a name with one * for a number, in the order of their numbers.
     [[nodiscard]] std::vector<NumberedFile> numbered_files() const {
         const fs::path pattern = context_.path_of_file(view_.text("files"));
         const std::string name = pattern.filename().string();
@@ -204,7 +204,7 @@ private:
         }
     }
 
-    /// The mesh that says the faces. A collider's mesh that cannot be read is told already.
+    /// Reads the mesh that defines the faces. An unreadable mesh of the collider has been reported already.
     void read_base() {
         if (context_.load_groups(collider_) == nullptr) throw Reported();
         from(collider_, "file", [&] {
@@ -213,7 +213,7 @@ private:
         });
     }
 
-    /// Of a mesh with the same faces; one of so many.
+    /// Returns the vertices of a mesh with the same faces. count: number of such meshes, for the memory check.
     [[nodiscard]] std::vector<Vec3> vertices_of(const fs::path& path, std::size_t count) {
         if (const auto problem = file_problem(path)) throw InputError(*problem);
         if (!asked_for_memory_) {
@@ -234,7 +234,7 @@ private:
         return std::move(mesh.mesh.vertices);
     }
 
-    /// As many as the mesh that says the faces has.
+    /// Requires one point per vertex of the mesh that defines the faces.
     void require_as_many(std::size_t found, std::string_view one, std::string_view many, const fs::path& path) const {
         const std::size_t expected = mesh_.mesh.vertices.size();
         if (found == expected) return;
@@ -242,7 +242,7 @@ private:
                                      counted(expected, "vertex", "vertices"), base_.string()));
     }
 
-    // Vertices that were joined by where they are have no numbers of their own.
+    // Refuses formats whose vertices were merged by position, because such vertices have no numbers of their own.
     static void require_numbers(const ImportedMesh& mesh, const fs::path& path) {
         if (!mesh.weld) return;
         throw InputError(
@@ -260,7 +260,7 @@ private:
     bool asked_for_memory_ = false;
 };
 
-/// As it stands in its frame; null for shapes without vertices.
+/// Returns the mesh as it stands in its frame, or null for shapes without vertices.
 std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape) {
     const auto* const mesh = std::get_if<MeshShape>(&shape);
     if (mesh != nullptr && mesh->mesh) {
@@ -271,7 +271,7 @@ std::shared_ptr<const TriangleMesh> mesh_within_frame(const ColliderShape& shape
     return std::make_shared<const TriangleMesh>(transformed(cuboid_mesh(box->size), box->placement));
 }
 
-/// Why a shape cannot be scaled in time.
+/// Returns the reason why a shape cannot be scaled over time.
 std::string without_vertices(std::string_view type, bool by_poses, const std::string& frame) {
     if (by_poses) {
         return fmt::format(
@@ -287,7 +287,7 @@ std::string without_vertices(std::string_view type, bool by_poses, const std::st
         type, frame);
 }
 
-/// Outside of its poses it stands still, unless what it stands in moves.
+/// Returns the time range of the poses. Outside of it the collider stands still, unless a parent frame moves.
 std::pair<double, double> times_of(const std::vector<ObjectView>& poses) {
     const double begin = poses.front().node("time").number().value_or(0.0);
     const double end = poses.back().node("time").number().value_or(0.0);
@@ -303,34 +303,32 @@ std::pair<double, double> times_of(const SimulationOptions& options) {
 const ObjectSpec& deformation_spec() {
     using T = FrameTimes;
     static const Fields<T> frame_times{
-        {"frame_rate", &T::frame_rate, positive_up_to(1e6), "1/s", "Frames a second."},
-        {"start", &T::start, kCoordinate, "s", "When the first file holds; of a cache, when frame 0 does."}};
+        {"frame_rate", &T::frame_rate, positive_up_to(1e6), "1/s", "Frames per second."},
+        {"start", &T::start, kCoordinate, "s", "Time of the first file, or of frame 0 of a cache."}};
     const auto timed = [](std::string_view name, std::string_view description, Fields<T> fields) {
         fields.insert(fields.end(), frame_times.begin(), frame_times.end());
         return variant<T>(name, description, fields);
     };
     static const ObjectSpec spec = object<DeformationKeys>(
         "deformation",
-        "Where the vertices of a mesh are in time: at keys, and between two of them each on a straight line at "
-        "constant "
-        "speed. The collider's position, rotation and scale hold for all of them.",
-        {{"ends", &DeformationKeys::ends, "What holds before the first and after the last key.",
-          Choices{
-              choice(MeshEnds::hold, "hold", "that key's vertices, at rest"),
-              choice(MeshEnds::repeat, "repeat",
-                     "the keys again and again: from the last one back to the first in the time between the last two, "
-                     "unless both have the same vertices to the last bit")}}},
+        "Positions of the vertices of a mesh over time. Between two keys each vertex moves on a straight line at "
+        "constant speed. The collider's position, rotation and scale apply to all keys.",
+        {{"ends", &DeformationKeys::ends, "Vertices before the first and after the last key.",
+          Choices{choice(MeshEnds::hold, "hold", "the vertices of that key, at rest"),
+                  choice(MeshEnds::repeat, "repeat",
+                         "the keys repeat. The change from the last key to the first takes the time between the last "
+                         "two keys, unless both have identical vertices")}}},
         {timed("series", "A numbered series of meshes.",
                {{"files", ValueType::text,
-                 "OBJ, PLY or OFF files with the faces of the collider's `file`; their numbers are consecutive.",
-                 kRequired, Expected{kSeriesName}}}),
+                 "OBJ, PLY or OFF files with the faces of the collider's `file` and consecutive numbers.", kRequired,
+                 Expected{kSeriesName}}}),
          variant<Unbound>(
-             "keys", "Meshes at times of their own.",
-             {{"keys", ValueType::list, "In the order of time.", &mesh_key_spec(), kRequired, kTwoOrMore}}),
+             "keys", "Meshes with a time for each.",
+             {{"keys", ValueType::list, "Keys in order of time.", &mesh_key_spec(), kRequired, kTwoOrMore}}),
          timed("cache", "A point cache beside the mesh, in the PC2 format.",
                {{"file", ValueType::file,
-                 "The cache: as many points as the collider's `file` has vertices, in their order. Its start and the "
-                 "frames between its samples are those that its header says.",
+                 "Cache file with one point per vertex of the collider's `file`, in the same order. Its header gives "
+                 "the start frame and the frames between samples.",
                  kRequired}})});
     return spec;
 }

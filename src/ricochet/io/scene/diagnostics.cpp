@@ -15,7 +15,7 @@ namespace ricochet::detail {
 namespace {
 
 constexpr std::size_t kMostErrors = 10;
-constexpr std::size_t kMostLines = 100;  // of warnings and notes
+constexpr std::size_t kMostLines = 100;  // of warnings, and of notes
 
 bool is_plain(std::string_view key) {
     return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
@@ -82,13 +82,13 @@ std::vector<std::string> Diagnostics::lines(std::vector<Entry> entries, std::siz
     return result;
 }
 
-// Names near to a misspelt one.
+// Suggestions for misspelt names.
 
 namespace {
 
 constexpr std::size_t kLongestWord = 100;
 
-// One edit for words of up to four letters, one more for every four letters beyond.
+// Tolerates one edit for words of up to four letters, and one more for every four letters beyond.
 std::size_t tolerated_edits(std::size_t length) { return length == 0 ? 0 : 1 + (length - 1) / 4; }
 
 std::string without_style(std::string_view word) {
@@ -129,7 +129,7 @@ std::vector<std::string_view> nearest_names(std::string_view word, const std::ve
     std::size_t best = std::numeric_limits<std::size_t>::max();
     for (const std::string_view candidate : candidates) {
         const std::string plain_candidate = without_style(candidate);
-        // What differs more in length is as many edits away at least.
+        // The distance is at least the difference in length.
         const auto [shorter, longer] = std::minmax({plain.size(), plain_candidate.size()});
         if (longer - shorter > tolerated_edits(plain_candidate.size())) continue;
         const std::size_t distance = edit_distance(plain, plain_candidate);

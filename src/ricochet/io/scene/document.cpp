@@ -21,7 +21,7 @@
 
 namespace ricochet::detail {
 
-// Nodes, and their values in messages.
+// Nodes, and the words for their values in messages.
 
 std::optional<double> JsonNode::number() const {
     if (const auto* whole = std::get_if<std::uint64_t>(&value)) return static_cast<double>(*whole);
@@ -67,12 +67,12 @@ namespace {
 
 using Step = std::variant<std::string, std::size_t>;  // a key or a list index
 
-// Takes a path apart from left to right; stands before the '=' when it is done.
+// Splits a path from left to right. Stops before the '=' that follows it.
 class PathReader {
 public:
     explicit PathReader(std::string_view text) : rest_(text) {}
 
-    // Nothing when the text does not begin with a path followed by '='.
+    // Returns nothing if the text does not begin with a path and '='.
     std::optional<std::vector<Step>> read() {
         std::vector<Step> steps;
         while (rest_.empty() || rest_.front() != '=' || steps.empty()) {
@@ -114,13 +114,13 @@ private:
     std::string_view rest_;
 };
 
-// Walks to the value that a path names and makes the objects that it passes; reports where that cannot be done.
+// Follows a path to the value that it names, and adds missing objects. Reports paths that cannot be followed.
 class Walker {
 public:
     Walker(JsonNode& root, const SourceLocation& location, Diagnostics& diagnostics)
         : node_(&root), location_(location), diagnostics_(diagnostics) {}
 
-    // Null pointer after reporting.
+    // Returns a null pointer after reporting an error.
     JsonNode* walk(const std::vector<Step>& steps) {
         for (std::size_t i = 0; i < steps.size() && node_ != nullptr; ++i) {
             const bool item_follows = i + 1 < steps.size() && std::holds_alternative<std::size_t>(steps[i + 1]);
@@ -204,16 +204,16 @@ void apply_override(JsonNode& root, std::size_t number, Diagnostics& diagnostics
     }
 }
 
-// The fingerprint.
+// Fingerprints.
 
 namespace {
 
 constexpr std::array<std::string_view, 5> kLeftOut{"output", "camera", "picture", "title", "description"};
 
-/// A state does not depend on the time at which its run ends, so a run can be extended.
+/// Left out, because a state does not depend on the end of its run. So a run can be extended.
 constexpr std::string_view kDuration = "duration";
 
-/// Adds a value with a number for its type, so that no two different scenes read alike.
+/// Adds a value and a number for its type to a hash, so that different scenes add different sequences.
 class ValueHasher {
 public:
     explicit ValueHasher(StateHash& hash) : hash_(hash) {}
@@ -277,7 +277,7 @@ std::uint64_t scene_fingerprint(const JsonNode& root) {
 namespace ricochet {
 namespace {
 
-/// The same value whichever way it is written: 2 or 2.0, keys in any order.
+/// Converts numbers to doubles (2 and 2.0 are equal) and sorts keys, so that equal values have equal hashes.
 void make_plain(detail::JsonNode& node) {
     if (const auto number = node.number()) node.value = *number;
     if (detail::JsonNode::Array* list = node.array()) {

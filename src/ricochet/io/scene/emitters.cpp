@@ -16,9 +16,9 @@
 namespace ricochet::detail {
 namespace {
 
-constexpr double kMostBirths = 4294967295.0;  // their indices in the arrays are 32-bit numbers
+constexpr double kMostBirths = 4294967295.0;  // indices of particles are 32-bit numbers
 
-// What an emitter on a mesh says; the mesh itself comes from a file or a collider.
+// Keys of an emitter on a mesh. The mesh itself comes from a file or a collider.
 struct MeshKeys {
     Placement placement;
     bool volume = false;
@@ -28,59 +28,59 @@ constexpr Range kRate = between(0.0, 1e12);
 
 Fields<EmitterDescription> schedule_fields() {
     using E = EmitterDescription;
-    return {{"burst", &E::burst, kCount, "", "Particles born at once at `start`."},
-            {"rate", &E::rate, kRate, "1/s", "Particles a second from `start` to `stop`; drawn anew for every second."},
-            {"rate_per_frame", &E::rate_per_frame, kRate, "",
-             "Instead of `rate`: particles a frame of `simulation.frame_rate`, evenly spread inside it; drawn anew for "
-             "every frame."},
-            {"rate_per_area", &E::rate_per_area, kRate, "1/pixel",
-             "Instead of `rate`: particles a frame for every pixel that the shape covers in the `reference_camera`'s "
-             "picture."},
-            {"start", &E::start, kNotNegative, "s", "When it begins."},
-            {"stop", &E::stop, kNotNegative, "s", "When the rate ends.", Without{"never"}},
-            {"limit", &E::limit, kCount, "", "Most particles ever born here; of type child: of one parent's life.",
-             Without{"no limit"}},
-            {"seed", &E::seed, kSeed, "", "Start of its own random numbers.",
-             Without{"the scene's seed and the index in the list"}}};
+    return {
+        {"burst", &E::burst, kCount, "", "Number of particles born at once at `start`."},
+        {"rate", &E::rate, kRate, "1/s", "Particles per second from `start` to `stop`, drawn anew for every second."},
+        {"rate_per_frame", &E::rate_per_frame, kRate, "",
+         "Instead of `rate`: particles per frame of `simulation.frame_rate`, evenly spread over the frame. Drawn anew "
+         "for every frame."},
+        {"rate_per_area", &E::rate_per_area, kRate, "1/pixel",
+         "Instead of `rate`: particles per frame and per pixel that the shape covers in the image of the "
+         "`reference_camera`."},
+        {"start", &E::start, kNotNegative, "s", "Time at which it begins."},
+        {"stop", &E::stop, kNotNegative, "s", "Time at which the rate ends.", Without{"never"}},
+        {"limit", &E::limit, kCount, "", "Largest number of births in total. For type `child`: per parent.",
+         Without{"no limit"}},
+        {"seed", &E::seed, kSeed, "", "Seed of its own random numbers.",
+         Without{"made from the scene's seed and the index in the list"}}};
 }
 
 Fields<EmitterDescription> launch_fields() {
     using E = EmitterDescription;
-    return {
-        {"direction", &E::direction, kCoordinate, "", "Where particles are launched to.", kNotZero,
-         Without{"the shape's own: the normal of a disk, of a sphere's surface or of a mesh, any direction otherwise"}},
-        {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
-         "Half angle of a cone about the direction, uniform in solid angle."},
-        {"speed", &E::speed, kCoordinate, "m/s", "Along the direction."},
-        {"velocity", &E::velocity, kCoordinate, "m/s", "Added to direction times speed."},
-        {"mass", &E::mass, kMass, "kg", "Mass of a particle.", LowEnd{kMass}},
-        {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
-         LowEnd{kNotNegative}, Without{"for ever"}},
-        {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},
-        {"frame", ValueType::text,
-         "One of the names in `frames`: shape, direction and velocity are in its coordinates, and particles are let go "
-         "with its velocity at the time and position of their birth.",
-         Without{"the world"}}};
+    return {{"direction", &E::direction, kCoordinate, "", "Launch direction.", kNotZero,
+             Without{"the shape's own: the normal of a disk, sphere surface or mesh, the line from the tip of a cone, "
+                     "or any direction"}},
+            {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
+             "Half angle of a cone about the direction. Directions are uniform in solid angle."},
+            {"speed", &E::speed, kCoordinate, "m/s", "Speed along the direction."},
+            {"velocity", &E::velocity, kCoordinate, "m/s", "Velocity added to direction times speed."},
+            {"mass", &E::mass, kMass, "kg", "Mass of a particle.", LowEnd{kMass}},
+            {"lifetime", &E::lifetime, kNotNegative, "s", "Time after birth at which a particle is retired.",
+             LowEnd{kNotNegative}, Without{"for ever"}},
+            {"particle_radius", &E::radius, kLengthOrZero, "m", "Radius of a particle.", LowEnd{kNotNegative}},
+            {"frame", ValueType::text,
+             "Name of a frame in `frames`. Shape, direction and velocity are in its coordinates. Particles also get "
+             "the frame's velocity at the time and position of their birth.",
+             Without{"the world"}}};
 }
 
 Field<Unbound> emitter_name() {
-    return {"name", ValueType::text, "For messages and reports; no two emitters share one.",
+    return {"name", ValueType::text, "Unique name for messages and reports.",
             Without{"made from type and index in the list"}};
 }
 
 Variant mesh_variant() {
-    return variant(
-        "mesh",
-        "Uniform by area on a mesh, just off its surface on the side that the triangles' normals point to, and "
-        "launched along them.",
-        joined<MeshKeys>({{{"file", ValueType::file, kMeshFileMeaning},
-                           {"collider", ValueType::text,
-                            "The name of a mesh collider: its surface, in the frame that it stands in."}},
-                          {up_field<MeshKeys>(Needs{"file"})},
-                          placement_fields(&MeshKeys::placement, Needs{"file"}),
-                          {{"volume", &MeshKeys::volume,
-                            "true: uniform in the inside, launched in any direction; the mesh must be closed."}}}),
-        {"file", "collider"});
+    return variant("mesh",
+                   "Uniform by area on a mesh, launched along the normals of its triangles. Positions are just off the "
+                   "surface, on the side of the normals.",
+                   joined<MeshKeys>(
+                       {{{"file", ValueType::file, kMeshFileMeaning},
+                         {"collider", ValueType::text, "Name of a mesh collider. Its surface and its frame are used."}},
+                        {up_field<MeshKeys>(Needs{"file"})},
+                        placement_fields(&MeshKeys::placement, Needs{"file"}),
+                        {{"volume", &MeshKeys::volume,
+                          "true: uniform in the inside, launched in any direction. The mesh must be closed."}}}),
+                   {"file", "collider"});
 }
 
 std::vector<Variant> shapes() {
@@ -107,7 +107,7 @@ const MeshShape* mesh_collider(const SceneContext& context, const SimulationSetu
     return nullptr;
 }
 
-// The mesh that an emitter stands on, in world coordinates. Null pointer after reporting.
+// Returns the mesh of an emitter in world coordinates. Returns a null pointer after reporting an error.
 std::shared_ptr<const TriangleMesh> surface_of(SceneContext& context, const SimulationSetup& setup,
                                                const ObjectView& view) {
     if (view.has("collider") && view.has("file")) return nullptr;  // reported already
@@ -136,7 +136,7 @@ EmitterShape shape_of(SceneContext& context, const SimulationSetup& setup, const
     return MeshSurfaceShape{surface};
 }
 
-// False where a mesh was refused.
+// Returns false if the mesh was refused.
 bool is_measurable(const EmitterShape& shape) {
     const auto* const surface = std::get_if<MeshSurfaceShape>(&shape);
     const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
@@ -147,7 +147,7 @@ constexpr const char* kNoEmitterOnBody =
     "impulses of particles move this body, and where it will be within a step is not known at the births; expected an "
     "emitter in the world or in a frame that moves by itself";
 
-// Puts the emitter into the frame that its key "frame" names, or into that of the collider that it is on.
+// Puts the emitter into the frame that its key "frame" names, or into the frame of its collider.
 void attach(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
             EmitterDescription& emitter) {
     const bool is_on_collider = view.type() == "mesh" && view.has("collider");
@@ -185,14 +185,14 @@ void attach(const SceneContext& context, const ObjectView& view, const Simulatio
     emitter.frame = *setup.frames->find(view.text("frame"));
     if (!context.failed() && setup.frames->is_scaled(emitter.frame)) {
         context.error(view, "frame",
-                      "the frame is scaled, and what is born in it keeps its size; expected a frame without a "
-                      "\"scale\", its own or of one that it stands on");
+                      "the frame is scaled, but particles keep their size; expected a frame without a \"scale\", also "
+                      "in the frames that it stands on");
     }
 }
 
 double most_of(const MeanSpread& rate) { return rate.mean + rate.spread; }
 
-// Most particles a second; reports rates that cannot be.
+// Returns the largest number of particles per second. Reports contradictory rates.
 double most_rate(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                  const EmitterDescription& emitter) {
     const double per_area = most_of(emitter.rate_per_area);
@@ -215,7 +215,7 @@ double most_rate(const SceneContext& context, const SimulationSetup& setup, cons
     return most_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
-// Reports contradictions; returns the most births there can be.
+// Reports contradictions. Returns the largest possible number of births.
 double checked_births(const SceneContext& context, const SimulationSetup& setup, const ObjectView& view,
                       const EmitterDescription& emitter) {
     const double duration = setup.options.duration;
@@ -235,7 +235,7 @@ double checked_births(const SceneContext& context, const SimulationSetup& setup,
     return std::min(births, static_cast<double>(emitter.limit));
 }
 
-// Volumes that cannot be filled are reported by their file.
+// Reports volumes that cannot be filled, at the key of their mesh.
 void check_volume(const SceneContext& context, const ObjectView& view, const EmitterShape& shape) {
     const auto* const volume = std::get_if<MeshVolumeShape>(&shape);
     if (volume == nullptr || volume->mesh == nullptr) return;
@@ -251,7 +251,7 @@ void check_volume(const SceneContext& context, const ObjectView& view, const Emi
 const ObjectSpec& emitter_spec() {
     static const ObjectSpec spec = [] {
         ObjectSpec result =
-            object("emitter", "Where particles are born. A pair [mean, spread] is drawn anew for every particle.",
+            object("emitter", "A source of particles. A pair [mean, spread] is drawn anew for every particle.",
                    joined({schedule_fields(), launch_fields()}), shapes());
         result.keys.insert(result.keys.begin(), emitter_name());
         for (KeySpec& key : emitter_look_keys()) result.keys.push_back(std::move(key));

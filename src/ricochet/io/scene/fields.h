@@ -1,9 +1,9 @@
 /// \file
-/// Scene keys bound to the members that they set. One line of a table says a key's name, member, range, unit and
-/// meaning; the checker, the reader, the JSON Schema and the reference in docs/ all follow from it. Type and default
-/// are those of the member:
+/// Scene keys bound to the members that they set. One line of a table gives the name, member, range, unit and meaning
+/// of a key. The checker, the reader, the JSON Schema and the reference in docs/ all follow from it. Type and default
+/// come from the member:
 ///
-///     {"restitution", &Material::restitution, kFraction, "", "Speed of the rebound over speed of the approach."}
+///     {"restitution", &Material::restitution, kFraction, "", "Rebound speed divided by approach speed."}
 #pragma once
 
 #include <concepts>
@@ -24,9 +24,9 @@ namespace ricochet::detail {
 template <class Member>
 concept Enumeration = std::is_enum_v<Member>;
 
-/// How a member of this type is written in a scene. read() takes a checked value; text() gives the JSON text of a
-/// default, empty where no scene could hold it (infinite, nothing, an empty text). Unless specialized: a struct whose
-/// members are set by the keys of KeySpec::content.
+/// Format of a member of this type in a scene. read() takes a checked value. text() returns the JSON text of a default;
+/// it is empty if no scene can express the default (infinite, absent, an empty text). This general format is for
+/// structs whose members are set by the keys of KeySpec::content.
 template <class Member>
 struct Format {
     static constexpr ValueType kType = ValueType::object;
@@ -54,7 +54,7 @@ struct Format<std::string> {
     static void read(const JsonNode& node, const KeySpec& key, std::string& value);
     static std::string text(const KeySpec& key, const std::string& value);
 };
-/// [x, y, z]; of ValueType::scale also one number for all three.
+/// [x, y, z]. With ValueType::scale, also one number for all three.
 template <>
 struct Format<Vec3> {
     static constexpr ValueType kType = ValueType::vector;
@@ -107,33 +107,33 @@ struct Format<std::vector<Member>> {
     static std::string text(const KeySpec& /*key*/, const std::vector<Member>& /*value*/) { return "[]"; }
 };
 
-// What a line of the table can say besides name, member, range, unit and meaning.
+// Options of a table line besides name, member, range, unit and meaning.
 
 enum class Rule { required, not_zero, not_empty, two_or_more };
 inline constexpr Rule kRequired = Rule::required;
 inline constexpr Rule kNotZero = Rule::not_zero;
 inline constexpr Rule kNotEmpty = Rule::not_empty;
 inline constexpr Rule kTwoOrMore = Rule::two_or_more;
-/// What the key's absence means, instead of a default.
+/// Meaning of an absent key, instead of a default.
 struct Without {
     std::string_view words;
 };
 struct Unit {
     std::string_view name;
 };
-/// What is expected of a text, for messages and the reference.
+/// Description of an expected text, for messages and the reference.
 struct Expected {
     std::string_view words;
 };
-/// Key that must stand beside it.
+/// Key that must be present together with this one.
 struct Needs {
     std::string_view key;
 };
-/// Allowed values of a pair's mean - spread.
+/// Allowed values of mean - spread of a pair.
 struct LowEnd {
     Range range;
 };
-/// The scene's key with the objects that can be named instead.
+/// Key of the scene with the objects that can be named instead.
 struct NamedIn {
     std::string_view table;
 };
@@ -156,8 +156,8 @@ inline void set_option(KeySpec& key, Choices choices) {
 template <class Member, class Struct>
 concept MemberOf = std::invocable<Member, Struct&>;
 
-/// One line of the table of a struct: a key, bound to the member that `member` (a pointer to it, or a function) gives,
-/// or of a type without a member, for what the builder reads itself.
+/// One line of the table of a struct. It binds a key to a member, which `member` (a pointer or a function) gives. It
+/// can also describe a key without a member, which the builder reads itself.
 template <class Struct>
 struct Field : KeySpec {
     template <MemberOf<Struct> Member, class... Options>
@@ -202,7 +202,7 @@ private:
         description = meaning;
         (set_option(*this, options), ...);
     }
-    // What reading needs of the key.
+    // Returns the part of the key that read functions need.
     [[nodiscard]] KeySpec reading_spec() const {
         return {.name = name, .type = type, .description = description, .choices = choices, .content = content};
     }
@@ -230,7 +230,7 @@ template <class Struct>
     return {title, description, {fields.begin(), fields.end()}, std::move(variants), &typeid(Struct)};
 }
 
-/// For tables of keys that set no members.
+/// Struct for tables whose keys set no members.
 struct Unbound {};
 
 }  // namespace ricochet::detail

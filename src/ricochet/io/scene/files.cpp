@@ -91,7 +91,7 @@ void add_bytes(StateHash& hash, const fs::path& path) {
 
 namespace {
 
-// A mesh with the other axis up: from y up to z up, or back to how a file that has y up says it.
+// Returns the mesh with the other axis up: from y up to z up, or back to the coordinates of a file with y up.
 std::shared_ptr<const TriangleMesh> turned_mesh(TriangleMesh mesh, bool to_z_up) {
     for (Vec3& v : mesh.vertices) v = to_z_up ? y_up_as_z_up(v) : z_up_as_y_up(v);
     return std::make_shared<const TriangleMesh>(std::move(mesh));
@@ -133,7 +133,7 @@ const MeshGroups& MeshLibrary::groups(const fs::path& path) { return entry(path)
 
 namespace {
 
-// The names of one group, the one that counts most first.
+// Returns the names of one group in order of priority.
 std::vector<std::string_view> names_of(const MeshGroups& mesh, const FaceGroup& group) {
     std::vector<std::string_view> names = {mesh.names[group.material], mesh.names[group.group]};
     const std::vector<std::string_view> words = words_of(mesh.names[group.group]);

@@ -1,4 +1,4 @@
-// Flows of a scene: the keys of each, beside what is made of them.
+// Flows of a scene: the keys and the maker of each type.
 
 #include <utility>
 
@@ -16,7 +16,7 @@ FlowLaw flow_law(std::string_view name, std::string_view description, const Fiel
             [make](const ObjectView& view, const SceneContext&) { return make(view.read<Settings>()); }};
 }
 
-// Structs stand here where the maker takes its values one by one.
+// Structs for makers that take their values one by one.
 
 struct FlowKeys {
     double factor = 1.0;
@@ -26,9 +26,9 @@ const ObjectSpec& gust_spec() {
     static const ObjectSpec spec =
         object<Gust>("gust", "The wind is multiplied by 1 + amplitude sin(2 pi (frequency t + phase)).",
                      {{"amplitude", &Gust::amplitude, kNotNegative, "",
-                       "Part of the wind's speed; above 1 the wind turns round at times.", kRequired},
-                      {"frequency", &Gust::frequency, kNotNegative, "Hz", "How often it rises and falls.", kRequired},
-                      {"phase", &Gust::phase, kCoordinate, "turns", "Where in its cycle it starts."}});
+                       "Fraction of the wind speed. Above 1 the wind reverses at times.", kRequired},
+                      {"frequency", &Gust::frequency, kNotNegative, "Hz", "Frequency of the variation.", kRequired},
+                      {"phase", &Gust::phase, kCoordinate, "turns", "Phase of the cycle at 0 s."}});
     return spec;
 }
 
@@ -38,11 +38,11 @@ FlowLaw uniform_flow() {
         std::optional<Gust> gust;
     };
     return flow_law<Wind>(
-        "uniform", "A wind: the same velocity everywhere.",
-        {{"velocity", &Wind::velocity, kCoordinate, "m/s", "Velocity.", kRequired},
+        "uniform", "A wind with the same velocity everywhere.",
+        {{"velocity", &Wind::velocity, kCoordinate, "m/s", "Velocity of the wind.", kRequired},
          {"gust", &Wind::gust,
-          "Lets it rise and fall: `amplitude` (part of the speed), `frequency` (Hz) and `phase` (turns, 0 unless "
-          "given).",
+          "Periodic variation: `amplitude` (fraction of the speed), `frequency` (Hz) and `phase` (turns, 0 by "
+          "default).",
           &gust_spec(), Without{"steady"}}},
         [](const Wind& w) { return w.gust ? make_gusty_wind(w.velocity, *w.gust) : make_wind(w.velocity); });
 }
@@ -50,16 +50,17 @@ FlowLaw uniform_flow() {
 FlowLaw vortex_flow() {
     using V = VortexSettings;
     return flow_law<V>(
-        "vortex", "A straight vortex without end.",
+        "vortex", "A straight vortex of infinite length.",
         {axis_point(&V::point),
          axis(&V::axis),
          {"circulation", &V::circulation, kCoordinate, "m^2/s",
-          "Speed times circumference, outside the core; negative turns in the other direction.", kRequired},
+          "Speed times circumference, outside the core. Negative values reverse the rotation.", kRequired},
          {"core_radius", &V::core_radius, kLength, "m",
-          "Radius of the core, in which the speed falls to 0 on the axis.", kRequired},
-         {"profile", &V::profile, "How the speed depends on the distance.",
+          "Radius of the core. Inside it the speed falls to 0 on the axis.", kRequired},
+         {"profile", &V::profile, "Speed as a function of the distance.",
           Choices{choice(VortexProfile::rankine, "rankine", "the core turns like a rigid body"),
-                  choice(VortexProfile::lamb_oseen, "lamb_oseen", "smooth, as viscosity spreads a line vortex")}}},
+                  choice(VortexProfile::lamb_oseen, "lamb_oseen",
+                         "smooth, like a line vortex that viscosity has spread")}}},
         &make_vortex);
 }
 
@@ -69,12 +70,12 @@ FlowLaw radial_flow() {
         double strength = 0.0;
         double core_radius = 1.0;
     };
-    return flow_law<Source>("radial", "A source, or a sink, with a soft core.",
+    return flow_law<Source>("radial", "A source or a sink with a soft core.",
                             {center(&Source::center),
                              {"strength", &Source::strength, kCoordinate, "m^3/s",
-                              "Volume that comes out in a second; negative for a sink.", kRequired},
+                              "Volume flow out of the source. Negative for a sink.", kRequired},
                              {"core_radius", &Source::core_radius, kLength, "m",
-                              "Radius of the core, in which the speed falls to 0.", kRequired}},
+                              "Radius of the core. Inside it the speed falls to 0.", kRequired}},
                             [](const Source& s) { return make_source(s.center, s.strength, s.core_radius); });
 }
 
@@ -83,10 +84,10 @@ FlowLaw rotation_flow() {
         Vec3 point;
         Vec3 angular_velocity;
     };
-    return flow_law<Rotation>("rotation", "Turns like a rigid body.",
+    return flow_law<Rotation>("rotation", "Rotation like a rigid body.",
                               {axis_point(&Rotation::point),
                                {"angular_velocity", &Rotation::angular_velocity, kCoordinate, "rad/s",
-                                "Along the axis; right-hand rule.", kRequired}},
+                                "Angular velocity along the axis, by the right-hand rule.", kRequired}},
                               [](const Rotation& r) { return make_rotation(r.point, r.angular_velocity); });
 }
 
@@ -98,25 +99,25 @@ FlowLaw shear_flow() {
     };
     return flow_law<Shear>("shear", "A velocity that grows linearly along a direction.",
                            {{"point", &Shear::point, kCoordinate, "m", "A point where the fluid is at rest."},
-                            {"rate", &Shear::rate, kCoordinate, "1/s", "Velocity gained per metre.", kRequired},
+                            {"rate", &Shear::rate, kCoordinate, "1/s", "Gain of velocity per metre.", kRequired},
                             {"gradient", &Shear::gradient, kCoordinate, "",
-                             "Direction along which it grows, of any length.", kRequired, kNotZero}},
+                             "Direction along which the velocity grows, of any length.", kRequired, kNotZero}},
                            [](const Shear& s) { return make_shear(s.point, s.rate, s.gradient); });
 }
 
 FlowLaw turbulence_flow() {
     using T = TurbulenceSettings;
-    return flow_law<T>(
-        "turbulence", "Eddies of several sizes without divergence (curl noise).",
-        {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
-         {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
-         {"octaves", &T::octaves, between(1, kMostOctaves), "",
-          "Sizes of eddies, each half as large as the one before."},
-         {"gain", &T::gain, positive_up_to(1.0), "", "Speed of the eddies of a size over that of the size before."},
-         {"rate", &T::rate, kNotNegative, "1/s",
-          "How often in a second the largest eddies are replaced by others; 0 is frozen."},
-         {"seed", &T::seed, kSeed, "", "Which turbulence; independent of the simulation's seed."}},
-        &make_turbulence);
+    return flow_law<T>("turbulence", "Eddies of several sizes without divergence (curl noise).",
+                       {{"speed", &T::speed, kNotNegative, "m/s", "Root mean square of the speed.", kRequired},
+                        {"length", &T::length, kLength, "m", "Size of the largest eddies.", kRequired},
+                        {"octaves", &T::octaves, between(1, kMostOctaves), "",
+                         "Number of eddy sizes. Each size is half the previous one."},
+                        {"gain", &T::gain, positive_up_to(1.0), "",
+                         "Speed of the eddies of one size divided by the speed at the previous size."},
+                        {"rate", &T::rate, kNotNegative, "1/s",
+                         "Rate at which new eddies replace the largest ones. 0 freezes the flow."},
+                        {"seed", &T::seed, kSeed, "", "Seed of the turbulence, independent of the simulation's seed."}},
+                       &make_turbulence);
 }
 
 FlowLaw sphere_flow() {
@@ -125,10 +126,10 @@ FlowLaw sphere_flow() {
         double radius = 1.0;
         Vec3 velocity;
     };
-    return flow_law<Ball>("sphere", "Flow of an ideal fluid past a ball; nothing moves inside it.",
+    return flow_law<Ball>("sphere", "Flow of an ideal fluid past a ball. The fluid inside the ball is at rest.",
                           {center(&Ball::center),
-                           {"radius", &Ball::radius, kLength, "m", "Its radius.", kRequired},
-                           {"velocity", &Ball::velocity, kCoordinate, "m/s", "Velocity far away from it.", kRequired}},
+                           {"radius", &Ball::radius, kLength, "m", "Radius of the ball.", kRequired},
+                           {"velocity", &Ball::velocity, kCoordinate, "m/s", "Velocity far from the ball.", kRequired}},
                           [](const Ball& b) { return make_flow_past_sphere(b.center, b.radius, b.velocity); });
 }
 
@@ -138,13 +139,13 @@ FlowLaw grid_flow() {
         OutsideGrid outside = OutsideGrid::clamp;
     };
     const Fields<Grid> fields = {
-        {"file", ValueType::file, "A VTK image (.vti) with point data; not compressed.", kRequired},
-        {"array", &Grid::array, "Name of the array, with three components.",
-         Without{"the first with three components"}},
-        {"outside", &Grid::outside, "What holds beyond the grid.",
+        {"file", ValueType::file, "VTK image file (.vti) with uncompressed point data.", kRequired},
+        {"array", &Grid::array, "Name of the array, which must have three components.",
+         Without{"the first array with three components"}},
+        {"outside", &Grid::outside, "Velocity outside the grid.",
          Choices{choice(OutsideGrid::clamp, "clamp", "the value at the nearest point of the grid"),
-                 choice(OutsideGrid::zero, "zero", "nothing")}}};
-    return {variant("grid", "Samples on a regular grid, interpolated linearly along each axis.", fields),
+                 choice(OutsideGrid::zero, "zero", "zero velocity")}}};
+    return {variant("grid", "Samples on a regular grid with linear interpolation along each axis.", fields),
             [](const ObjectView& view, const SceneContext& context) -> FlowPointer {
                 if (!view.has("file")) return nullptr;
                 const Grid grid = view.read<Grid>();
@@ -169,12 +170,12 @@ const std::vector<FlowLaw>& flow_laws() {
 
 const ObjectSpec& flow_spec() {
     static ObjectSpec spec = object<FlowKeys>(
-        "flow", "How a fluid moves.", {{"factor", &FlowKeys::factor, kCoordinate, "", "Multiplies the velocity."}},
-        variants_of(flow_laws()));
-    // A sum is made of flows, so this part of the table refers to the whole.
+        "flow", "Velocity field of a fluid.",
+        {{"factor", &FlowKeys::factor, kCoordinate, "", "Factor of the velocity."}}, variants_of(flow_laws()));
+    // A sum consists of flows, so this part of the table refers to the whole table.
     static const bool closed = [] {
-        spec.variants.push_back(variant<Unbound>("sum", "Several flows at once.",
-                                                 {{"parts", ValueType::list, "Flows; their velocities add up.",
+        spec.variants.push_back(variant<Unbound>("sum", "Sum of several flows.",
+                                                 {{"parts", ValueType::list, "Flows whose velocities are added.",
                                                    kRequired, static_cast<const ObjectSpec*>(&spec)}}));
         return true;
     }();

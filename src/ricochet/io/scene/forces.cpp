@@ -1,4 +1,4 @@
-// Forces of a scene: the keys of each, beside what is made of them.
+// Forces of a scene: the keys and the maker of each type.
 
 #include <fmt/format.h>
 
@@ -34,12 +34,12 @@ Field<Struct> softening(double Struct::*member, std::string_view meaning) {
 
 template <class Struct, class... Options>
 Field<Struct> flow_field(Options... options) {
-    return {"flow",       ValueType::named_object, "How the fluid moves: a flow, or the name of one in `flows`.",
+    return {"flow",       ValueType::named_object, "Motion of the fluid: a flow, or the name of one in `flows`.",
             &flow_spec(), NamedIn{"flows"},        options...};
 }
 constexpr Without kAtRest{"at rest"};
 
-// Drags.
+// Drag forces.
 
 struct Fluid {
     double density = 1.204;      // kg/m^3, air at 20 degrees C
@@ -48,18 +48,18 @@ struct Fluid {
 
 Field<Fluid> viscosity() {
     return {"viscosity", &Fluid::viscosity, kPositive, "Pa s",
-            "Dynamic viscosity of the fluid; the default is air's at 20 degrees C."};
+            "Dynamic viscosity of the fluid. The default is air at 20 degrees C."};
 }
 
-constexpr std::string_view kDensityMeaning = "Density of the fluid; the default is air's at 20 degrees C.";
+constexpr std::string_view kDensityMeaning = "Density of the fluid. The default is air at 20 degrees C.";
 
 ForceLaw linear_drag() {
     struct Drag {
         double coefficient = 0.0;
     };
     return force_law<Drag>(
-        "drag", "Linear drag F = -c w; w is the velocity relative to the flow.",
-        {{"coefficient", &Drag::coefficient, kNotNegative, "kg/s", "The c of F = -c w.", kRequired},
+        "drag", "Linear drag F = -c w, with the velocity w relative to the flow.",
+        {{"coefficient", &Drag::coefficient, kNotNegative, "kg/s", "Coefficient c.", kRequired},
          flow_field<Drag>(kAtRest)},
         [](const Drag& d, FlowPointer flow) { return make_linear_drag(d.coefficient, std::move(flow)); });
 }
@@ -70,40 +70,40 @@ ForceLaw quadratic_drag() {
         std::optional<double> drag_coefficient;
         Fluid fluid;
     };
-    return force_law<Drag>(
-        "quadratic_drag",
-        "Drag of fast bodies: F = -c |w| w, or -1/2 rho C_d pi r^2 |w| w by the particle's radius (none for points); w "
-        "is the velocity relative to the flow.",
-        {{"coefficient", &Drag::coefficient, kNotNegative, "kg/m", "The c of F = -c |w| w."},
-         {"drag_coefficient", &Drag::drag_coefficient, kNotNegative, "", "The C_d, for particles with a radius."},
-         {"fluid_density", [](Drag& d) -> double& { return d.fluid.density; }, kNotNegative, "kg/m^3", kDensityMeaning,
-          Needs{"drag_coefficient"}},
-         flow_field<Drag>(kAtRest)},
-        [](const Drag& d, FlowPointer flow) {
-            return d.coefficient ? make_quadratic_drag(*d.coefficient, std::move(flow))
-                                 : make_sphere_drag(d.drag_coefficient.value_or(0.0), d.fluid.density, std::move(flow));
-        },
-        {"coefficient", "drag_coefficient"});
+    return force_law<Drag>("quadratic_drag",
+                           "Drag of fast bodies: F = -c |w| w, or -1/2 rho C_d pi r^2 |w| w with the particle's radius "
+                           "r (none for points). w is the velocity relative to the flow.",
+                           {{"coefficient", &Drag::coefficient, kNotNegative, "kg/m", "Coefficient c."},
+                            {"drag_coefficient", &Drag::drag_coefficient, kNotNegative, "",
+                             "Drag coefficient C_d, for particles with a radius."},
+                            {"fluid_density", [](Drag& d) -> double& { return d.fluid.density; }, kNotNegative,
+                             "kg/m^3", kDensityMeaning, Needs{"drag_coefficient"}},
+                            flow_field<Drag>(kAtRest)},
+                           [](const Drag& d, FlowPointer flow) {
+                               return d.coefficient ? make_quadratic_drag(*d.coefficient, std::move(flow))
+                                                    : make_sphere_drag(d.drag_coefficient.value_or(0.0),
+                                                                       d.fluid.density, std::move(flow));
+                           },
+                           {"coefficient", "drag_coefficient"});
 }
 
 ForceLaw stokes_drag() {
     return force_law<Fluid>(
-        "stokes_drag", "Drag of slow small spheres: F = -6 pi mu r w by the particle's radius (none for points).",
+        "stokes_drag", "Drag of slow small spheres: F = -6 pi mu r w, with the particle's radius r (none for points).",
         {viscosity(), flow_field<Fluid>(kAtRest)},
         [](const Fluid& fluid, FlowPointer flow) { return make_stokes_drag(fluid.viscosity, std::move(flow)); });
 }
 
 ForceLaw schiller_naumann_drag() {
-    return force_law<Fluid>(
-        "schiller_naumann_drag",
-        "Drag of spheres at any speed, by the particle's radius (none for points): C_d = 24 / Re (1 + 0.15 Re^0.687) "
-        "below Re = 1000, 0.44 above.",
-        {{"fluid_density", &Fluid::density, kNotNegative, "kg/m^3", kDensityMeaning},
-         viscosity(),
-         flow_field<Fluid>(kAtRest)},
-        [](const Fluid& fluid, FlowPointer flow) {
-            return make_schiller_naumann_drag(fluid.density, fluid.viscosity, std::move(flow));
-        });
+    return force_law<Fluid>("schiller_naumann_drag",
+                            "Drag of spheres at any speed, with the particle's radius (none for points). C_d = 24 / Re "
+                            "(1 + 0.15 Re^0.687) below Re = 1000, and 0.44 above.",
+                            {{"fluid_density", &Fluid::density, kNotNegative, "kg/m^3", kDensityMeaning},
+                             viscosity(),
+                             flow_field<Fluid>(kAtRest)},
+                            [](const Fluid& fluid, FlowPointer flow) {
+                                return make_schiller_naumann_drag(fluid.density, fluid.viscosity, std::move(flow));
+                            });
 }
 
 ForceLaw buoyancy() {
@@ -112,9 +112,9 @@ ForceLaw buoyancy() {
         Vec3 gravity;
     };
     return force_law<Lift>(
-        "buoyancy", "Lift of the fluid that a particle displaces: F = -rho 4/3 pi r^3 g (none for points).",
+        "buoyancy", "Buoyancy of a particle in the fluid: F = -rho 4/3 pi r^3 g (none for points).",
         {{"fluid_density", &Lift::fluid_density, kNotNegative, "kg/m^3", "Density of the fluid.", kRequired},
-         {"gravity", &Lift::gravity, kCoordinate, "m/s^2", "The g.", kRequired}},
+         {"gravity", &Lift::gravity, kCoordinate, "m/s^2", "Gravitational acceleration g.", kRequired}},
         [](const Lift& l) { return make_buoyancy(l.fluid_density, l.gravity); });
 }
 
@@ -125,14 +125,14 @@ ForceLaw thermal_buoyancy() {
     };
     return force_law<Lift>(
         "thermal_buoyancy",
-        "Lift of parcels of gas by their attribute `temperature`: a = -g T / Ta, with gravity as a force of its own "
-        "g (1 - T / Ta) in all. None for particles of 0 K.",
-        {{"ambient_temperature", &Lift::ambient_temperature, kPositive, "K", "The Ta of the gas around."},
-         {"gravity", &Lift::gravity, kCoordinate, "m/s^2", "The g.", kRequired}},
+        "Buoyancy of gas parcels by their attribute `temperature`: a = -g T / Ta. Together with a separate gravity "
+        "force the sum is g (1 - T / Ta). Particles at 0 K have none.",
+        {{"ambient_temperature", &Lift::ambient_temperature, kPositive, "K", "Temperature Ta of the surrounding gas."},
+         {"gravity", &Lift::gravity, kCoordinate, "m/s^2", "Gravitational acceleration g.", kRequired}},
         [](const Lift& l) { return make_thermal_buoyancy(l.ambient_temperature, l.gravity); });
 }
 
-// Fields of force.
+// Force fields.
 
 ForceLaw gravity() {
     struct Gravity {
@@ -148,10 +148,10 @@ const ObjectSpec& attractor_spec() {
     using A = Attractor;
     static const ObjectSpec spec =
         object<A>("attractor", "A point that attracts.",
-                  {{"position", &A::position, kCoordinate, "m", "Where it stands.", kRequired},
+                  {{"position", &A::position, kCoordinate, "m", "Position of the point.", kRequired},
                    {"strength", &A::strength, kCoordinate, "m^3/s^2",
-                    "Gravitational constant times mass; negative repels.", kRequired},
-                   softening(&A::softening, "Length over which it is smeared out.")});
+                    "Gravitational constant times mass. Negative values repel.", kRequired},
+                   softening(&A::softening, "Length over which its mass is spread.")});
     return spec;
 }
 
@@ -160,27 +160,26 @@ ForceLaw point_gravity() {
         std::vector<Attractor> attractors;
     };
     return force_law<PointMasses>(
-        "point_gravity", "Gravity of point masses, a = -G M d / (|d|^2 + softening^2)^(3/2).",
+        "point_gravity", "Gravity of point masses: a = -G M d / (|d|^2 + softening^2)^(3/2).",
         {{"attractors", &PointMasses::attractors,
-          "Objects with `position` (m), `strength` (G M, m^3/s^2) and `softening` (m, 0 unless given).",
+          "Objects with `position` (m), `strength` (G M, m^3/s^2) and `softening` (m, 0 by default).",
           &attractor_spec(), kRequired}},
         [](PointMasses masses) { return make_point_gravity(std::move(masses.attractors)); });
 }
 
 ForceLaw radial_force() {
     using R = RadialForceSettings;
-    return force_law<R>(
-        "radial",
-        "Towards a centre by a power of the distance: |F| = strength (s / reference)^exponent with s^2 = distance^2 + "
-        "softening^2 (times distance / s).",
-        {center(&R::center),
-         {"strength", &R::strength, kCoordinate, "N", "Force at the reference distance; negative pushes away.",
-          kRequired},
-         {"exponent", &R::exponent, between(-kLargestRadialExponent, kLargestRadialExponent), "",
-          "1 for a spring, -2 for Coulomb's law."},
-         softening(&R::softening, "Length within which it weakens."),
-         {"reference", &R::reference, kLength, "m", "The distance at which the strength is meant."}},
-        &make_radial_force);
+    return force_law<R>("radial",
+                        "Force towards a centre by a power of the distance d: |F| = strength (s / reference)^exponent "
+                        "d / s, with s^2 = d^2 + softening^2.",
+                        {center(&R::center),
+                         {"strength", &R::strength, kCoordinate, "N",
+                          "Force at the reference distance. Negative values push away.", kRequired},
+                         {"exponent", &R::exponent, between(-kLargestRadialExponent, kLargestRadialExponent), "",
+                          "1 for a spring, -2 for Coulomb's law."},
+                         softening(&R::softening, "Distance below which the force weakens."),
+                         {"reference", &R::reference, kLength, "m", "Distance at which the force has this strength."}},
+                        &make_radial_force);
 }
 
 ForceLaw swirl() {
@@ -190,14 +189,14 @@ ForceLaw swirl() {
         double acceleration = 0.0;
         double core_radius = 1.0;
     };
-    return force_law<Swirl>("swirl",
-                            "Around an axis: grows linearly within the core, falls as one over the distance outside.",
-                            {axis_point(&Swirl::point),
-                             axis(&Swirl::axis),
-                             {"acceleration", &Swirl::acceleration, kCoordinate, "m/s^2",
-                              "At the rim of the core; negative turns in the other direction.", kRequired},
-                             {"core_radius", &Swirl::core_radius, kLength, "m", "Radius of the core.", kRequired}},
-                            [](const Swirl& s) { return make_swirl(s.point, s.axis, s.acceleration, s.core_radius); });
+    return force_law<Swirl>(
+        "swirl", "Force around an axis. It grows linearly within the core and falls as one over the distance outside.",
+        {axis_point(&Swirl::point),
+         axis(&Swirl::axis),
+         {"acceleration", &Swirl::acceleration, kCoordinate, "m/s^2",
+          "Acceleration at the rim of the core. Negative values reverse the direction.", kRequired},
+         {"core_radius", &Swirl::core_radius, kLength, "m", "Radius of the core.", kRequired}},
+        [](const Swirl& s) { return make_swirl(s.point, s.axis, s.acceleration, s.core_radius); });
 }
 
 ForceLaw field_force() {
@@ -205,9 +204,9 @@ ForceLaw field_force() {
         FieldMeaning meaning = FieldMeaning::acceleration;
     };
     return force_law<FieldKeys>(
-        "field", "The vectors of a flow, taken as accelerations or forces.",
+        "field", "Vectors of a flow, used as accelerations or forces.",
         {flow_field<FieldKeys>(kRequired),
-         {"as", &FieldKeys::meaning, "What the vectors mean.",
+         {"as", &FieldKeys::meaning, "Meaning of the vectors.",
           Choices{choice(FieldMeaning::acceleration, "acceleration", "m/s^2, the same for every mass"),
                   choice(FieldMeaning::force, "force", "N")}}},
         [](const FieldKeys& field, FlowPointer flow) { return make_field_force(std::move(flow), field.meaning); });
@@ -215,21 +214,22 @@ ForceLaw field_force() {
 
 ForceLaw lorentz_force() {
     using L = LorentzSettings;
-    return force_law<L>("lorentz", "Charged particles in uniform fields: F = q (E + v x B).",
-                        {{"charge", &L::charge, kCoordinate, "C", "Of every particle.", kRequired},
-                         {"electric", &L::electric, kCoordinate, "V/m", "The E."},
-                         {"magnetic", &L::magnetic, kCoordinate, "T", "The B."}},
+    return force_law<L>("lorentz", "Force on charged particles in uniform fields: F = q (E + v x B).",
+                        {{"charge", &L::charge, kCoordinate, "C", "Charge of every particle.", kRequired},
+                         {"electric", &L::electric, kCoordinate, "V/m", "Electric field E."},
+                         {"magnetic", &L::magnetic, kCoordinate, "T", "Magnetic field B."}},
                         &make_lorentz_force);
 }
 
 ForceLaw anchor_force() {
     using A = AnchorSettings;
-    return force_law<A>("anchor", "A spring and damper to a fixed point; the damper acts along the spring.",
-                        {{"position", &A::position, kCoordinate, "m", "The fixed point.", kRequired},
-                         {"stiffness", &A::stiffness, kNotNegative, "N/m", "Spring constant.", kRequired},
-                         {"rest_length", &A::rest_length, kLengthOrZero, "m", "Length at which it does not pull."},
-                         {"damping", &A::damping, kNotNegative, "kg/s", "Force over the speed along the spring."}},
-                        &make_anchor);
+    return force_law<A>(
+        "anchor", "A spring and damper to a fixed point. The damper acts along the spring.",
+        {{"position", &A::position, kCoordinate, "m", "Position of the fixed point.", kRequired},
+         {"stiffness", &A::stiffness, kNotNegative, "N/m", "Spring constant.", kRequired},
+         {"rest_length", &A::rest_length, kLengthOrZero, "m", "Length at which the spring exerts no force."},
+         {"damping", &A::damping, kNotNegative, "kg/s", "Force divided by the speed along the spring."}},
+        &make_anchor);
 }
 
 const std::vector<ForceLaw>& force_laws() {
@@ -240,7 +240,7 @@ const std::vector<ForceLaw>& force_laws() {
     return laws;
 }
 
-// What every force says.
+// Keys of every force.
 struct ForceKeys {
     std::vector<std::uint64_t> particles;
 };
@@ -254,10 +254,10 @@ bool grows_with_radius(const ObjectView& view) {
 }  // namespace
 
 const ObjectSpec& force_spec() {
-    static const ObjectSpec spec =
-        object<ForceKeys>("force", "Forces on particles; they add up.",
-                          {{"particles", &ForceKeys::particles, "Ids of the particles that feel it.", Without{"all"}}},
-                          variants_of(force_laws()));
+    static const ObjectSpec spec = object<ForceKeys>(
+        "force", "A force on particles. Forces add up.",
+        {{"particles", &ForceKeys::particles, "Ids of the particles that it acts on.", Without{"all"}}},
+        variants_of(force_laws()));
     return spec;
 }
 
@@ -278,7 +278,7 @@ std::vector<ForcePointer> ForceBuilder::forces() const {
 
 void warn_of_unknown_ids(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup,
                          std::span<const std::uint64_t> ids) {
-    if (!setup.emitters.empty()) return;  // of what will be born
+    if (!setup.emitters.empty()) return;  // they may create these ids later
     const auto is_unknown = [&](std::uint64_t id) { return id >= setup.particles.size(); };
     const auto unknown = std::find_if(ids.begin(), ids.end(), is_unknown);
     if (unknown == ids.end()) return;

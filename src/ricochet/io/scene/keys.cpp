@@ -79,11 +79,11 @@ const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::s
 }
 
 std::string range_words(const Range& range) {
-    // A bound of 1e75 is no bound to a reader; who passes it is told by the checker.
+    // A bound of 1e75 tells a reader nothing. The checker reports values beyond it.
     const bool below = range.lower > -kLargestCoordinate;
     const bool above = range.upper < kLargestCoordinate;
     std::string lower = fmt::format("{} {}", range.lower_open ? ">" : ">=", range.lower);
-    // 2^64 stands for the largest whole number below it.
+    // 2^64 stands for 2^64 - 1, the largest 64-bit integer, which no double represents.
     const std::string upper = range.upper == 0x1p64 ? "18446744073709551615" : fmt::format("{}", range.upper);
     if (below && above) return range.lower == range.upper ? upper : fmt::format("{} and <= {}", lower, upper);
     if (below) return lower;
@@ -141,7 +141,7 @@ std::string not_built(const std::string& what) {
     return what + " is part of the scene format but not built in this version";
 }
 
-// Reading.
+// Reading of checked objects.
 
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object) {
     for (const KeySpec& key : keys) {
@@ -214,7 +214,7 @@ const SourceLocation& ObjectView::location_of(std::string_view key) const {
 
 std::string ObjectView::path_of(std::string_view key) const { return path_of_key(path_, key); }
 
-// Members of each type, and their defaults as JSON.
+// Formats of members by type.
 
 void Format<double>::read(const JsonNode& node, const KeySpec& /*key*/, double& value) {
     value = node.number().value_or(value);
@@ -222,7 +222,7 @@ void Format<double>::read(const JsonNode& node, const KeySpec& /*key*/, double& 
 std::string Format<double>::text(const KeySpec& /*key*/, double value) {
     if (!std::isfinite(value)) return "";
     std::string text = fmt::format("{}", value);
-    // 1e-09 is written 1e-9.
+    // Shortens 1e-09 to 1e-9.
     if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
     return text;
 }

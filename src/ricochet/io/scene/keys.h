@@ -1,5 +1,5 @@
 /// \file
-/// What the tables of scene keys say (fields.h makes them), the check of a document against them, and a checked object.
+/// Descriptions of scene keys (made in fields.h), the check of a document against them, and access to checked objects.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace ricochet::detail {
 
-/// Kinds of values.
+/// Kinds of values in a scene.
 enum class ValueType {
     number,          ///< any finite number
     integer,         ///< whole number >= 0
@@ -29,15 +29,14 @@ enum class ValueType {
     scale,           ///< a number or [x, y, z], no component zero
     pair,            ///< a number, or [mean, spread] for uniform in mean - spread to mean + spread
     object,          ///< an object of KeySpec::content
-    named_object,    ///< the same, or the name of one in the table KeySpec::table
+    named_object,    ///< an object of KeySpec::content, or the name of one in the table KeySpec::table
     list,            ///< a list of objects of KeySpec::content
-    list_or_file,    ///< the same, or {"file": ...}
+    list_or_file,    ///< a list of objects of KeySpec::content, or {"file": ...}
     table,           ///< an object whose keys are names and whose values are objects of KeySpec::content
     quantity,        ///< a number or [x, y, z]
     vector_pair,     ///< [x, y, z], or [[x, y, z], [spread, spread, spread]]
     quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
-    text_table,      ///< an object whose keys are names in a file, of any characters, and whose values are texts that
-                     ///< are not empty
+    text_table,      ///< an object whose keys are names in a file (any characters) and whose values are non-empty texts
 };
 
 /// Allowed numbers (or vector components).
@@ -67,13 +66,13 @@ inline constexpr Range kSeed = between(0.0, 18446744073709551615.0);
 struct Choice {
     std::string_view name;
     std::string_view description;
-    long value = 0;  ///< of the enumeration; without meaning for members that are texts
+    long value = 0;  ///< number of the enumerator; unused for members that are texts
 };
 template <class Enum>
 [[nodiscard]] Choice choice(Enum value, std::string_view name, std::string_view description) {
     return {name, description, static_cast<long>(value)};
 }
-/// The same by the enumeration's own name_of().
+/// Returns the choice for an enumerator, with the name that name_of() gives it.
 template <class Enum>
 [[nodiscard]] Choice choice(Enum value, std::string_view description) {
     return choice(value, name_of(value), description);
@@ -81,79 +80,79 @@ template <class Enum>
 
 struct ObjectSpec;
 
-/// One key.
+/// One key of an object.
 struct KeySpec {
     std::string_view name;
     ValueType type = ValueType::number;
     std::string_view description;
     std::string_view unit = {};
-    Range range = {};                ///< of numbers, vector components and a pair's mean
-    Range low_end = {};              ///< of a pair's mean - spread
-    std::string default_value = {};  ///< as JSON; empty when there is none
-    std::string_view without = {};   ///< what its absence means, where no JSON value says it
+    Range range = {};                ///< allowed numbers, vector components and means of pairs
+    Range low_end = {};              ///< allowed values of mean - spread of a pair
+    std::string default_value = {};  ///< as JSON; empty if there is none
+    std::string_view without = {};   ///< meaning of an absent key, if no JSON value expresses it
     bool required = false;
-    bool not_zero = false;           ///< vectors: not all components zero
-    std::size_t least = 0;           ///< lists: objects
-    std::string_view needs = {};     ///< key that must stand beside it
-    std::string_view expected = {};  ///< texts: what is expected, in words of its own
+    bool not_zero = false;           ///< for vectors: not all components are zero
+    std::size_t least = 0;           ///< for lists: smallest number of objects
+    std::string_view needs = {};     ///< key that must be present together with this one
+    std::string_view expected = {};  ///< for texts: expectation in words, for messages
     std::vector<Choice> choices = {};
     const ObjectSpec* content = nullptr;
-    std::string_view table = {};  ///< of ValueType::named_object: the scene's key with the named objects
-    /// Sets the member of an object to a checked value; empty for keys whose value the builder reads itself.
+    std::string_view table = {};  ///< for ValueType::named_object: key of the scene with the named objects
+    /// Sets the member of an object to a checked value. Empty for keys that the builder reads itself.
     std::function<void(void* object, const JsonNode& value)> read = {};
 };
 
-/// One value of "type", with the keys that go with it.
+/// One value of "type", with the keys of objects of this type.
 struct Variant {
     std::string_view name;
     std::string_view description;
     std::vector<KeySpec> keys;
-    std::vector<std::string_view> exactly_one_of = {};  ///< of these keys exactly one must be there
-    const std::type_info* target = &typeid(void);       ///< the struct whose members the keys set
+    std::vector<std::string_view> exactly_one_of = {};  ///< exactly one of these keys must be present
+    const std::type_info* target = &typeid(void);       ///< struct whose members the keys set
 };
 
-/// One kind of object. With variants, its "type" key says which; `keys` are common to all of them.
+/// One kind of object. If it has variants, its "type" key selects one; `keys` are common to all variants.
 struct ObjectSpec {
     std::string_view title;  ///< singular, for messages and headings: "collider"
     std::string_view description;
     std::vector<KeySpec> keys;
     std::vector<Variant> variants = {};
-    const std::type_info* target = &typeid(void);  ///< the struct whose members the keys set
+    const std::type_info* target = &typeid(void);  ///< struct whose members the keys set
 };
 
-/// The object's keys with those of the variant (null pointer: without), in the order of the table.
+/// Returns the object's keys, then the variant's keys, in the order of the table. variant: null pointer for none.
 [[nodiscard]] std::vector<const KeySpec*> keys_of(const ObjectSpec& object, const Variant* variant);
 [[nodiscard]] const Variant* find_variant(const ObjectSpec& object, std::string_view name);
-/// The variant that a checked object's "type" names; null pointer when there is none.
+/// Returns the variant that the "type" of a checked object names, or a null pointer if there is none.
 [[nodiscard]] const Variant* variant_of(const JsonNode& node, const ObjectSpec& spec);
 [[nodiscard]] const KeySpec* find_key(const ObjectSpec& object, const Variant* variant, std::string_view name);
 
-/// `a number > 0 (s)`: what a key expects, for messages and the reference.
+/// Returns the expected value of a key for messages and the reference, for example `a number > 0 (s)`.
 [[nodiscard]] std::string expectation(const KeySpec& key);
-/// `>= 0 and <= 180`; empty when every finite number is allowed.
+/// Returns a range in words, for example `>= 0 and <= 180`. Empty if every finite number is allowed.
 [[nodiscard]] std::string range_words(const Range& range);
-/// The sentence for what the format has and this version has not.
+/// Returns the message for a feature that belongs to the format but is not implemented in this version.
 [[nodiscard]] std::string not_built(const std::string& what);
 
-/// Reports everything in the document that the table does not allow: unknown keys (with the nearest known ones), wrong
-/// types, values out of range, missing keys, and what is not built yet. Afterwards every refused value is null, and a
-/// key that can only be a misspelling of one known key has that key's name, so that what is left can be read on and
-/// checked further without a second error for the same mistake.
+/// Reports everything in the document that the tables do not allow: unknown keys (with the nearest known names), wrong
+/// types, values out of range, missing keys and features that are not built yet. Afterwards every refused value is
+/// null. A key that can only be a misspelling of one known key gets the name of that key. So later checks can read the
+/// rest of the document and report no mistake twice.
 void check_scene(JsonNode& root, Diagnostics& diagnostics);
 
-/// The members of `object`, a struct whose members these keys set, from a checked object.
+/// Sets the members of `object` from a checked JSON object. `object` is a struct whose members these keys set.
 void read_members(const JsonNode& node, const std::vector<KeySpec>& keys, void* object);
 
 struct NamedObject;
 
-/// Values that were refused count as absent; what then stands instead (the struct's default) is seen by no one, because
-/// the scene is refused as a whole.
+/// Read access to a checked object. Refused values count as absent, so the struct keeps its defaults. Nobody sees these
+/// defaults, because the scene is refused as a whole.
 class ObjectView {
 public:
-    /// node: an object, or null (then everything is absent). path: for messages.
+    /// node: an object, or null (then every key is absent). path: for messages.
     ObjectView(const JsonNode& node, const ObjectSpec& spec, std::string path);
 
-    /// The struct that the object's own keys set, or those of its variant; the other members keep their defaults.
+    /// Returns the struct that the keys of the object or of its variant set. All other members keep their defaults.
     template <class Struct>
     [[nodiscard]] Struct read() const {
         Struct result = Struct();
@@ -161,20 +160,20 @@ public:
         return result;
     }
 
-    /// True for an object that is not there, or was refused.
+    /// Returns true if the object is absent or was refused.
     [[nodiscard]] bool is_absent() const { return node_->object() == nullptr; }
     [[nodiscard]] bool has(std::string_view key) const { return value(key) != nullptr; }
-    /// The value itself; null where it is absent.
+    /// Returns the value of a key, or a null node if it is absent.
     [[nodiscard]] const JsonNode& node(std::string_view key) const;
-    /// A name or a path; empty where it is absent.
+    /// Returns a name or a path. Empty if the key is absent.
     [[nodiscard]] std::string text(std::string_view key) const;
     [[nodiscard]] ObjectView object(std::string_view key) const;
-    /// The objects of a list.
+    /// Returns the objects of a list.
     [[nodiscard]] std::vector<ObjectView> objects(std::string_view key) const;
-    /// The objects of a table.
+    /// Returns the objects of a table with their names.
     [[nodiscard]] std::vector<NamedObject> named_objects(std::string_view key) const;
 
-    /// Name of the variant; empty where it was refused.
+    /// Returns the name of the variant. Empty if it was refused.
     [[nodiscard]] std::string_view type() const { return variant_ == nullptr ? "" : variant_->name; }
     [[nodiscard]] const SourceLocation& location() const { return node_->location; }
     [[nodiscard]] const SourceLocation& location_of(std::string_view key) const;
@@ -192,14 +191,14 @@ private:
     std::string path_;
 };
 
-/// One object of a table.
+/// One object of a table, with its name.
 struct NamedObject {
     std::string name;
     SourceLocation name_location;
     ObjectView view;
 };
 
-/// The scene format's version: the value of the key "ricochet".
+/// Version of the scene format: the value of the key "ricochet".
 inline constexpr unsigned kSceneVersion = 1;
 
 }  // namespace ricochet::detail

@@ -1,4 +1,4 @@
-// The JSON Schema and the Markdown reference of scene files, made from the table of keys.
+// JSON Schema and Markdown reference of scene files, generated from the tables of keys.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ using detail::ValueType;
 using detail::Variant;
 using Json = nlohmann::ordered_json;
 
-// Whole numbers stand without a fraction; 2^64 stands for the largest seed, one below it.
+// Writes whole numbers without a fraction. 2^64 stands for the largest seed, 2^64 - 1.
 Json bound(double value) {
     if (value == 0x1p64) return std::numeric_limits<std::uint64_t>::max();
     if (value >= 0.0 && value < 0x1p53 && value == std::floor(value)) return static_cast<std::uint64_t>(value);
@@ -64,7 +64,7 @@ Json quantity_schema(const KeySpec& key) {
     return {{"oneOf", Json::array({number_schema(key.range), vector_schema(key)})}};
 }
 
-// A number, a vector, or a pair of two alike, the second of which is a spread.
+// Returns the schema of a number, a vector, or a pair [mean, spread] of two numbers or two vectors.
 Json spread_schema(const KeySpec& key) {
     const Range spread{.lower = 0.0, .upper = key.range.upper};
     const auto pair = [](const Json& mean, const Json& width) {
@@ -190,7 +190,7 @@ Json definition(const ObjectSpec& spec) {
     return {{"description", spec.description}, {"oneOf", choices}};
 }
 
-// The object and everything inside it.
+// Adds the definitions of all objects that this object contains, at any depth.
 void add_definitions(const ObjectSpec& spec, Json& definitions) {
     const auto add_contents = [&](const std::vector<KeySpec>& keys) {
         for (const KeySpec& key : keys) {
@@ -216,7 +216,7 @@ std::string scene_schema() {
     return schema.dump(2) + "\n";
 }
 
-// The reference of the scene format in Markdown, made from the table of keys.
+// The Markdown reference.
 
 namespace {
 
@@ -227,13 +227,13 @@ using detail::Variant;
 
 constexpr const char* kIntroduction = R"(# The scene file
 
-This page is made by the program (`ricochet schema --markdown`) from the table that the reader uses.
+`ricochet schema --markdown` generates this page from the table that the reader uses.
 
-A scene is JSON with `//` and `/* */` comments, all quantities in SI units. Paths are relative to the scene file. Keys
-that are not listed here are errors, and so are keys that appear twice, values out of range, and files that are not
-there; `ricochet check SCENE` reports all of them at once, each with line, column and path
-(`scene.json:12:15: colliders[1].file: ...`) and the nearest known name. `ricochet schema` prints a JSON Schema for
-editors (it is also in `docs/scene.schema.json`; a scene may name it with the key `$schema`).
+A scene is JSON with `//` and `/* */` comments. All quantities are in SI units. Paths are relative to the scene file.
+Unknown keys, duplicate keys, values out of range and missing files are errors. `ricochet check SCENE` reports all
+errors at once. Each error has a line, a column and a path (`scene.json:12:15: colliders[1].file: ...`) and suggests the
+nearest known name. `ricochet schema` prints a JSON Schema for editors. It is also in `docs/scene.schema.json`, and a
+scene can name it with the key `$schema`.
 
     {
       "ricochet": 1,
@@ -245,55 +245,75 @@ editors (it is also in `docs/scene.schema.json`; a scene may name it with the ke
                     "rate": [2000, 200], "speed": [3, 0.5], "lifetime": [4, 1]}]
     }
 
-Conventions: [x, y, z] is a point or a vector. Where a number or [mean, spread] is allowed, the pair means values
-uniform between mean - spread and mean + spread. No coordinate, length or speed may exceed 1e75.
-Particles are points of mass 1 kg unless told otherwise; ids are given in the order of creation, explicit particles
-first. The births of an emitter depend on the seed and on the emitter alone, never on the time step: the burst is born
-at `start`, birth k (from 0) when the integral of the rate passes k + 1/2.
+Conventions: [x, y, z] is a point or a vector. If a number or [mean, spread] is allowed, the pair means uniform values
+between mean - spread and mean + spread. No coordinate, length or speed may exceed 1e75. Particles are points with a
+mass of 1 kg by default. Ids follow the order of creation, and explicit particles come first. The births of an emitter
+depend only on the seed and the emitter, not on the time step. The burst is born at `start`. Birth k (from 0) happens
+when the integral of the rate passes k + 1/2.
 )";
 
 constexpr const char* kTables = R"(
 ## Particle tables
 
-`"particles": {"file": "start.csv"}` names a file of comma-separated values. Its first line names the columns: `x`, `y`
-and `z` must be there, `vx`, `vy`, `vz`, `mass`, `radius`, `spin_x`, `spin_y`, `spin_z` and `lifetime` may (0, 1 kg, 0, 0
-and for ever otherwise; `inf` and an empty `lifetime` are for ever too), in any order; further columns are attributes that the scene declares (`name`, or `name_x`, `name_y`, `name_z`) and `color_x`, `color_y`, `color_z`,
-`opacity` and `size`. Every other line is a particle. The final state that a run writes with `--output-state` can be read back; its
-`lifetime` is what is left of it. Its columns `id`, `age`, `contacts`, `resting` and `unsimulated_time` are not used, and a
-warning says so.
+`"particles": {"file": "start.csv"}` names a file of comma-separated values. Its first line names the columns, in any
+order. `x`, `y` and `z` are required. Optional columns, with their defaults, are:
+
+- `vx`, `vy`, `vz`, `radius`, `spin_x`, `spin_y` and `spin_z`: 0
+- `mass`: 1 kg
+- `lifetime`: for ever, as for `inf` or an empty cell
+- attributes that the scene declares (`name`, or `name_x`, `name_y`, `name_z`)
+- `color_x`, `color_y`, `color_z`, `opacity` and `size`
+
+Every other line is a particle. The final state that a run writes with `--output-state` can be read back. Its `lifetime`
+is the remaining lifetime. Its columns `id`, `age`, `contacts`, `resting` and `unsimulated_time` are ignored with a
+warning.
 
 ## Warnings
 
-`ricochet check` also warns, a line each, of what can be run and is probably not meant; its exit code stays 0. Particles
-that begin inside a mesh that is closed but for small holes (mouths as of cups and funnels are no holes), or some inside
-and some outside of a closed collider. Closed meshes of which shells overlap. Spheres born in overlap, emitters that find hardly a position off the surfaces,
-spheres wider than the narrowest opening of a funnel that they fall to, radii below 1000 units in the last place of the
-coordinates. Children at impacts, a response or a contact log without a collider. Penalty sub-steps and spring steps
-beyond their stability bounds. Meshes of more than 200 m (STL 20 m), or less than 1 mm, without a stated `scale`, and `bounds`
-that leave out where particles begin: `run` warns of both, too. It looks at 256 draws of each emitter, at the start of its births, and at up to 2000
-explicit particles.
+`ricochet check` prints one line for each setting that can run but is probably a mistake. Its exit code stays 0. It
+warns of:
+
+- particles that start inside a mesh that is closed except for small holes (openings of cups and funnels are not holes)
+- particles of which some start inside a closed collider and some outside
+- closed meshes with overlapping shells
+- spheres that overlap at birth
+- emitters that find few positions off the surfaces
+- spheres wider than the narrowest opening of a funnel below them
+- radii below 1000 units in the last place of the coordinates
+- children at impacts, a response or a contact log without a collider
+- penalty sub-steps and spring steps beyond their stability bounds
+- meshes larger than 200 m (STL: 20 m) or smaller than 1 mm without a stated `scale`
+- `bounds` that exclude start positions of particles
+
+`run` gives the last two warnings as well. The check examines 256 draws of each emitter, at the start of its births, and
+up to 2000 explicit particles.
 
 ## Memory
 
-A scene that needs more memory than there is is refused before it takes any, with one line that names the key that asks
-for most of it (exit code 2): the particles that bursts, and rates over their times and lifetimes, bring to life at
-once, explicit particles, ropes and cloth, tables, grids, meshes, the contact log. `ricochet check` prints the estimate:
-about what a run takes at its peak, in units of 1000 (380 bytes a particle, 80 more with `run --verify`, 800 and 200 a
-spring where springs join them, four times as much with `implicit_euler`, 378 a triangle). Particles that `bounds`,
-absorbing surfaces or shattering may retire count for one step of their rate, since nobody knows how many will live; nor
-is it known how many children there will be. Where more are born than memory holds, the run ends with one line (exit
-code 1). There is what the control group of the process, `ulimit -v` and `ulimit -d` leave, and the available memory of
-the machine with its swap, whichever is least.
+A scene that needs more memory than is available is refused before it allocates any. The message is one line and names
+the key with the largest share (exit code 2). The estimate includes particles of bursts, and of rates over their times
+and lifetimes. It also includes explicit particles, ropes and cloth, tables, grids, meshes and the contact log.
 
-`simulation.most_particles`, 100 million unless it says otherwise, is another thing: births beyond it are refused and counted,
-the same ones on every machine. A larger `burst` is a warning, a larger number of explicit particles an error.
+`ricochet check` prints the estimate, which is close to the peak of a run, in units of 1000. It assumes:
+
+- 380 bytes per particle, and 80 more with `run --verify`
+- if springs join particles, 800 bytes per particle and 200 per spring, and four times as much with `implicit_euler`
+- 378 bytes per triangle
+
+Particles that `bounds`, absorbing surfaces or shattering can retire count for one step of their rate only, because
+their number is unknown. The number of children is unknown, too. If births exceed the memory, the run ends with one line
+(exit code 1). The available memory is the smallest of these limits: the rest of the control group of the process, the
+rest of `ulimit -v` and `ulimit -d`, and the available memory of the machine with its swap.
+
+`simulation.most_particles` (100 million by default) is a separate limit. Births beyond it are refused and counted, the
+same ones on every machine. A larger `burst` gives a warning, and a larger number of explicit particles an error.
 
 ## Changes from the command line
 
-`ricochet run` and `ricochet check` take `--set PATH=VALUE`, as often as wanted, applied in order before anything is
-checked: `--set simulation.time_step=0.001`, `--set colliders[0].scale=[1,2,1]`,
-`--set 'materials["old rubber"].friction=0.2'`. VALUE is JSON; what is not JSON is a text
-(`--set simulation.integrator=ballistic`). Keys that are not there are added, list items must exist.
+`ricochet run` and `ricochet check` accept `--set PATH=VALUE` any number of times. They apply the changes in order before
+all checks: `--set simulation.time_step=0.001`, `--set colliders[0].scale=[1,2,1]`,
+`--set 'materials["old rubber"].friction=0.2'`. VALUE is JSON. Any other value is a text
+(`--set simulation.integrator=ballistic`). Missing keys are added, but list items must exist.
 )";
 
 std::string default_words(const KeySpec& key) {
@@ -302,7 +322,7 @@ std::string default_words(const KeySpec& key) {
     return key.without.empty() ? "" : std::string(key.without);
 }
 
-// A vertical bar would end a table cell.
+// Escapes vertical bars, because they would end a table cell.
 std::string cell(const std::string& text) {
     std::string result;
     for (const char c : text) result += c == '|' ? std::string("\\|") : std::string(1, c);
@@ -334,7 +354,7 @@ std::string variant_section(const Variant& variant) {
         for (const std::string_view name : variant.exactly_one_of) {
             text += fmt::format("{} `{}`", name == variant.exactly_one_of.front() ? "" : " and", name);
         }
-        text += " must be there.\n";
+        text += " must be present.\n";
     }
     text += key_table(variant.keys);
     for (const KeySpec& key : variant.keys) {
@@ -344,11 +364,11 @@ std::string variant_section(const Variant& variant) {
     return text;
 }
 
-// Objects within an object that only it has.
+// Returns sections for the objects that only this object contains.
 std::string nested_sections(const std::string& heading, const std::vector<KeySpec>& keys) {
     std::string text;
     for (const KeySpec& key : keys) {
-        // Turns have a section of their own.
+        // Rotations have a section of their own.
         if (key.type != ValueType::object || key.content == nullptr || key.content == &detail::rotation_spec())
             continue;
         text += fmt::format("\n### `{}.{}`\n\n{}\n", heading, key.name, key.content->description);
@@ -360,7 +380,7 @@ std::string nested_sections(const std::string& heading, const std::vector<KeySpe
 std::string object_section(const std::string& heading, const ObjectSpec& spec) {
     std::string text = fmt::format("\n## {}\n\n{}\n", heading, spec.description);
     if (!spec.variants.empty()) {
-        text += "The key `type` says which kind.\n";
+        text += "The key `type` selects the kind.\n";
         if (!spec.keys.empty()) text += "\nKeys of every kind:\n";
     }
     if (!spec.keys.empty()) text += key_table(spec.keys);
@@ -382,7 +402,8 @@ std::string heading_of(const KeySpec& key) {
 }
 
 constexpr std::string_view kNotBuilt =
-    "\n## Not built yet\n\nThese belong to the format; this version refuses them by name and never ignores them:\n\n"
+    "\n## Not built yet\n\nThese features belong to the format. This version refuses them by name and never ignores "
+    "them:\n\n"
     "- `particles` from .ply and .vtp files\n";
 
 }  // namespace

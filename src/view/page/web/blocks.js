@@ -1,6 +1,6 @@
-// Blocks of bytes: what src/view/page/*_encoder.cpp have written.
+// Decoder of the blocks of bytes that src/view/page/*_encoder.cpp write.
 
-// The unpacked bytes of the page's block of that name; waits while the page is still being read.
+// Returns the unpacked bytes of the named block. Waits while the page is still loading.
 export async function block(name) {
   for (;;) {
     const is_read = document.readyState !== 'loading';
@@ -25,7 +25,7 @@ export class ByteReader {
     this.at += count;
     return this.bytes.subarray(this.at - count, this.at);
   }
-  // Not by shifts: these have 32 bits only.
+  // Shifts are not possible here, because they have only 32 bits.
   varint() {
     let value = 0;
     for (let factor = 1; ; factor *= 128) {
@@ -44,13 +44,13 @@ export class ByteReader {
   }
 }
 
-// How the rows of a frame follow those of the frame before; parent is null where they are the same.
+// Relation between the rows of a frame and the rows of the previous frame. parent is null if they are the same.
 export class RowHistory {
   constructor() {
     this.known = new Uint8Array(0);
     this.parent = null;
   }
-  // parent: rows of the frame before, -1 for new ones; null: as before. count: rows now.
+  // parent: rows of the previous frame, -1 for new rows; null: unchanged. count: number of rows in this frame.
   follow(parent, count) {
     if (parent === null && count !== this.known.length) parent = new Int32Array(count).fill(-1);
     const known = new Uint8Array(count);
@@ -63,7 +63,7 @@ export class RowHistory {
   }
 }
 
-// Reads one channel, frame after frame (ChannelEncoder).
+// Decoder of one channel, frame after frame (see ChannelEncoder).
 export class ChannelDecoder {
   constructor(bits) {
     this.bits = bits;
@@ -103,7 +103,7 @@ function moved(values, parent) {
   return result;
 }
 
-// The vertices of a grid as x, y, z, x, ...
+// Returns the vertices of a grid as x, y, z, x, ...
 export function points_of(axes, grid) {
   const count = axes[0].length;
   const points = new Float32Array(3 * count);
@@ -113,7 +113,7 @@ export function points_of(axes, grid) {
   return points;
 }
 
-// A collider before any frame (encoded_part).
+// Reads a collider's data that precede all frames (see encoded_part).
 export function read_part(reader, part) {
   const alone = (bits, count) => {
     const rows = new RowHistory();

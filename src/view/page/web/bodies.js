@@ -1,4 +1,4 @@
-// Colliders, planes and cloth: triangles with their light and the map of what hit them.
+// Colliders, planes and cloth: triangles with lighting and a map of their hits.
 import * as THREE from 'three';
 import {GLOSS, LIGHT, light_uniforms} from './colors.js';
 
@@ -38,7 +38,7 @@ const FRAGMENT = /* glsl */ `
   uniform float reach;
   ${LIGHT}
   ${GLOSS}
-  // How much of a pixel lines cover that are spacing apart.
+  // Returns the coverage of a pixel by lines at the distance apart.
   float lines_at(vec2 place, float apart) {
     vec2 cell = place / apart;
     vec2 wide = fwidth(cell);
@@ -61,7 +61,7 @@ const FRAGMENT = /* glsl */ `
         albedo *= 1.0 - 0.45 * line;
       }
       alpha = 0.92 * (1.0 - smoothstep(0.35 * reach, reach, distance(at, middle)));
-      if (dot(normal, up) < -0.2) alpha *= 0.25;  // from below
+      if (dot(normal, up) < -0.2) alpha *= 0.25;  // seen from below
     }
     vec3 light = lit(albedo, normal, to_eye) + gloss(roughness, normal, to_eye);
     if (glass > 0.0) {
@@ -73,7 +73,7 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-// has_balls: particles have sizes of their own. Else they are as points, which lie in the surfaces that they touch.
+// has_balls: particles have their own sizes. Otherwise they are points, which lie in the surfaces that they touch.
 function material_of({description: {up}, has_balls}, color) {
   const uniforms = {
     ...light_uniforms(up), color: {value: new THREE.Color(color)}, map: {value: null}, mapped: {value: false},
@@ -82,11 +82,12 @@ function material_of({description: {up}, has_balls}, color) {
   };
   return new THREE.ShaderMaterial({
     vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: THREE.DoubleSide,
-    polygonOffset: !has_balls, polygonOffsetFactor: 1, polygonOffsetUnits: 1,  // points on a surface are in front of it
+    polygonOffset: !has_balls, polygonOffsetFactor: 1, polygonOffsetUnits: 1,  // draws points on a surface in front of
+                                                                               // it
   });
 }
 
-// Every triangle with corners of its own.
+// Returns positions with separate corners for every triangle.
 function spread(points, corners, positions = new Float32Array(3 * corners.length)) {
   for (let i = 0; i < corners.length; ++i) {
     for (let axis = 0; axis < 3; ++axis) positions[3 * i + axis] = points[3 * corners[i] + axis];
@@ -107,7 +108,7 @@ function face_normals(positions) {
   return normals;
 }
 
-// Smooth over edges that are blunt, sharp elsewhere. Weights are areas.
+// Returns normals that are smooth over blunt edges and sharp elsewhere. The weights are areas.
 function corner_normals(corners, faces, vertex_count) {
   const first = new Uint32Array(vertex_count + 1);
   for (const corner of corners) ++first[corner + 1];
@@ -131,7 +132,7 @@ function corner_normals(corners, faces, vertex_count) {
   return normals;
 }
 
-// Smooth everywhere.
+// Returns normals that are smooth everywhere.
 function vertex_normals(corners, faces, vertex_count) {
   const normals = new Float32Array(3 * vertex_count);
   for (let i = 0; i < corners.length; ++i) {
@@ -174,7 +175,7 @@ export class Body {
     this.see_through(part.glass);
   }
 
-  // A plane goes on for ever: it is shown around the middle of the run and fades.
+  // A plane is infinite. It is shown around the middle of the run and fades out.
   make_plane(description) {
     const size = Math.max(Math.hypot(...description.size), 1e-9);
     const {uniforms} = this.material;
@@ -189,7 +190,7 @@ export class Body {
     this.object.renderOrder = 1;
   }
 
-  // Of a plane: how far from the page's origin it is seen, m. All else is within the run's reach.
+  // Returns the visible distance of a plane from the page's origin, in m. Everything else is within the run's reach.
   reach() {
     const {middle, reach} = this.material.uniforms;
     return this.is_plane ? middle.value.length() + reach.value : 0;
@@ -212,9 +213,10 @@ export class Body {
     this.object.renderOrder = is_glass ? 2 : this.is_plane ? 1 : 0;
   }
 
-  // name: hits, impulse, or anything else for its plain colour.
+  // name: hits, impulse, or anything else for the plain colour.
   show_map(name) {
-    const totals = this.is_plane ? undefined : this.part.maps[name];  // a plane has one total for ever so far
+    const totals = this.is_plane ? undefined : this.part.maps[name];  // a plane has only one total for its whole
+                                                                      // infinite surface
     this.material.uniforms.mapped.value = totals !== undefined;
     if (totals === undefined) return;
     const level = this.object.geometry.getAttribute('level');
@@ -235,7 +237,7 @@ export class Body {
   }
 }
 
-// The cloth of the springs.
+// The cloth made of springs.
 export class Cloth {
   constructor(run) {
     this.run = run;

@@ -1,8 +1,8 @@
-// Unpacks the modules of the page and starts them. Stands in the page as it is; everything else is packed.
+// Unpacks the modules of the page and starts them. This script is stored in plain text; everything else is compressed.
 'use strict';
 window.ricochet = {
   errors: [],
-  // Bytes of a text in base64, unpacked.
+  // Returns the unpacked bytes of a base64 text.
   async unpack(text) {
     const packed = atob(text);
     const bytes = new Uint8Array(packed.length);
@@ -23,7 +23,8 @@ window.ricochet.started = (async () => {
   const addresses = new Map();
   for (const element of document.querySelectorAll('script[data-module]')) {
     const bytes = await window.ricochet.unpack(element.textContent);
-    // Modules that come from memory have no folder: each name becomes the address of a module made before.
+    // Modules loaded from memory have no folder. Each imported name is replaced by the address of a module created
+    // before.
     const source = new TextDecoder().decode(bytes).replace(/from '([^'\n]+)'/g,
         (all, name) => addresses.has(name) ? `from '${addresses.get(name)}'` : all);
     addresses.set(element.dataset.module, URL.createObjectURL(new Blob([source], {type: 'text/javascript'})));
@@ -34,7 +35,7 @@ window.ricochet.started = (async () => {
   await main.start(JSON.parse(document.getElementById('description').textContent));
 })();
 window.ricochet.started.catch(window.ricochet.fail);
-// Shows a frame, by its number on the page; resolves when it is drawn.
+// Shows a frame by its number on the page. Resolves when the frame is drawn.
 window.show = async (frame) => {
   await window.ricochet.started;
   return window.ricochet.show(frame);

@@ -1,7 +1,7 @@
-// Colour maps, their bar, and the light that everything stands in.
+// Colour maps, their bars, and the lighting of all objects.
 import * as THREE from 'three';
 
-// Of a map's text in hexadecimal digits: sRGB bytes.
+// Returns the sRGB samples of a map's hexadecimal text.
 function samples_of(text) {
   const samples = [];
   for (let i = 0; i < text.length; i += 6) {
@@ -25,7 +25,7 @@ export function map_gradient(text) {
   return `linear-gradient(to right, ${samples_of(text).map((rgb) => `rgb(${rgb.join(',')})`).join(', ')})`;
 }
 
-// A number as people read it.
+// Formats a number for display.
 export function number_text(value, digits = 4) {
   if (!Number.isFinite(value)) return 'none';
   if (value === 0) return '0';
@@ -34,13 +34,13 @@ export function number_text(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
-// Where a particle is, how large, and its colour, of `place` (levels of x, y, z and of the value), `size` and `tint`.
+// Colour of a particle from `place` (levels of x, y, z and of the value), `size` and `tint`.
 export const COLOR = /* glsl */ `
   uniform vec3 lower;
   uniform float grid_step;
   uniform vec2 value_scale;  // low, step
   uniform vec2 shown;
-  uniform float gap_level;   // from which on a level is no number
+  uniform float gap_level;   // levels from this one on mean "not a number"
   uniform sampler2D map;
   uniform bool own_colors;
   uniform float enlarge;
@@ -51,7 +51,7 @@ export const COLOR = /* glsl */ `
   }
 `;
 
-// Everything that is drawn is lit by this: the sky, what the ground throws back, and a sun.
+// Lighting of all objects: sky, light reflected from the ground, and a sun.
 export const LIGHT = /* glsl */ `
   uniform vec3 sun;
   uniform vec3 up;
@@ -64,7 +64,8 @@ export const LIGHT = /* glsl */ `
   }
 `;
 
-// What is added to it of surfaces that are not matt: highlights of the sun and of the sky, by the law of the pictures.
+// Additional gloss of surfaces that are not matt: highlights of the sun and the sky, with the same formula as in
+// rendered pictures.
 export const GLOSS = /* glsl */ `
   vec3 gloss(float roughness, vec3 normal, vec3 to_eye) {
     if (roughness >= 1.0) return vec3(0.0);
@@ -81,7 +82,7 @@ export const GLOSS = /* glsl */ `
   }
 `;
 
-// Uniforms of LIGHT, for a scene with this direction upwards.
+// Returns the uniforms of LIGHT for a scene with the given upward direction.
 export function light_uniforms(up) {
   const upward = new THREE.Vector3(...up).normalize();
   const side = Math.abs(upward.x) < 0.9 ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0);

@@ -1,9 +1,9 @@
-// Particles as copies of a mesh, turned as in the run: colours, sizes and light are those of the spheres.
+// Particles as copies of a mesh, rotated as in the run. Colours, sizes and lighting match the spheres.
 import * as THREE from 'three';
 import {COLOR, LIGHT} from './colors.js';
 
 const VERTEX = /* glsl */ `
-  in vec3 turn;  // of a unit quaternion whose fourth part is not negative
+  in vec3 turn;  // vector part of a unit quaternion whose scalar part is not negative
   out vec3 at;
   out vec3 facing;
   flat out vec4 color;
@@ -39,7 +39,7 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-// Each triangle with corners of its own, so that faces are flat.
+// Returns a geometry with separate corners for each triangle, so that faces are flat.
 function faces_of({vertices, triangles}) {
   const positions = new Float32Array(3 * triangles.length);
   triangles.forEach((vertex, i) => positions.set(vertices.slice(3 * vertex, 3 * vertex + 3), 3 * i));
@@ -50,7 +50,7 @@ function faces_of({vertices, triangles}) {
 }
 
 export class Copies {
-  // uniforms: those of the spheres.
+  // uniforms: shared with the spheres.
   constructor(mesh, room, uniforms) {
     const faces = faces_of(mesh);
     this.geometry = new THREE.InstancedBufferGeometry();
@@ -72,7 +72,7 @@ export class Copies {
     this.object.frustumCulled = false;
   }
 
-  // What the spheres of these rows are, becomes copies.
+  // Shows the given rows as copies, with the data of their spheres.
   show(spheres, turns, rows) {
     rows.forEach((row, k) => {
       const at = (column) => column.is_one ? 0 : row * column.size;

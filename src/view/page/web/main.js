@@ -1,4 +1,4 @@
-// The page: what is shown, what is clicked, what is played.
+// The application: display, input and playback.
 import * as THREE from 'three';
 import {Body, Cloth} from './bodies.js';
 import {map_texture, number_text} from './colors.js';
@@ -15,12 +15,12 @@ class App {
   constructor(description) {
     this.run = new Run(description);
     this.stage = new Stage(element('canvas'), description);
-    this.number = 0;      // of the frame that is shown
-    // The first one with particles: runs with emitters begin empty.
+    this.number = 0;      // number of the shown frame
+    // First frame with particles, because runs with emitters begin empty.
     this.opening = Math.max(0, description.frames.count.findIndex((count) => count > 0));
     this.is_playing = false;
     this.speed = 1;
-    this.picked = null;   // id
+    this.picked = null;   // id of the picked particle
     this.bodies = [];
     this.maps = Object.fromEntries(Object.entries(description.maps).map(([name, text]) => [name, map_texture(text)]));
     this.particles = new Particles(this.run);
@@ -102,7 +102,7 @@ class App {
     this.show_clock();
   }
 
-  // Everything that depends on the settings.
+  // Updates everything that depends on the settings.
   show_look() {
     const {look, particles} = this;
     particles.uniforms.map.value = this.maps[look.map];
@@ -128,7 +128,7 @@ class App {
     this.panel.show_trails(trail.every);
   }
 
-  // Where the value of a particle is in the colours, 0 to 1.
+  // Returns the position of a particle's value in the colour range, 0 to 1.
   shade(frame, row) {
     const {attribute, shown} = this.look;
     return attribute < 0 ? 0 : (this.run.value(frame, attribute, row) - shown[0]) / Math.max(shown[1] - shown[0], 1e-30);
@@ -149,7 +149,7 @@ class App {
     this.show_look();
   }
 
-  // The particle under a place of the window.
+  // Picks the particle at a point of the window.
   pick(x, y) {
     const frame = this.run.frames[this.number];
     const caster = this.stage.ray(x, y);
@@ -175,7 +175,7 @@ class App {
     this.marker.object.visible = this.picked_row >= 0;
   }
 
-  // The whole way of the picked particle.
+  // Shows the whole path of the picked particle.
   show_path() {
     this.path.hide();
     if (this.picked === null) return;
@@ -194,7 +194,7 @@ class App {
     this.path.show(positions, new Float32Array(2 * count), new Float32Array(2 * count).fill(1), count);
   }
 
-  // A ring around the picked particle that faces the eye.
+  // Places a ring around the picked particle, facing the camera.
   place_marker() {
     if (!this.marker.object.visible) return;
     const frame = this.run.frames[this.number];
@@ -248,7 +248,7 @@ class App {
     requestAnimationFrame(tick);
   }
 
-  // Goes to the frame of this moment; waits for one that is not unpacked, begins anew after the last.
+  // Shows the frame of the current time. Waits for frames that are not unpacked, and restarts after the last one.
   advance(now) {
     const {time} = this.run.description.frames;
     const last = this.run.frame_count - 1;
@@ -264,7 +264,8 @@ class App {
     if (next !== this.number) this.show_frame(next);
   }
 
-  // Simulated seconds a second at speed 1: as it is where that takes 2 s to 1 min, else what takes 10 s.
+  // Returns simulated seconds per second at speed 1: real time for runs of 2 s to 1 min, otherwise a rate that takes
+  // 10 s.
   natural_rate() {
     const {time} = this.run.description.frames;
     const length = time[time.length - 1] - time[0];
@@ -272,7 +273,7 @@ class App {
   }
 }
 
-// Digits that tell the frames' times apart.
+// Returns the number of decimals that distinguish the frames' times.
 function decimals(time) {
   const step = time.length > 1 ? (time[time.length - 1] - time[0]) / (time.length - 1) : 1;
   return Math.min(Math.max(Math.ceil(1 - Math.log10(Math.max(step, 1e-12))), 0), 9);
@@ -340,7 +341,7 @@ function on_key(app, event) {
   keys[event.key]();
 }
 
-// Resolves when the opening frame is on the screen; the others go on being unpacked.
+// Resolves when the opening frame is on the screen. The remaining frames are unpacked in the background.
 export async function start(description) {
   performance.mark('modules loaded');
   const app = new App(description);

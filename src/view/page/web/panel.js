@@ -1,4 +1,4 @@
-// The settings, the bar of colours, and the card of a particle.
+// The settings, the colour bars, and the card of a particle.
 import {map_gradient, number_text} from './colors.js';
 
 function make(tag, properties = {}, ...children) {
@@ -7,7 +7,7 @@ function make(tag, properties = {}, ...children) {
   return element;
 }
 
-// A setting: its label and what sets it.
+// Returns a setting: a label and its control.
 function row(label, control, help = '') {
   control.setAttribute('aria-label', label);
   return make('label', {className: 'row', title: help}, make('span', {textContent: label}), control);
@@ -25,7 +25,7 @@ function slider(min, max, step, value, on_input) {
   return input;
 }
 
-// A map's colours and the values along it.
+// Returns a colour bar of a map with values along it.
 function bar(name, gradient, texts) {
   const colors = make('div', {className: 'bar'});
   colors.style.background = gradient;
@@ -67,12 +67,12 @@ export class Panel {
     this.place.append(
         row('colour by', this.attribute), row('colours', this.map), range,
         row('size', slider(-1, 1, 0.02, 0, (power) => app.change({enlarge: 10 ** power})),
-            'Particles drawn smaller or larger than they are'),
+            'Draws particles smaller or larger than they are'),
         row('draw', choice(['spheres', 'soft', 'glow'].map((name) => [name, name]), app.look.drawing,
-                           (drawing) => app.change({drawing})), 'Spheres, soft discs, or light that adds up'),
+                           (drawing) => app.change({drawing})), 'Spheres, soft discs, or additive light'),
         row('trails', make('span', {className: 'two'}, this.trails,
             slider(2, 60, 1, app.look.trail_length, (frames) => app.change({trail_length: frames, trails: true}))),
-            'The ways of the last frames'));
+            'Paths over the last frames'));
     this.trail_note = make('div', {hidden: true});
     this.place.append(this.trail_note);
   }
@@ -91,7 +91,7 @@ export class Panel {
     const maps = [['', 'plain'], ['hits', 'hits'], ['impulse', 'impulse']]
         .filter(([name]) => name === '' || app.bodies.some((body) => name in body.part));
     this.body_map = choice(maps, app.look.body_map, (name) => app.change({body_map: name}));
-    this.place.append(row('colour by', this.body_map, 'What hit each triangle over the whole run'));
+    this.place.append(row('colour by', this.body_map, 'Totals of each triangle over the whole run'));
     const list = make('div', {className: 'bodies'});
     for (const body of app.bodies) {
       const shown = make('input', {type: 'checkbox', checked: body.object.visible, onchange: () => {
@@ -105,7 +105,7 @@ export class Panel {
       shown.setAttribute('aria-label', `show ${body.part.name}`);
       list.append(make('div', {className: 'body'},
           make('label', {title: body.part.name}, shown, make('span', {textContent: body.part.name})),
-          make('label', {className: 'see', title: 'see through it'}, glass, 'glass')));
+          make('label', {className: 'see', title: 'make it transparent'}, glass, 'glass')));
     }
     this.place.append(list);
   }
@@ -118,7 +118,7 @@ export class Panel {
         make('button', {textContent: 'Dark, light', title: 'd', onclick: () => app.change_theme()})));
   }
 
-  // Sets all controls as the look is.
+  // Sets all controls to the current settings.
   show() {
     const {look, run} = this.app;
     this.attribute.value = String(look.attribute);
@@ -131,7 +131,7 @@ export class Panel {
     this.show_legend(run.description);
   }
 
-  // A bar for the particles' colours, and one for the colliders'.
+  // Shows a bar for the particles' colours, and one for the colliders' colours.
   show_legend({maps}) {
     const {look, bodies} = this.app;
     const legend = document.getElementById('legend');
@@ -159,7 +159,7 @@ export class Panel {
     this.trail_note.textContent = every > 1 ? `trails of 1 particle in ${every}` : '';
   }
 
-  // The card of a particle; null: none.
+  // Shows the card of a particle, or hides it if id is null.
   show_particle(id, row, frame) {
     const card = document.getElementById('picked');
     card.hidden = id === null;

@@ -1,12 +1,12 @@
-// Particles as spheres: a triangle around each that faces the eye, in which a ray meets the sphere itself.
+// Particles as spheres. Each sphere is ray-traced inside a triangle that faces the camera.
 import * as THREE from 'three';
 import {COLOR, LIGHT, light_uniforms} from './colors.js';
 import {Copies} from './copies.js';
 
 const TEXTURE_WIDTH = 2048;
 
-// Particles are told apart by the number of the vertex, and what is known of each is looked up: without a graphics card
-// this takes a quarter of the time of squares that are instances of one, which are drawn one by one there.
+// The vertex number identifies the particle, and textures hold its data. With software rendering this takes a quarter
+// of the time of instanced squares, which are drawn one by one there.
 const VERTEX = /* glsl */ `
   uniform highp usampler2D places;
   uniform highp sampler2D sizes;
@@ -16,8 +16,8 @@ const VERTEX = /* glsl */ `
   float size;
   vec4 tint;
   ${COLOR}
-  uniform float radius;      // of all; 0: their own
-  uniform float pixel;       // of the picture, over its distance
+  uniform float radius;      // common radius; 0: individual radii
+  uniform float pixel;       // size of a picture's pixel, divided by its distance
   out vec3 at;
   flat out vec3 center;
   flat out float ball;
@@ -26,7 +26,7 @@ const VERTEX = /* glsl */ `
     int row = gl_VertexID / 3;
     ivec2 at_row = ivec2(row % ${TEXTURE_WIDTH}, row / ${TEXTURE_WIDTH});
     int which = gl_VertexID - 3 * row;
-    // Of the triangle whose inner circle has the radius 1.
+    // The triangle has an inscribed circle of radius 1.
     vec2 corner = which == 2 ? vec2(0.0, 2.0) : vec2(which == 0 ? -1.7320508 : 1.7320508, -1.0);
     place = vec4(texelFetch(places, at_row, 0));
     size = radius > 0.0 ? 0.0 : texelFetch(sizes, at_row, 0).r;
@@ -38,7 +38,7 @@ const VERTEX = /* glsl */ `
     vec3 ahead = center / max(far, 1e-30);
     vec3 right = normalize(cross(abs(ahead.y) < 0.99 ? vec3(0, 1, 0) : vec3(1, 0, 0), ahead));
     vec3 over = cross(ahead, right);
-    // The outline of a sphere is wider than the sphere.
+    // The outline of a sphere in perspective is wider than the sphere.
     float wide = (ball + pixel * far) * far / sqrt(max(far * far - ball * ball, 1e-6 * far * far));
     at = center + wide * (corner.x * right + corner.y * over);
     color = color_of();
@@ -54,8 +54,8 @@ const FRAGMENT = /* glsl */ `
   uniform mat3 world_from_view;
   uniform bool soft;
   uniform float pixel;
-  uniform float slack;       // m
-  uniform float depth_step;  // of the depth at a distance d, over d * d
+  uniform float slack;       // in m
+  uniform float depth_step;  // resolution of the depth buffer at a distance d, divided by d * d
   uniform mat4 projectionMatrix;
   ${LIGHT}
   void main() {
@@ -68,8 +68,9 @@ const FRAGMENT = /* glsl */ `
     if (covered < 0.02) discard;
     vec3 hit = ray * (along - ball * sqrt(max(room, 0.0)));
     vec3 normal = world_from_view * normalize(hit - center);
-    // It covers what is behind a smaller sphere, and walls cover it as that: one that touches a wall is past it by
-    // rounding, and what is past it would be seen through it, in a spot as wide as the root of that. The rim stays.
+    // The depth is that of a slightly smaller sphere. A sphere that touches a wall penetrates it by rounding. The wall
+    // would show through the penetrating cap, in a spot as wide as the square root of the depth. The rim stays
+    // unchanged.
     float far = length(center);
     float solid = ball - min(slack + 0.5 * pixel * far + depth_step * far * far, 0.5 * ball);
     vec3 seen = ray * (along - sqrt(max(solid * solid - dot(beside, beside), 0.0)));
@@ -80,7 +81,7 @@ const FRAGMENT = /* glsl */ `
   }
 `;
 
-// What is known of each particle, a pixel each; of one for all, where they do not differ.
+// Data of the particles in a texture, one pixel each. Holds a single pixel row if all particles are equal.
 class Column {
   constructor(array, size, format, type, is_one) {
     Object.assign(this, {array, size, is_one});
@@ -135,7 +136,7 @@ export class Particles {
     this.copies = this.has_shapes() ? description.shapes.meshes.map((mesh) => new Copies(mesh, room, this.uniforms)) : [];
   }
 
-  // spheres; soft: discs that cover what is behind; glow: discs of light that adds up, in any order.
+  // spheres: solid; soft: discs that cover the background; glow: discs of additive light, in any order.
   draw_as(drawing) {
     const {material} = this.object;
     const is_soft = drawing !== 'spheres';
@@ -157,7 +158,7 @@ export class Particles {
   has_sizes() { return this.varies(this.radius_attribute) || this.run.description.springs || this.has_shapes(); }
   has_tint() { return this.run.description.colors || this.opacity_attribute >= 0; }
 
-  // Points have no size: they get one that can be seen, the smaller the more there are.
+  // Returns a visible radius for points, which have no size. It decreases with their number.
   visible_radius() {
     const {camera} = this.run.description;
     const away = Math.hypot(...camera.position.map((x, axis) => x - camera.target[axis]));
@@ -165,14 +166,14 @@ export class Particles {
     return Math.tan(camera.fov * Math.PI / 360) * away * size;
   }
 
-  // The largest of them, m.
+  // Returns the largest drawn radius, in m.
   largest_radius() {
     const own = this.run.attributes[this.radius_attribute];
     const most = own === undefined ? 0 : own.low + (own.constant ? 0 : own.step * own.largest);
     return this.uniforms.enlarge.value * Math.max(most, this.visible_radius());
   }
 
-  // What radius a row is drawn with.
+  // Returns the drawn radius of a row.
   drawn_radius(frame, row) {
     const own = this.radius_attribute >= 0 ? this.run.value(frame, this.radius_attribute, row) : 0;
     return this.uniforms.enlarge.value * (this.uniforms.radius.value || own || this.visible_radius());
@@ -201,7 +202,7 @@ export class Particles {
     if (this.drawing === 'spheres') this.show_copies(frame);
   }
 
-  // What is a copy of a mesh is no sphere.
+  // Shows particles with a mesh as copies, and hides their spheres.
   show_copies(frame) {
     if (this.copies.length === 0) return;
     const {of} = this.run.description.shapes;
@@ -233,7 +234,7 @@ export class Particles {
     this.size.sent();
   }
 
-  // Particles at the ends of springs are shown by their ropes and cloth, unless they are thicker.
+  // Hides particles at the ends of springs, because ropes and cloth show them. Thicker particles stay visible.
   hide_woven(frame) {
     const sizes = this.size.array;
     const threads = new Float32Array(frame.count);
@@ -258,7 +259,8 @@ export class Particles {
     this.tint.sent();
   }
 
-  // The row whose sphere a ray meets first, and how far away: {row, distance}; row -1 where it meets none.
+  // Returns the row of the first sphere on a ray and its distance: {row, distance}. The row is -1 if the ray misses
+  // all spheres.
   pick(frame, ray, slack) {
     const positions = this.run.positions(frame);
     const {origin, direction} = ray;

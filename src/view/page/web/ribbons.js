@@ -1,4 +1,4 @@
-// Lines: ropes as ribbons of their thickness, trails and paths as threads that fade.
+// Lines: ropes as ribbons of their thickness, trails and paths as fading threads.
 import * as THREE from 'three';
 import {LIGHT, light_uniforms} from './colors.js';
 
@@ -40,7 +40,7 @@ const ROPE_FRAGMENT = /* glsl */ `
   }
 `;
 
-// Springs that are no cloth.
+// Springs that are not part of a cloth.
 export class Ropes {
   constructor(run) {
     this.run = run;
@@ -108,7 +108,7 @@ const THREAD_FRAGMENT = /* glsl */ `
   }
 `;
 
-// Segments that are told anew for every frame.
+// Line segments that are replaced for every frame.
 export class Threads {
   constructor() {
     this.uniforms = {map: {value: null}, ink: {value: new THREE.Color(0x3a6ea5)}, mapped: {value: true}};
@@ -122,7 +122,7 @@ export class Threads {
     this.room = 0;
   }
 
-  // positions: 6 numbers a segment; shades, fades: 2.
+  // positions: 6 numbers per segment; shades, fades: 2 numbers per segment.
   show(positions, shades, fades, segments) {
     this.object.visible = segments > 0;
     if (segments === 0) return;
@@ -144,7 +144,7 @@ export class Threads {
   hide() { this.object.visible = false; }
 }
 
-// Where the particles of rows (ascending) of one frame are in another; -1 where they are not.
+// Returns the rows in another frame for the particles of the given rows (ascending). Missing particles get -1.
 export function same_particles(from, to, rows) {
   if (from.ids === to.ids) return rows;
   const result = new Int32Array(rows.length).fill(-1);
@@ -157,7 +157,8 @@ export function same_particles(from, to, rows) {
   return result;
 }
 
-// The ways of the particles over the last frames up to this one; of one in so many, where they are too many.
+// Returns the paths of the particles over the last frames up to this one. If there are too many, only every n-th
+// particle is included.
 export function trail_segments(run, number, length, shade_of) {
   const frames = run.frames;
   const steps = Math.min(length, number);

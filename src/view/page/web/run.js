@@ -1,4 +1,4 @@
-// The run: its frames as they are unpacked, one after the other.
+// The run: its frames, unpacked one after the other.
 import {ChannelDecoder, RowHistory, block, points_of, read_part} from './blocks.js';
 
 export class Run {
@@ -19,12 +19,12 @@ export class Run {
   }
 
   get frame_count() { return this.description.frames.count.length; }
-  // Particles are not all points.
+  // Returns true if at least some particles have a radius.
   get has_balls() {
     return this.attributes.some((a) => ['radius', 'size'].includes(a.name) && a.low + (a.constant ? 0 : a.step * a.largest) > 0);
   }
-  // How far surfaces may be from where they were, of particles and colliders together, m: by rounding on the page, and by
-  // single precision here.
+  // Returns the largest total displacement of the surfaces of particles and colliders, in m. It comes from rounding on
+  // the page and from single precision here.
   get slack() {
     const {grid, parts, reach} = this.description;
     const radius = this.attributes.find((a) => a.name === 'radius' && !a.constant);
@@ -119,7 +119,7 @@ export class Run {
     });
   }
 
-  // Where particles are, x, y, z, x, ... in the page's metres.
+  // Returns the positions of the particles as x, y, z, x, ... in m, relative to the page's origin.
   positions(frame) {
     const grid = this.description.grid;
     const positions = new Float32Array(frame.positions.length);
@@ -132,7 +132,7 @@ export class Run {
     return [0, 1, 2].map((axis) => grid.lower[axis] + frame.positions[3 * row + axis] * grid.step);
   }
 
-  // The number of a particle; NaN where the run had none.
+  // Returns the value of a particle, or NaN if the run had no value.
   value(frame, attribute, row) {
     const {low, step, largest, constant, gaps} = this.attributes[attribute];
     if (constant) return low;

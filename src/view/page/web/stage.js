@@ -1,4 +1,4 @@
-// The canvas: camera, controls, background, and when it is drawn.
+// The canvas: camera, controls, background, and redrawing.
 import * as THREE from 'three';
 import {OrbitControls} from './OrbitControls.js';
 
@@ -6,7 +6,8 @@ export class Stage {
   constructor(canvas, description) {
     this.canvas = canvas;
     this.description = description;
-    // Of its own making, since three.js always asks for alpha: the page would shine through the rims of spheres.
+    // The context is created here because three.js always requests alpha, and the page would shine through the rims of
+    // spheres.
     const wanted = {alpha: false, antialias: true, powerPreference: 'high-performance'};
     this.renderer = new THREE.WebGLRenderer({canvas, context: canvas.getContext('webgl2', wanted) ?? undefined});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
@@ -19,7 +20,7 @@ export class Stage {
     this.controls.enableDamping = false;
     this.controls.addEventListener('change', () => this.request());
     this.before_drawing = () => {};
-    this.reach = Infinity;  // radius of a ball around the page's origin with all that is drawn, m
+    this.reach = Infinity;  // radius of a ball around the page's origin that contains all drawn objects, in m
     this.draws = 0;
     this.is_requested = false;
     this.reset_view();
@@ -29,7 +30,7 @@ export class Stage {
 
   add(object) { this.scene.add(object); }
 
-  // The view of the beginning. A narrow window must not cut off what a wide one shows.
+  // Restores the initial view.
   reset_view() {
     const {position, target, fov} = this.description.camera;
     this.camera.fov = fov;
@@ -39,7 +40,7 @@ export class Stage {
     this.request();
   }
 
-  // As much as the direction to the middle is turned: angles around the upward axis and towards it.
+  // Rotates the camera around the target by angles around the upward axis and towards it.
   orbit(around, over) {
     const away = this.camera.position.clone().sub(this.controls.target);
     const to_pole = new THREE.Quaternion().setFromUnitVectors(this.camera.up, new THREE.Vector3(0, 1, 0));
@@ -61,7 +62,7 @@ export class Stage {
     this.draw();
   }
 
-  // A background that is lighter where the ground would be.
+  // Sets a background gradient from top to bottom.
   set_background(top, bottom) {
     const canvas = document.createElement('canvas');
     canvas.width = 2;
@@ -90,7 +91,7 @@ export class Stage {
   draw() {
     const size = Math.max(Math.hypot(...this.description.size), 1e-6);
     const away = this.camera.position.distanceTo(this.controls.target);
-    // As far away as can be: depths that the picture can tell apart are finer by so much.
+    // The near plane is as far away as possible, because this gives the finest depth resolution.
     const ahead = this.camera.getWorldDirection(new THREE.Vector3());
     const free = -this.camera.position.dot(ahead) - this.reach;
     this.camera.near = Math.max(1e-3 * away, 1e-7 * size, 0.98 * free);
@@ -101,7 +102,7 @@ export class Stage {
     ++this.draws;
   }
 
-  // The ray through a place of the window.
+  // Returns the ray through a point of the window.
   ray(x, y) {
     const area = this.canvas.getBoundingClientRect();
     const caster = new THREE.Raycaster();
@@ -110,6 +111,6 @@ export class Stage {
     return caster;
   }
 
-  // Tangent of a pixel's angle.
+  // Returns the tangent of a pixel's angle.
   get pixel() { return 2 * Math.tan(this.camera.fov * Math.PI / 360) / this.canvas.clientHeight / this.camera.zoom; }
 }

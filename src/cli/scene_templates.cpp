@@ -16,6 +16,12 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
+// Frames of every scene.
+constexpr int kFrames = 150;
+
+// Time steps of a scene whose spheres meet. With 300 they overlap by a tenth of their radii, with these by a hundredth.
+constexpr int kContactSteps = 1200;
+
 // Lengths and times of a scene.
 struct Fit {
     Vec3 center;    // centre of the mesh
@@ -65,6 +71,7 @@ struct Part {
     std::string emitters;    // contents of the list
     std::string surface;     // the mesh's material
     double duration;         // s
+    int steps = 300;         // time steps in the duration, a multiple of kFrames
     double height;           // height above the mesh that the picture and the bounds include, relative to its diagonal
     bool has_box = false;    // a box around the mesh
     bool has_gravity = true;
@@ -132,6 +139,7 @@ Part debris(const Fit& fit) {
             .emitters = emitters,
             .surface = R"({"restitution": 0.3, "friction": 0.4, "rolling_friction": 0.08})",
             .duration = 6.0 * fit.fall,
+            .steps = kContactSteps,
             .height = 0.35};
 }
 
@@ -280,7 +288,7 @@ std::optional<SceneTemplate> template_named(std::string_view name) {
 std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
     const Fit fit = fit_to(mesh.bounds);
     const Part part = part_of(kind, fit, mesh.closed);
-    const double step = part.duration / 300.0;
+    const double step = part.duration / part.steps;
     const Vec3 margin = Vec3{4.0, 4.0, 4.0} * fit.length;
     const std::string picture = part.picture.empty() ? "" : fmt::format("\n  \"picture\": {{{}}},", part.picture);
     const std::string contacts =
@@ -299,7 +307,7 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
 // Metres, seconds and kilograms; z points up. docs/scene-format.md describes every key.
 {{
   "ricochet": 1,
-  // 300 steps; every second one is a frame. A film lasts as long as the run, unless render --speed changes that.
+  // {} steps and {} frames. A film lasts as long as the run, unless render --speed changes that.
   "simulation": {{"time_step": {}, "duration": {}, "integrator": "ballistic", "response": "exact", "seed": 1}},
   "forces": [{}],{}
   "materials": {{
@@ -314,11 +322,12 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
   ],
   // Particles that leave this box are removed.
   "bounds": {{"lower": {}, "upper": {}}},
-  "output": {{"format": "vtp", "every": 2}},{}
+  "output": {{"format": "vtp", "every": {}}},{}
   "camera": {}
 }}
 )",
-        part.title, fmt::format("{:.3g}", step), fmt::format("{:.6g}", 300.0 * std::stod(fmt::format("{:.3g}", step))),
+        part.title, part.steps, kFrames, fmt::format("{:.3g}", step),
+        fmt::format("{:.6g}", part.steps * std::stod(fmt::format("{:.3g}", step))),
         part.has_gravity ? R"({"type": "gravity", "acceleration": [0, 0, -9.81]})" : "", contacts, part.surface,
         part.has_gravity ? fmt::format(",\n    \"ground\": {}", part.surface) : "", colliders_text(mesh, fit, part),
         part.emitters, at(mesh.bounds.lower - margin, fit), at(mesh.bounds.upper + margin, fit), picture,

@@ -173,13 +173,14 @@ private:
     std::vector<std::string> lines_;
 };
 
-/// Returns the box of all colliders except planes, in the coordinates of their reference frames.
+/// Returns the box of all colliders except planes at the start of the run.
 Box3 SceneReview::surfaces() const {
     Box3 box;
     for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) {
         if (std::holds_alternative<PlaneShape>(simulation_.colliders()[i].shape)) continue;
         const TriangleMesh mesh = *simulation_.collider_mesh(i);
-        for (const Vec3& vertex : mesh.vertices) box.include(vertex);
+        const MovingPose pose = simulation_.collider_pose(i, 0.0);
+        for (const Vec3& vertex : mesh.vertices) box.include(pose.point(vertex));
     }
     return box;
 }

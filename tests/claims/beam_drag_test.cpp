@@ -16,7 +16,7 @@
 #include "support/statistics.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::Sample;
@@ -155,5 +155,5 @@ TEST(ImpulsePerTriangle, AddsUpToTheForceOnThePlate) {
     EXPECT_NEAR(length(sum - Vec3{2.0 * molecules, 0, 0}), 0.0, 1e-9 * molecules);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr Vec3 kGravity{0, 0, -9.81};
 
@@ -145,5 +145,5 @@ TEST(WhatSlides, BesideCollidersThatMoveGainsNoEnergyByAnyIntegrator) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 constexpr double kHeight = 1.0;
@@ -150,5 +150,5 @@ TEST(ElasticBall, KeepsItsHeightForTenThousandBounces) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

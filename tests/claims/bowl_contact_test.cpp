@@ -11,7 +11,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -206,5 +206,5 @@ TEST(APointInABowl, SlidesBackToSecondOrderAfterItsSlipHasTurnedRound) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Everything about a case follows from its number.
 class RandomCase {
@@ -117,5 +117,5 @@ TEST(Culling, ChangesNoImpactAndNoBitOfTheStateInRandomCases) {
     EXPECT_GT(impacts, static_cast<std::uint64_t>(test::scaled(100)) * 10);  // not an empty test
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

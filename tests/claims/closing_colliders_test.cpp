@@ -18,7 +18,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 enum class Against { plane, box, jaw };
 
@@ -158,5 +158,5 @@ TEST(APistonThatCloses, LetsNothingThroughWhereverItStands) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

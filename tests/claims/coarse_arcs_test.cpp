@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -123,5 +123,5 @@ TEST(LongPipe, LetsGoOnceOfWhatFallsOffItsRoof) {
     EXPECT_LE(simulation.statistics().contacts, 3U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

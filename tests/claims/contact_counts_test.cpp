@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 constexpr double kStep = 0.01;
@@ -182,5 +182,5 @@ TEST(TheCountsOfAParticleThatRolls, AreThoseOfTheFacetsAtAnyTimeStep) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

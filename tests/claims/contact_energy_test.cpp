@@ -11,7 +11,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -114,5 +114,5 @@ TEST(TheRimOfACylinder, HoldsSpheresWithoutGainOrLossOfTime) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

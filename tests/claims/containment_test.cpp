@@ -14,7 +14,7 @@
 #include "support/shared_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Impacts a step, about.
 const double kImpacts = test::is_long_run() ? 0.75 : 1.5;
@@ -132,5 +132,5 @@ TEST(SegmentOracle, TellsASegmentThroughAWallFromOneBesideIt) {
     EXPECT_FALSE(oracle_meets(billiard.mesh(), inside, inside + Vec3{1e-12, 0, 0}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -8,7 +8,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kDuration = 1.6;
 
@@ -121,5 +121,5 @@ TEST_F(OrderWithBounces, Rk4KeepsOrderFour) {
     EXPECT_NEAR(measured_order(IntegratorKind::rk4, geometric(40, 1.12, 24), reference()), 4.0, 0.1);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

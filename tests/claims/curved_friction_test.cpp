@@ -8,7 +8,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 constexpr double kFriction = 0.02;  // little: spheres go on slipping
@@ -83,5 +83,5 @@ TEST_P(FrictionOnACurve, BrakesByTheWholeNormalForce) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

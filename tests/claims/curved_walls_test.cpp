@@ -14,7 +14,7 @@
 #include "support/statistics.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::Sample;
@@ -142,5 +142,5 @@ TEST(BoxOfMirrors, HoldsTheUnfoldedPositionAfterAMillionBounces) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 const Vec3 kSize{1.0, 0.6, 0.4};
 
@@ -81,5 +81,5 @@ TEST(AHeavyParticleOnAFreeBody, KeepsBothMomenta) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -27,7 +27,7 @@
 #include "support/simulations.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
@@ -406,5 +406,5 @@ TEST(MeshesThatDeform, GiveTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hashes[0], hashes[2]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

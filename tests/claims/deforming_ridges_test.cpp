@@ -11,7 +11,7 @@
 #include "support/simulations.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 constexpr double kPlace = 0.7;  // m, along the ridge
@@ -123,5 +123,5 @@ TEST(ADeformingRidge, IsLeftBySpheresThatComeRoundIt) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -19,7 +19,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Debris with losses in a closed body: emitters, gravity, drag, friction, resting, lifetimes.
 struct Case {
@@ -167,5 +167,5 @@ TEST_P(Determinism, TrajectoriesDoNotDependOnTheOrderOfTriangles) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -18,7 +18,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -421,5 +421,5 @@ TEST(BodiesThatArePushed, MoveToTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hashes[0], hashes[2]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

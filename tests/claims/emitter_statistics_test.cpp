@@ -15,7 +15,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSamples = test::kSanitized ? 4000 : 40000;
 
@@ -201,5 +201,5 @@ TEST(EmitterStatistics, BirthsPerFrameDoNotDependOnTheTimeStep) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A particle on a face of a turned box: the contact point lies on the seam of the face, at the world's origin.
 struct OnSeam {
@@ -125,5 +125,5 @@ TEST(HubOfAFlatFan, IsNotFeltByWhatABeltCarriesFromIt) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -19,7 +19,7 @@
 #include "support/simulations.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Runs to the end. Returns how many particle-steps were squeezed after a time, s.
 std::uint64_t squeezed_after(double time, Simulation& simulation) {
@@ -170,5 +170,5 @@ TEST(AParticleThatAMeshHasPassed, WaitsAndIsReportedWhereTheRunEnds) {
     EXPECT_EQ(simulation.violations()[0].kind, ViolationKind::wrong_side);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

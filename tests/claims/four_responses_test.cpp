@@ -24,7 +24,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::fitted_slope;
 using testing::mesh_collider;
@@ -468,5 +468,5 @@ TEST_P(EveryResponse, LeavesAParticleAsItIsWhenOthersAreRetired) {
     EXPECT_GT(length(alone - Vec3{0.8, 0.1, 1.0}), 0.3);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::add_box;
 using test::body;
@@ -211,5 +211,5 @@ TEST(CoulombForce, KeepsEnergyInABoxByVelocityVerlet) {
     EXPECT_LT(largest, 2e-5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
@@ -271,5 +271,5 @@ TEST(GrooveReference, IsTheKnownClosedFormBetweenEqualWalls) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

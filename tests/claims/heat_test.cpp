@@ -16,7 +16,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::plane_collider;
@@ -255,5 +255,5 @@ TEST(Heat, OfABallOnATurntableIsWhatTheTableDoesLessItsMotion) {
     EXPECT_NEAR(heat_of(simulation) + simulation.kinetic_energy(), work, 1e-4 * work);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -209,5 +209,5 @@ TEST(ALightDoor, KeepsTheEnergyOfAnElasticHeavyBall) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A copy of a scene: turned, mirrored or not, scaled and shifted.
 struct Copy {
@@ -248,5 +248,5 @@ TEST(AnImpactOutOfFreeFlight, OnTwoSurfacesHasTheSmallerRestitution) {
     EXPECT_NEAR(after.z, 0.5, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 BodyDescription light_body(JointKind joint, RandomSequence& random) {
     BodyDescription body;
@@ -92,5 +92,5 @@ TEST(ALightBodyAmongHeavySpheres, TakesNoEnergyFromALoadThatIsPlannedToLast) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

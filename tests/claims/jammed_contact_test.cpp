@@ -11,7 +11,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A particle on a floor, under a roof that comes down aslant and may turn, beside a wall that moves, with much
 /// friction.
@@ -67,5 +67,5 @@ TEST(JammedContact, EndsForTheStepAfter64TurnsAndTheRestCountsAsNotSimulated) {
     EXPECT_GE(jammed, 3U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

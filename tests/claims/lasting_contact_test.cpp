@@ -11,7 +11,7 @@
 #include "response/course.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::floor_mesh;
@@ -196,5 +196,5 @@ TEST(ASphereBornWithItsCentreOnASurface, GetsOffTowardsTheNormal) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

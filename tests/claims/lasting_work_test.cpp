@@ -10,7 +10,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -109,5 +109,5 @@ TEST(WorkOfContactThatLasts, IsThatOfResistancesToSpinningAndRollingToo) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -251,5 +251,5 @@ TEST_P(LoopInACylinder, IsPassedATenthOfAPercentAboveTheLimitAndFallenOffBelow) 
     EXPECT_GT(farthest_off(loop(radius, friction, 0.999)), 1e-5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

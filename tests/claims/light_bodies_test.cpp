@@ -11,7 +11,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 // A tray of 1 kg on a spring, with balls on it: it starts where the spring is slack, and swings about where it carries
 // them all, as one mass with them.
@@ -59,5 +59,5 @@ TEST(ATrayOnASpring, SwingsWithWhatLiesOnItAsOneMass) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

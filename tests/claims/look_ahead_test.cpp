@@ -19,7 +19,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Long flights between small things: most steps of most particles hit nothing. Everything follows from the number.
 class SparseCase {
@@ -347,5 +347,5 @@ TEST(SpatialOrder, ChangesNoRecordNoTotalAndNoStatistic) {
     EXPECT_EQ(simulation.triangle_totals(0).impulse, reference.triangle_totals(0).impulse);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

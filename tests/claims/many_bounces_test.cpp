@@ -29,7 +29,7 @@
 #include "support/shared_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kParticles = 100;
 constexpr int kSteps = 300;
@@ -222,5 +222,5 @@ INSTANTIATE_TEST_SUITE_P(In, ManyBounces,
                                            "self_intersectA.obj"),
                          test_name);
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

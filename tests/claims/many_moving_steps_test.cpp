@@ -34,7 +34,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
 constexpr double kStep = 0.01;  // s
@@ -259,5 +259,5 @@ INSTANTIATE_TEST_SUITE_P(Tumbling, ManyMovingSteps, ::testing::Values("box", "sp
                          test_name);
 INSTANTIATE_TEST_SUITE_P(Deforming, ManyMovingSteps, ::testing::Values("breathing", "waving", "folding"), test_name);
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

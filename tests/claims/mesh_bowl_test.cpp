@@ -10,7 +10,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 constexpr double kAngle = 0.5;  // where it starts, beside the lowest point
@@ -84,5 +84,5 @@ TEST_P(MeshBowl, TendsToTheSmoothOneAtFirstOrder) {
     EXPECT_LT(coarse, 0.3);  // m: it is the same swing
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -17,7 +17,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
@@ -653,5 +653,5 @@ TEST(AScene, WithMovingCollidersHasTheSameBitsHoweverItIsRun) {
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

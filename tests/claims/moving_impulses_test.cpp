@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -239,5 +239,5 @@ TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature
     EXPECT_LT(torque.y * w, 0.0);  // against its turning
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -18,7 +18,7 @@
 #include "support/shared_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 class TumblingMesh : public ::testing::TestWithParam<std::string> {};
 
@@ -63,5 +63,5 @@ std::string name_of_mesh(const ::testing::TestParamInfo<std::string>& mesh) {
 INSTANTIATE_TEST_SUITE_P(Made, TumblingMesh, ::testing::Values("box", "sphere", "star"), name_of_mesh);
 INSTANTIATE_TEST_SUITE_P(Real, TumblingMesh, ::testing::Values("spot.obj", "bunny-closed.off"), name_of_mesh);
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -19,7 +19,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
@@ -257,5 +257,5 @@ TEST(ADoorOnASpring, KeepsTheEnergyOfAllThatPeltsIt) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -9,7 +9,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -90,5 +90,5 @@ TEST(ASphereThatLiesInAGroove, PushesItsWallsByTheSameForcesWhateverTheStep) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

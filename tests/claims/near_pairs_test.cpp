@@ -11,7 +11,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::add_box;
 using test::body;
@@ -82,5 +82,5 @@ TEST(Cohesion, HoldsSpheresTogetherAfterABounce) {
     EXPECT_NEAR(0.5 * (p.velocity[0].z + p.velocity[1].z), 1.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

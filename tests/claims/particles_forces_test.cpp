@@ -18,7 +18,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::add_box;
 using test::body;
@@ -193,5 +193,5 @@ TEST(ParticlesForces, OfParticlesAtOnePlaceDoNothingAndAHairApartEndTheRun) {
     EXPECT_THROW(finished(std::move(close), {IntegratorKind::velocity_verlet}), DivergedError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 #include "support/statistics.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::RatioSample;
@@ -181,5 +181,5 @@ TEST(LatticeOfDisks, IsHitAtItsMeanFreePath) {
     EXPECT_NEAR(rate.mean(), expected, 4.0 * rate.error());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -538,5 +538,5 @@ TEST(PublicFunctions, OfASimulationThatHasMovedAwayRefuse) {
     // NOLINTEND(bugprone-use-after-move,hicpp-invalid-access-moved)
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// What the draws are for: a stream each, so that a change of one leaves the others.
 enum Stream : std::uint32_t { kOptions = 1, kForces, kMaterials, kRoom, kBodies, kParticles };
@@ -212,7 +212,7 @@ void add_particles(std::uint64_t seed, SimulationSetup& setup) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 Vec3 random_contact_gravity(std::uint64_t seed) {
     Draws draws(seed, kForces);

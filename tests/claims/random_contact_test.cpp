@@ -19,7 +19,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Seeds first, first + 1, ...: a few dozen scenes by default, a thousand in a long run.
 struct Seeds {
@@ -174,5 +174,5 @@ TEST(RandomContact, EndsInTheSameBitsWithSleepingOnAndOff) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

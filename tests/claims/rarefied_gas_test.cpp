@@ -16,7 +16,7 @@
 #include "support/statistics.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Sample;
 
@@ -244,5 +244,5 @@ TEST(GasUnderGravity, TakesTheBarometricProfileOverADiffuseFloor) {
     EXPECT_NEAR(above_scale_height.mean(), std::exp(-1.0), 4.0 * above_scale_height.error());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kSlope = 20.0;  // degrees, of both faces
 constexpr double kRadius = 1.0;
@@ -122,5 +122,5 @@ TEST(ARidge, IsNeverOverlappedInRandomScenes) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

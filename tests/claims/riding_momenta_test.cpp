@@ -15,7 +15,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Of all particles, as solid spheres, and bodies.
 struct Momenta {
@@ -160,5 +160,5 @@ TEST(TheMomentOfContactThatLasts, IsRecordedAboutTheAxisOfATableThatTurns) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A tetrahedron with a tip far from its base.
 TriangleMesh needle(double height) {
@@ -145,5 +145,5 @@ TEST(ParticlesInABody, StayInIt) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

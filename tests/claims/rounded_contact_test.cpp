@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -108,5 +108,5 @@ TEST(ANarrowWedge, GivesEachImpactTheReboundOfItsMaterial) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -18,7 +18,7 @@
 #include "support/simulations.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kDuration = 0.44;  // s
 
@@ -67,5 +67,5 @@ TEST(ABoxThatIsSheared, LeavesWhatSlidesInItsEdgesAllOfItsTime) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

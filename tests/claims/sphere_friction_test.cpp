@@ -8,7 +8,7 @@
 #include "response/course.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 
@@ -91,5 +91,5 @@ TEST(RollingSphere, RunsDownASlopeWithFiveSeventhsOfGravity) {
     EXPECT_NEAR(dot(sphere.state.position, downhill), 0.5 * 5.0 / 7.0 * kG * std::sin(angle), 1e-9);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

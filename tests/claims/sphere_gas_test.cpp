@@ -20,7 +20,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const int kSpheres = test::is_long_run() ? 600 : 60;
 const int kSteps = test::is_long_run() ? 500 : 60;
@@ -136,5 +136,5 @@ TEST(SphereBetweenPlates, WithANanometreOfClearanceNeitherLeaksNorOverlaps) {
     expect_no_violation(std::move(setup));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

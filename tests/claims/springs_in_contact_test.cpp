@@ -9,7 +9,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kGravity = 9.81;
 
@@ -231,5 +231,5 @@ TEST(SpringsThatFall, MayFallFromRestByForwardEuler) {
     EXPECT_NEAR(run.particles().position[0].z, 5.0 - kGravity * 1e-4 * 100.0 * 99.0 / 2.0, 1e-10);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

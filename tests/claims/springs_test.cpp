@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Particle particle_at(const Vec3& x, double mass = 1.0, const Vec3& v = {}) {
     Particle particle;
@@ -338,5 +338,5 @@ TEST(OwnSolver, MayComeFromBoostOdeint) {
 }
 #endif
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -25,7 +25,7 @@
 #include "support/simulations.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A mesh in the last of some frames, each of which stands on the one before, until a time.
 MeshShape stretching(const TriangleMesh& mesh, std::vector<FrameDescription> chain, double end) {
@@ -426,5 +426,5 @@ TEST(MeshesThatDeformAndStretch, GoOnToTheSameBitsFromASavedState) {
     EXPECT_EQ(hash_of(std::move(resumed)), hash_of(std::move(whole)));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

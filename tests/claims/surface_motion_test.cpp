@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
@@ -378,5 +378,5 @@ TEST(ADiffuseWall, GivesWhatLeavesItItsOwnVelocity) {
     EXPECT_NEAR(sum / kCount / steps, 0.5, 5.0 * 1.1 / std::sqrt(1e5));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

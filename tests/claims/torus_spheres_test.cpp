@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kMajor = 1.0;  // m, of the circle in the tube's middle
 constexpr double kMinor = 0.25;
@@ -97,5 +97,5 @@ TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesWhatPointsCost) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 struct Shot {
     IntegratorKind integrator;
@@ -69,5 +69,5 @@ TEST_P(Tunnelling, ABulletStaysOnItsSideOfAThinPlate) {
     EXPECT_EQ(simulation.statistics().frozen, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

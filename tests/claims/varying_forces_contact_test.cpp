@@ -14,7 +14,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 using MakeForces = std::function<std::vector<std::unique_ptr<Force>>()>;
 
@@ -221,5 +221,5 @@ TEST(ForcesWithAPotential, LoseNoEnergyToAMarbleThatACentreHoldsOnABall) {
     EXPECT_LT(worst_change(scene, list_of(make_point_gravity({{{0.2, 0, 0.1}, 9.81, 0.0}}), make_gravity({}))), 1e-11);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -11,7 +11,7 @@
 #include "claims/contact_scene.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
@@ -137,5 +137,5 @@ TEST(AWallWithFriction, BrakesASphereThatRollsAlongItAsTheEquationsSay) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

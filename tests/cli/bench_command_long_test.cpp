@@ -8,7 +8,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(BenchCommandLong, MeasuresTheQuickSuiteAndWritesItsNumbers) {
     const test::TemporaryFolder folder;
@@ -52,5 +52,5 @@ TEST(BenchCommandLong, WritesResultsAndRatiosAndSeesRatiosFall) {
     EXPECT_EQ(compare("slow.json").exit_code, 0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 // Two cases with one and with two threads, the second without most ratios.
 std::vector<bench::Row> rows() {
@@ -91,5 +91,5 @@ TEST(BenchPlots, OfThreadsHaveACurveForEveryCaseAndItsBareRays) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

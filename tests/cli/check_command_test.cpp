@@ -8,7 +8,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -86,5 +86,5 @@ TEST(SchemaCommand, PrintsTheSchemaAndTheReference) {
     EXPECT_EQ(run_ricochet({"schema", "--markdown"}).output, scene_reference());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

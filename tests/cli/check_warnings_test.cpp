@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::run_ricochet;
 using test::SampleFolder;
@@ -400,5 +400,5 @@ TEST_F(CheckWarnings, DoubtsStartsThatOnlyAWrongUnitPutsSoFarFromTheColliders) {
     EXPECT_EQ(warnings(plane() + emitter(R"("type": "point", "center": [0, 0, 3800])")), "");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

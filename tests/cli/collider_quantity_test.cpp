@@ -7,7 +7,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::run_ricochet;
 using test::TemporaryFolder;
@@ -57,5 +57,5 @@ TEST(ColliderQuantity, TheUpperEndOfTheRangeLeavesOutAHundredthOfTheArea) {
     EXPECT_EQ(upper_value({{3.0, 1.0}, {1e9, 1e-4}, {2.0, 1.0}, {0.0, 100.0}}), 3.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -178,5 +178,5 @@ TEST(CompareCommand, RefusesAFolderOfSomebodyElse) {
     EXPECT_FALSE(files.exists("compare.json"));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

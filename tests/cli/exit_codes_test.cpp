@@ -12,7 +12,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A bullet that is past a plate of 2 cm within one step: `project` does not see it.
 std::string bullet(const std::string& response) {
@@ -84,5 +84,5 @@ TEST_F(ExitCodes, AreASignalsWhereThePipeIsClosed) {
     EXPECT_EQ(code_of({"schema"}, {"bash", "-c", pipe}), 128 + SIGPIPE);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

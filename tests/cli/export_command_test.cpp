@@ -16,7 +16,7 @@
 #include "view/export/moving_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -199,5 +199,5 @@ TEST(ExportCommand, RefusesWhatItCannotExportWithOneLine) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

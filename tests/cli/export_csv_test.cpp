@@ -17,7 +17,7 @@
 #include "view/export/frame_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -278,5 +278,5 @@ TEST(ExportCsv, RunsWithoutContactsOrCollidersHaveFewerTables) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

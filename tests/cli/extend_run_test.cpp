@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::TemporaryFolder;
@@ -165,5 +165,5 @@ TEST_F(ExtendedRun, BeginsAnewWithoutResume) {
     EXPECT_FALSE(std::filesystem::exists(folder_.path("a/extension.bin")));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <csignal>
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 sigset_t lease_signal() {
     sigset_t signals;
@@ -15,7 +15,7 @@ sigset_t lease_signal() {
     return signals;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 HeldFile::HeldFile(const std::filesystem::path& file) : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
     // The signal that somebody waits is waited for.

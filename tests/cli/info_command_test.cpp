@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Json = nlohmann::json;
 
@@ -236,5 +236,5 @@ TEST(InfoCommand, PrintsAFileNameThatIsNotUtf8) {
     EXPECT_EQ(Json::parse(result.output).at("faces"), 1);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

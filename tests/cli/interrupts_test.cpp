@@ -13,7 +13,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::HeldFile;
 using test::RunningProgram;
@@ -183,5 +183,5 @@ TEST(Interrupts, WhoIgnoresTheEndOfTheTerminalGoesOnIgnoringIt) {
     EXPECT_EQ(program.wait().exit_code, 128 + SIGTERM);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

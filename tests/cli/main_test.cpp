@@ -5,7 +5,7 @@
 #include "cli/run_program.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 bool is_one_line(const std::string& text) {
     return !text.empty() && std::count(text.begin(), text.end(), '\n') == 1 && text.back() == '\n';
@@ -100,5 +100,5 @@ TEST(CommandLine, HelpOfNoCommandIsRefusedWithTheOneThatMayBeMeant) {
     EXPECT_EQ(test::run_ricochet({"hlep"}).errors, "ricochet: unknown command \"hlep\"; did you mean \"help\"?\n");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::kSanitized;
 using test::MemoryCeiling;
@@ -122,5 +122,5 @@ TEST(MemoryOfPrograms, ARunThatRunsOutOfMemoryAnywhereEndsWithOneLine) {
     EXPECT_GT(ended_with_a_line, 0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "view/render/camera.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::string kOpen = "v 0 0 0\nv 3 0 0\nv 0 4 1\nf 1 2 3\n";
 
@@ -224,5 +224,5 @@ TEST(NewCommand, AnswersWrongInputWithOneLine) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::string kScene = R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 0.05},
     "colliders": [{"type": "plane", "normal": [0, 0, 1]}], "particles": [{"position": [0, 0, 1]}]})";
@@ -42,5 +42,5 @@ TEST(Progress, RefusesOtherWordsBeforeTheWork) {
     EXPECT_FALSE(std::filesystem::exists(out));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -368,5 +368,5 @@ TEST(RenderCommand, LargeBallsDoNotPokeThroughWalls) {
     EXPECT_TRUE(pictures[0] == pictures[1]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "view/render/image.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -280,5 +280,5 @@ TEST_F(Shapes, FlatDrawingsOfSeveralKindsAreLaidOverWhatIsSolid) {
     EXPECT_TRUE(ball[0] > 60 && ball[1] > 60 && ball[2] > 60);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -420,5 +420,5 @@ TEST(RunCommand, AFullDiskIsAFailureThatIsTold) {
     expect_refused(result, 2, "/dev/full");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::run_ricochet;
 using test::TemporaryFolder;
@@ -119,5 +119,5 @@ TEST(RunTimeline, TheImpactNearestToAMomentIsAsTheFallSays) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

@@ -13,7 +13,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::run_ricochet;
 using test::TemporaryFolder;
@@ -71,5 +71,5 @@ TEST(RunTurning, ParticlesThatAreBornLaterTurnFromTheirBirthOn) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

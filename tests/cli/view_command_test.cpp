@@ -8,7 +8,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::ProgramResult;
 using test::run_ricochet;
@@ -103,5 +103,5 @@ TEST(ViewCommand, LeavesAnOlderPageWhereTheNewOneCannotBeMade) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

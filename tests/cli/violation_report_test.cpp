@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::vector<ColliderDescription> kColliders = {{"floor", PlaneShape{}, 0}, {"tube", MeshShape{}, 0}};
 
@@ -40,5 +40,5 @@ TEST(ViolationReport, ListsTwentyAndCountsTheRest) {
     EXPECT_TRUE(violation_lines({}, 0, kColliders).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::cli {
-namespace {
+namespace RICOCHET_FILE {
 
 struct Balls {
     std::vector<Vec3> centers;
@@ -120,5 +120,5 @@ TEST(WallClearance, WithoutWallsNothingMoves) {
     EXPECT_EQ(balls.radii[0], 0.5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::cli

@@ -12,7 +12,7 @@
 #include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// m, of a point from the nearest surface.
 double distance_of(const CollisionWorld& world, const Vec3& p) {
@@ -72,5 +72,5 @@ TEST(TimeClear, IsAllOfAPathThatStaysAwayAndNothingOfOneThatBeginsThere) {
     EXPECT_GT(until, 0.97);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

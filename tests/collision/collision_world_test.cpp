@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 using testing::mesh_collider;
@@ -190,5 +190,5 @@ TEST(CollisionWorld, RefusesSurfacesBelowTheSmallestSizeAndNamesTheCollider) {
     EXPECT_EQ(refusal({"small", CuboidShape{{1e-60, 1e-60, 1}, {}}, 0, ""}), "");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

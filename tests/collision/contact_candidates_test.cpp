@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(ContactCandidates, KnowsNothingUntilItIsToldAndThenUpToFourTriangles) {
     EXPECT_FALSE(ContactCandidates().is_known());
@@ -21,5 +21,5 @@ TEST(ContactCandidates, KnowsNothingUntilItIsToldAndThenUpToFourTriangles) {
     EXPECT_FALSE(candidates.is_known());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::query;
 
@@ -207,5 +207,5 @@ TEST(SphereOnAnEdgeAndOnAVertex, IsTurnedBackAlongTheLineToTheFoot) {
     EXPECT_NEAR(course.scratch.records[0].time, 0.5 - kRadius, 1e-15);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

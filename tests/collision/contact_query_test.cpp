@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::query;
 
@@ -245,5 +245,5 @@ TEST(ContactQuery, ListsTheSurfacesAPointStandsOn) {
     EXPECT_FALSE(found.near.is_free(center, {0, 0, 1}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "ricochet/geometry/mesh/mesh_motion.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kRise = 2.0;  // m/s
 
@@ -70,5 +70,5 @@ TEST(DeformingSweep, LetsASphereSinkInByTheRoundingOfItsOwnPlaceOnly) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

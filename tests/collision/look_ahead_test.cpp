@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::query;
 
@@ -227,5 +227,5 @@ TEST(LookAhead, CandidatesLeadALaterQueryToTheContactOfTheBroadPhase) {
     EXPECT_GT(contacts, test::scaled(1500) / 6);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

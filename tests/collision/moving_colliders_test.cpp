@@ -13,7 +13,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Balls that go round and to and fro, one a frame, a plane that moves, and a ball at rest.
 struct ManyBodies {
@@ -151,5 +151,5 @@ TEST(SweptBoxes, HoldABodyAllTheTime) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

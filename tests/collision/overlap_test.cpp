@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::mesh_collider;
 using testing::plane_collider;
@@ -67,5 +67,5 @@ TEST(CoreRadius, IsAPointWhereTheCentreIsOnTheSurface) {
     EXPECT_NEAR(core_radius({0, 0.125}, {1, 2, 3}, 0.5), 0.125, 1e-14);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::query;
 
@@ -221,5 +221,5 @@ TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
     EXPECT_FALSE(step_off(found.near, beside));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -22,7 +22,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 using testing::flipped;
@@ -457,5 +457,5 @@ TEST(SignedDistance, OfAnEmptySceneIsNothing) {
     EXPECT_TRUE(all_near(distance, {1, 2, 3}, HUGE_VAL).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

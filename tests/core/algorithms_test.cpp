@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
     RandomSequence random(5, 0, 0);
@@ -78,5 +78,5 @@ TEST(GrowCapacityBy, ReallocatesAListThatGrowsByOneRarely) {
     EXPECT_LE(list.capacity(), 150'000U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -62,5 +62,5 @@ TEST(AtomicFile, AFolderIsNoTarget) {
     EXPECT_THROW(AtomicFile{folder.path("missing/frame")}, RunError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Bytes = std::vector<std::byte>;
 
@@ -81,5 +81,5 @@ TEST(BinaryArchive, RefusesTruthValuesThatAreNone) {
     EXPECT_THROW(reader_of(bytes)(flag), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "ricochet/core/frame_tree.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 BodyPath some_path() {
     BodyPath path;
@@ -100,5 +100,5 @@ TEST(ADrivenFrame, HasNeitherParentNorMotions) {
     EXPECT_THROW(frames.set_paths(0, {}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/exact_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::exact;
 using testing::Rational;
@@ -149,5 +149,5 @@ static_assert(two_sum(1.0, 0x1p-60) == DoubleDouble{1.0, 0x1p-60});
 static_assert(static_cast<double>(DoubleDouble{3.0} / DoubleDouble{4.0}) == 0.75);
 static_assert(sign(-DoubleDouble{2.0}) == -1);
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "ricochet/dynamics/emitter.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Real = long double;
 
@@ -497,5 +497,5 @@ TEST(FrameTree, FindsTheFirstFrameOfACircleAndNoneBeforeIt) {
     EXPECT_EQ(circle_of({"f", "c", "b", "e", "d", ""}), 1U);  // of two circles
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

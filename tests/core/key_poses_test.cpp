@@ -13,7 +13,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -139,5 +139,5 @@ TEST(KeyPoses, MustFollowEachOther) {
     EXPECT_EQ(message_of({{0.0, {}}, {1.0, {NAN, 0, 0}}}), "key 1 of a curve is not finite");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Keys = std::vector<CurveKey<double>>;
 using VectorKeys = std::vector<CurveKey<Vec3>>;
@@ -364,5 +364,5 @@ TEST(KeyedCurve, InterpolationsHaveNames) {
     EXPECT_EQ(name_of(Interpolation::cubic_spline), "cubic_spline");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

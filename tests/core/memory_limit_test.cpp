@@ -12,7 +12,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A kernel's files about memory, in a folder of their own; the limits of this process hold all the same.
 class FakeKernel {
@@ -111,5 +111,5 @@ TEST(MemoryLimit, IsSaidInUnitsOfAThousand) {
     EXPECT_EQ(memory_text(5e21), "5e+03 EB");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Lists beside ids, as a simulation has them.
 struct Lists {
@@ -91,5 +91,5 @@ TEST(MergingReader, RefusesListsThatDoNotFitTogether) {
     EXPECT_THROW(read.archive(reader), RunError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include <numeric>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 struct alignas(64) Line {
     std::uint64_t value[8];
@@ -59,5 +59,5 @@ TEST(PageVector, ReadsAndEndsAsBeforeOnceItsPagesAreReplaced) {
     list = {};
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

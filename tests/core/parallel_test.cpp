@@ -15,7 +15,7 @@
 #include "ricochet/core/loop_stop.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Parallel, EveryIndexIsVisitedOnce) {
     std::vector<std::atomic<int>> visits(10007);
@@ -181,5 +181,5 @@ TEST(Parallel, SortsByKeyAndKeepsTheOrderOfEqualKeys) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::scaled;
 
@@ -80,5 +80,5 @@ TEST(PortableMath, EndsWhereDoublesEnd) {
     EXPECT_TRUE(std::isnan(portable_exp(std::nan(""))));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include <string>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using namespace std::string_view_literals;
 
@@ -33,5 +33,5 @@ TEST(Printable, IsCutWhereItIsAskedTo) {
     EXPECT_EQ(printable("abc", 3), "abc");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

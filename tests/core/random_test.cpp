@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Known answers published with the Random123 library (kat_vectors, philox4x32 with ten rounds).
 TEST(Philox, GivesThePublishedKnownAnswers) {
@@ -62,5 +62,5 @@ TEST(RandomSequence, BallAndDiskAreFilledUniformly) {
     EXPECT_NEAR(inner_disk / static_cast<double>(count), 0.25, 5 * 1.37e-3);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

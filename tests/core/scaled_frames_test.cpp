@@ -11,7 +11,7 @@
 #include "ricochet/core/frame_tree.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 KeyedScale growth() {
     return {KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {1.0, {2, 0.5, 1.5}}, {3.0, {1, 1, 3}}}, Interpolation::spline)};
@@ -108,5 +108,5 @@ TEST(ScaledFrames, HaveFactorsAboveZeroAndNoRigidPose) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// What a process does that removes its unfinished files and ends.
 template <class Work>
@@ -85,5 +85,5 @@ TEST(UnfinishedFile, IsForgottenInAnyOrderOnAnyThread) {
     EXPECT_EQ(folder.read("1"), "no longer unfinished");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

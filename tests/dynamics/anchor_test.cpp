@@ -10,7 +10,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using std::numbers::pi;
 using test::carried;
@@ -65,5 +65,5 @@ TEST(Anchor, RefusesValuesOutOfRange) {
     EXPECT_THROW((void)make_anchor({{}, 1.0, 0.0, nan}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include "ricochet/dynamics/emitter.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(AttributeTable, ValuesFollowTheirParticles) {
     Particles particles;
@@ -52,5 +52,5 @@ TEST(LifeCurve, MultipliesWhatAParticleWasBornWith) {
     EXPECT_EQ(shown_value(curves, "color", {1, 1, 1}, 2.0, std::numeric_limits<double>::infinity()), (Vec3{1, 1, 1}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

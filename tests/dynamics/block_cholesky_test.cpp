@@ -10,7 +10,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Pair = BlockCholesky::Pair;
 
@@ -145,5 +145,5 @@ TEST(BlockCholesky, RefusesWhatIsNotDefiniteAndGoesOnAfterwards) {
     EXPECT_EQ(after, fresh);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

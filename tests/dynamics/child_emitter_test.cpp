@@ -10,7 +10,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Emitter child_emitter(const ParentRule& rule, EmitterDescription description = {}) {
     description.name = "children";
@@ -225,5 +225,5 @@ TEST(ChildEmitter, CountsAreDrawnAroundTheirMeanAndNeverNegative) {
     EXPECT_NEAR(sum / parents, 4.0 / 3.0, 5.0 * 1.37 / std::sqrt(parents));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

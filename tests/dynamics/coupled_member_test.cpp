@@ -9,7 +9,7 @@
 #include "ricochet/dynamics/system_integrator.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kStep = 0.01;
 
@@ -171,5 +171,5 @@ TEST(Departures, GiveBothEndsTheSameWhereOneIsHeld) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

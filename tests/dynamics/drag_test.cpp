@@ -12,7 +12,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using std::numbers::pi;
 using test::carried;
@@ -225,5 +225,5 @@ TEST(Buoyancy, LiftsByTheWeightOfWhatIsDisplaced) {
     EXPECT_THROW((void)make_buoyancy(1.0, {kNan, 0, 0}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using std::numbers::pi;
 using test::carried;
@@ -61,5 +61,5 @@ TEST(LorentzForce, RefusesUndefinedFields) {
     EXPECT_THROW((void)make_lorentz_force({1.0, {}, {0, nan, 0}}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::chi_square;
 using test::chi_square_limit;
@@ -200,5 +200,5 @@ TEST(ScreenArea, WhatStandsBesideOrBehindTheCameraIsRefused) {
     EXPECT_THROW((void)screen_area(SphereShape{{0, 0, -1}, 2.0, false}, camera), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

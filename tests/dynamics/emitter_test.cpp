@@ -15,7 +15,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::chi_square;
 using test::chi_square_limit;
@@ -469,5 +469,5 @@ TEST(EmitterBirthTest, SeesThePositionInTheWorld) {
     for (const Particle& p : born) ASSERT_TRUE(p.position.x > 100.0 && p.position.x < 100.5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const ForceInput kState{{1, 2, 3}, {4, -5, 6}, 2.0, 0.0, 0.5};
 
@@ -39,5 +39,5 @@ TEST(Swirl, GoesRoundItsAxisWithItsAccelerationAtTheRim) {
     EXPECT_THROW((void)make_swirl({}, {0, 0, 1}, 1.0, 0.0), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/random_draws.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using std::numbers::pi;
 using test::divergence;
@@ -178,5 +178,5 @@ TEST(ScaledFlow, IsMultiplied) {
     EXPECT_THROW((void)make_scaled_flow(make_wind({}), kNan), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

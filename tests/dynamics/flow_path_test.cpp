@@ -8,7 +8,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Circles about the z axis, one radian a second.
 FlowPointer turning() { return make_rotation({}, {0, 0, 1}); }
@@ -107,5 +107,5 @@ TEST(FlowPath, RefusesMethodsOfSecondOrderMotionByName) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "ricochet/dynamics/forces.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Forces = std::vector<std::unique_ptr<Force>>;
 
@@ -97,5 +97,5 @@ TEST(EveryForce, AddsUpInTheOrderGiven) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -7,7 +7,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const ForceInput kState{{1, 2, 3}, {4, -5, 6}, 2.0, 0.0, 0.5};
 
@@ -111,5 +111,5 @@ TEST(ForceOnSome, IsFeltByThoseOnly) {
     EXPECT_THROW((void)make_force_on({1}, nullptr), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

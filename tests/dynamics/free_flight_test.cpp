@@ -15,7 +15,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::array kKinds{IntegratorKind::ballistic,     IntegratorKind::symplectic_euler,
                             IntegratorKind::forward_euler, IntegratorKind::implicit_euler,
@@ -99,5 +99,5 @@ TEST(CommonAcceleration, IsNothingWhereAForceMayDifferFromParticleToParticle) {
     EXPECT_FALSE(field.common_acceleration());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 linear(const Vec3& p) { return {1.0 + 2.0 * p.x - p.y, 3.0 * p.z + 0.5 * p.x, p.y - 2.0}; }
 
@@ -76,5 +76,5 @@ TEST(GridFlow, RefusesWhatIsNoGrid) {
     refuses([](VectorGrid& g) { g.origin.x = std::nan(""); });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

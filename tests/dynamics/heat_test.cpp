@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kSigma = 5.670374419e-8;
 
@@ -128,5 +128,5 @@ TEST(Cooling, AtRatesNearTheEndOfDoublesLeavesTheAmbientTemperature) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -304,5 +304,5 @@ TEST(IntegratorNames, StandInTheOrderOfTheEnumeration) {
     for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(name_of(static_cast<IntegratorKind>(k)), names[k]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

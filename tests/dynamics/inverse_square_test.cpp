@@ -13,7 +13,7 @@
 #include "support/random_points.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::charges_in_cube;
 using test::plummer_ball;
@@ -204,5 +204,5 @@ TEST(SourceTree, StandsWhatIsNotFiniteAndPointsAtOnePlace) {
     EXPECT_TRUE(by_tree({}, 0.0, 0.5).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::scaled;
 
@@ -170,5 +170,5 @@ TEST(NeighbourGrid, TakesTheMemoryThatItSays) {
                                                             4096.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

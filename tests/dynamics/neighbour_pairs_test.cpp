@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Box3 random_box(RandomSequence& random) {
     if (random.uniform() < 0.05) return {};
@@ -95,5 +95,5 @@ TEST(NeighbourPairs, ThoseOfBoxesThatDriftAreFoundAsIfAllWereLookedForAnew) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/random_points.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Particles without more than a test says.
 struct Crowd {
@@ -171,5 +171,5 @@ TEST(PairForces, AreRefusedForSettingsThatMakeNoSense) {
     expect_refused("empty function", [] { (void)make_pair_force({.cutoff = 1.0, .force = {}}); });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Two particles on a spring, a third one that is pinned, and gravity.
 class PairOnASpring : public ::testing::Test {
@@ -101,5 +101,5 @@ TEST_F(PairOnASpring, SpringsChangeNoMomentum) {
     EXPECT_EQ(sum, Vec3{});
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Particle numbered(std::uint64_t id) {
     const double x = static_cast<double>(id);
@@ -111,5 +111,5 @@ TEST(Particles, AreOrderedByIdsThatLieCloseFarApartOrRepeat) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

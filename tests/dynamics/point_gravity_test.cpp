@@ -10,7 +10,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::carried;
 using test::field_of;
@@ -59,5 +59,5 @@ TEST(PointGravity, RefusesBadAttractors) {
     EXPECT_THROW((void)make_point_gravity({{{}, 1.0, -1.0}}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

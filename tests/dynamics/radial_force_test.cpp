@@ -8,7 +8,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(RadialForce, HasItsStrengthAtTheReferenceAndGrowsByItsPower) {
     for (const double exponent : {-3.0, -2.0, -1.5, -1.0, 0.0, 0.7, 1.0, 2.0}) {
@@ -53,5 +53,5 @@ TEST(RadialForce, RefusesValuesOutOfRange) {
     EXPECT_THROW((void)make_radial_force({{}, 1.0, 1.0, 0.0, 0.0}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 double total_mass(const SpringBody& body) {
     double sum = 0.0;
@@ -245,5 +245,5 @@ TEST(SpringBody, AppendsBodiesWithIdsAndSpringsMovedUp) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -260,5 +260,5 @@ TEST(SpringNetwork, RefusesImpossibleSpringsByTheirNumber) {
     EXPECT_EQ(refusal({good, {0, 1, 0.0, 1.0, 0.0}}), "");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "ricochet/dynamics/springs.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr IntegratorKind kAllKinds[] = {IntegratorKind::forward_euler,   IntegratorKind::symplectic_euler,
                                         IntegratorKind::implicit_euler,  IntegratorKind::midpoint,
@@ -264,5 +264,5 @@ TEST(SpringStability, BoundIsWhereAPairBeginsToExplode) {
     EXPECT_TRUE(std::isinf(longest_stable_step(IntegratorKind::rk4, {}, particles)));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

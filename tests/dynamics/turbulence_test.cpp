@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::divergence;
 using test::scaled;
@@ -175,5 +175,5 @@ TEST(Turbulence, RefusesSettingsOutOfTheirRange) {
     EXPECT_THROW((void)make_turbulence(with([](auto& s) { s.rate = -0.1; })), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

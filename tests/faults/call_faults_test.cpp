@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::call_fault;
 using test::CallCounts;
@@ -295,5 +295,5 @@ TEST_F(CallFaultsLong, ABenchmarkThatCannotWriteItsNumbersLeavesNoPartOfThem) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

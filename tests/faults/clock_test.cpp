@@ -15,7 +15,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::DisturbedRun;
 using test::ProgramResult;
@@ -137,5 +137,5 @@ TEST(JumpingClocks, DoNotStopAPictureOrAComparison) {
     EXPECT_EQ(compared.exit_code, 0) << compared.errors;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

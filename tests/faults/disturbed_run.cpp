@@ -10,7 +10,7 @@
 #include "support/counts.h"
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr const char* kScene = R"({
   "ricochet": 1,
@@ -60,7 +60,7 @@ bool is_whole(const std::string& name, const std::string& bytes) {
     return bytes.ends_with("</VTKFile>\n");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 std::vector<std::string> call_fault(const std::filesystem::path& path, const std::string& call, std::int64_t at,
                                     const std::string& action, bool goes_on) {

@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::DisturbedRun;
 using test::ProgramResult;
@@ -206,5 +206,5 @@ TEST(StandardOutput, ThatTakesNothingIsAnError) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::DisturbedRun;
 using test::ProgramResult;
@@ -73,5 +73,5 @@ TEST(Kill, ARunThatIsKilledAtAnyMomentGoesOnToTheSameBits) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr const char* kScene = R"({
   "ricochet": 1,
@@ -65,5 +65,5 @@ TEST(ManyCycles, OfOpeningAndClosingTakeNoMoreMemoryFilesAndThreads) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::DisturbedRun;
 using test::ProgramResult;
@@ -97,5 +97,5 @@ TEST(MemoryFaults, AtAnyAllocationOfOtherCommandsAreTold) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

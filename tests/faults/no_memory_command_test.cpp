@@ -20,7 +20,7 @@
 int ricochet_main(int argc, char** argv);
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::AllocationFault;
 
@@ -131,5 +131,5 @@ TEST_F(NoMemoryForCommand, CheckAndInfoSayAllOrFail) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -19,7 +19,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::AllocationFault;
 
@@ -193,5 +193,5 @@ TEST(NoMemory, InsideAStepASimulationGoesOnFromASavedState) {
     EXPECT_GT(failed, 0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -19,7 +19,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Some 500 spheres at a time: they fall into a bowl, bounce, come to rest, sleep, and die of age.
 constexpr const char* kScene = R"({
@@ -126,5 +126,5 @@ TEST(Soak, WithBirthsDeathsSleepAndCheckpointsTakesNoMoreMemoryOnceItIsWarm) {
     EXPECT_LE(late, warm + warm / 100) << "resident, KiB:" << all;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

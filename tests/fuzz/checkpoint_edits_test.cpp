@@ -23,7 +23,7 @@ void PrintTo(const CheckpointScene& scene, std::ostream* out) {  // NOLINT(reada
     *out << scene.name;
 }
 
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 4711;
 
@@ -96,5 +96,5 @@ INSTANTIATE_TEST_SUITE_P(All, CheckpointEdits, ::testing::ValuesIn(kCheckpointSc
     return name;
 });
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::fuzz

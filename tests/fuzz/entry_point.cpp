@@ -6,7 +6,7 @@
 
 #include "fuzz/fuzz_targets.h"
 
-namespace {
+namespace RICOCHET_FILE {
 
 /// s of processor time that an input may take, unless the environment says otherwise: long runs go on past what is
 /// slow. libFuzzer's own limit is of the wall's clock, which also counts what other programs take.
@@ -17,7 +17,7 @@ double most_time() {
 
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 // What is thrown here ends the fuzzer, which then keeps the input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

@@ -35,7 +35,7 @@
 #include "view/render/image.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 20261128;
 constexpr int kCases = 60;  // of each kind
@@ -275,5 +275,5 @@ TEST(MalformedFiles, AreReadOrRefusedWithOneLine) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::fuzz

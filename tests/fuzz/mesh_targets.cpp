@@ -8,7 +8,7 @@
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A mesh that comes out must be sound enough for everything that is done to meshes on import.
 template <typename Reader>
@@ -37,7 +37,7 @@ ParsedMesh read_small_gltf(const MeshSource& source) {
     return read_gltf(source, std::nullopt, kFreeCorners);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 bool fuzz_gltf(std::string_view bytes) { return read_mesh_bytes(read_small_gltf, bytes); }
 bool fuzz_obj(std::string_view bytes) { return read_mesh_bytes(read_obj, bytes); }

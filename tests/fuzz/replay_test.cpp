@@ -24,7 +24,7 @@ void PrintTo(const FuzzTarget& target, std::ostream* out) {  // NOLINT(readabili
     *out << target.name;
 }
 
-namespace {
+namespace RICOCHET_FILE {
 
 const std::filesystem::path kFolder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz";
 
@@ -128,5 +128,5 @@ TEST(FuzzReplayFolders, EveryFolderOfInputsHasATarget) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::fuzz

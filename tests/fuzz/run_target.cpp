@@ -12,7 +12,7 @@
 #include "ricochet/core/parallel.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 /// How a scene is run.
 struct Variant {
@@ -82,7 +82,7 @@ std::uint64_t end_of(ByteChoices choices, const Variant& variant) {
     return simulation.state_hash();
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 // The first byte says how it is run, and whether a second time; the others choose the scene.
 bool fuzz_run(std::string_view bytes) {

@@ -11,7 +11,7 @@
 #include "ricochet/io/scene/document.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Scenes may name any file and ask for any number of particles; the fuzzer's may not.
 bool is_beyond_the_fuzzer(const detail::JsonMember& member) {
@@ -35,7 +35,7 @@ bool is_beyond_the_fuzzer(const detail::JsonNode& node) {
     });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 bool fuzz_scene(std::string_view bytes) {
     const std::filesystem::path file = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz/scene_files/fuzz.json";

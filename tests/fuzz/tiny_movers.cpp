@@ -12,7 +12,7 @@
 #include "ricochet/geometry/mesh/mesh_motion.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Within a step of a sixtieth: from standing still to half a turn, from a creep to across the scene.
 double turn_rate(ByteChoices& choices) { return choices.part_of({0.0, 10.0, 360.0, 10800.0}); }
@@ -93,7 +93,7 @@ void deform(ByteChoices& choices, MeshShape& shape, double duration) {
         std::make_shared<const MeshMotion>(std::vector<double>{0.0, 0.5 * duration, duration}, std::move(positions));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 void add_movers(ByteChoices& choices, SimulationSetup& setup) {
     const bool is_exact = setup.options.response == ResponseKind::exact;

@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::fuzz {
-namespace {
+namespace RICOCHET_FILE {
 
 using MeshPointer = std::shared_ptr<const TriangleMesh>;
 
@@ -257,7 +257,7 @@ void add_springs(ByteChoices& choices, SimulationSetup& setup) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 SimulationSetup tiny_scene(ByteChoices choices) {
     SimulationSetup setup;

@@ -14,7 +14,7 @@
 #include "support/shape_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Real;
 using testing::real;
@@ -715,5 +715,5 @@ void bounce_about(std::uint32_t stream, bool with_radius) {
 TEST(AnalyticShape, NeverLetsAPointCross) { bounce_about(12, false); }
 TEST(AnalyticShape, NeverLetsASphereSinkIn) { bounce_about(13, true); }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::vector<Box3> random_boxes(RandomSequence& random, int count, double size) {
     std::vector<Box3> boxes;
@@ -77,5 +77,5 @@ TEST(BoxTree, FindsBoxesOfAnySize) {
     EXPECT_EQ(near(-kInfinity, kInfinity), (Found{0, 1, 2}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kVariants = 12;
 
@@ -259,5 +259,5 @@ TEST(ClosedSurface, AQuadListedAgainCountsOnceOrIsReported) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/sphere_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::description;
 using testing::Digits;
@@ -169,5 +169,5 @@ TEST(SegmentDistance, OfAlmostParallelSegmentsDoesNotDependOnTheirAngle) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

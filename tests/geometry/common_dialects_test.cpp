@@ -13,7 +13,7 @@
 #include "support/gltf_files.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 const std::string kFaces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
@@ -286,5 +286,5 @@ TEST(GltfDialects, HiddenNodesAreLeftOutWithAllBelowThem) {
     EXPECT_EQ(below.notes.size(), 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

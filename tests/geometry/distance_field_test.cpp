@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::distance_from;
 
@@ -104,5 +104,5 @@ TEST(DistanceField, TakesCoarserCellsWhereLargeTrianglesLieInHeaps) {
     EXPECT_GT(grid.lower_bound({4, 0, 0}), 2.9);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

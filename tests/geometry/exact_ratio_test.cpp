@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 ExactRatio ratio(const DoubleDouble& numerator, const DoubleDouble& denominator) {
     return {widened(Expansion<2>(numerator)), widened(Expansion<2>(denominator))};
@@ -39,5 +39,5 @@ TEST(Expansion, OfNumbersThatAreNotFiniteKeepsToItsRoom) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/gltf_files.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// The cube of kCubeCorners in Collada, with y up, moved by (1, 2, 3) and scaled by (2, 1, 4).
 std::string dae_cube(const std::string& first_number = "-0.5") {
@@ -79,5 +79,5 @@ TEST(ForeignReader, RefusesWhatAssimpCannotReadAndPointsThatAreNotFinite) {
         << refusal("m.dae", dae_cube("nan "));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

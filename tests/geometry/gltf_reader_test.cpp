@@ -11,7 +11,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::GltfFile;
 using test::Json;
@@ -204,5 +204,5 @@ TEST(GltfReader, ReadsNodesNestedAsDeepAsTheyLike) {
     EXPECT_EQ(triangles_of(read(file))[0][0], Vec3(0, 0, 1));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::GltfFile;
 using test::Json;
@@ -218,5 +218,5 @@ TEST(MalformedGltfFile, OpensNoFileOutsideItsFolder) {
     EXPECT_NE(refused("data:;base64,A*AA").find("base64"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

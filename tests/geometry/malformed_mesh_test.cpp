@@ -17,7 +17,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::BinaryText;
 
@@ -329,5 +329,5 @@ TEST(MeshReader, RefusesCountedTextCutBeforeItsLastLine) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include <numbers>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -70,5 +70,5 @@ TEST(MassMoments, OfPartsAddUp) {
     expect_near(parts.inertia(), whole.inertia(), 1e-15);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Gives each corner a vertex of its own, moved by at most so much along each axis.
 TriangleMesh loosened(const TriangleMesh& mesh, double most, RandomSequence& random) {
@@ -85,5 +85,5 @@ TEST(MergedVertices, RefuseAToleranceThatLeavesNoTriangle) {
     EXPECT_EQ(merged_within(needle, 10.0).vertices.size(), 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::shared_ptr<const TriangleMesh> shared(TriangleMesh mesh) {
     return std::make_shared<const TriangleMesh>(std::move(mesh));
@@ -90,5 +90,5 @@ TEST(MeshInterior, TakesMemoryInProportionToTheTriangles) {
     EXPECT_FALSE(interior.contains({0.4, 0.5, 1.6}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

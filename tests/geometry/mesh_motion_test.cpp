@@ -10,7 +10,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Positions = std::vector<std::vector<Vec3>>;
 
@@ -96,5 +96,5 @@ TEST(MeshMotion, IsSampledFromAFunctionAndMapped) {
     EXPECT_EQ(motion.mapped(world_from_local(placement)).at(1.5).position(0), Vec3(4, 5, 0));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

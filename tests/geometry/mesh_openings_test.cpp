@@ -9,7 +9,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A tube about z of a rectangle, open below and above.
 TriangleMesh tube(double x, double y) {
@@ -54,5 +54,5 @@ TEST(WindingNumber, IsThePartOfDirectionsThatAnOpenMeshCloses) {
     EXPECT_NEAR(winding_number(cube, {}), 5.0 / 6.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
 
@@ -521,5 +521,5 @@ TEST(MeshReader, ReadsManyFilesAtTheSameTime) {
     EXPECT_EQ(triangles, std::vector<std::size_t>(8, 200));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Counts that an independent checker found, see SOURCES.md beside the meshes.
 struct KnownMesh {
@@ -186,5 +186,5 @@ TEST(MeshReport, SaysThatAnOutlineCrossesItself) {
     EXPECT_TRUE(warns_of(report, "1 face has an outline that crosses itself"));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 PolygonMesh faces(std::size_t vertices, const std::vector<std::vector<std::uint32_t>>& lists) {
     PolygonMesh mesh;
@@ -251,5 +251,5 @@ TEST(MeshTopology, AgreesWithSlowCountsOnRandomTriangles) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TriangleMesh one_triangle() { return {{{0, 0, 0}, {0.1, 0, 0}, {1.0 / 3.0, 2e-300, -1e20}}, {{0, 1, 2}}}; }
 
@@ -62,5 +62,5 @@ TEST(MeshWriter, RefusesAnUnknownExtensionAndAFolder) {
     EXPECT_THROW(write_mesh(one_triangle(), folder.path("missing/c.obj")), RunError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

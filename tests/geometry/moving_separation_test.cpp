@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 in_cube(RandomSequence& random) {
     return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
@@ -172,5 +172,5 @@ TEST(MovingSeparation, GoesOnAfterAMeetingThatDoesNotCount) {
     EXPECT_NEAR(last->part, 2.0 / 3.0, 1e-14);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

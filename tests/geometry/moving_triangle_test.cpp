@@ -17,7 +17,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Real = boost::multiprecision::cpp_dec_float_50;
 using RealVec = std::array<Real, 3>;
@@ -253,5 +253,5 @@ TEST(MovingTriangle, IsPassedBesideAtAHairsBreadth) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 in_cube(RandomSequence& random) {
     return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
@@ -51,5 +51,5 @@ TEST(PairSweep, AGrazeIsMetOnItsSideOfTheLastPlace) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Digits = boost::multiprecision::cpp_bin_float_100;
 
@@ -139,5 +139,5 @@ TEST(HermitePath, StaysWithinItsSagittaOfItsChord) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

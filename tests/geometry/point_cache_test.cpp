@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 template <class Value>
 void append(std::string& bytes, Value value) {
@@ -115,5 +115,5 @@ TEST(PointCache, IsNotWrittenOfWhatItCannotHold) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("a.pc2")));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::exact;
 using testing::Rational;
@@ -383,5 +383,5 @@ TEST(PointSweep, APointFartherFromAPlaneThanADistanceIsSoCertainly) {
     EXPECT_GT(told, 1000);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/exact_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// sum |c_k| duration^k, in terms of which errors are stated.
 double magnitude(const Polynomial& p) {
@@ -306,5 +306,5 @@ TEST(CertainlyPositive, NeverHoldsForAPolynomialThatReachesZero) {
     EXPECT_GT(certain, 100);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

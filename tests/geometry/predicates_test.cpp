@@ -9,7 +9,7 @@
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::description;
 using testing::segment_triangle_case;
@@ -182,5 +182,5 @@ TEST(FlushTiny, ReplacesOnlyWhatIsTooSmallForExactProducts) {
     EXPECT_EQ(flush_tiny({-1e-300, 5e-324, -1e300}), (Vec3{0.0, 0.0, -1e300}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

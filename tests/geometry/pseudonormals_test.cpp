@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 using testing::flipped;
@@ -278,5 +278,5 @@ TEST(Pseudonormals, DecideTheSideNextToEdgesHoweverSharp) {
     EXPECT_GT(decided, queries * 9 / 10);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/exact_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Corners = std::array<Vec3, 3>;
 
@@ -104,5 +104,5 @@ TEST(RayTriangle, PlacesThatRoundingDoesNotSeparateAreOrdered) {
     EXPECT_EQ(compare_along(ray, at_height(z, 0x1p-52), lower), -1);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::size_t count(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
     return count_self_intersections({vertices, triangles});
@@ -152,5 +152,5 @@ TEST(SelfIntersection, EndsEarlyWhereNearlyAllPairsCross) {
     EXPECT_EQ(count_self_intersections(mesh), 1000U * 999U / 2U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

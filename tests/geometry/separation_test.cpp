@@ -12,7 +12,7 @@
 #include "support/sphere_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Triangle;
 
@@ -106,5 +106,5 @@ TEST(Separation, ClaimsNothingWhereTheDirectionDoesNotSeparate) {
     EXPECT_GT(distance_lower_bound({0, 0, 1e-100}, p, a, b, c), 2.999);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

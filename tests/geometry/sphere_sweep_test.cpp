@@ -14,7 +14,7 @@
 #include "support/sphere_oracle.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Digits;
 using testing::DigitsVec3;
@@ -730,5 +730,5 @@ TEST(SphereSweep, FindsTheSameBitsWhereItIsATinyPartOfItsPath) {
     EXPECT_GT(shortened.dropped, test::scaled(20'000) / 10);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

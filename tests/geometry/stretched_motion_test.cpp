@@ -10,7 +10,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 const KeyedCurve<Vec3>& growth() {
     static const KeyedCurve<Vec3> curve({{1.0, {1, 1, 1}}, {3.0, {2, 0.5, 1}}, {4.0, {1, 1, 3}}});
@@ -113,5 +113,5 @@ TEST(StretchedMotion, RefusesWhatItCannotDo) {
     EXPECT_EQ(memory.substr(0, 36), "scale that changes in time: asks for") << memory;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::vector<std::uint32_t> visited(const TriangleBvh& bvh, const Vec3& from, const Vec3& to) {
     std::vector<std::uint32_t> triangles;
@@ -348,5 +348,5 @@ TEST(TriangleBvh, NothingIsNearWithoutTriangles) {
 
 TEST(TriangleBvh, NamesTheRayLibrary) { EXPECT_EQ(embree_version().rfind("Embree ", 0), 0U); }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Neighbouring triangles of all shapes: fair ones, needles, some without area, a hundred times smaller than the next.
 TriangleMesh neighbours(RandomSequence& random, double scale, const Vec3& center) {
@@ -159,5 +159,5 @@ TEST(TriangleClusters, BoxesHoldTheirTriangles) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -7,7 +7,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(TriangleMesh, KnowsBoundsAreaAndVolumeOfABox) {
     const TriangleMesh box = testing::box_mesh({-1, 0, 2}, {1, 3, 6});
@@ -39,5 +39,5 @@ TEST(TriangleMesh, BoundsLeaveOutUnusedVertices) {
     EXPECT_TRUE(bounds(TriangleMesh{}).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::SegmentTriangle;
 
@@ -75,5 +75,5 @@ TEST(TrianglePlane, CrossingsAreLeftOutOnlyWhenTheyAreLater) {
     EXPECT_GT(late, early / 4) << "the cases next to a plane are too close to tell in plain doubles";
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

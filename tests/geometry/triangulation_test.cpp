@@ -16,7 +16,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Outline = std::vector<Vec3>;
 
@@ -418,5 +418,5 @@ TEST(Triangulation, CutsLargePolygonsInNearlyLinearTime) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

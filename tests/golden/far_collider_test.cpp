@@ -22,7 +22,7 @@
 #include "support/counts.h"
 
 namespace ricochet::golden {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::filesystem::path kScenes = std::filesystem::path(RICOCHET_SOURCE_DIR) / "scenes";
 
@@ -255,5 +255,5 @@ TEST(CradleBesideAFarRock, LetsAsManyBallsLeaveAsArrive) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::golden

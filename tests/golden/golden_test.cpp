@@ -29,7 +29,7 @@
 #include "support/counts.h"
 
 namespace ricochet::golden {
-namespace {
+namespace RICOCHET_FILE {
 
 const std::filesystem::path kRoot = RICOCHET_SOURCE_DIR;
 
@@ -222,5 +222,5 @@ TEST(GoldenTable, NamesEveryShippedScene) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::golden

@@ -9,7 +9,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::Lines;
@@ -166,5 +166,5 @@ TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
                      "\"exact\""}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

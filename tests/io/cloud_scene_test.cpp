@@ -13,7 +13,7 @@
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::string scene_with(const std::string& child, const std::string& keys = "", const std::string& simulation = "") {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1)" + simulation + R"(},
@@ -90,5 +90,5 @@ TEST(CloudScene, FramesSayWithWhomEachParticleGoes) {
     EXPECT_EQ(std::get<std::vector<std::int64_t>>(parents->values), (std::vector<std::int64_t>{-1, 0, 0}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -23,7 +23,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::scaled;
 using test::TemporaryFolder;
@@ -446,5 +446,5 @@ TEST(ContactLog, IsOnlyWrittenOnRequestAndRefusesToLeaveStepsOut) {
     EXPECT_THROW(log.add_step(simulation), std::logic_error);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -63,5 +63,5 @@ TEST(CsvFile, FieldsAreQuotedWhereTheyNeedIt) {
     EXPECT_EQ(folder.read("a.csv"), "a,b,c,d,e\n\"x,y\",,,7,-1\n");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "ricochet/io/scene/document.h"
 
 namespace ricochet::detail {
-namespace {
+namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
@@ -59,5 +59,5 @@ TEST(CurveKeys, RefusesWithThePathOfTheKey) {
     EXPECT_NE(lonely.errors[0].find("a.angle: a curve that repeats has one key"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::detail

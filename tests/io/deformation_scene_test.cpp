@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
@@ -207,5 +207,5 @@ TEST_F(DeformationScene, RefusesWhatDoesNotGoTogether) {
         (Lines{"emitters[0].collider: 'flag' is a mesh that deforms, expected one that keeps its shape"}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

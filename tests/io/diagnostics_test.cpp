@@ -7,7 +7,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet::detail {
-namespace {
+namespace RICOCHET_FILE {
 
 using Names = std::vector<std::string_view>;
 
@@ -76,5 +76,5 @@ TEST(DidYouMean, NamesAllCandidates) {
     EXPECT_EQ(did_you_mean({"a", "b"}), "did you mean \"a\" or \"b\"?");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::detail

@@ -7,7 +7,7 @@
 #include "ricochet/io/scene/diagnostics.h"
 
 namespace ricochet::detail {
-namespace {
+namespace RICOCHET_FILE {
 
 std::string only_error(std::string_view text) {
     Diagnostics diagnostics("f", {});
@@ -136,5 +136,5 @@ TEST(JsonParser, BoundsTheNumberOfValues) {
     EXPECT_NE(only_error(text + "0]").find("more than 4000000 values"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::detail

@@ -14,7 +14,7 @@
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::kEmitterScene;
 using test::SampleFolder;
@@ -212,5 +212,5 @@ TEST(EmitterScene, ColumnsThatNobodyDeclaredAndValuesBeyondTheRangeAreRefused) {
     EXPECT_NE(errors("x,y,z,heat,heat\n").find("appears twice"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

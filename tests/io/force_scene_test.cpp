@@ -12,7 +12,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 using test::ForceSceneFolder;
@@ -194,5 +194,5 @@ TEST(ForceScene, WarnsOfIdsThatNoParticleHas) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

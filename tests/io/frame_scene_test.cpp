@@ -10,7 +10,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
@@ -91,5 +91,5 @@ TEST(FrameScene, SaysWhatIsWrongAndWhere) {
               "frames.arm.motions[0].angle.keys[1].value: missing, expected a number");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

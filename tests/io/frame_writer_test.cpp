@@ -21,7 +21,7 @@
 
 namespace ricochet {
 
-namespace {
+namespace RICOCHET_FILE {
 
 using Mode = WriterThread::Mode;
 
@@ -129,9 +129,9 @@ TEST(WriterThread, GoesWithoutWaitingForJobsThatHaveNotBegun) {
     EXPECT_LE(done.load(), 1);  // done, or given up before it began
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -259,6 +259,6 @@ TEST(FrameWriter, ASeriesMayGoBeforeTheThreadThatStillWritesIt) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// The cube of gltf_cube() as an OBJ file: vertices in the order in which its triangles name them.
 std::string obj_cube() {
@@ -206,5 +206,5 @@ TEST(GltfScene, EmitsFromAMeshOfAGltfFileAndMakesClothOfIt) {
     EXPECT_LE(box.upper.z, 3.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

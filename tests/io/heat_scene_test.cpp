@@ -11,7 +11,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::kHeatScene;
@@ -112,5 +112,5 @@ TEST(HeatScene, LiftsByTemperatureWhereTheAttributeIsDeclared) {
     EXPECT_EQ(errors_of(scene(declared, R"("particle_contacts": {}, )")).size(), 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

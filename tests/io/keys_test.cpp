@@ -14,7 +14,7 @@
 #include "ricochet/io/scene/fields.h"
 
 namespace ricochet::detail {
-namespace {
+namespace RICOCHET_FILE {
 
 enum class Color { red, green };
 
@@ -157,5 +157,5 @@ TEST(Keys, AStructOfAnotherTableCannotBeRead) {
     EXPECT_THROW((void)ObjectView(node, sample_spec(), "").read<Part>(), std::logic_error);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::detail

@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::MemoryCeiling;
 using test::TemporaryFolder;
@@ -131,5 +131,5 @@ TEST(MemoryOfScenes, TheEstimateIsPartOfTheScene) {
     EXPECT_NEAR(bytes_of("100001") - bytes_of("1"), 38e6, 1.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

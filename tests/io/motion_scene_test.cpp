@@ -8,7 +8,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::Lines;
@@ -86,5 +86,5 @@ TEST(MotionScene, WarnsOfWallsThatCannotSwallowOrShatterWhatAFlowCarries) {
     EXPECT_EQ(parse_scene(scene_of("", walls + child + "true}]"), "s.json").warnings.size(), 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

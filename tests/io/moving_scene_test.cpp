@@ -12,7 +12,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::Lines;
@@ -255,5 +255,5 @@ TEST(MovingScene, SaysWhichResponsesKnowNoCollidersThatMove) {
               (Lines{"colliders[1].motion: particles that a flow carries know no colliders that move, expected none"}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

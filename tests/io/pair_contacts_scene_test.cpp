@@ -10,7 +10,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::Lines;
@@ -128,5 +128,5 @@ TEST(PairContactsScene, EachOfManyPairsStaysWhereItStandsAndCountsOnce) {
                "once"}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::errors_of;
 using test::kParticleForcesScene;
@@ -117,5 +117,5 @@ TEST(ParticleForcesScene, RefusesWhatDoesNotGoTogether) {
               std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::detail {
-namespace {
+namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
@@ -137,5 +137,5 @@ TEST(ParticleTable, TakesOnlyCsvFiles) {
     EXPECT_EQ(read_particle_table(folder.write("c.CSV", "x,y,z\n1,2,3\n")).particles.size(), 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::detail

@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::string scene_with(const std::string& keys) {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
@@ -249,5 +249,5 @@ TEST(PictureScene, StreaksWithoutAnOpenShutterAreWarnedOf) {
     EXPECT_TRUE(parsed(streaks + R"(, "picture": {"shutter": 0.1})").warnings.empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

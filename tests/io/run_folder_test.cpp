@@ -12,7 +12,7 @@
 
 namespace ricochet {
 
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(RunFiles, FrameNamesCarryTheStepWithSixDigitsOrMore) {
     EXPECT_EQ(frame_file_name(0), "particles_000000.vtp");
@@ -78,9 +78,9 @@ TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -223,9 +223,9 @@ TEST(OutputDirectory, SaysWhyItCannotBeWritten) {
     std::filesystem::permissions(folder.path(""), std::filesystem::perms::owner_all);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -346,6 +346,6 @@ TEST(RunFolder, RefusesAFolderWithoutFramesAndNoFolder) {
     EXPECT_THROW((void)open_run_folder(folder.write("file", "")), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 
 namespace ricochet {
 
-namespace {
+namespace RICOCHET_FILE {
 
 nlohmann::json parsed(const RunSummary& summary) { return nlohmann::json::parse(summary_text(summary)); }
 
@@ -126,9 +126,9 @@ TEST(Summary, NamesThatAreNoUtf8DoNotLoseTheRun) {
     EXPECT_EQ(json["colliders"][0]["impulse"][2], -1.5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
-namespace {
+namespace RICOCHET_FILE {
 
 std::vector<std::vector<std::string>> rows_of(const std::string& text) {
     std::vector<std::vector<std::string>> rows;
@@ -163,6 +163,6 @@ TEST(StateCsv, FailsWithoutLeavingAnythingWhenTheFolderIsMissing) {
     EXPECT_THROW(write_state_csv(folder.path("none") / "state.csv", Particles{}, 0.0), RunError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 }  // namespace ricochet

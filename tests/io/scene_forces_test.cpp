@@ -8,7 +8,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::uint64_t of(const std::string& text, const std::vector<std::string>& overrides = {}) {
     return forces_fingerprint(text, overrides);
@@ -34,5 +34,5 @@ TEST(ForcesFingerprint, DiffersWhereAForceOrAFlowDoes) {
 
 TEST(ForcesFingerprint, RefusesWhatIsNoJson) { EXPECT_THROW((void)of("{"), InputError); }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -22,7 +22,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Json = nlohmann::json;
 using Lines = std::vector<std::string>;
@@ -290,5 +290,5 @@ TEST(SchemaValidator, SeesWhatItIsThereFor) {
     EXPECT_THROW((void)schema_errors({{"minProperties", 1}}, Json::object()), std::logic_error);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::kSampleScene;
 using test::SampleFolder;
@@ -756,5 +756,5 @@ TEST(SceneFile, EverySceneOfTheRepositoryIsReadWithoutAWarning) {
     EXPECT_GE(scenes, 14);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

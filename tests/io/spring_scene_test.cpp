@@ -8,7 +8,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::kSpringScene;
 using test::SpringSceneFolder;
@@ -173,5 +173,5 @@ TEST(SpringScene, RefusesClothWithVerticesThatHangOnNothing) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

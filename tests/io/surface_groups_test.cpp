@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 using Names = std::vector<std::string>;
@@ -178,5 +178,5 @@ TEST(SurfaceGroups, SharesAreBySizesOfImpulses) {
     EXPECT_EQ(sizes.share_of_impacts(), 8.0 / 9.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

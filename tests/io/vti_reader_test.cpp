@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -211,5 +211,5 @@ TEST(VtiReader, EveryCutOfAFileIsRefused) {
     EXPECT_NO_THROW((void)read_vti(folder.write("whole.vti", whole.substr(0, needed))));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -416,5 +416,5 @@ TEST(VtkReader, NeverCrashesOnAnyCutOrChangedByte) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

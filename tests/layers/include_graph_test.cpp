@@ -7,7 +7,7 @@
 #include <fstream>
 
 namespace ricochet::layers {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A tree of two files: `path` with the one include line `name`, and, when it is ours, the file that the line names.
 SourceTree planted(const std::string& path, const std::string& name) {
@@ -155,5 +155,5 @@ TEST(IncludeGraph, IsReadFromFilesWithLineNumbersAndWithoutComments) {
     EXPECT_EQ(tree.public_headers, std::set<std::string>{"src/ricochet/core/a.h"});
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::layers

@@ -19,7 +19,7 @@
 #include "meshes/mesh_checks.h"
 
 namespace ricochet::meshes {
-namespace {
+namespace RICOCHET_FILE {
 
 struct ClosedShape {
     std::string name;
@@ -153,5 +153,5 @@ TEST(MeshChecks, SeeAHoleAFlippedTriangleAndACrossing) {
     EXPECT_EQ(shells(crossing), 2U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::meshes

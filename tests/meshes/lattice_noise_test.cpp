@@ -9,7 +9,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet::meshes {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 random_point(RandomSequence& random) { return 20.0 * random.in_unit_ball(); }
 
@@ -69,5 +69,5 @@ TEST(FractalNoises, KeepTheirBits) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(eroded_noise({0.3, -4.7, 2.25}, {}, 7)), 0xBFA6D5C6D9E402A7ULL);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::meshes

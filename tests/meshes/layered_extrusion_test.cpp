@@ -7,7 +7,7 @@
 #include "meshes/mesh_checks.h"
 
 namespace ricochet::meshes {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Extrusion, OfAUnitSquareIsACubeOfTwelveTriangles) {
     const TriangleMesh cube = extrusion(rectangle_region(1.0, 1.0, 2.0), 1.0, 2.0);
@@ -51,5 +51,5 @@ TEST(LayeredExtrusion, MakesAnInnerShellWhereAPartIsLeftOutBetweenLids) {
     EXPECT_DOUBLE_EQ(signed_volume(mesh), 16.0 * 4.0 - 4.0 * 2.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::meshes

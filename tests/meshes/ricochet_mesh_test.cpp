@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace {
+namespace RICOCHET_FILE {
 
 struct Outcome {
     int exit_code = -1;
@@ -140,4 +140,4 @@ TEST_F(RicochetMesh, FailsWithOneLineWhereItCannotWrite) {
     EXPECT_EQ(outcome.text.find('\n'), outcome.text.size() - 1) << outcome.text;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE

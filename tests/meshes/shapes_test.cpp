@@ -18,7 +18,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet::meshes {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -221,5 +221,5 @@ TEST(Shapes, RefuseParametersOutOfRangeByTheirOptionName) {
     EXPECT_THROW((void)build_near(1, 1.0, [](double edge) { return make_plate({}, edge); }), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::meshes

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace ricochet::meshes {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(PointOnCircle, AgreesWithSineAndCosine) {
     for (int i = -2000; i <= 4000; ++i) {
@@ -32,5 +32,5 @@ TEST(PointOnCircle, IsExactAtQuarterTurns) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::meshes

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 struct Place {
     const char* name;
@@ -141,5 +141,5 @@ INSTANTIATE_TEST_SUITE_P(Anywhere, HardRays,
                                            Place{"Huge", 0.0, 0x1p40}, Place{"Tiny", 0.0, 0x1p-40}),
                          [](const auto& param) { return std::string(param.param.name); });
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

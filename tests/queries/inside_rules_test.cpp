@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Points = std::vector<Vec3>;
 using Flags = std::vector<std::uint8_t>;
@@ -175,5 +175,5 @@ TEST(ShellsOverlap, OnlyWhereAPointIsWithinTwoOfThem) {
     EXPECT_FALSE(shells_overlap(unit));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

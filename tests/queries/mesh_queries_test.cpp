@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -197,5 +197,5 @@ TEST(MeshQueries, SeamsAndRepeatedTrianglesLeaveAMeshClosed) {
     EXPECT_THROW((void)mesh.inside(points), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

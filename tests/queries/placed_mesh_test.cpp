@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Points = std::vector<Vec3>;
 
@@ -127,5 +127,5 @@ TEST(PlacedMesh, NamesTheQuestionThatCannotBeAsked) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

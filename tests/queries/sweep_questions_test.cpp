@@ -10,7 +10,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Points = std::vector<Vec3>;
 
@@ -157,5 +157,5 @@ TEST(MeshSweep, ASphereThatHasLeftAMovingTriangleOrSinksDeeperThanAtTheStartIsSt
     EXPECT_EQ(stopped_at({-1, 0, -0.4}, {-1, 0, -0.4}), 0.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

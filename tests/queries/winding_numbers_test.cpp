@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Points = std::vector<Vec3>;
 using Numbers = std::vector<double>;
@@ -143,5 +143,5 @@ TEST(WindingNumbers, RefusePointsThatAreNotFinite) {
     EXPECT_THROW((void)MeshQueries(terrain(1)).winding_numbers(Points{{0, std::nan(""), 0}}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::at;
 using testing::box_mesh;
@@ -246,5 +246,5 @@ TEST(Advect, RefusesWhatHasNoMeaningWithAFlow) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

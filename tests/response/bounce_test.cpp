@@ -9,7 +9,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 bounced(const Vec3& velocity, const Vec3& n, double restitution, double friction) {
     return bounce({velocity, {}}, 0.0, n, restitution, friction).velocity;
@@ -103,5 +103,5 @@ TEST(ProjectOff, HasTheClosedForms) {
     EXPECT_EQ(project_off({-1, -2, -3}, {}), (Vec3{-1, -2, -3}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::at;
 using testing::carried;
@@ -272,5 +272,5 @@ TEST(TurbulenceInAMeshLong, SpendsNoBudgetInRealMeshesEither) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

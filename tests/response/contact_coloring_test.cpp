@@ -9,7 +9,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 NetworkContact pair_of(std::uint32_t a, std::uint32_t b) {
     NetworkContact contact;
@@ -59,5 +59,5 @@ TEST(ContactColoring, LeavesTheContactsOfABoulderAmongSandToOneThread) {
     EXPECT_EQ(coloring.end_of(ContactColoring::kMostColors) - coloring.begin_of(ContactColoring::kMostColors), 36U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

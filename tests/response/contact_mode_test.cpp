@@ -9,7 +9,7 @@
 #include "ricochet/response/held_motion.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 const std::array<Vec3, 1> kFloor{Vec3{0, 0, 1}};
@@ -80,5 +80,5 @@ TEST(ContactMode, AValleyOfTwoWallsLeavesTheMotionAlongIt) {
     EXPECT_NEAR(length(slide.acceleration), 0.0, 1e-14);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 struct TestContact {
     Vec3 normal;
@@ -278,5 +278,5 @@ TEST(CoulombProblem, HasTheSameAnswerEveryTimeAndForAnyUnit) {
     for (std::size_t c = 0; c < once.size(); ++c) EXPECT_EQ(problem.change()[c], 0x1p40 * once[c]);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

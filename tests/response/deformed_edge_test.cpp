@@ -12,7 +12,7 @@
 #include "ricochet/response/deformed_surface.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A triangle behind the edge from its corner a to its corner b, all corners of which move.
 DeformingColliders triangle_of(const std::vector<Vec3>& corners, const std::vector<Vec3>& velocities) {
@@ -64,5 +64,5 @@ TEST(TheBendAtADeformingEdge, IsTheSecondDerivativeOfTheDistance) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::floor_mesh;
@@ -463,5 +463,5 @@ TEST(ExactResponse, NeverRestsWhereNothingIsLost) {
     EXPECT_GT(outcome.bounces, 100U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

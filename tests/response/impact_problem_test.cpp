@@ -11,7 +11,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Twice the kinetic energy over the mass.
 double energy(const Motion& motion, double radius) {
@@ -137,5 +137,5 @@ TEST(ImpactProblem, NeverLetsEnergyInAndMeetsMoreausLaw) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 
@@ -53,5 +53,5 @@ TEST(IntervalsOfContact, BeyondSixtyFourInAStepSpendTheBudgetOfBounces) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kRadius = 0.04;
 
@@ -89,5 +89,5 @@ TEST(JammingContact, WhatHardlyMovesOnASmoothFloorGoesOn) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

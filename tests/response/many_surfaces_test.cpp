@@ -11,7 +11,7 @@
 #include "ricochet/response/impact_problem.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSides = 5 * static_cast<int>(ImpactResult::kMostSurfaces);
 
@@ -51,5 +51,5 @@ TEST_P(ManySurfaces, AreAllAnsweredByABallThatFallsIntoAFunnel) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/response/network/network_solver.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
 constexpr std::uint32_t kHeight = 20;
@@ -76,5 +76,5 @@ TEST(NetworkExactness, OfOneColumnTakesTheSweepsThatItNeedsAlone) {
     EXPECT_GT(fall_of(coarse, 0), 0.1 * kKick);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

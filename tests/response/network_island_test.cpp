@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::floor_mesh;
 using testing::mesh_collider;
@@ -143,5 +143,5 @@ TEST(WallContacts, AreOneOnAFlatFloorAndThreeInACorner) {
     EXPECT_NEAR(gaps, 0.02 + 0.03 + 0.04, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

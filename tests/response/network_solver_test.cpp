@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kGravity = 9.81;
 constexpr double kStep = 1e-3;
@@ -540,5 +540,5 @@ TEST(NetworkSolver, AWarmStartThatFitsNeedsOneSweep) {
     EXPECT_GT(cold, 10);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

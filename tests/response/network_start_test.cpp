@@ -7,7 +7,7 @@
 #include "ricochet/response/network/network_solver.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
 const Vec3 kUp{0, 0, 1};
@@ -57,5 +57,5 @@ TEST(NetworkStart, ABallBetweenTwoWallsThatHaveHeldItFallsUpwardsWhereGravityTur
     EXPECT_EQ(bodies[0].velocity.z, kKick);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Rows of which no two have a body that moves in common, and all that belongs to them.
 struct Rows {
@@ -222,5 +222,5 @@ TEST(NetworkSweep, RowsThatDoNothingChangeNothing) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 #include "ricochet/response/penalty.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -177,5 +177,5 @@ TEST(PenaltyContact, BrakesAtMostToAStopWithinTheStep) {
     EXPECT_NEAR(velocity - radius * spin, 0.0, 1e-15);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

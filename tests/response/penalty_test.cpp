@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::fitted_slope;
@@ -400,5 +400,5 @@ TEST(PenaltyRest, ComesToRestWithinAResponsesMeaningOfIt) {
     EXPECT_EQ(ball.state.position.y, 0.2);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::plane_collider;
@@ -47,5 +47,5 @@ TEST(PlannedMove, GoesAlongAGrooveWhereThePlanLeadsALittleIntoBothWalls) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

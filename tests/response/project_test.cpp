@@ -18,7 +18,7 @@
 #include "support/random_draws.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::floor_mesh;
@@ -315,5 +315,5 @@ TEST(ProjectInACorner, IsPutInFrontOfAllItsWalls) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -19,7 +19,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Course;
 using testing::floor_mesh;
@@ -409,5 +409,5 @@ TEST_P(RollbackOnASlope, FrictionHoldsBelowItsAngleAndBrakesAboveItAsCoulombSays
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

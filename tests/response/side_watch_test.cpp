@@ -11,7 +11,7 @@
 #include "support/random_draws.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::floor_mesh;
 using testing::mesh_collider;
@@ -167,5 +167,5 @@ TEST(SideWatch, SeesTheSameAfterASurvey) {
     EXPECT_GT(seen_any, test::scaled(2000) / 10);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

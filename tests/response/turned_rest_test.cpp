@@ -17,7 +17,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Axes of a turned world; the first one is the usual one.
 struct Axes {
@@ -160,5 +160,5 @@ TEST(AlongSurfaces, LeavesNoSpeedToWhatRollsAndSlipsNot) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -7,7 +7,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Kinetic energy of a sphere and of what yields, by an impulse J on the particle; relative to the body before.
 double energy_change(const Motion& before, const Motion& after, const ForceInput& state, const YieldingSurface& s) {
@@ -128,5 +128,5 @@ TEST(AnImpactOnABodyThatYields, SlipsAgainstTheSlipThatTheImpulseMakes) {
     EXPECT_LT(impulse.x * (after.velocity.x - of_arm.x), 0.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

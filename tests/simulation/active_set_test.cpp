@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::size_t kMany = 100'000;
 constexpr std::size_t kManyTriangles = 1'000'000;
@@ -69,5 +69,5 @@ TEST(ActiveSet, IsSortedTheSameForAnyNumberOfThreads) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

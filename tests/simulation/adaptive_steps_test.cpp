@@ -14,7 +14,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -112,5 +112,5 @@ TEST(AdaptiveSteps, PassAJumpOfAForce) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

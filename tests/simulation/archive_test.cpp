@@ -18,7 +18,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Everything at once: emitters with rates, children, attributes, springs, resting, random walls, totals.
 SimulationSetup busy_setup(ResponseKind response = ResponseKind::exact) {
@@ -399,5 +399,5 @@ TEST(SavedSimulation, RestoredBetweenTheStepsOfAnAdvanceGoesOnAsIfItHadNeverLeft
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -21,7 +21,7 @@
 #include "support/thread_ranks.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::difference;
 using testing::on_ranks;
@@ -274,5 +274,5 @@ TEST(StepBirths, SayThatMoreAreBornThanFitBeforeAllAreMade) {
     EXPECT_EQ(refused.count(), 40U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -4,7 +4,7 @@
 #include <numbers>
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 /// The bounds that theory gives for springs at a step h, with what a run has come to.
 struct SpringTheory {
@@ -88,7 +88,7 @@ double lost_with_swallowed(const BookCase& c, const BookedRun& run) {
     return z * z * kEnergy / kParticles * static_cast<double>(run.swallowed().count);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 /// Without springs and penalties particles fly straight and bounce elastically. Springs give momentum to either end
 /// alike, whatever it does, but to what a wall has swallowed.

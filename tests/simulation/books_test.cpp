@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::Account;
 using test::BookBounds;
@@ -130,5 +130,5 @@ TEST(BooksLong, OfManyScenesAreClosed) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

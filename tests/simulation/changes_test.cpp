@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr Vec3 kDown{0, 0, -9.81};
 
@@ -313,5 +313,5 @@ TEST(ReleasedParticles, KeepTheirMemoryAndValuesAndTheRunItsBits) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A response, by name and as options.
 struct Way {
@@ -146,5 +146,5 @@ TEST(ChildrenAtWalls, WhatAbsorbedParticlesShareOutPushesTheSurfaceOnce) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -19,7 +19,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -398,5 +398,5 @@ TEST(CloudMotion, AnyIntegratorOfTheParentWillDo) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -224,5 +224,5 @@ TEST(CollisionQueries, OfASimulationOutliveIt) {
     EXPECT_TRUE(queries.is_inside({1, 0, 0}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 struct Counts {
     std::uint64_t contacts = 0;
@@ -181,5 +181,5 @@ TEST(ContactCounts, TheWeightOfAStackAtRestIsLastingContact) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -342,5 +342,5 @@ TEST(CoupledPairs, AreRefusedWithOneLineWhereNobodyStepsThemExplicitly) {
                    [](SimulationSetup& setup) { setup.solver = [](ParticleSystem&, double) {}; });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

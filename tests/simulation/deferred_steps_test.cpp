@@ -13,7 +13,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::array<std::uint64_t, 6> bits(const PhaseState& state) {
     const auto of = [](double x) { return std::bit_cast<std::uint64_t>(x); };
@@ -74,5 +74,5 @@ TEST(DeferredSteps, StartAfterTheLastOneThatWasMade) {
     EXPECT_EQ(deferred.after(1, start).position.x, 0.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -211,5 +211,5 @@ TEST(DenseAmongMovers, APressLetsNothingThrough) {
     EXPECT_EQ(simulation.statistics().lost_impulses, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -250,5 +250,5 @@ TEST(DenseBits, AnyNumberOfThreadsGivesTheSame) {
     });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

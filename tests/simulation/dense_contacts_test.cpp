@@ -14,7 +14,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::mesh_collider;
 using testing::particle_of;
@@ -225,5 +225,5 @@ TEST(DenseContacts, WhatIsPouredIntoAFormulasCylinderSettlesThere) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

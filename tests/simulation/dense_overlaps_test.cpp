@@ -9,7 +9,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -92,5 +92,5 @@ TEST(DenseOverlaps, WhoseLifeHasEndedStandsInNobody) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::mesh_collider;
 using testing::particle_of;
@@ -230,5 +230,5 @@ TEST(DensePiles, HeapsAreSteeperWithMoreFriction) {
                    std::to_string(angles[0]) + " " + std::to_string(angles[1]) + " " + std::to_string(angles[2]));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

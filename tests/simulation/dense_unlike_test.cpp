@@ -12,7 +12,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::setup_of;
 
@@ -105,5 +105,5 @@ TEST(DenseUnlike, WhatIsPinchedBetweenBigBallsIsInNoneOfThem) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A sheet of 1.4 m, stiff and without restitution, over a ball and a floor.
 SimulationSetup sheet_over_a_ball(double time_step, double friction, double radius, std::size_t cells = 12) {
@@ -211,5 +211,5 @@ TEST(DrapedCloth, CanBeStoppedWithinAStep) {
     EXPECT_EQ(resumed.state_hash(), whole.state_hash());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "ricochet/simulation.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kMass = 10.0;   // kg, of the plate
 constexpr double kGrain = 0.02;  // kg
@@ -138,5 +138,5 @@ TEST(DrivenMotion, HasDivergedWhereABodyTurnsFasterThanThereAreTurns) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

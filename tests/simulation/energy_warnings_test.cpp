@@ -20,7 +20,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -231,5 +231,5 @@ TEST(EnergyWarnings, OfForcesBetweenParticlesComeWithMidpoint) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::mesh_collider;
 using testing::setup_of;
@@ -346,5 +346,5 @@ TEST(GranularLaws, ADrumFlowsAsSteeplyAsGlassBeadsDo) {
     EXPECT_LT(smoother, angle - 2.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

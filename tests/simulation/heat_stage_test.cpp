@@ -16,7 +16,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -172,5 +172,5 @@ TEST(HeatStage, RefusesSetupsInWhichItCannotWork) {
         "particles that act on each other");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

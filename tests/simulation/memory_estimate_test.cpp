@@ -14,7 +14,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Part = MemoryNeed::Part;
 using test::MemoryCeiling;
@@ -207,5 +207,5 @@ TEST(MemoryEstimate, BirthsThatAreNotCountedBeforehandEndTheRunWithALine) {
     EXPECT_GT(simulation.particles().size(), 10'000U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -194,5 +194,5 @@ TEST(NotFiniteForces, AreNoneWhereThePositionThatIsTriedIsOutOfRange) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

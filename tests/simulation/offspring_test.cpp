@@ -18,7 +18,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -354,5 +354,5 @@ TEST(Offspring, NothingIsKeptForScenesThatDoNotAsk) {
     EXPECT_TRUE(simulation.particles().attributes.empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

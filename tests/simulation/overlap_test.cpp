@@ -22,7 +22,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -287,5 +287,5 @@ TEST(SphereInOverlap, IsNamedInALine) {
     EXPECT_EQ(simulation.statistics().started_inside, 2U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

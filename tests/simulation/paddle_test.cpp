@@ -11,7 +11,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -104,5 +104,5 @@ TEST(APaddleOverTheFloor, ThatTurnsPushesSpheresIntoNoOthers) {
     EXPECT_EQ(simulation.statistics().pair_violations, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -505,5 +505,5 @@ TEST(PairContacts, AGasThatLosesEnergyDoesSoImpactByImpactHoweverManyThereAre) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::enskog_rate;
 using testing::Gas;
@@ -116,5 +116,5 @@ TEST(PairGas, AnInelasticGasCoolsAsHaffSays) {
     EXPECT_NEAR(measured / expected, 1.0, gas.count >= 8000 ? 0.03 : 0.15);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

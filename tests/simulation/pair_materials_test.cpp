@@ -12,7 +12,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -170,5 +170,5 @@ TEST(PairMaterials, WhatIsNoMaterialIsRefusedByName) {
     EXPECT_NO_THROW(simulation.add_particle(made_of(kGlass, {}, {})));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -91,5 +91,5 @@ TEST(PairPressing, AnElasticSphereLiesOnOneOnADeadFloor) {
     EXPECT_NEAR(simulation.particles().position[1].z, 3.0 * kRadius, 1e-2 * kRadius);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Gas;
 
@@ -135,5 +135,5 @@ TEST(PairPressureLong, IsThatOfCarnahanAndStarlingAtAnyPacking) {
     for (std::size_t k = 0; k < gases.size(); ++k) expect_carnahan_starling(gases[k], found[k], 0.01);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

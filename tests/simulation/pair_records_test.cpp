@@ -12,7 +12,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -109,5 +109,5 @@ TEST(PairRecords, VerifiedImpactsOfManyAtOnceAddUp) {
     EXPECT_LT(simulation.statistics().overlap_verified, 1e-12);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

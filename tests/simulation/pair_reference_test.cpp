@@ -14,7 +14,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Digits = boost::multiprecision::cpp_dec_float_50;
 
@@ -155,5 +155,5 @@ TEST(PairReference, AHundredSpheresGoTheWayOfAReferenceInFiftyDigits) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -15,7 +15,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -96,5 +96,5 @@ TEST(PairStepEnds, RoundNumbersMissNoImpactWhateverTheMethodAndTheIntegrator) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

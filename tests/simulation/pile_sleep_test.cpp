@@ -13,7 +13,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -228,5 +228,5 @@ TEST(PileSleep, WhatSleepsAloneHasWeighedOnTheFloorUntilItIsHit) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -13,7 +13,7 @@
 #include "support/thread_ranks.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Work = std::vector<std::uint64_t>;
 
@@ -94,5 +94,5 @@ TEST(RankBalancer, ActsWhereOneIsMoreThanATenthBehind) {
     EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kLooks * RankBalancer::kSteps + 1));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

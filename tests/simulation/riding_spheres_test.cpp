@@ -17,7 +17,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -60,5 +60,5 @@ TEST(SpheresOnATableThatTurnsFast, MeetWhereTheyTouch) {
     EXPECT_GT(impacts, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

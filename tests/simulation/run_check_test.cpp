@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 ColliderDescription mesh_collider(TriangleMesh mesh) {
     return {"", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, "", {}}, 0};
@@ -202,5 +202,5 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
     EXPECT_EQ(violations[2].particle, 30U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

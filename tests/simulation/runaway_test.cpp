@@ -14,7 +14,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -102,5 +102,5 @@ TEST(Runaways, OfAMethodThatChoosesItsStepsAreNotToldToTakeShorterOnes) {
     EXPECT_EQ(line.find("shorter time step"), std::string::npos) << line;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

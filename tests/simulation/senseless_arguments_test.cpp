@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -370,5 +370,5 @@ TEST(SenselessArguments, ANumberOfWhatThereIsNoneOfIsNotAskedToBeBelowZero) {
     EXPECT_EQ(message_of([&] { (void)empty.collider_mesh(0); }), "collider: found 0, but there is none to choose from");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "support/thread_ranks.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::belt_setup;
 using testing::busy_setup;
@@ -137,5 +137,5 @@ TEST(SharedRun, RefusesByNameWhatOneProcessMustMoveTogether) {
     EXPECT_EQ(refusal_of(std::move(project)).rfind("response: ranks: found 2", 0), 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

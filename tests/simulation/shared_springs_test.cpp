@@ -17,7 +17,7 @@
 #include "support/thread_ranks.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::busy_setup;
 using testing::difference;
@@ -109,5 +109,5 @@ TEST(SharedSprings, AreNotSavedByParts) {
     EXPECT_THROW(simulation.save_particles([](std::span<const std::byte>) {}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -37,5 +37,5 @@ TEST(ShortArcs, ThatEndAfterNextToNoTimeAreLeftAtOnce) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

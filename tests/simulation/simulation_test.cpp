@@ -17,7 +17,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -327,5 +327,5 @@ TEST(Simulation, RefusesOptionsThatCannotWork) {
     EXPECT_NE(refusal(std::move(no_material)).find("floor"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using Ids = std::vector<std::uint64_t>;
 
@@ -81,5 +81,5 @@ TEST(SleepingPiles, WhoHasLeantOnASleeperStaysBesideIt) {
     EXPECT_FALSE(has(piles.edges(), 12, 13));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -18,7 +18,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -382,5 +382,5 @@ TEST(StabilityWarnings, OfDragAreForTheLightestAndLargestThatAnEmitterMakes) {
         << warnings[0];
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -169,5 +169,5 @@ TEST(StoppedSteps, KeepWhatHasBeenChangedBetweenSteps) {
     EXPECT_EQ(simulation.particles().size(), 701U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

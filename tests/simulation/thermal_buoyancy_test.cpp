@@ -10,7 +10,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -103,5 +103,5 @@ TEST(ThermalBuoyancy, IsRefusedWithoutTheAttributeAndAmongParticlesThatActOnEach
     EXPECT_THROW(simulation.set_forces(std::move(forces)), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "support/simulations.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::particle_of;
 using testing::setup_of;
@@ -55,5 +55,5 @@ TEST(ASphereThatWaits, IsMetWhereMovingCollidersHaveTakenIt) {
     EXPECT_EQ(simulation.particles().velocity[1].x, 20.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

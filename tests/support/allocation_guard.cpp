@@ -10,7 +10,7 @@
 #include <limits>
 #include <new>
 
-namespace {
+namespace RICOCHET_FILE {
 
 std::atomic<std::size_t> in_use{0};
 std::atomic<std::size_t> peak{0};
@@ -69,7 +69,7 @@ void release(void* memory) noexcept {
     std::free(memory);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 // An allocation that requests far more than the machine has counts too, since it fails: bad_alloc is not InputError.
 void* operator new(std::size_t size) { return required(allocate(size, __builtin_return_address(0))); }

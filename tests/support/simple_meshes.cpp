@@ -6,7 +6,7 @@
 #include <utility>
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -30,7 +30,7 @@ TriangleMesh subdivided(const TriangleMesh& coarse) {
     return fine;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
     TriangleMesh mesh;

@@ -10,7 +10,7 @@
 #include "support/shape_oracle.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::Real;
 using testing::real;
@@ -86,5 +86,5 @@ TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
     EXPECT_FALSE(ball.intersects({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -8,7 +8,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 struct Stop {
     Vec3 place;
@@ -169,5 +169,5 @@ TEST(DeformingVerifier, SeamsThatStayTogetherCloseAMeshAndThoseThatOpenDoNot) {
     EXPECT_FALSE(verify::CheckedDeformation(0, seamed).is_closed());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

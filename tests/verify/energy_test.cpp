@@ -8,7 +8,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
@@ -144,5 +144,5 @@ TEST(RecordedParts, ThatAreNotNumbersAreWrong) {
     EXPECT_FALSE(found_in({part}).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -7,7 +7,7 @@
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 78;
 const Corners kTriangle{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
@@ -62,5 +62,5 @@ TEST(Meeting, NamesThePoint) {
     EXPECT_EQ(crossing_point({-1, 1, 0}, {5, 1, 0}, kTriangle), Vec3(-1, 1, 0));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

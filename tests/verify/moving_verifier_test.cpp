@@ -13,7 +13,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 
@@ -172,5 +172,5 @@ TEST(AMovingFrame, WantsTheTimesOfLinksToJoin) {
     EXPECT_EQ(box.check({a, 1.0}, {a, 2.0}, {}).size(), 1U);  // it stayed without a link
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "support/sphere_oracle.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 79;
 
@@ -48,5 +48,5 @@ TEST(Nearness, AgreesWithAHundredDigits) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using verify::is_wrong;
 using verify::PairBooks;
@@ -121,5 +121,5 @@ TEST(PairBooks, OnPathsThatAreNotExactSpheresMayBeApart) {
     EXPECT_FALSE(is_wrong(meeting, {.has_exact_paths = false}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -16,7 +16,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Number of times the mesh winds around p: sum of solid angles over 4 pi.
 /// Method: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30, 1983.
@@ -230,5 +230,5 @@ TEST(ParityOracle, RefusesOpenRealMeshes) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::testing

@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A particle or sphere inside a box from 0 to 4 that goes from (1, 1, 1) along these positions in one step.
 std::vector<Violation> travel(const std::vector<Vec3>& positions, double radius, const RecordedParts& motion = {}) {
@@ -109,5 +109,5 @@ TEST(PlantedFaults, OfEveryKindAreFoundAndSoundMotionIsNot) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

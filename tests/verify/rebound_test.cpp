@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Along x into a wall of restitution 0.7, on a floor of 0.3 that is approached by rounding.
 RecordedImpact impact_on_wall(double rebound, bool floor_holds) {
@@ -85,5 +85,5 @@ TEST(ReboundCheck, LetsASurfaceBeLeftFasterOnlyIfAnotherOneHasItsRebound) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -9,7 +9,7 @@
 #include "verify/schema_scene.h"
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 using Json = nlohmann::json;
 
@@ -112,7 +112,7 @@ void write_cache(const std::filesystem::path& file, const TriangleMesh& cube) {
     std::ofstream(file, std::ios::binary) << bytes;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 std::optional<SceneDescription> accepted(Json& scene, const std::filesystem::path& folder) {
     constexpr int kMostRounds = 40;

@@ -11,7 +11,7 @@
 #include "verify/schema_tables.h"
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Numbers of items by KEY; other lists have one or two.
 std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
@@ -28,7 +28,7 @@ void sort_by_time(nlohmann::json& list) {
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a["time"] < b["time"]; });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 
 SchemaScene::SchemaScene(const nlohmann::json& schema, std::uint64_t seed) : schema_(schema), random_(seed, 1, 0) {}
 

@@ -16,7 +16,7 @@
 #include "verify/schema_scene.h"
 
 namespace ricochet::test {
-namespace {
+namespace RICOCHET_FILE {
 
 /// Lost time and unsolved contact that the run itself has counted.
 std::uint64_t reported(const SimulationStatistics& statistics) {
@@ -119,5 +119,5 @@ TEST(RandomSchemaSceneLong, VerifiesWithoutAlarmWithEveryKeyOfTheSchema) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::test

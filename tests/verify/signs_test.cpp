@@ -8,7 +8,7 @@
 #include "support/segment_triangle_cases.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::exact;
 using testing::Rational;
@@ -47,5 +47,5 @@ TEST(Signs, HoldForCoordinatesFromTheSmallestToTheLargest) {
     EXPECT_EQ(height_sign({1, 0x1p-200, 0}, {1, 1, 1}, {1, 1, 2}), 0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -8,7 +8,7 @@
 #include "support/counts.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 Vec3 in_cube(RandomSequence& random) {
     return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
@@ -80,5 +80,5 @@ TEST(SpaceTime, TellsAPathFromAFlatTriangleThatItPassesCloselyOver) {
     EXPECT_FALSE(are_apart({{0, -1, 0x1p-50}, {0, 1, -0x1p-50}}, {edge, edge}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -12,7 +12,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::vector<StandingSphere> random_spheres(int count, std::uint64_t seed) {
     RandomSequence random(seed, 0, 0);
@@ -69,5 +69,5 @@ TEST(SphereOverlaps, WhatWasThereIsReportedOnlyWhereItGrows) {
     EXPECT_TRUE(overlaps.check({}, 1e-9).empty());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

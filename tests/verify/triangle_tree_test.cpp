@@ -10,7 +10,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::verify {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 80;
 
@@ -71,5 +71,5 @@ TEST(TriangleTree, FindsWhatOverlapsABox) {
     TriangleTree().near_box({{0, 0, 0}, {1, 1, 1}}, [](const NamedTriangle&) { FAIL(); });
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::verify

@@ -9,7 +9,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 
@@ -215,5 +215,5 @@ TEST(Verifier, JudgesNoParticleThatIsNowhere) {
     EXPECT_GE(count(travel(verifier, {{1, 1, 1}, {nan, 0, 0}}), ViolationKind::gap), 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kTrianglesOfARock = 1000;
 constexpr double kLattice = 2.0;  // in m
-constexpr double kCoarseEdge = 0.25;
+constexpr double kMovingCaseCoarseEdge = 0.25;
 constexpr double kDegreesAStep = 1.0;
 constexpr double kDegreesATumblingStep = 0.05;
 constexpr double kBreath = 0.05;
@@ -25,7 +25,7 @@ constexpr int kKeysABreath = 10;
 constexpr double kStepsAKey = 4.0;
 
 TriangleMesh make_one_rock() {
-    return meshes::build_near(kTrianglesOfARock, kCoarseEdge,
+    return meshes::build_near(kTrianglesOfARock, kMovingCaseCoarseEdge,
                               [](double edge) { return meshes::make_rock({.radius = 0.5}, edge); });
 }
 

@@ -14,7 +14,7 @@ namespace ricochet::bench {
 namespace {
 
 // Particles per unit of parallel work.
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kNaiveMotionBlock = 1024;
 
 }  // namespace
 
@@ -137,14 +137,15 @@ NaiveMotion::NaiveMotion(NaiveMotion&&) noexcept = default;
 NaiveMotion& NaiveMotion::operator=(NaiveMotion&&) noexcept = default;
 
 std::uint64_t NaiveMotion::run(std::span<Flight> flights, const Steps& steps) {
-    std::vector<std::uint64_t> bounces((flights.size() + kBlock - 1) / kBlock, 0);
+    std::vector<std::uint64_t> bounces((flights.size() + kNaiveMotionBlock - 1) / kNaiveMotionBlock, 0);
     for (std::uint64_t step = 1; step <= steps.count; ++step) {
         impl_->move_to(steps.begin + static_cast<double>(step) * steps.time_step);
-        parallel_for_blocks(flights.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                bounces[block] += impl_->step(flights[i], steps.time_step, steps.restitution) ? 1 : 0;
-            }
-        });
+        parallel_for_blocks(
+            flights.size(), kNaiveMotionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    bounces[block] += impl_->step(flights[i], steps.time_step, steps.restitution) ? 1 : 0;
+                }
+            });
     }
     return std::accumulate(bounces.begin(), bounces.end(), std::uint64_t{0});
 }

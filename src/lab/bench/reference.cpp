@@ -49,9 +49,9 @@ std::vector<std::uint32_t> morton_order(std::span<const Vec3> points) {
 
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kReferenceBlock = 1024;
 
-std::array<float, 3> to_floats(const Vec3& v) {
+std::array<float, 3> as_floats(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
@@ -65,7 +65,7 @@ Reference::Reference(const TriangleMesh& mesh, const std::vector<std::vector<Fli
         std::vector<Vec3> starts;
         for (const Flight& flight : flights) {
             starts.push_back(flight.position);
-            segments_.push_back({to_floats(flight.position), to_floats(rules.duration * flight.velocity)});
+            segments_.push_back({as_floats(flight.position), as_floats(rules.duration * flight.velocity)});
         }
         for (const std::uint32_t i : morton_order(starts)) sorted_segments_.push_back(segments_[first + i]);
         flights_.insert(flights_.end(), flights.begin(), flights.end());
@@ -78,7 +78,7 @@ void Reference::count_leaks(const TriangleMesh& mesh, const Vec3& heart) {
     bounce();
     const Insides insides(mesh, heart);
     std::atomic<std::uint64_t> outside{0};
-    parallel_for_blocks(ends_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(ends_.size(), kReferenceBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (!insides.contains(ends_[i])) outside.fetch_add(1, std::memory_order_relaxed);
         }

@@ -237,6 +237,14 @@ std::vector<const ComparisonRow*> Comparison::listed_rows() const {
     return listed;
 }
 
+std::vector<const ComparisonRow*> Comparison::rows_of(const ResponseChoice& response) const {
+    std::vector<const ComparisonRow*> found;
+    for (const ComparisonRow* row : listed_rows()) {
+        if (row->response == response) found.push_back(row);
+    }
+    return found;
+}
+
 void require_comparable(SimulationSetup setup, const ComparisonPlan& plan) {
     require_runs(SetupCopies(std::move(setup)), plan.responses, plan.reference_step);
 }

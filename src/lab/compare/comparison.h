@@ -44,6 +44,8 @@ struct Comparison {
 
     /// Returns the requested rows, in their order.
     [[nodiscard]] std::vector<const ComparisonRow*> listed_rows() const;
+    /// Returns the requested rows of one response, in their order.
+    [[nodiscard]] std::vector<const ComparisonRow*> rows_of(const ResponseChoice& response) const;
 };
 
 /// Progress of a comparison.

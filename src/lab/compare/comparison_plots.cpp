@@ -76,19 +76,11 @@ std::string value_axis(const Values& values, bool logarithmic) {
     return fmt::format("set logscale y\nset yrange [1e{:.0f}:1e{:.0f}]\n", lower, upper);
 }
 
-std::vector<const ComparisonRow*> rows_of(const Comparison& comparison, const ResponseChoice& response) {
-    std::vector<const ComparisonRow*> rows;
-    for (const ComparisonRow* row : comparison.listed_rows()) {
-        if (row->response == response) rows.push_back(row);
-    }
-    return rows;
-}
-
 /// Returns the line of one response. If it has no points to draw, the key shows its name with the reason.
 std::string curve(const Comparison& comparison, std::size_t index, const StepPlot& plot, bool logarithmic) {
     Values values;
     const std::string name = name_of(comparison.plan.responses[index]);
-    for (const ComparisonRow* row : rows_of(comparison, comparison.plan.responses[index])) {
+    for (const ComparisonRow* row : comparison.rows_of(comparison.plan.responses[index])) {
         add_values(*row, comparison, plot.column, values);
     }
     const char* const reason = !values.any ? " (none)" : values.positive.empty() ? " (0 everywhere)" : "";

@@ -15,14 +15,6 @@ namespace {
 using Rows = std::vector<const ComparisonRow*>;
 using Number = double (*)(const ComparisonRow& row);
 
-Rows rows_of(const Comparison& comparison, const ResponseChoice& response) {
-    Rows rows;
-    for (const ComparisonRow* row : comparison.listed_rows()) {
-        if (row->response == response) rows.push_back(row);
-    }
-    return rows;
-}
-
 std::string with_unit(double number, const char* unit) {
     return std::isfinite(number) ? fmt::format("{} {}", short_text(number), unit) : "none";
 }
@@ -37,7 +29,7 @@ std::string joined(const std::vector<std::string>& parts) {
 std::string for_each_response(const Comparison& comparison, const std::function<std::string(const Rows&)>& part_of) {
     std::vector<std::string> parts;
     for (const ResponseChoice& response : comparison.plan.responses) {
-        parts.push_back(fmt::format("{} {}", name_of(response), part_of(rows_of(comparison, response))));
+        parts.push_back(fmt::format("{} {}", name_of(response), part_of(comparison.rows_of(response))));
     }
     return joined(parts);
 }
@@ -121,7 +113,7 @@ std::string penetration_reading(const Comparison& comparison) {
     std::vector<std::string> never;
     for (const ResponseChoice& response : comparison.plan.responses) {
         const ComparisonRow* deepest = nullptr;
-        for (const ComparisonRow* row : rows_of(comparison, response)) {
+        for (const ComparisonRow* row : comparison.rows_of(response)) {
             const double depth = row->figures.statistics.penetration_deepest;
             if (depth > 0.0 && (!deepest || depth > deepest->figures.statistics.penetration_deepest)) deepest = row;
         }

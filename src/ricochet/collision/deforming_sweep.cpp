@@ -17,7 +17,7 @@ constexpr double kGraze = 1e-12;
 constexpr double kShortLeave = 0x1p-20;
 
 /// Of a distance that a sphere has already, what counts as nearer still.
-constexpr double kNearerStill = 1.0 - 0x1p-40;
+constexpr double kNearerLink = 1.0 - 0x1p-40;
 
 std::array<Vec3, 3> corners_of(const MovingTriangle& triangle, double part) {
     const auto& [a, b, c] = triangle.corners;
@@ -101,7 +101,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
         if (touches && !hit_at(surface, triangle, {0.0, orient3d(a, b, c, path_.c[0])})) from = kShortLeave;
     } else if (distance <= radius) {
         if (const auto hit = hit_at(surface, triangle, {})) return hit;
-        radius = kNearerStill * distance;
+        radius = kNearerLink * distance;
     }
     std::optional<Hit> hit;
     static_cast<void>(first_meeting(path_, radius, triangle, from, [&](const Meeting& meeting) {

@@ -15,8 +15,8 @@ namespace {
 bool is_good(double value) { return std::isfinite(value); }
 bool is_good(const Vec3& value) { return is_finite(value); }
 
-double size_of(double value) { return std::fabs(value); }
-double size_of(const Vec3& value) { return length(value); }
+double magnitude_of(double value) { return std::fabs(value); }
+double magnitude_of(const Vec3& value) { return length(value); }
 
 // Returns the mean slope of the segment that begins at a key.
 template <class Value>
@@ -246,9 +246,9 @@ Value KeyedCurve<Value>::second_derivative(double time) const {
 template <class Value>
 void KeyedCurve<Value>::include_segment(std::size_t k, DerivativeBounds& bounds) const {
     const double span = keys_[k + 1].time - keys_[k].time;
-    const double chord = size_of(chord_slope(keys_, k));
+    const double chord = magnitude_of(chord_slope(keys_, k));
     const bool is_linear = interpolation_ == Interpolation::linear;
-    const double slopes = is_spline() ? size_of(slopes_[k]) + size_of(slopes_[k + 1]) : 0.0;
+    const double slopes = is_spline() ? magnitude_of(slopes_[k]) + magnitude_of(slopes_[k + 1]) : 0.0;
     const auto include = [&](std::size_t order, double size) { bounds[order] = std::max(bounds[order], size); };
     include(1, is_linear ? chord : 1.5 * chord + slopes);
     if (is_linear) return;
@@ -263,7 +263,7 @@ DerivativeBounds KeyedCurve<Value>::bounds(double from, double to) const {
     for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
         if (repeats || (keys_[k].time < to && keys_[k + 1].time > from)) include_segment(k, bounds);
     }
-    bounds[0] = size_of(value(from)) + bounds[1] * (to - from);
+    bounds[0] = magnitude_of(value(from)) + bounds[1] * (to - from);
     return bounds;
 }
 

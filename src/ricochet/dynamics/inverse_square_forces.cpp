@@ -16,7 +16,7 @@ namespace ricochet {
 namespace {
 
 /// Particles per unit of parallel work.
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kInverseSquareForcesBlock = 4096;
 
 bool takes_tree(const InverseSquareSettings& settings, std::size_t particles) {
     if (settings.method == SumMethod::automatic) return particles > kMostDirect;
@@ -36,9 +36,10 @@ public:
         } else {
             direct_field(sources, field);
         }
-        parallel_for_blocks(field.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) result[k] += factor(particles, k) * field[k];
-        });
+        parallel_for_blocks(field.size(), kInverseSquareForcesBlock,
+                            [&](std::size_t, std::size_t begin, std::size_t end) {
+                                for (std::size_t k = begin; k < end; ++k) result[k] += factor(particles, k) * field[k];
+                            });
     }
 
     [[nodiscard]] std::optional<double> potential_energy(const ParticlesView& particles) const override {
@@ -50,7 +51,7 @@ public:
         } else {
             direct_potential(sources, potential);
         }
-        return ordered_sum(potential.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        return ordered_sum(potential.size(), kInverseSquareForcesBlock, [&](std::size_t begin, std::size_t end) {
             double sum = 0.0;
             for (std::size_t k = begin; k < end; ++k) {
                 sum -= 0.5 * particles.masses[k] * factor(particles, k) * potential[k];

@@ -14,7 +14,7 @@ namespace ricochet {
 namespace {
 
 /// Members per unit of parallel work.
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kMutualForcesBlock = 4096;
 
 std::vector<double> column_of(const Particles& particles, const std::string& name,
                               std::span<const std::uint32_t> members, std::span<const std::uint32_t> slots) {
@@ -142,7 +142,7 @@ void MutualForces::accelerations(double time, std::span<const Vec3> positions, s
         std::vector<Vec3> own(seen.slots.size());
         entries_[e].force->add_accelerations(view, own);
         refuse_if_not_finite(*entries_[e].force, e, view, own);
-        parallel_for_blocks(own.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        parallel_for_blocks(own.size(), kMutualForcesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) result[seen.slots[k]] += own[k];
         });
     }

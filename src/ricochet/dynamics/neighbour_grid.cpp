@@ -14,7 +14,7 @@ namespace ricochet {
 namespace {
 
 /// Boxes per unit of parallel work.
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kNeighbourGridBlock = 4096;
 /// Largest numbers of bits per axis and of levels: a key has 3 * 19 + 5 bits.
 constexpr unsigned kMostAxisBits = 19;
 constexpr unsigned kFinestLevel = 31;
@@ -78,7 +78,7 @@ private:
 
     /// Writes every pair, and keeps the overlapping ones. A branch would be mispredicted, because overlaps are random.
     void test(std::size_t a, std::size_t b) {
-        if (count_ == found_.size()) found_.resize(std::max(kBlock, 2 * count_));
+        if (count_ == found_.size()) found_.resize(std::max(kNeighbourGridBlock, 2 * count_));
         const std::uint32_t i = grid_.sorted_[a].index;
         const std::uint32_t j = grid_.sorted_[b].index;
         found_[count_] = {std::min(i, j), std::max(i, j)};
@@ -237,7 +237,7 @@ std::uint64_t NeighbourGrid::row_key(unsigned level, std::uint32_t y, std::uint3
 void NeighbourGrid::sort(std::span<const Box3> boxes) {
     sorted_.resize(boxes.size());
     constexpr std::uint64_t kNone = ~std::uint64_t{0};
-    parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(boxes.size(), kNeighbourGridBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             sorted_[k] = {boxes[k].empty() ? kNone : key_of(boxes[k]), static_cast<std::uint32_t>(k)};
         }
@@ -245,7 +245,7 @@ void NeighbourGrid::sort(std::span<const Box3> boxes) {
     std::erase_if(sorted_, [](const KeyedIndex& item) { return item.key == kNone; });
     parallel_sort(sorted_, spare_);
     boxes_.resize(sorted_.size());
-    parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(sorted_.size(), kNeighbourGridBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) boxes_[k] = boxes[sorted_[k].index];
     });
 }
@@ -269,10 +269,11 @@ std::size_t NeighbourGrid::row_end(std::size_t row) const {
 
 // A block searches the rows that begin in it.
 void NeighbourGrid::collect(std::vector<std::vector<NeighbourPair>>& found) {
-    found.resize((sorted_.size() + kBlock - 1) / kBlock);
-    parallel_for_blocks(sorted_.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        Search(*this, found[block]).search_rows(begin, end);
-    });
+    found.resize((sorted_.size() + kNeighbourGridBlock - 1) / kNeighbourGridBlock);
+    parallel_for_blocks(sorted_.size(), kNeighbourGridBlock,
+                        [&](std::size_t block, std::size_t begin, std::size_t end) {
+                            Search(*this, found[block]).search_rows(begin, end);
+                        });
 }
 
 /// Writes the pairs of all blocks, ascending. Each box has a range for the pairs in which it is the first. The order
@@ -290,7 +291,7 @@ void NeighbourGrid::arrange(const std::vector<std::vector<NeighbourPair>>& found
     for_all_pairs([&](const NeighbourPair& pair, std::atomic_ref<std::size_t> end) {
         pairs_[end.fetch_add(1, kUnordered)] = pair;
     });
-    parallel_for_blocks(boxes, kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(boxes, kNeighbourGridBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const auto first = pairs_.begin() + static_cast<std::ptrdiff_t>(k == 0 ? 0 : ends_[k - 1]);
             std::sort(first, pairs_.begin() + static_cast<std::ptrdiff_t>(ends_[k]),

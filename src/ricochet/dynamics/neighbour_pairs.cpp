@@ -28,7 +28,7 @@ constexpr std::size_t kMany = 512;
 constexpr int kSearchesAsTheyAre = 16;
 
 /// Boxes or pairs per unit of parallel work.
-constexpr std::size_t kBlock = 8192;
+constexpr std::size_t kNeighbourPairsBlock = 8192;
 
 bool comes_before(const NeighbourPair& a, const NeighbourPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
@@ -65,7 +65,7 @@ template <class T>
 std::size_t close_gaps(std::vector<T>& items, const std::vector<std::size_t>& left) {
     std::size_t count = 0;
     for (std::size_t block = 0; block < left.size(); ++block) {
-        const auto begin = items.begin() + static_cast<std::ptrdiff_t>(block * kBlock);
+        const auto begin = items.begin() + static_cast<std::ptrdiff_t>(block * kNeighbourPairsBlock);
         std::copy(begin, begin + static_cast<std::ptrdiff_t>(left[block]),
                   items.begin() + static_cast<std::ptrdiff_t>(count));
         count += left[block];
@@ -73,7 +73,7 @@ std::size_t close_gaps(std::vector<T>& items, const std::vector<std::size_t>& le
     return count;
 }
 
-std::size_t blocks_of(std::size_t count) { return (count + kBlock - 1) / kBlock; }
+std::size_t blocks_of(std::size_t count) { return (count + kNeighbourPairsBlock - 1) / kNeighbourPairsBlock; }
 
 }  // namespace
 
@@ -132,7 +132,7 @@ void NeighbourPairs::take_kept() {
     const std::vector<NeighbourPair>& kept = grid_.pairs();
     pairs_.resize(kept.size());
     std::vector<std::size_t> left(blocks_of(kept.size()));
-    parallel_for_blocks(kept.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(kept.size(), kNeighbourPairsBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         std::size_t at = begin;
         for (std::size_t n = begin; n < end; ++n) {  // without branches, because overlaps are random
             const NeighbourPair& pair = kept[n];

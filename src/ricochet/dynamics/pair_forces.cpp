@@ -15,7 +15,7 @@ namespace ricochet {
 namespace {
 
 /// Pairs and particles per unit of parallel work.
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kPairForcesBlock = 1024;
 
 /// Law of pairs: force and potential of two particles that are nearer than the cutoff.
 template <class Law>
@@ -31,7 +31,7 @@ std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bo
     // Half of the cutoff for each, plus a margin for rounding.
     constexpr double kRounding = 1.0 + 0x1p-40;
     std::vector<Box3> boxes(particles.size());
-    parallel_for_blocks(boxes.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(boxes.size(), kPairForcesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const Vec3& p = particles.positions[k];
             if (!is_finite(p)) continue;
@@ -57,7 +57,7 @@ public:
         NeighbourGrid grid;
         const std::vector<NeighbourPair>& pairs = pairs_of(particles, grid);
         std::vector<Vec3> forces(pairs.size());
-        parallel_for_blocks(pairs.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        parallel_for_blocks(pairs.size(), kPairForcesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             PairState state;
             for (std::size_t k = begin; k < end; ++k) {
                 if (find_state(particles, pairs[k], state)) forces[k] = law_.force(state);
@@ -75,7 +75,7 @@ public:
         if (!has_potential_) return std::nullopt;
         NeighbourGrid grid;
         const std::vector<NeighbourPair>& pairs = pairs_of(particles, grid);
-        return ordered_sum(pairs.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+        return ordered_sum(pairs.size(), kPairForcesBlock, [&](std::size_t begin, std::size_t end) {
             double sum = 0.0;
             PairState state;
             for (std::size_t k = begin; k < end; ++k) {

@@ -15,7 +15,7 @@ namespace ricochet {
 namespace {
 
 /// Members per unit of parallel work.
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kParticleSystemBlock = 256;
 
 constexpr std::uint32_t kNoMember = std::numeric_limits<std::uint32_t>::max();
 
@@ -149,7 +149,7 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
                                    std::span<const Vec3> mutual, std::span<Vec3> result) const {
     require_state(positions, velocities);
     require_same_length(result.size(), size(), "accelerations of a system");
-    parallel_for_blocks(size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(size(), kParticleSystemBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             result[i] = is_pinned(i) ? Vec3{}
                                      : spring_force_on(i, positions, velocities) / mass(i) +
@@ -192,7 +192,7 @@ std::array<Vec3, 3> ParticleSystem::own_slope(std::size_t i, const Vec3& end_vel
 
 double ParticleSystem::spring_energy(std::span<const Vec3> positions) const {
     require_same_length(positions.size(), size(), "positions of a system");
-    return ordered_sum(bonds_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    return ordered_sum(bonds_.size(), kParticleSystemBlock, [&](std::size_t begin, std::size_t end) {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
             const Spring& spring = spring_of(bonds_[k]);

@@ -12,7 +12,7 @@ namespace ricochet {
 namespace {
 
 /// Particles per unit of parallel work.
-constexpr std::size_t kBlock = 1 << 14;
+constexpr std::size_t kFramesBlock = 1 << 14;
 
 // Arrays of a frame to be filled. Each array reuses the memory of the previous frame's array.
 class ArrayList {
@@ -102,7 +102,7 @@ void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_
     const bool is_vector = description.components == 3;
     Vec3* const vectors = is_vector ? list.next<Vec3>(description.name) : nullptr;
     double* const numbers = is_vector ? nullptr : list.next<double>(description.name);
-    parallel_for_blocks(order.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(order.size(), kFramesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const Vec3 value = attributes.value(column, order[k]);
             is_vector ? void(vectors[k] = value) : void(numbers[k] = value.x);
@@ -203,7 +203,7 @@ void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const A
     frame.points.resize(order.size());
     ArrayList list(frame.point_arrays, order.size());
     const OwnArrays arrays(frame, list, has_spheres);
-    parallel_for_blocks(order.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(order.size(), kFramesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         arrays.fill(particles, {order, begin, end}, time);
     });
     for (std::size_t k = 0; k < attributes.columns().size(); ++k) add_attribute(list, attributes, k, order);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,12 +13,10 @@
 #include "ricochet/geometry/sweep/point_sweep.h"
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/no_hits.h"
 
 namespace ricochet {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Nearest {
     std::uint32_t triangle;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -16,13 +15,11 @@
 #include "ricochet/geometry/sweep/ray_triangle.h"
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/no_hits.h"
 #include "ricochet/queries/ray_places.h"
 
 namespace ricochet {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Number of rays between two polls of the stop request, because a poll costs as much as a short ray.
 constexpr std::size_t kPollEvery = 16;
@@ -61,18 +58,10 @@ void for_each_ray(const RayBatch& rays, const Answer& answer) {
         });
 }
 
-MeshHits missed(std::size_t count) {
-    MeshHits hits;
-    hits.triangle.assign(count, kNoHit);
-    hits.distance.assign(count, kInfinity);
-    hits.point.assign(count, Vec3{kNan, kNan, kNan});
-    return hits;
-}
-
 }  // namespace
 
 MeshHits MeshQueries::first_hits(const RayBatch& rays) const {
-    MeshHits hits = missed(rays.origins.size());
+    MeshHits hits = no_hits(rays.origins.size());
     for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
         const std::optional<RayPlace> place = first_place(*index_, question);
         if (!place) return;
@@ -117,7 +106,7 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
         for (const RayPlace& place : places) blocks[block].push_back({i, place});
     });
     std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
-    all.hits = missed(all.first.back());
+    all.hits = no_hits(all.first.back());
     all.crossing.assign(all.first.back(), 0);
     all.in_plane.assign(all.first.back(), 0);
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,12 +18,10 @@
 #include "ricochet/geometry/sweep/sphere_sweep.h"
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/mesh_queries.h"
+#include "ricochet/queries/no_hits.h"
 
 namespace ricochet {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Straight paths of points and spheres.
 struct Ways {
@@ -59,14 +56,9 @@ struct Contact {
     Vec3 point;
 };
 
-MeshHits missed(std::size_t count) {
-    return {std::vector<std::int64_t>(count, kNoHit), std::vector<double>(count, kInfinity),
-            std::vector<Vec3>(count, Vec3{kNan, kNan, kNan})};
-}
-
 template <class First>
 MeshHits first_contacts(const Ways& ways, const First& first) {
-    MeshHits hits = missed(ways.from.size());
+    MeshHits hits = no_hits(ways.from.size());
     parallel_for_blocks(ways.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             poll_loop_stop();

@@ -24,13 +24,13 @@ constexpr double kMeetingParticle = 1500.0;   // of spheres that meet: boxes, pa
 constexpr double kTriangle = 378.0;           // of a mesh with its search structures, while they are made
 constexpr double kVerifiedTriangle = 160.0;   // by options.verify
 constexpr double kContact = 412.0;            // a record, and its row in the log
-constexpr double kMostContacts = 500'000.0;   // rows that the log gathers at most beyond those of a step
-constexpr double kJoinedParticle = 800.0;     // as kParticle, with what its rope or cloth is made in
-constexpr double kSpring = 200.0;             // and what it is made in
-constexpr double kStandingTriangle = 238.0;   // as kTriangle, when the mesh has been read
-constexpr double kCoupledParticle = 900.0;    // of forces between particles: its plan, and the lists that they see
-constexpr double kImplicitParticle = 390.0;   // in the matrix of implicit_euler
-constexpr double kImplicitSpring = 1200.0;    // the same, and its factors
+constexpr double kMemoryEstimateMostContacts = 500'000.0;  // rows that the log gathers at most beyond those of a step
+constexpr double kJoinedParticle = 800.0;                  // as kParticle, with what its rope or cloth is made in
+constexpr double kSpring = 200.0;                          // and what it is made in
+constexpr double kStandingTriangle = 238.0;                // as kTriangle, when the mesh has been read
+constexpr double kCoupledParticle = 900.0;   // of forces between particles: its plan, and the lists that they see
+constexpr double kImplicitParticle = 390.0;  // in the matrix of implicit_euler
+constexpr double kImplicitSpring = 1200.0;   // the same, and its factors
 
 double mean_of(const MeanSpread& pair) { return std::max(0.0, pair.mean); }
 
@@ -113,7 +113,7 @@ public:
         add_colliders();
         if (setup_.options.record_contacts) {
             const double living = static_cast<double>(setup_.options.most_particles) - room_;
-            add({MemoryNeed::Part::contacts}, std::min(living, kMostContacts), kContact);
+            add({MemoryNeed::Part::contacts}, std::min(living, kMemoryEstimateMostContacts), kContact);
         }
         return std::move(estimate_);
     }

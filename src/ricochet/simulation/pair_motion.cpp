@@ -12,10 +12,10 @@ namespace ricochet {
 namespace {
 
 /// Islands per unit of parallel work.
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t kPairMotionBlock = 16;
 
 /// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
-constexpr std::size_t kPrefetchDistance = 6;
+constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
 /// Without the table that spheres are moved by.
 verify::PairBooks books_of(const PairParts& parts) {
@@ -79,8 +79,8 @@ bool PairMotion::wake_those_pushed(const TimeSpan& step) {
 void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
     std::vector<PairIslands::Island>& islands = islands_.all();
     const std::size_t first_block = blocks.size();
-    blocks.resize(first_block + (islands.size() + kBlock - 1) / kBlock);
-    parallel_for_blocks(islands.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    blocks.resize(first_block + (islands.size() + kPairMotionBlock - 1) / kPairMotionBlock);
+    parallel_for_blocks(islands.size(), kPairMotionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) take_over(islands[n].members, step, blocks[first_block + block]);
     });
     impacts_.clear();
@@ -101,9 +101,9 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
 
 void PairMotion::take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
     for (std::size_t m = 0; m < members.size(); ++m) {
-        if (m + kPrefetchDistance < members.size()) {
-            prefetch_whole(members[m + kPrefetchDistance]);
-            parts_.mover.prefetch(members[m + kPrefetchDistance].particle);
+        if (m + kPairMotionPrefetchDistance < members.size()) {
+            prefetch_whole(members[m + kPairMotionPrefetchDistance]);
+            parts_.mover.prefetch(members[m + kPairMotionPrefetchDistance].particle);
         }
         parts_.mover.take_over(members[m], step, record);
     }

@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 /// Members per unit of parallel work.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kPlannedContactsBlock = 64;
 
 /// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2).
 constexpr double kRollingShare = 2.0 / 7.0;
@@ -36,7 +36,7 @@ std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std:
     std::vector<HeldMotion> result(system.size());
     double fastest = 0.0;
     for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
-    parallel_for_blocks(system.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         thread_local ContactScratch scratch;
         for (std::size_t k = begin; k < end; ++k) {
             const Vec3& from = system.positions()[k];
@@ -57,7 +57,7 @@ std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std:
 std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const SystemStep& step,
                                          std::span<const HeldMotion> held) const {
     std::vector<Vec3> result(system.size());
-    parallel_for_blocks(system.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         thread_local ContactScratch scratch;
         for (std::size_t k = begin; k < end; ++k) {
             if (held[k].count != 1) continue;

@@ -17,14 +17,14 @@ void add_triangles(const TriangleMesh& mesh, std::uint32_t collider, std::vector
     }
 }
 
-void require(bool condition, const char* what) {
+void require_surface(bool condition, const char* what) {
     if (!condition) throw InputError(what);
 }
 
 void require_good(const TriangleMesh& mesh) {
     require_corners(mesh);
-    require(std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite),
-            "verified mesh: found a vertex that is not finite");
+    require_surface(std::all_of(mesh.vertices.begin(), mesh.vertices.end(), is_finite),
+                    "verified mesh: found a vertex that is not finite");
 }
 
 Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::inside : Side::on_surface); }
@@ -47,15 +47,15 @@ void CheckedFrame::add(std::uint32_t collider, const VerifiedSurface& surface) {
         if (count_open_edges(*mesh) == 0) bodies_.push_back({collider, ParityOracle(*mesh)});
         for (const Vec3& vertex : mesh->vertices) box_.include(vertex);
     } else if (const auto* plane = std::get_if<VerifiedPlane>(&surface)) {
-        require(is_finite(plane->point) && is_finite(plane->normal) && max_abs(plane->normal) > 0.0,
-                "verified plane: expected finite numbers and a normal above 0");
+        require_surface(is_finite(plane->point) && is_finite(plane->normal) && max_abs(plane->normal) > 0.0,
+                        "verified plane: expected finite numbers and a normal above 0");
         planes_.push_back({collider, *plane});
     } else {
         const auto& shape = std::get<VerifiedShape>(surface);
         const AffineMap& map = shape.world_from_unit;
-        require(is_finite(map.row_x) && is_finite(map.row_y) && is_finite(map.row_z) && is_finite(map.translation) &&
-                    map.determinant() != 0.0,
-                "verified shape: expected finite numbers and a volume");
+        require_surface(is_finite(map.row_x) && is_finite(map.row_y) && is_finite(map.row_z) &&
+                            is_finite(map.translation) && map.determinant() != 0.0,
+                        "verified shape: expected finite numbers and a volume");
         shapes_.push_back({collider, CheckedShape(shape.world_from_unit, shape.is_cylinder)});
         const Vec3 reach = abs(Vec3{length(map.row_x), length(map.row_y), length(map.row_z)}) * 1.5;
         box_.include(map.translation - reach);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kDotsWide = 110;  // least width of a bar, in dots of its letters
 constexpr int kDotsHigh = 8;
-constexpr int kMargin = 6;                      // dots on each side
+constexpr int kColorBarMargin = 6;              // dots on each side
 constexpr int kLineHeight = kLetterHeight + 3;  // dots
 
 int dot_of(int picture_width, int picture_height) {
@@ -28,7 +28,8 @@ struct BarTexts {
     std::vector<std::string> note;
 
     BarTexts(const ColorBar& bar, int picture_width, int dot) {
-        const auto letters = static_cast<std::size_t>(std::max(1, (picture_width / dot - 4 * kMargin) / kLetterWidth));
+        const auto letters =
+            static_cast<std::size_t>(std::max(1, (picture_width / dot - 4 * kColorBarMargin) / kLetterWidth));
         title = broken_text(bar.unit.empty() ? bar.name : fmt::format("{} ({})", bar.name, bar.unit), letters);
         note = broken_text(bar.note, letters);
     }
@@ -60,8 +61,9 @@ void draw_bar(Image& image, const ColorBar& bar, const BarPlace& place) {
     const int dot = place.dot;
     const BarTexts texts(bar, image.width, dot);
     const int top = place.y - texts.above() * dot;
-    shade_rectangle(image, place.x - kMargin * dot / 2, top - kMargin * dot / 2, place.width + kMargin * dot,
-                    place.height + (texts.above() + texts.below() + kMargin) * dot, 0.35);
+    shade_rectangle(image, place.x - kColorBarMargin * dot / 2, top - kColorBarMargin * dot / 2,
+                    place.width + kColorBarMargin * dot,
+                    place.height + (texts.above() + texts.below() + kColorBarMargin) * dot, 0.35);
     int y = top;
     for (const std::string& line : texts.title) write_text(image, place.x, y, dot, line), y += kLineHeight * dot;
     for (int x = 0; x < place.width; ++x) {
@@ -102,19 +104,19 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
 std::vector<BarPlace> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
     const int dot = dot_of(picture_width, picture_height);
     std::vector<BarPlace> places;
-    int x = 2 * kMargin;       // dots
-    int bottom = 2 * kMargin;  // in dots, of the current row above the picture's lower edge
-    int tallest = 0;           // in dots, of the tallest bar in the row
+    int x = 2 * kColorBarMargin;       // dots
+    int bottom = 2 * kColorBarMargin;  // in dots, of the current row above the picture's lower edge
+    int tallest = 0;                   // in dots, of the tallest bar in the row
     for (const ColorBar& bar : bars) {
         const BarTexts texts(bar, picture_width, dot);
-        if (x > 2 * kMargin && (x + texts.width() + kMargin) * dot > picture_width) {
-            x = 2 * kMargin;
-            bottom += tallest + 2 * kMargin;
+        if (x > 2 * kColorBarMargin && (x + texts.width() + kColorBarMargin) * dot > picture_width) {
+            x = 2 * kColorBarMargin;
+            bottom += tallest + 2 * kColorBarMargin;
             tallest = 0;
         }
         places.push_back({x * dot, picture_height - (bottom + kDotsHigh + texts.below()) * dot, texts.width() * dot,
                           kDotsHigh * dot, dot});
-        x += texts.width() + 3 * kMargin;
+        x += texts.width() + 3 * kColorBarMargin;
         tallest = std::max(tallest, texts.above() + kDotsHigh + texts.below());
     }
     return places;

@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace {
 
-constexpr double kCreaseDegrees = 40.0;
+constexpr double kShapeCopiesCreaseDegrees = 40.0;
 constexpr double kFlattest = 1e-9;  // limit of a map's determinant, relative to the cube of its longest row
 
 // Returns the inverse of the linear part.
@@ -34,7 +34,7 @@ void ShapeCopies::set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes)
         PreviewMesh source;
         source.mesh = std::move(mesh);
         Shape& shape = shapes_.emplace_back();
-        shape.mesh = drawn_mesh(std::move(source), kCreaseDegrees);
+        shape.mesh = drawn_mesh(std::move(source), kShapeCopiesCreaseDegrees);
         shape.scene = embree::Scene(rtcNewScene(device));
         rtcSetSceneFlags(shape.scene.get(), RTC_SCENE_FLAG_ROBUST);
         RTCGeometry geometry = triangles_of(device, shape.mesh.source.mesh, {});

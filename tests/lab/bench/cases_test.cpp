@@ -14,7 +14,7 @@
 #include "ricochet/geometry/sweep/closest_point.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 std::vector<std::string> suites_of_cases() {
     std::vector<std::string> names = suite_names();
@@ -226,5 +226,5 @@ TEST(BenchCases, OfHailLandOnTheTerrain) {
     EXPECT_LT(std::count(contacts.begin(), contacts.end(), 0U), 40);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

@@ -6,7 +6,7 @@
 #include <string>
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(BenchEnvironment, NamesMachinesByTheirProcessor) {
     EXPECT_EQ(machine_slug("Intel(R) Xeon(R) Platinum 8488C", 2), "xeon-platinum-8488c-2t");
@@ -30,5 +30,5 @@ TEST(BenchEnvironment, IsKnownInFull) {
     EXPECT_TRUE(std::regex_match(here.date, std::regex(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)"))) << here.date;
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

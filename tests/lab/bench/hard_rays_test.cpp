@@ -14,7 +14,7 @@
 #include "support/counts.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 std::array<float, 3> floats(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -98,5 +98,5 @@ INSTANTIATE_TEST_SUITE_P(At, HardRaysBeside,
                                            HardPlace{"large", 0.0, 0x1p40}, HardPlace{"small", 0.0, 0x1p-40}),
                          [](const auto& place) { return std::string(place.param.name); });
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

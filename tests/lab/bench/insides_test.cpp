@@ -6,7 +6,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Insides, OfABoxAreWhatItsCoordinatesSay) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 2, 3});
@@ -40,5 +40,5 @@ TEST(Insides, OfABallAreThoseOfABoxThatIsSmallerByItsRadius) {
     EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.5));  // it is in contact
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

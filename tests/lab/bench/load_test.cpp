@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 LoadCase small_case_of(FileForm form) { return {"small", form, 500}; }
 
@@ -78,5 +78,5 @@ TEST(BenchLoad, EndsWhenTheHookSaysSoAndLeavesNoFileBehind) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

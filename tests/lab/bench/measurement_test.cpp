@@ -9,7 +9,7 @@
 #include "lab/bench/small_cases.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Measurement, EndsInTheSameStateForAnyNumberOfThreads) {
     for (const char* suite : {"gas", "settle", "pinball"}) {
@@ -126,5 +126,5 @@ TEST(Measurement, KnowsSpeedupsOnlyBesideOneThread) {
     EXPECT_FALSE(alone->front().speedup_raw.has_value());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

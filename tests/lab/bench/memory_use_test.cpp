@@ -8,7 +8,7 @@
 #include "lab/bench/small_cases.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(MemoryUse, SeesWhatIsAllocatedAndFreed) {
     constexpr std::size_t kBytes = 10'000'000;
@@ -33,5 +33,5 @@ TEST(MemoryUse, IsAtLeastWhatParticlesAndTrianglesAreMadeOf) {
     EXPECT_LT(use.bytes_per_triangle, 1000.0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

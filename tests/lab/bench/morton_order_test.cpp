@@ -7,7 +7,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(MortonOrder, OfACubesCornersCountsInBinaryWithXFirst) {
     std::vector<Vec3> corners;
@@ -33,5 +33,5 @@ TEST(MortonOrder, HoldsEveryPointOnceAndBringsNeighboursTogether) {
     for (std::uint32_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

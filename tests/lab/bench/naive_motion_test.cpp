@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 /// A box of 2 m about the origin at 0 s, that goes along x at a speed.
 NaiveMotion box_at(double speed) {
@@ -113,5 +113,5 @@ TEST(Measurement, OfWhatMovesSaysWhatItCostsAndWhatTheUsualWayLoses) {
     EXPECT_GT(lost, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

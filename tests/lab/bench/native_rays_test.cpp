@@ -11,7 +11,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 // Hits nearer to each other than this part of a ray, and to a triangle's rim, are single precision's to choose.
 constexpr double kDoubt = 1e-4;
@@ -125,5 +125,5 @@ TEST(NativeRays, LoseSpeedWithRestitution) {
     EXPECT_LT(length(ends[0] - Vec3{0.1, 0.2, -0.5}), 1e-5);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

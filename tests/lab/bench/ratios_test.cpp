@@ -10,7 +10,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 Row row_of(const char* name, double raw, std::optional<double> native) {
     Row row;
@@ -112,5 +112,5 @@ TEST(BenchRatios, OfCasesOnOneSideOnlyAreListedAndDoNotFall) {
     for (const RatioChange& change : changes) EXPECT_FALSE(change.fell);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

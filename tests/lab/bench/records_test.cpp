@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 // What readers of the numbers rely on: names are added, never changed.
 const std::vector<std::string> kContract = {"suite",
@@ -109,5 +109,5 @@ TEST(BenchRecords, AreLinesOfCsvWithQuotesWhereTheyAreNeeded) {
               "name,count,number,none\r\n\"a, \"\"b\"\"\",7,0.1,\r\nplain,8,0.3333333333333333,2\r\n");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

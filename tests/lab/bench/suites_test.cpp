@@ -8,7 +8,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(BenchSuites, HaveNamesOfTheirOwn) {
     const std::vector<std::string> names = suite_names();
@@ -38,5 +38,5 @@ TEST(BenchSuites, TakeAllThreadsButTheOneOfThreadsWhichDoublesThem) {
     EXPECT_EQ(default_threads("threads", 12), (std::vector<int>{1, 2, 4, 8, 12}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace ricochet::bench {
-namespace {
+namespace RICOCHET_FILE {
 
 Row row_with_steps() {
     Row row;
@@ -56,5 +56,5 @@ TEST(BenchTables, SayWhichRatiosFell) {
     EXPECT_EQ(table[1], (std::vector<std::string>{"gas", "ratio_raw", "2", "1", "-50 %", "fell"}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet::bench

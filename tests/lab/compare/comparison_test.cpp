@@ -10,7 +10,7 @@
 #include "lab/compare/comparison_files.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kGravity = 9.81;
 constexpr double kHeight = 1.0;
@@ -165,5 +165,5 @@ TEST(Comparison, PicturesOfZerosAndOfNothingAreDrawnOnPlainAxes) {
     EXPECT_NE(script.find("set yrange [-0.05:1]"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

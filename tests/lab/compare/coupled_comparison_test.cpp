@@ -13,7 +13,7 @@
 #include "ricochet/io/scene.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 /// steps: s, descending.
 ComparisonPlan plan_of(const SimulationSetup& setup, const std::string& responses, const std::vector<double>& steps) {
@@ -187,5 +187,5 @@ TEST(ComparisonOfChildren, CountsThoseThatAResponseDoesNotBear) {
     EXPECT_LE(row.errors.position.count, std::min(row.figures.alive, comparison->reference.figures.alive));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

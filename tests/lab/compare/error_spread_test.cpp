@@ -7,7 +7,7 @@
 #include <random>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(ErrorSpread, OfNothingHasNoNumbers) {
     const ErrorSpread spread = spread_of({});
@@ -55,5 +55,5 @@ TEST(ErrorSpread, AgreesWithCountingOnRandomNumbers) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

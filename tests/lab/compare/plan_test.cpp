@@ -7,7 +7,7 @@
 #include "ricochet/core/error.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 SimulationOptions scene() {
     SimulationOptions options;
@@ -96,5 +96,5 @@ TEST(ComparisonPlan, RefusesBadListsByTheirOption) {
     EXPECT_NE(error_of({}, empty).find("duration is 0 s"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Reference, IsInterpolatedLinearlyAndConstantBeyondItsEnds) {
     const std::vector<double> times{0.0, 1.0, 3.0};
@@ -111,5 +111,5 @@ TEST(Reference, WhereParticlesSpawnOthersTheyAreMatchedByTheirLineage) {
     EXPECT_EQ(errors.impacts_extra, 1U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

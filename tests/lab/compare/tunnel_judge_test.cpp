@@ -5,7 +5,7 @@
 #include <set>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Colliders 0 to 3, one of each kind.
 constexpr std::uint32_t kPlane = 0;
@@ -125,5 +125,5 @@ TEST(TunnelJudge, ParticlesAreJudgedEachForItself) {
     EXPECT_EQ(counts.penetrating, 0U);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

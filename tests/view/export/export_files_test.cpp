@@ -14,7 +14,7 @@
 #include "view/export/ply_points.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -209,5 +209,5 @@ TEST(ExportFolder, RefusesAnythingElse) {
     EXPECT_THROW(ExportFolder(folder.path("marked")), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

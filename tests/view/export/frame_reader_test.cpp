@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
@@ -154,5 +154,5 @@ TEST(FrameReader, NeverCrashesOnAnyCutOrChangedByteOfAnIndex) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include "view/page/page_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Rows of which some go and some come in every frame, with values of any kind: jumps, noise, polynomials.
 struct Course {
@@ -82,5 +82,5 @@ TEST(ChannelEncoder, ExpectsParabolasSoThatNothingIsLeftOfThem) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "view/page/run_page.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::box_mesh;
 using test::point_frame;
@@ -125,5 +125,5 @@ TEST(EncodedPart, TellsVerticesToHalfAStepAndTrianglesExactly) {
     EXPECT_TRUE(in.is_at_end());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

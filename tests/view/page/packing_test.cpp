@@ -6,7 +6,7 @@
 #include "view/page/page_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // The examples of RFC 4648, section 10.
 TEST(Packing, WritesBytesAsTextOfSixBitsEach) {
@@ -47,5 +47,5 @@ TEST(Packing, CountsSmallNumbersInFewBytes) {
 
 TEST(Packing, LeavesNoCharacterOfATag) { EXPECT_EQ(html_text("a<b>&\"'"), "a&lt;b&gt;&amp;&quot;&#39;"); }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <tuple>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // 1: fewer bits, 2: fewer frames, 3: fewer particles, 4: fewer frames again.
 int stage_of(const PageDetail& detail, const PageDetail& before) {
@@ -99,5 +99,5 @@ TEST(FirstFitting, FindsTheFirstOfFallingBytesWithFewLooks) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

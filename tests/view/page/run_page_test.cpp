@@ -9,7 +9,7 @@
 #include "view/page/page_reader.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 using test::MadeRun;
 using test::ReadFrame;
@@ -312,5 +312,5 @@ TEST(RunPage, RefusesFramesThatDoNotBelongTogether) {
     EXPECT_THROW((void)write_run_page(other.finish(), other.folder.path("page.html"), {}), InputError);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "view/render/tone.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Points of the Planckian locus: CIE standard illuminant A (2856 K by today's constants), and G. Wyszecki, W. S.
 // Stiles, "Color Science", 1982, table 1(3.3.4). The fit to the matching functions is good to 0.005.
@@ -56,5 +56,5 @@ TEST(BlackBody, WhatIsNoTemperatureGivesNoLight) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Position in the picture: -1..1 from edge to edge; nothing sensible behind the camera.
 struct Seen {
@@ -91,5 +91,5 @@ TEST(AutomaticCamera, HasAViewOfNothingAndOfASinglePoint) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

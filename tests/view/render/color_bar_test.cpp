@@ -11,7 +11,7 @@
 #include "view/render/lettering.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Image grey(int width, int height) {
     const std::size_t bytes = 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -128,5 +128,5 @@ TEST(Lettering, DrawsLettersWhoseDotsAreSquares) {
     write_text(image, -100, 500, 3, "outside");
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <limits>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(ColorMap, NamesLeadBackToTheirMaps) {
     for (const std::string_view name : color_map_names()) EXPECT_TRUE(color_map_from_name(name)) << name;
@@ -68,5 +68,5 @@ TEST(RobustRange, IsNeverEmpty) {
     EXPECT_LT(robust_range({0.0}).low, robust_range({0.0}).high);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

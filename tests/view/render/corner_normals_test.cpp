@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Two triangles that share an edge along y and lean away from it by the given angle each.
 TriangleMesh roof(double lean) {
@@ -33,5 +33,5 @@ TEST(CornerNormals, TrianglesWithoutAreaDoNoHarm) {
     EXPECT_TRUE(is_finite(normals[1][0]));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
@@ -83,5 +83,5 @@ TEST(NoiseFilter, HasTheSameBitsForAnyNumberOfThreads) {
     for (std::size_t i = 0; i < one.light.size(); ++i) ASSERT_EQ(one.light[i].x, four.light[i].x);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -14,7 +14,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Image gradient(int width, int height) {
     Image image{width, height, {}};
@@ -98,5 +98,5 @@ TEST(Png, RefusesWhatIsNoRegularFile) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "view/render/picture.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 Sprites sparks(int count) {
     Sprites sprites;
@@ -109,5 +109,5 @@ TEST(Lamps, ShadowsOfAGlowingParticleAreAsSoftAsItIsWide) {
     EXPECT_LT(part(1.2 * kRadius), 0.05);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "view/render/picture.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSize = 48;
 
@@ -101,5 +101,5 @@ TEST(Background, AColorIsSeenWhereNothingIsButLightsNothing) {
     EXPECT_GT(image.pixel(kSize / 2 - 3, kSize / 2 - 3)[0], 100);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "view/render/streaks.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr Vec3 kFall{0, 0, -9.81};
 
@@ -135,5 +135,5 @@ TEST(MotionPath, TheShutterSeesABlurredBallGoAroundTheCorner) {
     EXPECT_FALSE(lit(0.0, 0.3));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

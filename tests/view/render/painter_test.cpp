@@ -13,7 +13,7 @@
 #include "view/render/tone.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // A sphere of 12 x 8 flat faces whose normals are smoothed (its edges lean less than the crease).
 PreviewMesh coarse_ball() {
@@ -247,5 +247,5 @@ TEST(Painter, ADraftIsTheSameWhetherRaysOrTheViewFindTheSpheres) {
     EXPECT_LT(differing, kSize * kSize / 500);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

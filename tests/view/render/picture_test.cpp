@@ -13,7 +13,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
@@ -229,5 +229,5 @@ TEST(Picture, CanBeGivenUpFromTheProgressCall) {
     EXPECT_THROW((void)render_picture(ball_on_floor(), front_camera(), options), std::runtime_error);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -5,7 +5,7 @@
 #include "view/render/tone.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr Vec3 kBright{0.8, 0.8, 0.8};
 constexpr Vec3 kDark{0.1, 0.1, 0.1};
@@ -99,5 +99,5 @@ TEST(PixelSum, EvenPixelsAndThoseOfManySamplesWantNoMoreRays) {
     EXPECT_EQ(many.rays_wanted(), 0);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

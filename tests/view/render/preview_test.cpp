@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -249,5 +249,5 @@ TEST(Preview, CanBeEmpty) {
     EXPECT_FALSE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

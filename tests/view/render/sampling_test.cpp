@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // Every box of 1/4 x 1/4, 1/16 x 1, 1/8 x 1/2, ... holds exactly one of the first 16 samples: a (0, 4, 2)-net.
 TEST(PixelSamples, TheFirstSixteenLieOneEachInEveryElementaryBox) {
@@ -118,5 +118,5 @@ TEST(PixelSamples, IntegrateSmoothFunctionsBetterThanRandomNumbers) {
     EXPECT_LT(error(64), 0.2 * random);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -7,7 +7,7 @@
 #include "view/render/turning.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 AffineMap placed(AffineMap map, const Vec3& at) {
     map.translation = at;
@@ -105,5 +105,5 @@ TEST(ShapeCopies, CopiesWithoutSizeOrPlaceAreLeftOut) {
     EXPECT_EQ(preview.trace({{3, 0, 5}, {0, 0, -1}})->color, Vec3(0, 0, 1));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 43;
@@ -223,5 +223,5 @@ TEST(SphereView, DoesNotPayWhereManySpheresFillThePicture) {
     EXPECT_FALSE(SphereView(all.preview.spheres(), {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 60.0}, kWidth, kHeight).pays());
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

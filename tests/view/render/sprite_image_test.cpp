@@ -8,7 +8,7 @@
 #include "view/render/color_map.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(SpriteImage, IsAtTheMiddleOfAPixelThatPixelInLinearLightTimesItsCover) {
     const SpriteImage image(Image{2, 1, {255, 0, 0, 0, 128, 0}, {255, 51}});
@@ -44,5 +44,5 @@ TEST(SpriteImage, SmallerLevelsHaveTheSameMean) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

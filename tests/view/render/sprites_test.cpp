@@ -5,7 +5,7 @@
 #include "ricochet/core/parallel.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
@@ -104,5 +104,5 @@ TEST(Picture, TheNightIsDark) {
     for (const int c : image.pixel(kSize / 2, kSize / 3)) EXPECT_LT(c, 70);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -17,7 +17,7 @@
 #include "view/render/picture.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr double kRadius = 0.01;
 constexpr Vec3 kGlow{40, 20, 5};
@@ -165,5 +165,5 @@ TEST(Streaks, AreMetByRaysThatLookForThingsAndNotByThoseThatLookForLight) {
     EXPECT_FALSE(preview.occluded(up));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 #include "ricochet/core/random.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 bool stands_before(const DrawnSpheres& spheres, const Vec3& point, const Vec3& to_light) {
     for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
@@ -131,5 +131,5 @@ TEST(SunShadows, SpheresOnOneLineAndFarApartAreFound) {
     }
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,7 +8,7 @@
 #include "view/render/sprites.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
@@ -113,5 +113,5 @@ TEST(TexturedSprites, TheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(bytes(1), bytes(4));
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -11,7 +11,7 @@
 #include "view/render/color_map.h"
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 // What the table of display_channel() stands for.
 int rounded(double linear) {
@@ -65,5 +65,5 @@ TEST(ToneMapped, IsTheGlobalOperatorOnTheLuminanceAndKeepsColours) {
     EXPECT_EQ(tone_mapped({}), Vec3{});
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -6,7 +6,7 @@
 #include <numbers>
 
 namespace ricochet {
-namespace {
+namespace RICOCHET_FILE {
 
 TEST(Turning, AQuarterTurnAboutZTakesXToYHoweverManyStepsItTakes) {
     const Vec3 spin{0, 0, 0.5 * std::numbers::pi};
@@ -64,5 +64,5 @@ TEST(Turning, AProductIsOneMapAfterTheOther) {
     EXPECT_LT(length(linear_product(stretch, turn).direction(v) - stretch.direction(turn.direction(v))), 1e-14);
 }
 
-}  // namespace
+}  // namespace RICOCHET_FILE
 }  // namespace ricochet

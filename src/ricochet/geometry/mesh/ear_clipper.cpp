@@ -10,7 +10,7 @@ namespace ricochet {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 8;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoCorner = std::numeric_limits<std::uint32_t>::max();
 
 // Exact test: if the box's leftmost corner is strictly right of the line from a to b, so is every point of the box.
 bool is_right_of(const Point2& lower, const Point2& upper, const Point2& a, const Point2& b) {
@@ -38,7 +38,7 @@ int orientation(const std::vector<Point2>& p) {
 void PointTree::build(const std::vector<Point2>& points, std::vector<std::uint32_t> members) {
     points_ = &points;
     members_ = std::move(members);
-    leaf_of_.assign(points.size(), kNone);
+    leaf_of_.assign(points.size(), kNoCorner);
     nodes_.clear();
     if (members_.empty()) return;
     nodes_.emplace_back();
@@ -82,8 +82,8 @@ void PointTree::fit_box(Node& node) const {
 }
 
 void PointTree::remove(std::uint32_t member) {
-    if (nodes_.empty() || leaf_of_[member] == kNone) return;
-    std::uint32_t node = std::exchange(leaf_of_[member], kNone);
+    if (nodes_.empty() || leaf_of_[member] == kNoCorner) return;
+    std::uint32_t node = std::exchange(leaf_of_[member], kNoCorner);
     const auto first = members_.begin() + nodes_[node].begin;
     std::iter_swap(std::find(first, first + nodes_[node].members, member), first + nodes_[node].members - 1);
     for (; node != 0; node = nodes_[node].parent) --nodes_[node].members;

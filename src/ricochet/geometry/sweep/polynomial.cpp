@@ -104,11 +104,11 @@ bool exceeds_error(const Bernstein& bernstein, int depth) {
 }
 
 /// Value by Horner's rule in doubles, with a bound on its error.
-struct BoundedValue {
+struct RoundedValue {
     double value;
     double error;
 };
-BoundedValue bounded_value(const Polynomial& p, double s) {
+RoundedValue bounded_value(const Polynomial& p, double s) {
     double value = coefficient(p, p.degree).hi;
     double magnitude = std::fabs(value);
     for (int k = p.degree - 1; k >= 0; --k) {
@@ -120,7 +120,7 @@ BoundedValue bounded_value(const Polynomial& p, double s) {
 
 /// Returns a value with a certain sign: in doubles if they suffice, else in double-double.
 double signed_value(const Polynomial& p, double s) {
-    const BoundedValue rough = bounded_value(p, s);
+    const RoundedValue rough = bounded_value(p, s);
     return std::fabs(rough.value) > rough.error ? rough.value : p.value(s).hi;
 }
 
@@ -133,7 +133,7 @@ double bracketed_root(const Polynomial& p, double low, double high, int sign_at_
     double width = high - low;
     for (int step = 0; step < kMaxRootSteps; ++step) {
         const double slope = p.slope(s);
-        const BoundedValue rough = bounded_value(p, s);
+        const RoundedValue rough = bounded_value(p, s);
         double value = rough.value;
         if (std::fabs(value) <= rough.error) {
             if (rough.error < 0.5 * enough * std::fabs(slope)) return s;

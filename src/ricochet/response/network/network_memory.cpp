@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 /// Entries from the prefetch of one to its use.
-constexpr std::size_t kPrefetchDistance = 8;
+constexpr std::size_t kNetworkMemoryPrefetchDistance = 8;
 
 }  // namespace
 
@@ -37,7 +37,8 @@ void NetworkMemory::replace(std::span<const std::vector<Entry>* const> lists) {
     entries_.clear();
     entries_.reserve(all.size());
     for (std::size_t n = 0; n < order_.size(); ++n) {
-        if (n + kPrefetchDistance < order_.size()) prefetch_whole(*all[order_[n + kPrefetchDistance].index]);
+        if (n + kNetworkMemoryPrefetchDistance < order_.size())
+            prefetch_whole(*all[order_[n + kNetworkMemoryPrefetchDistance].index]);
         entries_.push_back(*all[order_[n].index]);
     }
     find_particles();

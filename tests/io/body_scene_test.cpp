@@ -74,7 +74,7 @@ TEST(BodyScene, SaysWhatCannotBeABody) {
               (Lines{"frames.wheel.body.velocity: a body on a joint starts with its \"rate\""}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1)", "", R"("motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 1}], )")),
-        (Lines{"frames.wheel.motions: a body moves by what acts on it, in the world; expected no such key"}));
+        (Lines{"frames.wheel.motions: forces and impulses move a body in the world; expected no such key"}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1], "inertia_products": [2, 0, 0])")),
         (Lines{"frames.wheel.body: body 'wheel': the inertia is impossible for a body with a volume (moments above "

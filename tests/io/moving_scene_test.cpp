@@ -196,8 +196,8 @@ TEST(MovingScene, SaysWhatCannotStandInScaledFrames) {
                         "expected one of these, or a frame without a \"scale\""});
     }
     EXPECT_EQ(errors_of(scaled_frames(R"("emitters": [{"type": "point", "rate": 1, "frame": "hand"}])")),
-              Lines{"emitters[0].frame: the frame is scaled, and what is born in it keeps its size; expected a frame "
-                    "without a \"scale\", its own or of one that it stands on"});
+              Lines{"emitters[0].frame: the frame is scaled, but particles keep their size; expected a frame without a "
+                    "\"scale\", also in the frames that it stands on"});
     EXPECT_EQ(errors_of(scaled_frames(R"("colliders": [{"name": "box", "type": "box", "size": [1, 1, 1],
                                           "frame": "hand"}],
                                          "emitters": [{"type": "mesh", "collider": "box", "rate": 1}])")),

@@ -59,15 +59,15 @@ TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
               (Lines{"particles[0].material: there is no material among particle_contacts.materials \"stel\"; did you "
                      "mean \"steel\"?"}));
     EXPECT_EQ(errors_of(scene_with("", R"(, "material": "steel")")),
-              (Lines{"particles[0].material: only goes together with particle_contacts.materials, which declares what "
-                     "it names; what walls are made of is said at the walls"}));
+              (Lines{"particles[0].material: only goes together with particle_contacts.materials, which declares the "
+                     "names; materials of walls are set at the walls"}));
     EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {}}, "pairs": [{"first": "a", "second": "b"}])")),
               (Lines{"particle_contacts.pairs[0].second: there is no material among particle_contacts.materials \"b\"; "
                      "did you mean \"a\"?"}));
     EXPECT_EQ(
         errors_of(scene_with(R"("materials": {"a": {"friction": 1}}, "pairs": [{"first": "a", "second": "a"}])")),
-        (Lines{"particle_contacts.pairs[0].second: found \"a\" twice, expected two materials: what one does to itself "
-               "is said at it in `materials`"}));
+        (Lines{"particle_contacts.pairs[0].second: found \"a\" twice, expected two materials: contacts within one "
+               "material are set in `materials`"}));
     EXPECT_EQ(
         errors_of(scene_with(kMaterials, R"(, "material": "steel", "attributes": {"material": 1})")),
         (Lines{"particles[0].material: found beside the attribute \"material\", which is its number: expected one "

@@ -49,7 +49,7 @@ constexpr Range kElements = between(1.0, 1e8);
 template <class Struct>
 Field<Struct> damping() {
     return {"damping", &Struct::damping, kLengthOrZero, "N s/m",
-            "Damping force of a spring divided by the rate of its length."};
+            "Damping force of a spring divided by the rate of change of its length."};
 }
 template <class Struct>
 Field<Struct> breaking_stretch() {
@@ -108,7 +108,7 @@ Fields<RopeKeys> rope_fields() {
             {"sag", &R::sag, kCoordinate, "",
              "Direction in which it hangs at first, if it is longer than the distance of its ends.", kNotZero,
              Without{"along the uniform forces, or -z"}},
-            {"pinned", &R::pinned, "Which ends never move.",
+            {"pinned", &R::pinned, "Ends that never move.",
              Choices{choice(PinnedEnds::none, "none", "both are free"),
                      choice(PinnedEnds::from, "from", "the first particle"),
                      choice(PinnedEnds::to, "to", "the last particle"),

@@ -63,7 +63,7 @@ TEST(CloudScene, WhatCannotBeIsRefusedInOneLine) {
         {scene_with(on + R"("cloud": {"type": "point", "parent_ends": "stay"})"), R"(expected one of "free", "die")"},
         {scene_with(on + R"("cloud": true)"), "expected an object"},
         {scene_with(R"("on": "death", "cloud": {"type": "point"})"), "a parent that has ended leads no cloud"},
-        {scene_with(on + R"("inherit_velocity": 0.5, "cloud": {"type": "point"})"), "have all of their parent's velocity"},
+        {scene_with(on + R"("inherit_velocity": 0.5, "cloud": {"type": "point"})"), "all of their parent's velocity"},
         {scene_with(on + R"("frame": "f", "cloud": {"type": "point"})"), R"(or a "cloud")"},
         {scene_with(on + R"("cloud": {"type": "point", "turning": [0, 0, 2000]})"), "take a shorter time step"},
         {scene_with(point, "", R"(, "response": "penalty")"), R"(the response "penalty")"},

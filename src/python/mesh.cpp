@@ -96,7 +96,7 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
 constexpr py::ssize_t kFewQuestions = 256;
 
 /// Makes `count` queries while other Python threads run; Ctrl-C ends them. Uses a copy of the mesh, so that
-/// set_vertices() may run concurrently. transform: placement of the mesh, or None for none.
+/// set_vertices() may run concurrently. transform: placement of the mesh, or None.
 template <class Ask>
 auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
     const auto answer = [&](const auto& asked) {

@@ -45,7 +45,7 @@ class AllHits(NamedTuple):
 
 
 class Particles(NamedTuple):
-    """The particles at the time of the access. Arrays are read-only and keep their values when the simulation goes on.
+    """The particles at the time of the access. Arrays are read-only and keep their values in later steps.
 
     id: Number that a particle keeps. Shape (n,), like all fields except vectors.
     position: Metres. Shape (n, 3).

@@ -46,10 +46,10 @@ class Simulation(_core.Simulation):
         Check every step with independent code, like the tool's --verify.
 
     forces
-        Forces in addition to the scene's. Each is a function that gets a :class:`ricochet.ForceInput` of all particles
-        and returns their forces in newtons, shape (n, 3), or the result of :func:`ricochet.compiled_force`. They must
-        be pure: equal input gives equal forces. With such forces the integrator "ballistic", the default of scenes,
-        moves all particles like "velocity_verlet".
+        Forces in addition to the scene's. Each is a function or the result of :func:`ricochet.compiled_force`. A
+        function gets a :class:`ricochet.ForceInput` of all particles and returns forces in newtons, shape (n, 3). They
+        must be pure: equal input gives equal forces. With such forces the integrator "ballistic", the default of
+        scenes, moves all particles like "velocity_verlet".
 
     Warnings of the tool become Python warnings (UserWarning), and stay in :attr:`warnings`.
 

@@ -183,7 +183,7 @@ def _state_of(vertices: Any, faces: Any) -> Any:
     """Returns the hashes of the content of trimesh's arrays; None for other arrays, which are compared entry by
     entry."""
     if isinstance(vertices, np.ndarray) and isinstance(faces, np.ndarray):
-        with contextlib.suppress(TypeError):  # NumPy's own arrays have none
+        with contextlib.suppress(TypeError):  # NumPy's own arrays have no hash
             return hash(vertices), hash(faces)
     return None
 

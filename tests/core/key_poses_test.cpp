@@ -104,7 +104,7 @@ TEST(KeyPoses, AreJoinedByTheShortestUniformMotion) {
     }
 }
 
-TEST(KeyPoses, OfEqualOrientationDoNotRotateHoweverTheyAreWritten) {
+TEST(KeyPoses, WithEqualOrientationsDoNotRotateHoweverTheyAreWritten) {
     const std::array<KeyPose, 4> same{
         KeyPose{1.0, {1, 2, 3}, {0, 0, 1}, 90.0}, KeyPose{2.0, {1, 2, 3}, {0, 0, -2}, 270.0},
         KeyPose{3.0, {1, 2, 3}, {0, 0, 1}, 450.0}, KeyPose{4.0, {1, 2, 3}, {0, 0, -1}, -90.0}};

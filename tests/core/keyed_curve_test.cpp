@@ -184,7 +184,7 @@ TEST(KeyedCurve, BoundsWithinOneSegmentAreExact) {
 }
 
 // exp(a t) times exp(b t) is exp((a + b) t). By the binomial theorem, its derivatives are the powers of a + b.
-TEST(DerivativeBounds, OfAProductFollowTheLeibnizRule) {
+TEST(DerivativeBounds, FollowTheLeibnizRuleForProducts) {
     const auto powers = [](double a) { return DerivativeBounds{1.0, a, a * a, a * a * a, a * a * a * a}; };
     EXPECT_EQ(product(powers(2.0), powers(3.0)), powers(5.0));
     EXPECT_EQ(product(powers(0.5), powers(0.25)), powers(0.75));

@@ -79,7 +79,7 @@ std::vector<Case> small_group(std::string_view suite) {
     return group;
 }
 
-TEST(Measurement, OfAGroupReportsCostsRelativeToTheFirstCase) {
+TEST(Measurement, ReportsCostsRelativeToTheFirstCaseOfAGroup) {
     for (const char* suite : {"radius", "response"}) {
         SCOPED_TRACE(suite);
         const std::vector<Case> group = small_group(suite);
@@ -103,7 +103,7 @@ TEST(Measurement, OfAGroupReportsCostsRelativeToTheFirstCase) {
     }
 }
 
-TEST(Measurement, OfASingleCaseHasNoRelativeCost) {
+TEST(Measurement, ReportsNoRelativeCostOfASingleCase) {
     const auto rows = measure_case(small_case("gas", 100, 500), {{2}, 1});
     ASSERT_TRUE(rows.has_value());
     EXPECT_FALSE(rows->front().ratio_points.has_value());

@@ -90,7 +90,7 @@ TEST(BenchCases, MovingCasesLoseNoParticle) {
     }
 }
 
-TEST(Measurement, OfMovingCasesReportsCostsAndLeaksOfTheNaiveMethod) {
+TEST(Measurement, ReportsCostsAndLeaksOfTheNaiveMethodForMovingCases) {
     std::uint64_t lost = 0;
     for (const std::vector<Case>& full : groups_of("moving")) {
         std::vector<Case> group;

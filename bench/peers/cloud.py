@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes one loose cloud of spheres for all compared programs.
 
-cloud.py filling COUNT FOLDER    spheres over a bin of 0.2 m
-cloud.py hopper COUNT FOLDER     spheres over the funnel meshes/funnel.obj
+cloud.py filling COUNT FOLDER    spheres over a bin of 0.2 m.
+cloud.py hopper COUNT FOLDER     spheres over the funnel meshes/funnel.obj.
 
 Radii are 5 mm plus or minus a fifth, and the density is 2500 kg/m^3. Positions are lattice points with random offsets.
 The offsets are small enough that no program starts with an overlap. Writes cloud.csv (Ricochet), cloud.data (LAMMPS:

@@ -204,7 +204,7 @@ TEST(ChildEmitter, TheKineticEnergyGrowsByTheLaunchesRelativeToTheirCentreOfMass
     const auto fragments = make_fragments(emitter, parent, 200, 0, 1.0);
     double energy = 0.0;
     for (const Particle& fragment : fragments) energy += 0.5 * fragment.mass * length_squared(fragment.velocity);
-    // Of 200 launches at 3 m/s in random directions, the centre of mass moves at about 3 / sqrt(200) m/s.
+    // The centre of mass of 200 launches at 3 m/s in random directions moves at about 3 / sqrt(200) m/s.
     const double own = energy - 0.5 * parent.mass * length_squared(parent.velocity);
     EXPECT_LE(own, 0.5 * parent.mass * 9.0 * (1.0 + 1e-12));
     EXPECT_GE(own, 0.5 * parent.mass * 9.0 * 0.95);

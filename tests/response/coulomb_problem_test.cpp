@@ -243,7 +243,7 @@ void make_jamming(std::uint64_t seed, CoulombProblem& problem) {
     for (const CoulombResistance& sliding : frictions) problem.add(sliding);
 }
 
-// Forces that diverge as the contacts become stiff prove that no solution exists. Of these 2000 problems one in eight
+// Forces that diverge as the contacts become stiff prove that no solution exists. One in eight of these 2000 problems
 // has none. They take 3228 sweeps on average and 19 730 at most; without this test 52 299 and 274 900.
 TEST(CoulombProblem, JammedProblemsAreAbandonedEarly) {
     const auto problem = std::make_unique<CoulombProblem>();

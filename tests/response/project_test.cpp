@@ -117,8 +117,7 @@ TEST(Project, VelocityOfASeparatingParticleStaysUnchanged) {
     MovingParticle near_it = particle_at({0, 0, 0.1 * kOffset}, {1, 2, 1e-7});
     EXPECT_EQ(course.move(near_it, 0.1).bounces, 0U);
     EXPECT_EQ(near_it.state.velocity, (Vec3{1, 2, 1e-7}));
-    EXPECT_NEAR(near_it.state.position.z, 0.1 * kOffset + 1e-8,
-                1e-20);  // not moved either
+    EXPECT_NEAR(near_it.state.position.z, 0.1 * kOffset + 1e-8, 1e-20);  // not moved either
     MovingParticle behind = particle_at({0, 0, 1});
     course.enrol(behind);
     behind.sides[0] = {1, true, true};

@@ -288,8 +288,7 @@ TEST_P(RollbackOfOne, SystemAndParticleRollbackAgreeWithinTheTolerance) {
 TEST(RollbackTogether, EveryCollisionCostsAllParticlesATrial) {
     const auto trials_per_particle = [](int count, bool global) {
         const Simulation simulation = finished(rain(count, global, 1e-6));
-        EXPECT_EQ(simulation.statistics().contacts,
-                  static_cast<std::uint64_t>(count));  // each at another time
+        EXPECT_EQ(simulation.statistics().contacts, static_cast<std::uint64_t>(count));  // each at another time
         return static_cast<double>(simulation.statistics().trials) / count;
     };
     const double alone = trials_per_particle(1, false);

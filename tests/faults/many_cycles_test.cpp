@@ -43,7 +43,7 @@ std::uint64_t open_and_close(const test::TemporaryFolder& folder) {
     return simulation.state_hash();
 }
 
-TEST(ManyCycles, OfOpeningAndClosingNeedNoMoreMemoryFilesAndThreads) {
+TEST(ManyCycles, OpeningAndClosingNeedNoMoreMemoryFilesAndThreads) {
     const test::TemporaryFolder folder;
     (void)folder.write("scene.json", kScene);
     (void)folder.write("roof.off", kMesh);

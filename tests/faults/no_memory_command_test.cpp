@@ -1,7 +1,7 @@
 // Tests of memory that runs out at any allocation of a command, within one process. The command ends with one line and
 // an exit code, and gives the same output when it is repeated.
 // Commands that make or read JSON documents are excluded. The destructors of the JSON library allocate, and end the
-// program if they fail. Those commands run as separate programs, see memory_faults_test.cpp.
+// program if they fail. memory_faults_test.cpp runs those commands as separate programs.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -108,7 +108,7 @@ private:
 };
 
 TEST(Soak, WithBirthsDeathsSleepAndCheckpointsNeedsNoMoreMemoryOnceWarm) {
-    if (test::kSanitized) GTEST_SKIP() << "sanitizers keep what is freed for a while";
+    if (test::kSanitized) GTEST_SKIP() << "sanitizers keep freed memory for a while";
     EndlessRun run;
     std::vector<std::size_t> resident;
     for (std::size_t phase = 0; phase < kPhases; ++phase) {

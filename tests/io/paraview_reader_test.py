@@ -132,7 +132,7 @@ def check_groups(data, path):
     check(max(numbers) < len(names), f"{path}: {len(names)} names for group {max(numbers)}")
     if "tetrahedron" in path:
         check(names == EXAMPLE_GROUPS and numbers == [0, 2, 1, 1], f"{path}: groups {numbers} of {names}")
-        check(data.GetFieldData().GetAbstractArray("none").GetNumberOfValues() == 0, f"{path}: the empty list of texts has values")
+        check(data.GetFieldData().GetAbstractArray("none").GetNumberOfValues() == 0, f"{path}: a text without values")
 
 
 def check_moving(folder, time, name):

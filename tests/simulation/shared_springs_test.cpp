@@ -1,5 +1,4 @@
-// Springs in a run shared by ranks. The connected particles live on the first rank, and the bits are those of one
-// process.
+// Springs in a run shared by ranks. The connected particles live on the first rank, and the bits match one process.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-# Embree and OpenMesh must be asked for without a version: Embree's version file accepts only its own major number,
-# OpenMesh ships none.
+# Embree and OpenMesh must be requested without a version: Embree's version file accepts only its own major number, and
+# OpenMesh has no version file.
 find_package(embree CONFIG REQUIRED)
 if(EMBREE_VERSION VERSION_LESS 3.13 OR EMBREE_VERSION VERSION_GREATER_EQUAL 5)
   message(FATAL_ERROR "Embree 3.13 to 4.x is needed, found ${EMBREE_VERSION}")
@@ -10,7 +10,7 @@ find_package(nlohmann_json CONFIG REQUIRED)
 find_package(fmt CONFIG REQUIRED)
 find_package(Boost CONFIG REQUIRED)
 find_package(Eigen3 CONFIG REQUIRED)
-# Where it is installed, unless told otherwise.
+# Assimp is used if it is installed, unless the option is set otherwise.
 find_package(assimp CONFIG QUIET)
 option(RICOCHET_ASSIMP "Read FBX, DAE, 3DS and others through Assimp" ${assimp_FOUND})
 if(RICOCHET_ASSIMP)

@@ -1,5 +1,5 @@
-# Installation: the library with its public headers, the tool, the CMake package, the pkg-config file, documents, the
-# scene schema and scenes with their meshes; and CPack's .deb.
+# Installation of the library with its public headers, the tool, the CMake package, the pkg-config file, documents, the
+# scene schema and scenes with their meshes. CPack makes a .deb of it.
 include(CMakePackageConfigHelpers)
 
 set(ricochet_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/ricochet)
@@ -41,11 +41,11 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN scene.schema.
 set(ricochet_data_dir ${CMAKE_INSTALL_DATADIR}/ricochet)
 install(FILES docs/scene.schema.json DESTINATION ${ricochet_data_dir})
 install(DIRECTORY scenes DESTINATION ${ricochet_data_dir})
-# What documents link to lies beside them.
+# Documents link to these files, so they are installed beside the documents.
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES third_party/three/LICENSE third_party/three/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/third_party/three)
 install(DIRECTORY bench/results DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
-# Scenes name meshes beside their folder.
+# Scenes refer to meshes in a folder beside theirs.
 install(DIRECTORY meshes DESTINATION ${ricochet_data_dir} FILES_MATCHING PATTERN *.obj PATTERN README.md PATTERN generators EXCLUDE)
 
 set(CPACK_PACKAGE_VENDOR "The Ricochet authors")

@@ -1,13 +1,13 @@
 # Compile settings that every target of the project shares.
 
-# The same bits everywhere: no fused multiply-add behind our back, no fast-math.
+# Results have the same bits everywhere: the compiler may not contract to fused multiply-add, and there is no fast-math.
 add_library(ricochet_options INTERFACE)
 target_compile_features(ricochet_options INTERFACE cxx_std_20)
 target_compile_options(ricochet_options INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
-# GCC 12 loses the rounding of neighbouring conversions double -> float -> double when it vectorizes a basic block (two such
-# conversions side by side become a copy at -O2), so boxes rounded outward to float would not be.
+# GCC 12 loses the rounding of neighbouring conversions double -> float -> double when it vectorizes a basic block. At
+# -O2 two such conversions side by side become a copy. Boxes would then not be rounded outward to float.
 target_compile_options(ricochet_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
-# Behind precompiled headers, whose lines are no system header's any more, GCC 12 reports false positives in its own
+# Lines from precompiled headers do not count as system headers any more. GCC 12 then reports false positives in its own
 # std::string and std::vector.
 target_compile_options(ricochet_options INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds;-Wno-stringop-overread;-Wno-stringop-overflow;-Wno-restrict>)
@@ -17,7 +17,7 @@ endif()
 if(RICOCHET_SANITIZE)
   target_compile_options(ricochet_options INTERFACE -fsanitize=${RICOCHET_SANITIZE} -fno-omit-frame-pointer)
   target_link_options(ricochet_options INTERFACE -fsanitize=${RICOCHET_SANITIZE})
-  # With a sanitizer's checks in between, GCC 12 finds uninitialised members in its own <regex> and <functional>.
+  # With sanitizer checks, GCC 12 reports uninitialised members in its own <regex> and <functional>.
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     target_compile_options(ricochet_options INTERFACE -Wno-maybe-uninitialized)
   endif()

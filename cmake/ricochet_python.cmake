@@ -1,5 +1,5 @@
-# Python and pybind11, for the package. The system's interpreter comes first: another one in the PATH lacks the system's
-# packages.
+# Python and pybind11, for the package. The system's interpreter is preferred, because another one in the PATH lacks the
+# system's packages.
 if(NOT DEFINED Python_EXECUTABLE AND EXISTS /usr/bin/python3)
   set(Python_EXECUTABLE /usr/bin/python3)
 endif()

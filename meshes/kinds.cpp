@@ -18,13 +18,13 @@ namespace {
 
 using SizedBuilder = std::function<TriangleMesh(std::size_t)>;
 
-/// Adds an option with its default shown in the help.
+/// Adds an option whose help shows its default.
 template <typename Value>
 void option(cli::Command command, const std::string& name, Value& value, const std::string& description) {
     command.add_option(name, value, description).show_default();
 }
 
-/// The builder of a shape whose parameters the command line fills in; coarse_edge gives the edge length to start from.
+/// Returns the builder of a shape whose parameters the command line sets. coarse_edge gives the initial edge length.
 template <typename Shape>
 SizedBuilder sized(const std::shared_ptr<Shape>& shape, TriangleMesh (*make)(const Shape&, double),
                    double (*coarse_edge)(const Shape&)) {
@@ -192,7 +192,7 @@ const std::vector<Kind>& kinds() {
         {"gear", "spur gear with involute teeth", gear_options},
         {"galton-board", "rows of pegs over bins, in a frame with a hopper", galton_board_options},
         {"drum", "barrel with lifters, closed or open at the front", drum_options},
-        {"fish", "fish that swims: a mesh for each phase, all with the same faces", fish_options},
+        {"fish", "swimming fish: a mesh for each phase, all with the same faces", fish_options},
         {"box", "box with divided faces", box_options},
         {"icosphere", "sphere as a divided icosahedron", icosphere_options},
         {"plate", "flat open sheet", plate_options},

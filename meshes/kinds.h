@@ -1,5 +1,5 @@
 /// \file
-/// The shapes that the program offers, with their options.
+/// The shapes of the program, with their options.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@ namespace ricochet::meshes {
 struct Kind {
     std::string name;     ///< subcommand
     std::string summary;  ///< one line for `list` and help
-    /// Adds the shape's options to its subcommand; the options' values live in the returned function, which makes the
-    /// mesh with about the given number of triangles once the command line has been read.
+    /// Adds the shape's options to its subcommand. Returns a function that makes the mesh with about the given number
+    /// of triangles. It stores the option values, so call it after the command line has been read.
     std::function<std::function<TriangleMesh(std::size_t triangles)>(cli::Command command)> add_options;
 };
 
-/// All shapes, in the order in which they are listed.
+/// Returns all shapes, in the order of the list.
 [[nodiscard]] const std::vector<Kind>& kinds();
 
 }  // namespace ricochet::meshes

@@ -25,11 +25,11 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
 
-/// The command line.
+/// Arguments of the command line.
 struct Request {
     std::size_t triangles = 10'000;
     std::filesystem::path output;
-    int decimals = -1;  // below 0: all digits
+    int decimals = -1;  // all digits if below 0
     std::function<TriangleMesh(std::size_t)> build;
 };
 
@@ -37,7 +37,7 @@ void print_kinds() {
     for (const meshes::Kind& kind : meshes::kinds()) fmt::print("{:<14}{}\n", kind.name, kind.summary);
 }
 
-/// Rounds to a number of decimals, so that text files stay small.
+/// Rounds coordinates to a number of decimals, which keeps text files small.
 void round_coordinates(TriangleMesh& mesh, int decimals) {
     double unit = 1.0;
     for (int i = 0; i < decimals; ++i) unit *= 10.0;
@@ -65,7 +65,8 @@ void make_mesh(const Request& request) {
 
 void add_kind(cli::Command program, const meshes::Kind& kind, Request& request) {
     cli::Command command = program.add_command(kind.name, kind.summary);
-    command.add_option("--triangles", request.triangles, "about how many triangles, 2 to 100 million").show_default();
+    command.add_option("--triangles", request.triangles, "approximate number of triangles, 2 to 100 million")
+        .show_default();
     command.add_option("--output", request.output, "file to write: .obj, .ply, .stl or .off").required();
     command.add_option("--decimals", request.decimals, "round coordinates to this many decimals (default: all digits)")
         .range(0, 15);
@@ -77,15 +78,15 @@ void require_known_shape(const std::string& name) {
     const auto& all = meshes::kinds();
     const auto same = [&](const meshes::Kind& kind) { return kind.name == name; };
     if (name == "list" || std::any_of(all.begin(), all.end(), same)) return;
-    throw InputError(fmt::format("there is no shape '{}': ricochet-mesh list names them", name));
+    throw InputError(fmt::format("there is no shape '{}': ricochet-mesh list shows all", name));
 }
 
 int run(int argc, char** argv) {
     if (argc > 1 && argv[1][0] != '-') require_known_shape(argv[1]);
-    cli::CommandLine line("Makes triangle meshes to collide with. Metres, z up; the same bits on every machine.",
+    cli::CommandLine line("Makes triangle meshes for colliders. Metres, z up; the same bits on every machine.",
                           "ricochet-mesh");
     Request request;
-    const cli::Command list = line.program().add_command("list", "the shapes there are");
+    const cli::Command list = line.program().add_command("list", "list all shapes");
     for (const meshes::Kind& kind : meshes::kinds()) add_kind(line.program(), kind, request);
     const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
     if (const auto printed = line.parse(words, "try ricochet-mesh --help")) return *printed;

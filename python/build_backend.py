@@ -1,7 +1,7 @@
-"""Builds the Python package with CMake: a PEP 517 backend that needs what Debian 12 has and nothing else.
+"""Builds the Python package with CMake: a PEP 517 backend that needs only packages of Debian 12.
 
-The compiled module is built in build/, the folder of scripts/demo and scripts/test, so that what they have compiled is
-not compiled again; for an interpreter of another version than the system's in a folder of its own.
+The compiled module is built in build/, the folder of scripts/demo and scripts/test, so that no file is compiled twice.
+For an interpreter of another version than the system's it is built in a separate folder.
 """
 
 import base64
@@ -36,7 +36,7 @@ def _abi(executable):
 
 
 def _folder():
-    """Where to build, and the interpreter to build for."""
+    """Returns the build folder and the interpreter to build for."""
     system = "/usr/bin/python3"
     if _abi(system) == sysconfig.get_config_var("SOABI"):
         return ROOT / "build", system
@@ -77,7 +77,7 @@ def _wheel_text():
 
 
 class _Wheel:
-    """A zip file that records what it holds."""
+    """Zip file with a record of its members."""
 
     def __init__(self, path):
         self._zip = zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED)

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Makes ricochet/scene.py and ricochet/scene.pyi from docs/scene.schema.json, which the tool prints from the table that
-its reader uses: one class for every thing of a scene, with its keys as keyword arguments.
+"""Makes ricochet/scene.py and ricochet/scene.pyi from docs/scene.schema.json, which the tool prints from the tables of
+its reader. The files have one class for every object of a scene, with its keys as keyword arguments.
 
     python/generate_scene.py            writes both files
-    python/generate_scene.py --check    says whether they are up to date
+    python/generate_scene.py --check    fails if they are not up to date
 """
 
 import json
@@ -58,7 +58,7 @@ def camel(name):
 
 
 def type_of(key, schema):
-    """A type for the stub. Where a mesh file is named a mesh may stand."""
+    """Returns a type for the stub. A mesh may replace the name of a mesh file."""
     if key == "file":
         return "Any"
     if "const" in schema or "enum" in schema:
@@ -78,7 +78,7 @@ def type_of(key, schema):
 
 
 def things(schema):
-    """(class name, fixed keys, schema) of everything with keys."""
+    """Yields (class name, fixed keys, schema) for every object with keys."""
     yield "Scene", {"ricochet": schema["properties"]["ricochet"]["maximum"]}, schema
     for name, definition in sorted(schema["$defs"].items()):
         own = "SimulationOptions" if name == "simulation" else camel(name)

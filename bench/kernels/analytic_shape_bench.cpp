@@ -1,5 +1,5 @@
 /// \file
-/// Time of one query of a shape with a formula.
+/// Time of one query of an analytic shape.
 
 #include "ricochet/geometry/shapes/analytic_shape.h"
 
@@ -26,7 +26,7 @@ AnalyticShape shape_of(std::int64_t kind) {
     return kind == kCylinder ? AnalyticShape::cylinder(map) : AnalyticShape::ball(map);
 }
 
-/// Paths of a given degree about as long as the shape is large, from a given side; half of them hit the shape.
+/// Returns paths of a given degree, about as long as the shape, from a given side. Half of them hit the shape.
 std::vector<Path> paths_of(const AnalyticShape& shape, std::int64_t degree, int side) {
     RandomSequence random(1, 0, 0);
     std::vector<Path> paths;

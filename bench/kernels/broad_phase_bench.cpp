@@ -1,7 +1,7 @@
 /// \file
-/// Time of querying the broad phase for the triangles near a segment, in a rocky cavity of 20 thousand and of 1.3
-/// million triangles: segments shorter than an edge, and segments across the cavity that end at their first triangle.
-/// Also the time of testing one cluster of triangles, and of reading the distance field once.
+/// Time of a broad-phase query for the triangles near a segment, in a rocky cavity of 20 thousand and of 1.3 million
+/// triangles. Segments are shorter than an edge, or cross the cavity and end at their first triangle. Also the time of
+/// a test of one cluster of triangles, and of one lookup in the distance field.
 
 #include <benchmark/benchmark.h>
 
@@ -18,7 +18,7 @@
 namespace ricochet {
 namespace {
 
-/// A mesh and its hierarchy, made once.
+/// A mesh and its hierarchy, built once.
 struct Ground {
     explicit Ground(std::size_t triangles)
         : mesh(meshes::build_near(triangles, 0.25, [](double edge) { return meshes::make_cavity({}, edge); })),
@@ -38,7 +38,7 @@ struct Segment {
     Vec3 to;
 };
 
-/// From anywhere within the innermost metre.
+/// Returns segments that start anywhere within the innermost metre.
 std::vector<Segment> segments(double length) {
     RandomSequence random(1, 0, 0);
     std::vector<Segment> result;
@@ -71,7 +71,7 @@ BENCHMARK(visit_short)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 BENCHMARK(visit_across_until_the_first)->ArgName("triangles")->Arg(20'000)->Arg(1'300'000);
 
-/// Tests clusters that a path of the given bend passes within one of their sizes.
+/// Tests clusters near a path of the given curvature, within a distance of one cluster size.
 void test_clusters(benchmark::State& state, double bend) {
     const TriangleMesh& mesh = ground(20'000).mesh;
     const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
@@ -96,7 +96,7 @@ void clusters_along_parabolas(benchmark::State& state) { test_clusters(state, 1e
 BENCHMARK(clusters_along_lines);
 BENCHMARK(clusters_along_parabolas);
 
-/// At points all over the cavity, most of them free.
+/// Looks up points in the whole cavity; most of them are free.
 void distance_lower_bound(benchmark::State& state) {
     const TriangleMesh& mesh = ground(static_cast<std::size_t>(state.range(0))).mesh;
     Box3 box;

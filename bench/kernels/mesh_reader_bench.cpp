@@ -1,5 +1,5 @@
 /// \file
-/// Time of reading a mesh of 100 thousand triangles that is in memory already, by format.
+/// Time to read a mesh of 100 thousand triangles from memory, by format.
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kTriangles = 100'000;
 
-/// The bytes of the mesh's file.
+/// Returns the bytes of the mesh's file.
 std::string bytes_of(const TriangleMesh& mesh, const std::string& ending) {
     const auto path =
         std::filesystem::temp_directory_path() / ("ricochet-mesh-reader-bench-" + std::to_string(::getpid()) + ending);

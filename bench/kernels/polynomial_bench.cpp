@@ -1,5 +1,5 @@
 /// \file
-/// Time of finding a polynomial's roots, by degree: with all of them in the interval, with none, with a double one.
+/// Time to find a polynomial's roots, by degree: with all roots in the interval, with none, with a double root.
 
 #include "ricochet/geometry/sweep/polynomial.h"
 
@@ -12,7 +12,7 @@
 namespace ricochet {
 namespace {
 
-/// (s - r0) (s - r1) ... on [0, 1], raised by `lift`.
+/// Returns the polynomial (s - r0) (s - r1) ... on [0, 1], plus `lift`.
 Polynomial with_roots(const std::vector<double>& roots, double lift) {
     Polynomial p;
     p.duration = 1.0;

@@ -1,6 +1,5 @@
 /// \file
-/// Time of one call of the exact predicates by the path it takes: decided by the filter, by double-double, by
-/// expansions.
+/// Time of one call of the exact predicates, by the deciding stage: the filter, double-double, or expansions.
 
 #include "ricochet/geometry/predicates/predicates.h"
 
@@ -19,7 +18,7 @@ struct SegmentTriangle {
 
 class Cases {
 public:
-    /// Case i of 4096 for which keep(case) holds; change(case, random) makes it special first.
+    /// Returns case i of 4096 cases with keep(case). change(case, random) makes each case special first.
     template <typename Change, typename Keep>
     Cases(const Change& change, const Keep& keep) {
         while (cases_.size() < 4096) {
@@ -48,7 +47,7 @@ const auto kMeets = [](const SegmentTriangle& s) { return segment_intersects_tri
 
 bool on_one_side(const SegmentTriangle& s) { return orient3d(s.a, s.b, s.c, s.p) == orient3d(s.a, s.b, s.c, s.q); }
 
-/// An end rounded into the triangle's plane.
+/// Rounds an end into the triangle's plane.
 void put_end_into_plane(SegmentTriangle& s, RandomSequence& random) {
     const double u = random.uniform();
     const double v = (1.0 - u) * random.uniform();

@@ -30,7 +30,7 @@ void in_unit_disk(benchmark::State& state) {
 void in_unit_ball(benchmark::State& state) {
     time(state, [](RandomSequence& random) { return random.in_unit_ball(); });
 }
-/// What an emitter does: a sequence of its own for every particle, and some draws.
+/// Draws like an emitter: a separate sequence for every particle, and some draws.
 void new_sequence(benchmark::State& state) {
     std::uint64_t id = 0;
     for ([[maybe_unused]] auto _ : state) {

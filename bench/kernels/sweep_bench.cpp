@@ -1,6 +1,6 @@
 /// \file
-/// Time of the first contact with one triangle, for points and spheres on lines, parabolas and cubics: paths that hit
-/// it, pass it and graze it.
+/// Time to find the first contact with one triangle, for points and spheres on lines, parabolas and cubics. Paths hit,
+/// pass or graze the triangle.
 
 #include "ricochet/geometry/sweep/point_sweep.h"
 
@@ -20,7 +20,7 @@ const Vec3 kA{-1.0, -1.0, 0.0};
 const Vec3 kB{1.0, -0.9, 0.1};
 const Vec3 kC{0.1, 1.1, -0.1};
 
-/// A path of one second between two points, bent for higher degrees.
+/// Returns a path of one second between two points, curved for higher degrees.
 Path path_between(const Vec3& from, const Vec3& to, int degree) {
     const Vec3 bend{0.1, -0.2, 0.15};
     if (degree == 1) return line_path(from, to - from, 1.0);
@@ -28,7 +28,7 @@ Path path_between(const Vec3& from, const Vec3& to, int degree) {
     return hermite_path(from, to - from + bend, to, to - from - 2.0 * bend, 1.0);
 }
 
-/// A point on the triangle.
+/// Returns a point on the triangle.
 Vec3 place(RandomSequence& random) {
     const double u = random.uniform();
     const double v = (1.0 - u) * random.uniform();
@@ -37,20 +37,20 @@ Vec3 place(RandomSequence& random) {
 
 using MakePath = std::function<Path(RandomSequence&)>;
 
-/// Through the triangle.
+/// Returns a path through the triangle.
 Path hit(RandomSequence& random, int degree) {
     const Vec3 p = place(random);
     const Vec3 way = random.unit_vector();
     return path_between(p - way, p + way, degree);
 }
 
-/// Over its plane, some distance above it.
+/// Returns a path some distance above the triangle's plane.
 Path miss(RandomSequence& random, int degree) {
     const Vec3 above{0.0, 0.0, 0.5 + random.uniform()};
     return path_between(place(random) + above, place(random) + 1.5 * above, degree);
 }
 
-/// Along it, at the height of the sphere's radius or in the plane, to rounding.
+/// Returns a path along the triangle, at the height of the sphere's radius or in the plane, to rounding.
 Path graze(RandomSequence& random, int degree, double height) {
     const Vec3 off = height * unit_normal(kA, kB, kC);
     return path_between(place(random) + off, place(random) + off, degree);

@@ -1,26 +1,26 @@
 #!/usr/bin/env python3
-"""Writes one loose cloud of spheres for all programs that are compared.
+"""Writes one loose cloud of spheres for all compared programs.
 
-cloud.py filling COUNT FOLDER    spheres over a bin of 0.2 m
-cloud.py hopper COUNT FOLDER     spheres over the funnel meshes/funnel.obj
+cloud.py filling COUNT FOLDER    spheres over a bin of 0.2 m.
+cloud.py hopper COUNT FOLDER     spheres over the funnel meshes/funnel.obj.
 
-Radii are 5 mm, a fifth more or less, the density 2500 kg/m^3. Places are those of a lattice, each moved at random by less
-than what would bring two together, so that no program begins with an overlap. Writes cloud.csv (Ricochet), cloud.data
-(LAMMPS: id, type, diameter, density, place) and cloud.txt (YADE: place and radius).
+Radii are 5 mm plus or minus a fifth, and the density is 2500 kg/m^3. Positions are lattice points with random offsets.
+The offsets are small enough that no program starts with an overlap. Writes cloud.csv (Ricochet), cloud.data (LAMMPS:
+id, type, diameter, density, position) and cloud.txt (YADE: position and radius).
 """
 import math
 import pathlib
 import random
 import sys
 
-PITCH = 0.0132  # m; the largest diameter is 0.012
+PITCH = 0.0132  # in m; the largest diameter is 0.012
 DENSITY = 2500.0  # kg/m^3
-BIN = 0.1  # m, half the bin's width
-FUNNEL_SCALE = 0.2  # the funnel's mesh is made for metres
+BIN = 0.1  # half the bin's width, in m
+FUNNEL_SCALE = 0.2  # because the funnel's mesh is in metres
 
 
 def places(kind, count):
-    """Places of a lattice in layers from below: a square one over the bin, a round one in the funnel's mouth."""
+    """Yields lattice points in layers from below: a square lattice over the bin, a round one in the funnel's mouth."""
     half = 7 if kind == "filling" else 8
     lowest = 0.007 if kind == "filling" else 0.30
     layer = 0

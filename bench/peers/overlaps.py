@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Largest overlap of two spheres over the smaller radius in each file of places (columns x y z radius, or a header).
+"""Computes the largest overlap of two spheres, relative to the smaller radius, in each file of positions (columns x y z
+radius, or a header).
 
-overlaps.py FILE...: prints how many spheres the last file has, its largest overlap, and the largest of all files.
+overlaps.py FILE...: prints the number of spheres in the last file, its largest overlap, and the largest of all files.
 """
 import collections
 import itertools

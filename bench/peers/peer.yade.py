@@ -1,4 +1,4 @@
-# The scene of the working folder in YADE: a bin, or the funnel where funnel.obj is beside cloud.txt.
+# The scene of the working folder in YADE: the funnel if funnel.obj is beside cloud.txt, else a bin.
 # Hertz and Mindlin, E 1e7 Pa, e 0.5, friction 0.5.
 import math
 import os

@@ -11,7 +11,8 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 100'000'000;
-constexpr std::size_t kCalibrationTriangles = 40'000;  // large enough to be past the coarse shape's fixed parts
+constexpr std::size_t kCalibrationTriangles =
+    40'000;  // large enough that the fixed parts of the coarse shape do not matter
 constexpr double kGoodEnough = 0.02;
 constexpr int kAttempts = 5;
 
@@ -19,7 +20,7 @@ double misfit(std::size_t count, std::size_t target) {
     return std::fabs(std::log2(static_cast<double>(count) / static_cast<double>(target)));
 }
 
-/// Triangle counts grow with the inverse square of the edge length.
+/// Returns the edge length for a target. Triangle counts grow with the inverse square of the edge length.
 double rescaled(double edge, std::size_t count, std::size_t target) {
     return edge * std::sqrt(static_cast<double>(count) / static_cast<double>(target));
 }

@@ -1,5 +1,5 @@
 /// \file
-/// From a wanted triangle count to the edge length that gives about as many.
+/// Search for the edge length that gives about a wanted number of triangles.
 #pragma once
 
 #include <cstddef>
@@ -9,13 +9,14 @@
 
 namespace ricochet::meshes {
 
-/// Makes one shape with edges of about the given length in metres.
+/// Function that makes one shape with edges of about the given length, in metres.
 using ShapeBuilder = std::function<TriangleMesh(double edge_length)>;
 
-/// The shape at the edge length whose triangle count is near the target: within about a tenth where the shape can be
-/// refined that finely (cells come in whole numbers); its coarsest form where the target is below that.
-/// \param target  triangles wanted, 2 to 100 million; InputError otherwise
-/// \param coarse_edge  an edge length to start from, metres
+/// Returns the shape at the edge length whose triangle count is near the target. The difference is at most about a
+/// tenth if the shape can be refined that finely, since cells come in whole numbers. For smaller targets it is the
+/// coarsest form.
+/// \param target  wanted number of triangles, 2 to 100 million; InputError otherwise
+/// \param coarse_edge  initial edge length, metres
 [[nodiscard]] TriangleMesh build_near(std::size_t target, double coarse_edge, const ShapeBuilder& build);
 
 }  // namespace ricochet::meshes

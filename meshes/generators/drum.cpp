@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kLifterFoot = 0.14;  // half width of a lifter at the barrel, fraction of the lifters' spacing
-constexpr double kLifterHead = 0.09;  // the same at its top
+constexpr double kLifterHead = 0.09;  // half width at its top, same unit
 
 constexpr std::uint8_t kHole = 0;
 constexpr std::uint8_t kLip = 1;
@@ -26,8 +26,8 @@ Point2 polar(double radius, double turns) {
     return {radius * c.cos, radius * c.sin};
 }
 
-/// Inside of the barrel, counter-clockwise, at strictly growing angles: for each lifter its rising flank, its head, its
-/// falling flank and the barrel up to the next one.
+/// Returns the inside of the barrel, counter-clockwise, at strictly growing angles. For each lifter it has the rising
+/// flank, the head, the falling flank and the barrel up to the next lifter.
 std::vector<Point2> inner_outline(const DrumShape& shape, double edge_length) {
     const double head = shape.radius - shape.lifter_height;
     const double spacing = 1.0 / shape.lifters;
@@ -62,7 +62,7 @@ std::vector<Point2> on_circle(const std::vector<Point2>& outline, double radius)
     return loop;
 }
 
-/// Cross-section: a core as wide as the opening, the lip around it, the barrel.
+/// Returns the cross-section: a core as wide as the opening, the lip around it, and the barrel.
 PlanarRegion drum_region(const DrumShape& shape, double edge_length) {
     const std::vector<Point2> inside = inner_outline(shape, edge_length);
     const double hole = (shape.opening > 0.0 ? shape.opening : 0.5) * (shape.radius - shape.lifter_height);

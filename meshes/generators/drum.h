@@ -17,9 +17,9 @@ struct DrumShape {
         0.95;  ///< hole in the front wall as a fraction of the radius between the lifters, 0.1 to 0.95; 0 closes it
 };
 
-/// Drum with its axis along y, opening towards -y, centred on the axis, the back wall's outside at y = length/2 +
-/// thickness. Closed surface; with opening 0 it has two shells, the outside and the cavity. Throws InputError for
-/// parameters out of range.
+/// Returns a drum with its axis along y and its opening towards -y, centred on the axis. The outside of the back wall
+/// is at y = length/2 + thickness. The surface is closed; with opening 0 it has two shells, the outside and the cavity.
+/// Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_drum(const DrumShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

@@ -15,14 +15,14 @@ constexpr double kTwoPi = 6.283185307179586;
 constexpr int kFewestRings = 12;
 constexpr int kFewestAround = 8;
 
-constexpr double kTailBegins = 0.8;    // of the way from nose to tail
-constexpr double kTailHeight = 0.17;   // half, over the length, as are all that follow
-constexpr double kTailWidth = 0.006;   // half
-constexpr double kTailFork = 0.14;     // how far the tips of the tail fin lie behind its middle
+constexpr double kTailBegins = 0.8;    // fraction of the distance from nose to tail
+constexpr double kTailHeight = 0.17;   // half height, fraction of the length, like the sizes below
+constexpr double kTailWidth = 0.006;   // half width
+constexpr double kTailFork = 0.14;     // distance of the tips of the tail fin behind its middle
 constexpr double kFinHeight = 0.09;    // of the fin on the back
-constexpr double kFinBegins = 0.28;    // of the way
-constexpr double kFinEnds = 0.68;      // of the way
-constexpr double kHeadSwing = 0.15;    // over the swing of the tail
+constexpr double kFinBegins = 0.28;    // fraction of the distance
+constexpr double kFinEnds = 0.68;      // fraction of the distance
+constexpr double kHeadSwing = 0.15;    // fraction of the swing of the tail
 constexpr double kWavesOnTheBody = 1;  // from nose to tail
 
 double smooth_step(double x) {
@@ -30,13 +30,13 @@ double smooth_step(double x) {
     return s * s * (3.0 - 2.0 * s);
 }
 
-/// Of the body, 0 at the nose and at the tail's root, 1 at its thickest.
+/// Returns the relative thickness of the body: 0 at the nose and at the tail's root, 1 at its thickest.
 double thickness_at(double s) {
-    constexpr double kLargest = 0.3258;  // of what it is divided by, near s = 0.28
+    constexpr double kLargest = 0.3258;  // maximum of the expression without it, near s = 0.28
     return std::sqrt(s) * (1.0 - s) * (1.0 - 0.5 * s) / kLargest;
 }
 
-/// A cross-section: an ellipse with a fin on its back, sheared backwards at the tail. All in metres.
+/// Cross-section: an ellipse with a fin on its back, sheared backwards at the tail. All lengths are in metres.
 struct Section {
     double half_height = 0.0;
     double half_width = 0.0;
@@ -49,13 +49,13 @@ struct Section {
         half_height = shape.length * (0.5 * shape.height * body + kTailHeight * tail);
         half_width = shape.length * (0.5 * shape.width * body + kTailWidth * std::sqrt(s));
         const double on_fin = (s - kFinBegins) / (kFinEnds - kFinBegins);
-        // It rises slowly and falls steeply.
+        // The fin rises slowly and falls steeply.
         fin = on_fin > 0.0 && on_fin < 1.0 ? shape.length * kFinHeight * 4.0 * on_fin * on_fin * (1.0 - on_fin) * 1.6875
                                            : 0.0;
         fork = shape.length * kTailFork * tail;
     }
 
-    /// Along the body, to its side, and up, from the section's middle.
+    /// Returns the offset along the body, to its side, and up, from the section's middle.
     [[nodiscard]] Vec3 point(const CirclePoint& c) const {
         double up = half_height * c.sin;
         if (c.sin > 0.0) {
@@ -66,7 +66,7 @@ struct Section {
     }
 };
 
-/// Where the middle of the body is, and which way it points there.
+/// Middle of the body, and its direction.
 struct Spine {
     Vec3 position;
     Vec3 along;
@@ -124,7 +124,7 @@ TriangleMesh make_fish(const FishShape& shape, double edge_length) {
     TriangleMesh mesh;
     mesh.vertices.push_back(Spine(shape, 0.0).point({}));
     for (int i = 1; i <= rings; ++i) {
-        // Denser at the nose, which is round.
+        // Rings are denser at the nose, which is round.
         const double even = static_cast<double>(i) / rings;
         const double s = even * std::sqrt(even);
         const Section section(shape, s);

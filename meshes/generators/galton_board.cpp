@@ -19,17 +19,17 @@ constexpr double kHopper = 2.0;    // height of the hopper, spacings
 constexpr double kThroat = 0.2;    // half width of its opening, spacings
 constexpr int kMinPegSides = 12;
 
-/// Adds prisms along y, from the front to the back plate.
+/// Builder that adds prisms along y, from the front to the back plate.
 class Board {
 public:
     Board(const GaltonBoardShape& shape, double edge_length) : shape_(shape), edge_(edge_length) {}
 
-    /// A prism over the region from the board's front to its back, with the region's origin at (x, z).
+    /// Adds a prism over the region from the board's front to its back, with the region's origin at (x, z).
     void place(const PlanarRegion& region, double x, double z) {
         append(mesh_, moved(stood_up(extrusion(region, shape_.depth, edge_)), {x, shape_.depth, z}));
     }
 
-    /// Block whose upper side is shifted by `lean` along x.
+    /// Adds a block whose upper side is shifted by `lean` along x.
     void leaning_block(double x, double z, double width, double height, double lean) {
         PlanarRegion region = rectangle_region(width, height, edge_);
         for (Point2& p : region.points) p.x += lean * p.y / height;
@@ -45,7 +45,7 @@ public:
         place(nested_region(loops, rings > 1 ? std::span<const Band>(bands) : std::span<const Band>(), 0), x, z);
     }
 
-    /// Plate behind everything.
+    /// Adds the plate behind all other parts.
     void back_plate(double half_width, double height) {
         const double gap = kGap * shape_.spacing;
         const TriangleMesh plate =
@@ -65,8 +65,8 @@ double lowest_row(const GaltonBoardShape& shape) { return (kWall + 1.0) * shape.
 double top_row(const GaltonBoardShape& shape) { return lowest_row(shape) + (shape.rows - 1) * shape.spacing; }
 double half_width(const GaltonBoardShape& shape) { return 0.5 * (shape.rows + 3) * shape.spacing; }
 
-/// Every row spans the board, so that nothing runs down beside the pegs; each is shifted by half a spacing against the
-/// next, and the lowest one stands over the dividers.
+/// Adds the pegs. Every row spans the board, so that no particle runs down beside the pegs. Each row is shifted by half
+/// a spacing against the next, and the lowest one is above the dividers.
 void add_pegs(Board& board, const GaltonBoardShape& shape) {
     for (int row = 0; row < shape.rows; ++row) {
         const double z = top_row(shape) - row * shape.spacing;
@@ -75,14 +75,14 @@ void add_pegs(Board& board, const GaltonBoardShape& shape) {
     }
 }
 
-/// A section of the frame along x with the height of what is on the floor there.
+/// Section of the frame along x, with the height of the solid on the floor.
 struct Section {
     double width = 0.0;
-    double height = 0.0;  // over the floor; 0 leaves the floor bare
+    double height = 0.0;  // over the floor; 0 for the bare floor
 };
 
-/// From the left wall over the dividers to the right wall. Dividers stand below the lowest row's pegs and one more on
-/// either side: a bin for every number of turns.
+/// Returns the sections from the left wall over the dividers to the right wall. There is a divider below each peg of
+/// the lowest row and one more on either side, so there is a bin for every number of turns.
 std::vector<Section> frame_sections(const GaltonBoardShape& shape, double wall_height) {
     const double wall = kWall * shape.spacing;
     const double thickness = kDivider * shape.spacing;
@@ -103,11 +103,11 @@ void append_steps(std::vector<double>& lines, double last, double edge_length) {
     lines.insert(lines.end(), steps.begin() + 1, steps.end());
 }
 
-/// Floor, walls and dividers in one piece: a comb without slits through which points could slide.
+/// Returns floor, walls and dividers in one piece: a comb without slits that points could slide through.
 PlanarRegion frame_region(const GaltonBoardShape& shape, double wall_height, double edge_length) {
     const double floor = kWall * shape.spacing;
     std::vector<double> xs{-half_width(shape)};
-    std::vector<double> tops;  // of the solid in every column of cells
+    std::vector<double> tops;  // top of the solid in every column of cells
     double x = xs.back();
     for (const Section& section : frame_sections(shape, wall_height)) {
         x += section.width;

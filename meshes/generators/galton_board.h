@@ -15,13 +15,14 @@ struct GaltonBoardShape {
     double depth = 0.1;        ///< of the board, along y, metres
 };
 
-/// Board in the plane of x and z, symmetric in x, floor at z = 0, front at y = 0 and back plate behind y = depth. The
-/// pegs, the frame (floor, walls and dividers in one piece), the two sides of the hopper and the back plate are closed
-/// shells of their own and none touches another. The sides of pegs, dividers and walls are exactly parallel to y: what
-/// moves in a plane of constant y stays in it. Throws InputError for parameters out of range.
+/// Returns a board in the plane of x and z, symmetric in x, floor at z = 0, front at y = 0 and back plate behind y =
+/// depth. Each peg, the frame, each side of the hopper and the back plate is a separate closed shell. No shell touches
+/// another. The frame has floor, walls and dividers in one piece. The sides of pegs, dividers and walls are exactly
+/// parallel to y: a particle that moves in a plane of constant y stays in it. Throws InputError for parameters out of
+/// range.
 [[nodiscard]] TriangleMesh make_galton_board(const GaltonBoardShape& shape, double edge_length);
 
-/// Height of the lowest point of the hopper's opening over z = 0, metres: particles start above it.
+/// Returns the height of the lowest point of the hopper's opening over z = 0, in metres. Particles start above it.
 [[nodiscard]] double galton_board_entry(const GaltonBoardShape& shape);
 
 }  // namespace ricochet::meshes

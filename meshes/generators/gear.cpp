@@ -19,7 +19,7 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kCosPressure = 0.9396926207859084;         // cos 20 degrees
 constexpr double kInvolutePressure = 0.014904383867336446;  // tan 20 degrees - 20 degrees, in radians
-constexpr double kFilletReach = 0.3;  // how far into the gap the tooth's foot reaches, fraction of the gap's half
+constexpr double kFilletReach = 0.3;  // reach of the tooth's foot into the gap, fraction of the gap's half
 
 constexpr std::uint8_t kHub = 0;
 constexpr std::uint8_t kWeb = 1;
@@ -50,13 +50,13 @@ GearCircles circles(const GearShape& shape) {
             shape.pitch_radius - 1.25 * module_size};
 }
 
-/// Roll angle at which the involute of the base circle reaches a radius.
+/// Returns the roll angle at which the involute of the base circle reaches a radius.
 double roll_at(double radius, double base) {
     const double ratio = radius / base;
     return std::sqrt(std::max(0.0, ratio * ratio - 1.0));
 }
 
-/// Point of the flank that leaves the base circle at the angle `start` and leans towards the x axis as it rises.
+/// Returns a point of the flank that leaves the base circle at the angle `start` and leans towards the x axis.
 Point2 flank_point(double base, double start, double roll) {
     const CirclePoint c = point_on_circle(roll / kTwoPi);
     const Point2 local{base * (c.cos + roll * c.sin), -base * (c.sin - roll * c.cos)};
@@ -74,7 +74,7 @@ void append_arc(std::vector<Point2>& outline, Point2 from, Point2 to, double edg
     outline.push_back(to);
 }
 
-/// Upper half of the tooth on the x axis: from the middle of its tip to the middle of the gap, at growing angles.
+/// Returns the upper half of the tooth on the x axis, from the middle of its tip to the middle of the gap.
 std::vector<Point2> half_tooth(const GearShape& shape, double edge_length) {
     const GearCircles r = circles(shape);
     const double half_pitch = 0.5 * kTwoPi / shape.teeth;
@@ -98,7 +98,7 @@ std::vector<Point2> half_tooth(const GearShape& shape, double edge_length) {
     return outline;
 }
 
-/// The whole outline, counter-clockwise.
+/// Returns the whole outline, counter-clockwise.
 std::vector<Point2> gear_outline(const GearShape& shape, double edge_length) {
     const std::vector<Point2> half = half_tooth(shape, edge_length);
     std::vector<Point2> tooth;

@@ -16,9 +16,9 @@ struct GearShape {
         0.25;  ///< depth of the groove between hub and rim on either face, fraction of the width, 0 to 0.45
 };
 
-/// Full-depth spur gear with a pressure angle of 20 degrees, axis z, centred on the origin; closed, of genus 1. Throws
-/// InputError for parameters out of range and for a bore that leaves no space for hub and rim.
-/// Method: involute flanks and proportions (addendum one module, dedendum 1.25) as in ISO 53.
+/// Returns a full-depth spur gear with a pressure angle of 20 degrees, axis z, centred on the origin; closed, of
+/// genus 1. Throws InputError for parameters out of range and for a bore that leaves no space for hub and rim. Method:
+/// involute flanks and proportions (addendum one module, dedendum 1.25) as in ISO 53.
 [[nodiscard]] TriangleMesh make_gear(const GearShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

@@ -36,7 +36,8 @@ constexpr std::array<Triangle, 20> kIcosahedronFaces{{{0, 11, 5}, {0, 5, 1},  {0
                                                       {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                                       {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}}};
 
-/// Vertex numbers without any search: 12 corners, then 30 edges' inner vertices, then each face's inner vertices.
+/// Builder that numbers vertices without any search: 12 corners, then the inner vertices of 30 edges, then of each
+/// face.
 class DividedIcosahedron {
 public:
     explicit DividedIcosahedron(int divisions) : n_(divisions), corners_(icosahedron_corners()) {
@@ -55,7 +56,7 @@ public:
     }
 
 private:
-    /// Point with barycentric weights (n - i - j, i, j) / n of a face, on the sphere.
+    /// Returns the point with barycentric weights (n - i - j, i, j) / n of a face, on the sphere.
     Vec3 on_sphere(const Triangle& face, int i, int j) const {
         const Vec3 p = static_cast<double>(n_ - i - j) * corners_[face[0]] +
                        static_cast<double>(i) * corners_[face[1]] + static_cast<double>(j) * corners_[face[2]];
@@ -63,7 +64,7 @@ private:
     }
 
     void number_edge(std::uint32_t a, std::uint32_t b) {
-        if (a > b) return;  // made from the other side
+        if (a > b) return;  // the neighbouring face adds it
         edge_start_[a][b] = static_cast<std::uint32_t>(mesh_.vertices.size());
         for (int i = 1; i < n_; ++i) mesh_.vertices.push_back(on_sphere({a, b, b}, i, 0));
     }
@@ -81,7 +82,7 @@ private:
         if (j == 0) return edge_vertex(face[0], face[1], i);
         if (i == 0) return edge_vertex(face[0], face[2], j);
         if (k == 0) return edge_vertex(face[1], face[2], j);
-        // Row j holds the inner vertices i = 1 .. n - j - 1; rows 1 .. j - 1 come before it.
+        // Row j has the inner vertices i = 1 .. n - j - 1; rows 1 .. j - 1 are before it.
         const int before = (j - 1) * (n_ - 1) - (j - 1) * j / 2;
         return inner_start + static_cast<std::uint32_t>(before + i - 1);
     }

@@ -11,14 +11,14 @@ struct IcosphereShape {
     double radius = 1.0;  ///< metres
 };
 
-/// Unit icosphere: every icosahedron edge in `divisions` pieces (at least 1): 20 divisions^2 triangles, 10 divisions^2
-/// + 2 vertices, all on the unit sphere to rounding.
+/// Returns a unit icosphere whose icosahedron edges have `divisions` pieces (at least 1). It has 20 divisions^2
+/// triangles and 10 divisions^2 + 2 vertices, all on the unit sphere to rounding.
 [[nodiscard]] TriangleMesh unit_icosphere(int divisions);
 
-/// Divisions that give edges of about the length on a sphere of the radius.
+/// Returns the number of divisions for edges of about the length on a sphere of the radius.
 [[nodiscard]] int icosphere_divisions(double radius, double edge_length);
 
-/// Sphere about the origin. Throws InputError for a radius out of range.
+/// Returns a sphere about the origin. Throws InputError for a radius out of range.
 [[nodiscard]] TriangleMesh make_icosphere(const IcosphereShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

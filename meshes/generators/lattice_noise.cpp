@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kAxisShift = 17.31;  // keeps the octaves' lattices from sharing their zeros at the origin
 
-/// Finalising mix: every input bit changes every output bit with probability near one half.
+/// Mixes bits: every input bit changes every output bit with probability near one half.
 /// Method: G. Steele et al., "Fast Splittable Pseudorandom Number Generators", OOPSLA 2014.
 std::uint64_t mix(std::uint64_t bits) {
     bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9ULL;
@@ -17,7 +17,7 @@ std::uint64_t mix(std::uint64_t bits) {
 }
 
 std::uint64_t mix_seed(std::uint64_t seed) { return mix(seed + 0x9E3779B97F4A7C15ULL); }
-// One lattice coordinate after the other is mixed in, so that the corners of a cell share the work.
+// Lattice coordinates are mixed in one after the other, so that the corners of a cell share the work.
 std::uint64_t mix_i(std::uint64_t bits, std::int64_t i) {
     return mix(bits ^ (static_cast<std::uint64_t>(i) * 0xD6E8FEB86659FD93ULL));
 }
@@ -66,7 +66,7 @@ Vec3 octave_position(const Vec3& p, double frequency, int octave) {
     return frequency * p + Vec3{shift, -shift, 0.5 * shift};
 }
 
-/// The cell's part of gradient_noise(); inlined so that the gradient costs nothing where it is not used.
+/// Computes gradient_noise() within a cell. Inlined, so that an unused gradient costs nothing.
 inline NoiseSample sample_noise(const Vec3& p, std::uint64_t mixed_seed) {
     const Vec3 cell{std::floor(p.x), std::floor(p.y), std::floor(p.z)};
     const Vec3 t = p - cell;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
 constexpr int kNothing = -1;
 
-/// An edge of the region with the parts of the triangles on its two sides.
+/// Edge of the region, with the parts of the triangles on its two sides.
 struct PlanarEdge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
@@ -34,7 +34,7 @@ std::vector<PlanarEdge> one_sided_edges(const PlanarRegion& region) {
     return edges;
 }
 
-/// Edges that can carry a wall: those with different parts on their two sides, in a fixed order.
+/// Returns the edges that can have a wall, because the parts on their two sides differ, in a fixed order.
 std::vector<PlanarEdge> border_edges(const PlanarRegion& region) {
     std::vector<PlanarEdge> edges = one_sided_edges(region);
     std::sort(edges.begin(), edges.end(), [](const PlanarEdge& a, const PlanarEdge& b) {
@@ -77,7 +77,7 @@ public:
     }
 
 private:
-    /// Vertex above a point of the region on the slab border whose table is given.
+    /// Returns the vertex above a point of the region, on the slab border whose table is given.
     std::uint32_t vertex(std::vector<std::uint32_t>& table, std::uint32_t point, double height) {
         if (table[point] == kUnset) table[point] = add_vertex(point, height);
         return table[point];
@@ -88,7 +88,7 @@ private:
         return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
     }
 
-    /// Triangles at base_height_ that are solid on one side only.
+    /// Adds the triangles at base_height_ that are solid on only one side.
     void cap(std::uint32_t below, std::uint32_t above) {
         for (std::size_t t = 0; t < region_.triangles.size(); ++t) {
             const bool solid_below = contains(below, region_.parts[t]);
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// Vertices of the edges' ends (two an edge) on a slab border, shared with the caps.
+    /// Returns the vertices of the edges' ends (two per edge) on a slab border, shared with the caps.
     std::vector<std::uint32_t> border_row(const std::vector<std::array<std::uint32_t, 2>>& edges,
                                           std::vector<std::uint32_t>& table, double height) {
         std::vector<std::uint32_t> row;
@@ -128,7 +128,7 @@ private:
         return row;
     }
 
-    /// The same inside a slab.
+    /// Returns the vertices of the edges' ends inside a slab.
     std::vector<std::uint32_t> inner_row(const std::vector<std::array<std::uint32_t, 2>>& edges, double height) {
         if (scratch_.empty()) scratch_.assign(region_.points.size(), kUnset);
         std::vector<std::uint32_t> row = border_row(edges, scratch_, height);
@@ -146,9 +146,9 @@ private:
     const PlanarRegion& region_;
     std::span<const Slab> slabs_;
     std::vector<PlanarEdge> borders_;
-    std::vector<std::uint32_t> base_;     // vertex of every point on the slab border below, when made
-    std::vector<std::uint32_t> top_;      // the same on the border above
-    std::vector<std::uint32_t> scratch_;  // the same inside a slab
+    std::vector<std::uint32_t> base_;     // vertex of every point on the slab border below, if it exists
+    std::vector<std::uint32_t> top_;      // likewise on the border above
+    std::vector<std::uint32_t> scratch_;  // likewise inside a slab
     double base_height_ = 0.0;
     TriangleMesh mesh_;
 };

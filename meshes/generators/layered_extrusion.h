@@ -1,5 +1,5 @@
 /// \file
-/// Solids made of slabs: each slab extrudes some parts of one planar region along z.
+/// Solids of slabs: each slab extrudes some parts of one planar region along z.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,12 @@ struct Slab {
     int layers = 1;           ///< cells across the thickness
 };
 
-/// Surface of the solid whose slabs are stacked upward from z = 0. Closed, edge-manifold and wound outward by
-/// construction: every triangle of the region that is solid on one side of a slab border and empty on the other becomes
-/// a cap, and every edge of a slab's cross-section becomes a strip of wall. At least one slab.
+/// Returns the surface of the solid whose slabs are stacked upward from z = 0. It is closed, edge-manifold and wound
+/// outward by construction. Every triangle of the region that is solid on only one side of a slab border becomes a cap.
+/// Every edge of a slab's cross-section becomes a strip of wall. There must be at least one slab.
 [[nodiscard]] TriangleMesh layered_extrusion(const PlanarRegion& region, std::span<const Slab> slabs);
 
-/// One slab of the whole region (part 0) from z = 0 to z = thickness, with cells of about the edge length.
+/// Returns one slab of the whole region (part 0) from z = 0 to z = thickness, with cells of about the edge length.
 [[nodiscard]] TriangleMesh extrusion(const PlanarRegion& region, double thickness, double edge_length);
 
 }  // namespace ricochet::meshes

@@ -1,5 +1,5 @@
 /// \file
-/// Small helpers that move, turn and join meshes.
+/// Small helpers that move, rotate and join meshes.
 #pragma once
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -15,13 +15,13 @@ inline void append(TriangleMesh& mesh, const TriangleMesh& other) {
     }
 }
 
-/// The mesh moved by an offset, metres.
+/// Returns the mesh moved by an offset, in metres.
 [[nodiscard]] inline TriangleMesh moved(TriangleMesh mesh, const Vec3& offset) {
     for (Vec3& p : mesh.vertices) p += offset;
     return mesh;
 }
 
-/// A quarter turn about x: what was along y then points up (z), what was along z points to -y. Exact.
+/// Returns the mesh after a quarter turn about x: the y axis then points to z, and the z axis to -y. Exact.
 [[nodiscard]] inline TriangleMesh stood_up(TriangleMesh mesh) {
     for (Vec3& p : mesh.vertices) p = {p.x, -p.z, p.y};
     return mesh;

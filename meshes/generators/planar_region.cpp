@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kUnset = std::numeric_limits<std::uint32_t>::max();
 constexpr double kMaxSteps = 1e6;  // keeps a tiny edge length from overflowing the step count
 
-/// Hands out point numbers of a grid, making a point when it is first used.
+/// Numbers of the points of a grid. A point is made on first use.
 class GridPoints {
 public:
     GridPoints(std::span<const double> xs, std::span<const double> ys, PlanarRegion& region)
@@ -91,7 +91,7 @@ PlanarRegion lattice_region(std::span<const double> xs, std::span<const double> 
     for (std::size_t j = 0; j + 1 < ys.size(); ++j) {
         for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
             if (!solid(i, j)) continue;
-            // Points are made in this order, whatever order a compiler evaluates arguments in.
+            // Fixes the order of points, because compilers differ in the evaluation order of arguments.
             const std::uint32_t d = point(i, j + 1);
             const std::uint32_t c = point(i + 1, j + 1);
             const std::uint32_t b = point(i + 1, j);

@@ -9,10 +9,10 @@
 namespace ricochet::meshes {
 namespace {
 
-/// Isosceles triangle from the origin along x, divided into n^2 triangles.
+/// Returns an isosceles triangle from the origin along x, divided into n^2 triangles.
 PlanarRegion wedge_region(double length, double opening, int n) {
     PlanarRegion region;
-    for (int i = 0; i <= n; ++i) {  // column i holds i + 1 points
+    for (int i = 0; i <= n; ++i) {  // column i has i + 1 points
         const double x = length * i / n;
         for (int j = 0; j <= i; ++j) region.points.push_back({x, opening * (2 * j - i) / (2 * n)});
     }
@@ -27,7 +27,8 @@ PlanarRegion wedge_region(double length, double opening, int n) {
     return region;
 }
 
-/// Lattice lines at every step and evenly in between, each computed from its index so that equal lines are equal bits.
+/// Returns lattice lines at every step and evenly in between. Each is computed from its index, so that equal lines have
+/// equal bits.
 std::vector<double> step_lines(int steps, double size, std::size_t pieces) {
     std::vector<double> lines;
     for (std::size_t i = 0; i <= static_cast<std::size_t>(steps) * pieces; ++i) {

@@ -13,7 +13,7 @@ struct BoxShape {
     double height = 1.0;  ///< along z, metres
 };
 
-/// Closed box centred on the origin. Throws InputError for parameters out of range.
+/// Returns a closed box centred on the origin. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_box(const BoxShape& shape, double edge_length);
 
 /// Shape of a plate.
@@ -22,7 +22,8 @@ struct PlateShape {
     double width = 1.0;   ///< along y, metres
 };
 
-/// Flat open sheet in z = 0 centred on the origin, normals along +z. Throws InputError for parameters out of range.
+/// Returns a flat open sheet in z = 0 centred on the origin, with normals along +z. Throws InputError for parameters
+/// out of range.
 [[nodiscard]] TriangleMesh make_plate(const PlateShape& shape, double edge_length);
 
 /// Shape of a wedge.
@@ -32,8 +33,8 @@ struct WedgeShape {
     double width = 1.0;    ///< of the sharp edge, along y, metres
 };
 
-/// Closed prism over an isosceles triangle whose sharp edge is the y axis, opening along +x; particles inside bounce
-/// between two planes that meet at an angle. Throws InputError for parameters out of range.
+/// Returns a closed prism over an isosceles triangle. Its sharp edge is the y axis, and it opens along +x. Particles
+/// inside bounce between two planes that meet at an angle. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_wedge(const WedgeShape& shape, double edge_length);
 
 /// Shape of a staircase.
@@ -44,7 +45,7 @@ struct StaircaseShape {
     double width = 1.2;  ///< metres
 };
 
-/// Stairs that go down along +x from x = 0, on the floor z = 0, with y in [-width/2, width/2]; closed. Throws
+/// Returns closed stairs that go down along +x from x = 0, on the floor z = 0, with y in [-width/2, width/2]. Throws
 /// InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_staircase(const StaircaseShape& shape, double edge_length);
 

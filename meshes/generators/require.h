@@ -6,16 +6,15 @@
 
 namespace ricochet::meshes {
 
-/// Lengths in metres: large and small enough for any scene, far from the ends of double precision.
+/// Range of lengths, in metres: wide enough for any scene, and far from the limits of double precision.
 inline constexpr double kShortest = 1e-6;
 inline constexpr double kLongest = 1e6;
 
-/// Throws InputError when a value is outside [lowest, highest] (or not a number), naming the option as the user typed
-/// it.
+/// Throws InputError, naming the option, if a value is outside [lowest, highest] or not a number.
 void require_between(std::string_view shape, std::string_view option, double value, double lowest, double highest);
 void require_between(std::string_view shape, std::string_view option, int value, int lowest, int highest);
 
-/// The same for [kShortest, kLongest].
+/// Throws InputError if a value is outside [kShortest, kLongest].
 void require_length(std::string_view shape, std::string_view option, double value);
 
 }  // namespace ricochet::meshes

@@ -15,17 +15,17 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-constexpr double kNearestCut = 0.05;   // smallest radius a rock or cavity may shrink to, fraction of its radius
-constexpr int kCutCandidates = 12;     // spreads the cutting planes over the sphere
+constexpr double kNearestCut = 0.05;   // smallest distance from the centre, fraction of the radius
+constexpr int kCutCandidates = 12;     // per cutting plane; spreads the planes over the sphere
 constexpr double kFacetCrumble = 0.8;  // size of the bumps that vary along facets, fraction of the radius
 
-/// A plane dot(normal, p) = distance that cuts away what lies beyond it.
+/// Plane dot(normal, p) = distance that cuts away the material beyond it.
 struct Cut {
     Vec3 normal;
     double distance = 1.0;
 };
 
-/// Of several random directions, the one farthest from the cuts made so far.
+/// Returns the one of several random directions that is farthest from the cuts made so far.
 /// Method: D. Mitchell, "Spectrally Optimal Sampling for Distribution Ray Tracing", SIGGRAPH 1991 (best candidate).
 Vec3 spread_direction(RandomSequence& random, const std::vector<Cut>& cuts) {
     Vec3 best;
@@ -51,14 +51,14 @@ std::vector<Cut> random_cuts(const RockShape& shape) {
     return cuts;
 }
 
-/// Minimum of a and b with the crease rounded over a width.
+/// Returns the minimum of a and b, with the crease rounded over a width.
 double smooth_min(double a, double b, double width) {
     if (width <= 0.0) return std::min(a, b);
     const double overlap = std::max(0.0, width - std::fabs(a - b)) / width;
     return std::min(a, b) - 0.25 * width * overlap * overlap;
 }
 
-/// Distance along a unit ray to the nearest cut, at most 1.
+/// Returns the distance along a unit ray to the nearest cut, at most 1.
 double cut_radius(const Vec3& ray, const std::vector<Cut>& cuts, double rounding) {
     double radius = 1.0;
     for (const Cut& cut : cuts) {
@@ -68,7 +68,7 @@ double cut_radius(const Vec3& ray, const std::vector<Cut>& cuts, double rounding
     return radius;
 }
 
-/// Unit icosphere with every vertex moved along its ray to the given distance.
+/// Returns a unit icosphere with every vertex moved along its ray to the given position.
 TriangleMesh displaced(int divisions, const std::function<Vec3(const Vec3& ray)>& position) {
     TriangleMesh mesh = unit_icosphere(divisions);
     parallel_for_blocks(mesh.vertices.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {

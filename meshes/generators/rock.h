@@ -1,6 +1,6 @@
 /// \file
 /// Rocks and cavities: icospheres displaced along their rays from the centre. Every ray crosses the surface once, so
-/// the surface cannot cross itself however strong the displacement is.
+/// the surface cannot cross itself, even with a strong displacement.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +19,10 @@ struct RockShape {
     double stretch_x = 1.25;  ///< scale along x
     double stretch_y = 1.0;   ///< scale along y
     double stretch_z = 0.8;   ///< scale along z
-    std::uint64_t seed = 1;   ///< another seed, another rock
+    std::uint64_t seed = 1;   ///< selects the rock
 };
 
-/// Rock about the origin, closed, wound outward. Throws InputError for parameters out of range.
+/// Returns a rock about the origin, closed and wound outward. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_rock(const RockShape& shape, double edge_length);
 
 /// Shape of a cavity.
@@ -30,11 +30,12 @@ struct CavityShape {
     double radius = 1.0;      ///< mean radius, metres
     double roughness = 0.55;  ///< displacement as a fraction of the radius, 0 to 0.8
     double wavelength = 0.8;  ///< size of the largest bays and noses as a fraction of the radius, 0.1 to 10
-    std::uint64_t seed = 1;   ///< another seed, another cavity
+    std::uint64_t seed = 1;   ///< selects the cavity
 };
 
-/// Closed cave-like surface about the origin with deep bays and sharp noses, for particles inside. Wound like every
-/// closed shape here: normals point away from the enclosed volume. Throws InputError for parameters out of range.
+/// Returns a closed cave-like surface about the origin with deep bays and sharp noses, for particles inside. Its
+/// normals point away from the enclosed volume, as for all closed shapes here. Throws InputError for parameters out of
+/// range.
 [[nodiscard]] TriangleMesh make_cavity(const CavityShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

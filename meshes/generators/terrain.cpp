@@ -13,29 +13,30 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr std::size_t kRowsPerBlock = 4;
-constexpr double kNaturalWidth = 90.0;  // metres; features grow with the width from here
+constexpr double kNaturalWidth = 90.0;  // metres; the size of features scales with the width relative to it
 constexpr double kShelfHeight = 0.59;   // of a shelf of rock, fraction of the relief
 
-/// Smooth step from 0 (t <= low) to 1 (t >= high).
+/// Returns a smooth step from 0 (t <= low) to 1 (t >= high).
 double smooth_step(double low, double high, double t) {
     const double s = std::clamp((t - low) / (high - low), 0.0, 1.0);
     return s * s * (3.0 - 2.0 * s);
 }
 
-/// Steep at the top, flat at the foot; u = 0 at the top, 1 at the foot.
+/// Returns the height profile of the slope, steep at the top (u = 0) and flat at the foot (u = 1).
 double slope_profile(double u) {
     const double v = 1.0 - u;
     return v * (0.14 + 0.86 * v);
 }
 
-/// Distance from the gully's winding line over half the width, 0 on the line.
+/// Returns the distance from the gully's winding line as a fraction of half the width; 0 on the line.
 double gully_distance(const TerrainShape& shape, double u, double y) {
     const double bend = fractal_noise({2.6 * u, 0.37, 0.71}, Octaves{3, 2.0, 0.45}, shape.seed + 11);
     const double line = 0.8 * shape.width * bend * smooth_step(0.0, 0.25, u) * smooth_step(1.15, 0.6, u);
     return std::fabs(y - line) / (0.5 * shape.width);
 }
 
-/// Shelves as layered rock weathers: treads and risers with a vertical period, blended in by strength.
+/// Returns the height with shelves like weathered rock layers: treads and risers with a vertical period, blended in by
+/// strength.
 double shelved(double height, double period, double strength) {
     const double level = height / period;
     const double tread = std::floor(level);
@@ -64,7 +65,7 @@ double terrain_height(const TerrainShape& shape, double x, double y) {
     double height = shape.drop * slope_profile(u);
     height += shape.gully_depth * fading * flank;
     height += shape.relief * fading * ((0.1 + 1.9 * flank) * (crags - 0.4) + 0.8 * folds);
-    const double dip = 0.35 * p.y + 0.2 * p.x + 6.0 * bend.x;  // the beds of rock lie askew
+    const double dip = 0.35 * p.y + 0.2 * p.x + 6.0 * bend.x;  // the layers of rock are inclined
     const double strength = 0.7 * fading * flank * smooth_step(-0.1, 0.35, folds + 0.6 * bend.y);
     if (shape.relief > 0.0) height = shelved(height + dip, kShelfHeight * shape.relief, strength) - dip;
     const double rubble = ridged_noise(p / 7.0 + bend, Octaves{6, 2.1, 0.6}, shape.seed + 61) - 0.4;
@@ -99,7 +100,8 @@ Sheet sample_heights(const TerrainShape& shape, double edge_length) {
     return sheet;
 }
 
-/// Two triangles a cell, split along the diagonal whose ends differ less in height: crests and beds stay sharp.
+/// Adds two triangles per cell, split along the diagonal whose ends differ less in height. This keeps crests and beds
+/// sharp.
 void add_cells(Sheet& sheet) {
     sheet.mesh.triangles.reserve(2 * std::size_t{sheet.columns - 1} * (sheet.rows - 1));
     for (std::uint32_t row = 0; row + 1 < sheet.rows; ++row) {
@@ -119,7 +121,7 @@ void add_cells(Sheet& sheet) {
     }
 }
 
-/// The sheet's border vertices, counter-clockwise seen from above.
+/// Returns the sheet's border vertices, counter-clockwise seen from above.
 std::vector<std::uint32_t> border(const Sheet& sheet) {
     std::vector<std::uint32_t> loop;
     const std::uint32_t last_column = sheet.columns - 1;
@@ -131,7 +133,7 @@ std::vector<std::uint32_t> border(const Sheet& sheet) {
     return loop;
 }
 
-/// Walls from the border down to a flat floor, and the floor as a fan about its centre.
+/// Adds walls from the border down to a flat floor, and the floor as a fan about its centre.
 void close_below(Sheet& sheet, double floor) {
     TriangleMesh& mesh = sheet.mesh;
     const std::vector<std::uint32_t> rim = border(sheet);

@@ -1,5 +1,5 @@
 /// \file
-/// A mountainside: a heightfield that falls along +x, with a gully that leads debris down to a run-out.
+/// Mountainside: a heightfield that falls along +x, with a gully that leads debris down to a run-out.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct TerrainShape {
     double relief = 9.0;        ///< height of crags on the flanks, metres
     double roughness = 1.0;     ///< strength of the small-scale roughness, 0 (smooth) to 3
     double base = 0.0;          ///< thickness of the block below the lowest point, metres; 0 makes an open sheet
-    std::uint64_t seed = 1;     ///< another seed, another mountain
+    std::uint64_t seed = 1;     ///< selects the mountain
 };
 
-/// Height over the foot at a point; x in [0, length], y in [-width/2, width/2], metres.
+/// Returns the height over the foot at a point, in metres, for x in [0, length] and y in [-width/2, width/2].
 [[nodiscard]] double terrain_height(const TerrainShape& shape, double x, double y);
 
-/// The terrain as a grid with cells of the edge length, upward normals. With `base` > 0 it is a closed block with a
-/// flat floor. Throws InputError for parameters out of range.
+/// Returns the terrain as a grid with cells of the edge length and upward normals. With `base` > 0 it is a closed block
+/// with a flat floor. Throws InputError for parameters out of range.
 [[nodiscard]] TriangleMesh make_terrain(const TerrainShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

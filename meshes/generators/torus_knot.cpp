@@ -17,7 +17,7 @@ namespace ricochet::meshes {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
-constexpr double kThicknessMargin = 0.95;  // the tube's cross-sections are polygons and the knot is sampled
+constexpr double kThicknessMargin = 0.95;  // because the cross-sections are polygons and the knot is sampled
 constexpr int kSamplesPerWinding = 400;
 constexpr int kMinAround = 8;
 
@@ -64,7 +64,7 @@ double curve_length(const std::vector<KnotPoint>& points) {
 
 int sample_count(const TorusKnotShape& shape) { return kSamplesPerWinding * std::max(shape.p, shape.q); }
 
-/// Smallest radius of curvature, from the turning of the tangent.
+/// Returns the smallest radius of curvature, from the turning of the tangent.
 double tightest_bend(const std::vector<KnotPoint>& points) {
     double tightest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -75,8 +75,8 @@ double tightest_bend(const std::vector<KnotPoint>& points) {
     return tightest;
 }
 
-/// Smallest distance between strands: over all points, the nearest local minimum of the distance along the rest of the
-/// curve.
+/// Returns the smallest distance between strands: the smallest local minimum, over all points, of the distance to the
+/// rest of the curve.
 double strand_distance(const std::vector<KnotPoint>& points) {
     const std::size_t n = points.size();
     double nearest = std::numeric_limits<double>::infinity();

@@ -15,11 +15,11 @@ struct TorusKnotShape {
     int q = 3;                  ///< turns around the torus' tube, 1 to 50; no common divisor with p
 };
 
-/// Largest tube radius at which the tube touches neither itself nor its own centre of curvature, metres.
+/// Returns the largest tube radius, in metres, at which the tube touches neither itself nor its centre of curvature.
 [[nodiscard]] double torus_knot_thickness(const TorusKnotShape& shape);
 
-/// Tube about the (p, q) torus knot, axis z, centred on the origin; closed. Throws InputError for parameters out of
-/// range, for p and q with a common divisor and for a tube too thick for the knot.
+/// Returns a closed tube about the (p, q) torus knot, axis z, centred on the origin. Throws InputError for parameters
+/// out of range, for p and q with a common divisor and for a tube too thick for the knot.
 [[nodiscard]] TriangleMesh make_torus_knot(const TorusKnotShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

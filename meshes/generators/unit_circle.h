@@ -1,5 +1,6 @@
 /// \file
-/// Points of the unit circle without the C library's sine and cosine, whose last bit differs between systems.
+/// Points of the unit circle. The C library's sine and cosine are not used, because their last bit differs between
+/// systems.
 #pragma once
 
 #include <cmath>
@@ -14,7 +15,7 @@ struct CirclePoint {
 
 namespace detail {
 
-/// Taylor sums about 0, below 1e-16 in error for |angle| <= pi / 4.
+/// Taylor sums about 0, with an error below 1e-16 for |angle| <= pi / 4.
 [[nodiscard]] inline CirclePoint small_angle(double angle) {
     const double q = angle * angle;
     double sine = 1.0;
@@ -28,8 +29,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// The point at the given number of turns (1 = a full circle) from the x axis, counter-clockwise. Multiples of a
-/// quarter turn are exact.
+/// Returns the point at the given number of turns (1 = a full circle) from the x axis, counter-clockwise. Multiples of
+/// a quarter turn are exact.
 [[nodiscard]] inline CirclePoint point_on_circle(double turns) {
     constexpr double kTwoPi = 6.283185307179586;
     const double t = turns - std::floor(turns);

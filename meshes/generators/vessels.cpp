@@ -20,7 +20,8 @@ constexpr int kMinSegments = 12;
 
 bool on_axis(const Point2& p) { return p.x == 0.0; }
 
-/// First vertex number of a profile point's ring (a single vertex for a point on the axis).
+/// Adds the rings of profile points, and returns the number of each ring's first vertex. A point on the axis has a
+/// single vertex.
 std::vector<std::uint32_t> add_rings(TriangleMesh& mesh, std::span<const Point2> profile, int segments) {
     const std::vector<Point2> circle = circle_loop(1.0, segments);
     std::vector<std::uint32_t> first;
@@ -35,7 +36,7 @@ std::vector<std::uint32_t> add_rings(TriangleMesh& mesh, std::span<const Point2>
     return first;
 }
 
-/// The triangles between the rings of two neighbouring profile points.
+/// Adds the triangles between the rings of two neighbouring profile points.
 void join_rings(TriangleMesh& mesh, std::uint32_t lower, bool lower_pole, std::uint32_t upper, bool upper_pole,
                 std::uint32_t segments) {
     for (std::uint32_t i = 0; i < segments; ++i) {
@@ -45,12 +46,11 @@ void join_rings(TriangleMesh& mesh, std::uint32_t lower, bool lower_pole, std::u
     }
 }
 
-/// The surface made by revolving a profile of points (x = distance from the axis, y = height) about z. Wound outward
-/// when the solid lies to the left of the profile. \param profile  at least three points. Either its first and last
-/// points lie on the axis (distance exactly 0) and no
-///                 other does, or none does and the profile is a closed loop (last point joined to the first). It must
-///                 not cross itself.
-/// \param segments  cells around the axis, at least 3
+/// Returns the surface of a profile of points (x = distance from the axis, y = height) revolved about z. Wound outward
+/// if the solid lies to the left of the profile.
+/// - profile: at least three points, and no crossings. Either exactly its first and last points lie on the axis
+///   (distance exactly 0), or no point does. In the second case the last point is joined to the first.
+/// - segments: cells around the axis, at least 3
 TriangleMesh surface_of_revolution(std::span<const Point2> profile, int segments) {
     TriangleMesh mesh;
     const std::vector<std::uint32_t> first = add_rings(mesh, profile, segments);
@@ -64,7 +64,8 @@ TriangleMesh surface_of_revolution(std::span<const Point2> profile, int segments
     return mesh;
 }
 
-/// The polyline with points added so that pieces are about the edge length; `closed` joins the last point to the first.
+/// Returns the polyline with pieces of about the edge length, by added points. `closed` joins the last point to the
+/// first.
 std::vector<Point2> refined(std::span<const Point2> polyline, bool closed, double edge_length) {
     std::vector<Point2> points;
     const std::size_t pieces = closed ? polyline.size() : polyline.size() - 1;
@@ -80,7 +81,8 @@ std::vector<Point2> refined(std::span<const Point2> polyline, bool closed, doubl
     return points;
 }
 
-/// Points of an arc about (0, height) from the lowest point up to `turns`, the first one exactly on the axis.
+/// Returns points of an arc about (0, height) from the lowest point up to `turns`. The first one is exactly on the
+/// axis.
 std::vector<Point2> arc_from_axis(double radius, double height, double turns, int steps) {
     std::vector<Point2> points{{0.0, height - radius}};
     for (int i = 1; i <= steps; ++i) {

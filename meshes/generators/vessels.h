@@ -1,5 +1,5 @@
 /// \file
-/// Open vessels with walls of a thickness: bowl and funnel. Both are surfaces of revolution about z.
+/// Open vessels with thick walls: bowl and funnel. Both are surfaces of revolution about z.
 #pragma once
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
@@ -10,12 +10,11 @@ namespace ricochet::meshes {
 struct BowlShape {
     double radius = 1.0;      ///< of the inner sphere, metres
     double thickness = 0.06;  ///< of the wall, metres
-    double coverage =
-        90.0;  ///< how far up the wall goes, degrees from the lowest point: 90 is a half sphere; 10 to 170
+    double coverage = 90.0;   ///< extent of the wall, degrees from the lowest point; 90 is a half sphere; 10 to 170
 };
 
-/// Part of a hollow sphere, open at the top; the lowest point of the outside is the origin. Throws InputError for
-/// parameters out of range.
+/// Returns a part of a hollow sphere, open at the top. The lowest point of the outside is the origin. Throws InputError
+/// for parameters out of range.
 [[nodiscard]] TriangleMesh make_bowl(const BowlShape& shape, double edge_length);
 
 /// Shape of a funnel.
@@ -27,8 +26,8 @@ struct FunnelShape {
     double thickness = 0.05;      ///< of the wall, measured horizontally, metres
 };
 
-/// Cone over a cylindrical spout; the spout's lower opening lies in z = 0. Throws InputError for parameters out of
-/// range.
+/// Returns a cone over a cylindrical spout. The spout's lower opening lies in z = 0. Throws InputError for parameters
+/// out of range.
 [[nodiscard]] TriangleMesh make_funnel(const FunnelShape& shape, double edge_length);
 
 }  // namespace ricochet::meshes

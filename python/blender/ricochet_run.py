@@ -1,8 +1,9 @@
 """Blender add-on: File > Import > Ricochet run.
 
-Opens the folder that `ricochet run` has written: particles as spheres with radius, colour, ids and every other array of
-the frames as attributes, at the frame of the time line; colliders where they stand, those that move as they move; the camera.
-The files are read as the time line goes on, so the folder must stay where it is. Needs Blender 3.4 or newer.
+Opens the folder that `ricochet run` has written, at the frame of the time line. Particles become spheres; radius,
+colour, ids and every other array of the frames are attributes. Colliders and the camera are imported too, moving ones
+with their motion. The files are read while the time line advances, so do not move the folder. Needs Blender 3.4 or
+newer.
 """
 
 import json
@@ -31,7 +32,7 @@ _ARRAY = re.compile(
 
 
 def read_vtp(path):
-    """Arrays of a .vtp file as ricochet writes it: {section: {name: array}}. Raises ValueError where it is none."""
+    """Returns the arrays of a .vtp file from ricochet: {section: {name: array}}. Raises ValueError for other files."""
     with open(path, "rb") as file:
         data = file.read()
     start = data.find(b'<AppendedData encoding="raw">')
@@ -58,7 +59,8 @@ def _array(data, at, kind, components, path):
 
 
 def own_file(folder, name):
-    """A regular file of the folder. run.json may come from a stranger, and name files elsewhere, links and pipes."""
+    """Returns the path of a regular file in the folder, and raises ValueError for others. An untrusted run.json may
+    name files elsewhere, links and pipes."""
     path = os.path.join(folder, name)
     is_own = os.path.dirname(os.path.realpath(path)) == os.path.realpath(folder)
     if name != os.path.basename(name) or not is_own or not os.path.isfile(path):
@@ -67,7 +69,7 @@ def own_file(folder, name):
 
 
 def read_frame(path):
-    """read_vtp() of a frame; of one in pieces (.pvtp) of all of them together, in the order of the ids."""
+    """Returns read_vtp() of a frame. The pieces of a .pvtp frame are joined, in the order of the ids."""
     if not path.endswith(".pvtp"):
         return read_vtp(path)
     with open(path, encoding="utf-8") as file:
@@ -88,7 +90,7 @@ def read_frame(path):
 
 
 def numbered_files(folder, stem):
-    """Files STEM_NNNNNN.vtp or .pvtp of the folder in the order of their steps."""
+    """Returns the files STEM_NNNNNN.vtp or .pvtp of the folder in the order of their steps."""
     pattern = re.compile(re.escape(stem) + r"_(\d+)\.p?vtp")
     found = [(int(match[1]), name) for name in os.listdir(folder) if (match := pattern.fullmatch(name))]
     return [own_file(folder, name) for _, name in sorted(found)]
@@ -99,7 +101,7 @@ def _set_attribute(mesh, name, values, domain):
     if vector and values.shape[1] != 3:
         return
     kind = "FLOAT_VECTOR" if vector else "INT" if values.dtype.kind in "iu" else "FLOAT"
-    if name == "color" and vector:  # a colour is what shaders and the viewport take it for
+    if name == "color" and vector:  # as a colour, for shaders and the viewport
         attribute = mesh.attributes.new(name, "FLOAT_COLOR", domain)
         opaque = np.ones((len(values), 4), np.float32)
         opaque[:, :3] = values
@@ -111,7 +113,7 @@ def _set_attribute(mesh, name, values, domain):
 
 
 def fill_particles(mesh, path):
-    """Makes the mesh the particles of the frame: a vertex each."""
+    """Replaces the mesh by the particles of the frame, one vertex each."""
     sections = read_frame(path)
     points = sections["Points"]["Points"].reshape(-1, 3)
     mesh.clear_geometry()
@@ -119,7 +121,7 @@ def fill_particles(mesh, path):
     mesh.vertices.foreach_set("co", points.astype(np.float32).ravel())
     arrays = sections.get("PointData", {})
     for name, values in arrays.items():
-        # "id" is a name of Blender's own; so are positions.
+        # Blender reserves the name "id".
         _set_attribute(mesh, "particle_id" if name == "id" else name, values, "POINT")
     shown = arrays.get("size", arrays.get("radius", np.zeros(len(points))))
     shown = np.where(shown > 0.0, shown, mesh.get("ricochet_point_radius", 0.01))
@@ -130,7 +132,7 @@ def fill_particles(mesh, path):
 
 
 def fill_surface(mesh, path):
-    """Makes the mesh the triangles of the file, with its arrays of triangles."""
+    """Replaces the mesh by the triangles of the file, with its arrays of triangles."""
     sections = read_vtp(path)
     mesh.clear_geometry()
     points = sections["Points"]["Points"].reshape(-1, 3)
@@ -157,7 +159,7 @@ def _show_frame(item, frame):
 
 @persistent
 def update_runs(scene, *_):
-    """Brings every imported run to the scene's frame."""
+    """Updates every imported run to the frame of the scene."""
     for item in scene.objects:
         if "ricochet_stem" in item:
             try:
@@ -180,9 +182,9 @@ def _material(name, color, from_attribute=False):
 
 
 def _point_nodes(material):
-    """Vertices as instances of a sphere of the radius `shown_radius`.
+    """Returns nodes that show vertices as spheres of the radius `shown_radius`.
 
-    Not as a point cloud: Cycles of Blender 3.4 reads no colour of its points.
+    A point cloud is not possible, because Cycles of Blender 3.4 reads no colours of its points.
     """
     tree = bpy.data.node_groups.new("Ricochet particles", "GeometryNodeTree")
     if hasattr(tree, "interface"):  # Blender 4
@@ -249,7 +251,8 @@ def _add_colliders(context, folder, run):
 
 
 def import_run(context, path, point_radius=0.0):
-    """Imports the run of a run.json or its folder. point_radius: of particles without a size, m; 0: one that can be seen."""
+    """Imports the run of a run.json or its folder. point_radius: radius of particles without a size, in m; 0 chooses a
+    visible one."""
     folder = os.path.abspath(path if os.path.isdir(path) else os.path.dirname(path))
     with open(own_file(folder, "run.json"), encoding="utf-8") as file:
         run = json.load(file)
@@ -279,7 +282,7 @@ class ImportRicochetRun(bpy.types.Operator, ImportHelper):
     bl_options = {"UNDO"}
     filename_ext = ".json"
     filter_glob: bpy.props.StringProperty(default="run.json", options={"HIDDEN"})
-    point_radius: bpy.props.FloatProperty(name="Radius of points", description="0: one that can be seen", min=0.0)
+    point_radius: bpy.props.FloatProperty(name="Radius of points", description="0: a visible one", min=0.0)
 
     def execute(self, context):
         try:

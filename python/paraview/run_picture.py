@@ -1,10 +1,10 @@
-"""A picture of a run, drawn by ParaView: the steps of "ParaView" in docs/output-files.md, as a script.
+"""Draws a picture of a run with ParaView: the steps of "ParaView" in docs/output-files.md, as a script.
 
     pvbatch python/paraview/run_picture.py DIR picture.png [--time SECONDS] [--color ARRAY] [--size WIDTH HEIGHT]
 
 DIR is the folder of a run (`ricochet run ... --output DIR`). Particles are drawn as spheres of their `size`, else of
-their `radius`, else, points, a two-hundredth of the run's width; --color is an array of the frames (velocity). The
-camera is the scene's where it has one. Without --time the last frame is drawn.
+their `radius`. Points get a two-hundredth of the run's width. --color is an array of the frames (velocity). The camera
+is the scene's if it has one. Without --time the last frame is drawn.
 """
 
 import argparse
@@ -29,7 +29,7 @@ def read_arguments():
 
 
 def radius_array(particles):
-    """Name of the array that says how large particles are; None where all are points."""
+    """Returns the name of the array with the sizes of particles; None if all are points."""
     arrays = particles.PointData
     for name in ("size", "radius"):
         if name in arrays.keys() and arrays[name].GetRange()[1] > 0.0:
@@ -60,7 +60,8 @@ def show_particles(particles, view, color):
 
 
 def show_colliders(run, view):
-    """A file each, those that move together; planes, whose squares would hide the rest, only as outlines."""
+    """Shows each collider from its file; all moving ones are in one file. Planes are outlines, because their squares
+    would hide the rest."""
     colliders = json.load(open(os.path.join(run, "run.json")))["colliders"]
     files = [(collider["file"], collider["type"]) for collider in colliders if not collider.get("moves")]
     files.append(("moving.pvd", "mesh"))

@@ -1,7 +1,7 @@
 """Ricochet: particles against triangle meshes, exactly.
 
-Exact questions about meshes: :class:`Mesh`. Simulations: :class:`Simulation`, from a scene file, a dictionary, or the
-objects of :mod:`ricochet.scene`. A drop-in for trimesh's ray interface: :mod:`ricochet.trimesh`.
+:class:`Mesh` has exact queries on meshes. :class:`Simulation` runs simulations from a scene file, a dictionary, or the
+objects of :mod:`ricochet.scene`. :mod:`ricochet.trimesh` is a drop-in for trimesh's ray interface.
 """
 
 from __future__ import annotations

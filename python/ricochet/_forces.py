@@ -12,12 +12,12 @@ import numpy as np
 
 from ._core import InputError
 
-# What a compiled force is called with.
+# Arguments of a compiled force.
 _ARGUMENTS = ("time", "position", "velocity", "mass", "radius", "force")
 
 
 class CompiledForce:
-    """A force that runs without Python: what :func:`compiled_force` makes."""
+    """A force that runs without Python, made by :func:`compiled_force`."""
 
     def __init__(self, function: Callable[..., None], check_indices: bool = True) -> None:
         self.function = function
@@ -29,7 +29,7 @@ class CompiledForce:
         return int(self._callback.address)
 
     def _call(self, time: float, position: Any, velocity: Any, mass: Any, radius: Any) -> None:
-        """The same from Python, which sees what the function raises."""
+        """Calls the force from Python, which sees exceptions of the function."""
         self._compiled(time, position, velocity, mass, radius, np.zeros_like(position))
 
     def __reduce__(self) -> Any:
@@ -39,12 +39,12 @@ class CompiledForce:
 def compiled_force(function: Callable[..., None], check_indices: bool = True) -> CompiledForce:
     """Compiles a force with Numba, to be called without the interpreter's lock.
 
-    The function is given ``(time, position, velocity, mass, radius, force)`` and writes newtons into the rows of
-    ``force``, which are zero; the other arrays are read-only. It must be pure: the same input, the same forces. What
-    it raises ends the step, as of a function that is not compiled; an index beyond an array is an IndexError, unless
-    check_indices is False: then it reads or writes memory that is not its own, and the function may be faster.
+    The function gets ``(time, position, velocity, mass, radius, force)`` and writes newtons into the rows of ``force``,
+    which are zero. The other arrays are read-only. It must be pure: equal input gives equal forces. An exception ends
+    the step, as with a function that is not compiled. An index beyond an array is an IndexError. With
+    check_indices=False such an index reads or writes foreign memory instead, and the function may be faster.
 
-    Raises :class:`ricochet.InputError` where Numba cannot compile it.
+    Raises :class:`ricochet.InputError` if Numba cannot compile it.
     """
     return CompiledForce(function, check_indices)
 
@@ -54,7 +54,7 @@ def _compile(function: Callable[..., None], check_indices: bool) -> Any:
         numba = importlib.import_module("numba")
     except ImportError as error:
         raise InputError(f"compiled_force: Numba cannot be imported ({error}); install python3-numba") from None
-    function = getattr(function, "py_func", function)  # what numba.njit has made already
+    function = getattr(function, "py_func", function)  # result of numba.njit
     name = getattr(function, "__name__", type(function).__name__)
     _require_arguments(function, name)
     try:
@@ -67,8 +67,8 @@ def _compile(function: Callable[..., None], check_indices: bool) -> Any:
 
 
 def _compiled(numba: Any, function: Callable[..., None], check_indices: bool) -> Any:
-    """The function for callers from Python, and for those from C++, to which it returns 0 where it has raised. Arrays
-    but the last are read-only to it."""
+    """Returns the function for callers from Python and for callers from C++. The latter returns 0 after an exception.
+    All arrays except the last are read-only."""
     types = numba.types
 
     def array(axes: int, readonly: bool = True) -> Any:
@@ -118,7 +118,7 @@ def _require_arguments(function: Any, name: str) -> None:
 
 
 def _reason(text: str, function: Any) -> str:
-    """Numba's many lines in one: what is wrong, and on which line of the source."""
+    """Returns Numba's message in one line: the fault, and the line of the source."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", text)
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     cause = next((line for line in lines if not line.startswith("Failed in")), "it does not say why")

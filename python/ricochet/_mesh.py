@@ -16,17 +16,18 @@ __all__ = ["Mesh", "as_mesh"]
 
 Integers = npt.NDArray[np.int64]
 
-# Names of meshio's surface cells, and how many corners they have: "polygon" any number, as does its older "polygon7".
+# Names of meshio's surface cells. "polygon" cells have any number of corners; older versions name them like "polygon7".
 _SURFACE_CELLS = re.compile(r"(triangle|quad|polygon|VTK_LAGRANGE_TRIANGLE|VTK_LAGRANGE_QUADRILATERAL)\d*")
 
 
 def as_mesh(source: Any, ignore: Sequence[str] = ()) -> Mesh:
-    """Returns a :class:`Mesh` from a mesh, a file's name, or anything with `vertices` and `faces` (trimesh) or `points` and
-    `cells` (meshio).
+    """Returns a :class:`Mesh` from a mesh, a file's name, or anything with `vertices` and `faces` (trimesh) or `points`
+    and `cells` (meshio).
 
-    All surface cells of meshio are taken. Polygons are cut into triangles inside their outline. Cells with nodes on their
-    edges are polygons through these nodes; a node in their middle is a corner of all their triangles. Other cells, such as
-    "line" and "tetra", are an :class:`InputError`, unless `ignore` names their types: then they are left out.
+    All surface cells of meshio are taken. Polygons are cut into triangles inside their outline. Cells with nodes on
+    their edges are polygons through these nodes; a node in their middle is a corner of all their triangles. Other
+    cells, such as "line" and "tetra", are an :class:`InputError`, unless `ignore` names their types: then they are left
+    out.
     """
     if isinstance(source, Mesh):
         return source
@@ -49,7 +50,7 @@ Blocks = List[Tuple[str, Any]]
 
 
 def _blocks(source: Any) -> Optional[Blocks]:
-    """Returns meshio's blocks of cells, in their order, or those of a dictionary by type; None for other objects."""
+    """Returns meshio's blocks of cells in their order, or blocks of a dictionary by type; None for other objects."""
     cells = getattr(source, "cells", None)
     if isinstance(cells, (list, tuple)) and all(hasattr(block, "type") and hasattr(block, "data") for block in cells):
         return [(str(block.type), block.data) for block in cells]
@@ -96,8 +97,8 @@ def _cut(points: Any, offsets: Any, corners: Any) -> Any:
 
 
 def _outline(kind: str, count: int) -> Tuple[List[int], Optional[int]]:
-    """Returns the nodes around a cell in order, and the one in its middle if it has just one: that of a cell of second
-    order, or of a triangle of third. Several inner nodes of higher orders are left out.
+    """Returns the nodes around a cell in order, and its middle node if there is exactly one. Cells of second order and
+    triangles of third order have one. Several inner nodes of higher orders are left out.
 
     meshio lists corners first, then the nodes on each edge, then inner ones. VTK lists the nodes on a quad's third and
     fourth edge the other way around.
@@ -128,19 +129,19 @@ def _nodes_on_edge(sides: int, count: int) -> Optional[int]:
     return None
 
 
-# A mesh keeps its names here, in its dictionary, and the names of the lists that a file has filled.
+# Key in a mesh's dictionary for the kinds of names that a file has set.
 _OF_FILE = "_names_of_file"
 
 
 def _set_names(mesh: Mesh, count: int, kind: str, names: Any) -> None:
-    """Sets the names of one kind for all triangles, as the user gives them."""
+    """Sets the names of one kind for all triangles, from user input."""
     array = _names(names, count, kind)
     mesh.__dict__[kind] = array
     mesh.__dict__[_OF_FILE] = mesh.__dict__.get(_OF_FILE, frozenset()) - {kind}
 
 
 def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str], objects: List[str]) -> None:
-    """Gives each triangle the names of the combination with its number. Names of a file are taken as they are."""
+    """Gives each triangle the names of the combination with its number. Names of a file are not checked."""
     taken = set()
     for kind, names in (("materials", materials), ("groups", groups), ("objects", objects)):
         if any(names):
@@ -152,13 +153,12 @@ def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str
 
 
 def _is_writable(name: str) -> bool:
-    """Whether a line of an OBJ file can hold a name."""
+    """Returns whether a name fits into a line of an OBJ file."""
     return name == " ".join(name.split()) and name.isprintable() and "#" not in name and not name.endswith("\\")
 
 
 def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
-    """Returns names of triangles as a read-only array of texts. They must be such that a line of an OBJ file can hold
-    them."""
+    """Returns names of triangles as a read-only array of texts. Each must fit into a line of an OBJ file."""
     if names is None:
         return None
     array = np.asarray(names)

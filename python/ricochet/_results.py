@@ -1,4 +1,4 @@
-"""Results of questions and simulations: named tuples of NumPy arrays."""
+"""Results of queries and simulations: named tuples of NumPy arrays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Integers = npt.NDArray[np.int64]
 
 
 class Hits(NamedTuple):
-    """One entry for each question. Without a hit: triangle -1, distance infinite, point NaN.
+    """One entry for each query. Without a hit: triangle -1, distance infinite, point NaN.
 
     triangle: Index of the triangle; the smallest of several at the same point. Shape (n,).
     distance: Metres from a ray's origin or from a point; of a sweep the fraction of its path, from 0 to 1. Shape (n,).
@@ -32,7 +32,7 @@ class AllHits(NamedTuple):
     triangle: Index of the triangle; the smallest of several at the same point. Shape (m,).
     distance: Metres from the ray's origin. Shape (m,).
     point: Position on the triangle, in metres. Shape (m, 3).
-    crossing: 1 if the ray leaves through the surface (along its normal), -1 if it enters, 0 if it only touches. Shape (m,).
+    crossing: 1 if the ray leaves through the surface (along its normal), -1 if it enters, 0 if it touches. Shape (m,).
     first: Hits of ray i are first[i] to first[i + 1]. Shape (rays + 1,).
     """
 
@@ -45,9 +45,9 @@ class AllHits(NamedTuple):
 
 
 class Particles(NamedTuple):
-    """The particles at the time of the question. Arrays are read-only and keep their values when the simulation goes on.
+    """The particles at the time of the access. Arrays are read-only and keep their values in later steps.
 
-    id: Number that a particle keeps. Shape (n,), as of all fields but vectors.
+    id: Number that a particle keeps. Shape (n,), like all fields except vectors.
     position: Metres. Shape (n, 3).
     velocity: Metres per second. Shape (n, 3).
     spin: Angular velocity, in radians per second. Shape (n, 3).
@@ -74,8 +74,8 @@ class Particles(NamedTuple):
 
 
 class ForceInput(NamedTuple):
-    """Input of a force written in Python: the particles, in the order in which it returns their forces. Arrays are
-    read-only copies, which may be kept.
+    """Input of a force written in Python: the particles, in the order of the returned forces. Arrays are read-only
+    copies, which may be kept.
 
     time: Seconds.
     id: Number that a particle keeps. Shape (n,).
@@ -105,7 +105,7 @@ class TriangleTotals(NamedTuple):
 
 
 def _explain_fields(kind: Any) -> None:
-    """Gives the fields of a named tuple the texts that its docstring has for them, for help()."""
+    """Gives the fields of a named tuple their texts from its docstring, for help()."""
     for name, text in re.findall(r"^    (\w+): (.+)$", kind.__doc__, re.MULTILINE):
         getattr(kind, name).__doc__ = text
 
@@ -116,16 +116,16 @@ for _kind in (Hits, AllHits, Particles, ForceInput, TriangleTotals):
 
 class Contacts(npt.NDArray[Any]):
     """Contacts as a structured array with the fields `time`, `particle`, `collider`, `triangle`, `position`, `normal`,
-    `velocity_before`, `velocity_after`, `mass` and `radius`. pandas takes it as it is: ``pandas.DataFrame(contacts)`` has a
-    column for each component of a vector, such as `position_x`."""
+    `velocity_before`, `velocity_after`, `mass` and `radius`. pandas accepts it directly: ``pandas.DataFrame(contacts)``
+    has a column for each component of a vector, such as `position_x`."""
 
     def __getitem__(self, key: Any) -> Any:
         found = super().__getitem__(key)
-        # One field is an array like any other.
+        # A single field is an ordinary array.
         return found.view(np.ndarray) if isinstance(found, Contacts) and found.dtype.names is None else found
 
     def table(self) -> npt.NDArray[np.void]:
-        """Returns the same memory as a structured array that has one number in each column."""
+        """Returns a structured array over the same memory with one number in each column."""
         columns: Any = {"names": [], "formats": [], "offsets": [], "itemsize": self.dtype.itemsize}
         fields: Any = self.dtype.fields
         for name in self.dtype.names or ():
@@ -138,5 +138,5 @@ class Contacts(npt.NDArray[Any]):
 
     @property
     def _data(self) -> npt.NDArray[np.void]:
-        # numpy.ma.getdata(), by which pandas reads structured arrays, looks for it; pandas takes no columns of vectors.
+        # pandas reads structured arrays through numpy.ma.getdata(), which uses this. It accepts no columns of vectors.
         return self.table()

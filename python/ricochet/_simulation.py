@@ -1,4 +1,4 @@
-"""Simulations: scenes in, steps, arrays out."""
+"""Simulations: scenes as input, steps, and arrays as output."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from ._results import ForceInput
 Force = Union[CompiledForce, Callable[[ForceInput], Any]]
 SceneLike = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
-# Where a scene that is no file seems to lie, for its messages.
+# File name for messages about a scene that is not a file.
 _NAME = "scene"
-# Stands for the folder that meshes are written to while a scene is read.
+# Placeholder for the folder of mesh files while a scene is read.
 _MESHES = "/ricochet-meshes"
-# Levels of lists and dictionaries, as many as the tool reads.
+# Most levels of lists and dictionaries, equal to the limit of the tool.
 _DEEPEST = 64
 
 
@@ -36,24 +36,24 @@ class Simulation(_core.Simulation):
 
     scene
         A scene file's name; a dictionary with the keys of a scene file; or a :class:`ricochet.scene.Scene`. Paths in a
-        dictionary are relative to the working folder, and wherever a mesh file is named a mesh may stand instead: a
+        dictionary are relative to the working folder. A mesh may replace the name of a mesh file: a
         :class:`ricochet.Mesh` or anything with vertices and faces.
     overrides
-        Changes as the tool's --set takes them, such as ``{"simulation.time_step": 0.01}``.
+        Changes like the tool's --set, such as ``{"simulation.time_step": 0.01}``.
     contacts
         Keep every contact for :meth:`take_contacts`.
     verify
-        Check every step by code of its own, as the tool's --verify.
+        Check every step with independent code, like the tool's --verify.
 
     forces
-        Forces of your own besides the scene's: functions that get a :class:`ricochet.ForceInput` of all particles and
-        return their forces in newtons, shape (n, 3), or what :func:`ricochet.compiled_force` makes of one. They must be
-        pure: the same input, the same forces. With them the integrator "ballistic", which scenes have that name none,
-        moves all particles as "velocity_verlet".
+        Forces in addition to the scene's. Each is a function or the result of :func:`ricochet.compiled_force`. A
+        function gets a :class:`ricochet.ForceInput` of all particles and returns forces in newtons, shape (n, 3). They
+        must be pure: equal input gives equal forces. With such forces the integrator "ballistic", the default of
+        scenes, moves all particles like "velocity_verlet".
 
-    What the tool would warn of is a Python warning (UserWarning), and stays in :attr:`warnings`.
+    Warnings of the tool become Python warnings (UserWarning), and stay in :attr:`warnings`.
 
-    Raises :class:`ricochet.InputError` with all that is wrong, one line each, as the tool prints it.
+    Raises :class:`ricochet.InputError` with all faults of the scene, one line each, like the tool.
     """
 
     def __init__(
@@ -98,8 +98,9 @@ class Simulation(_core.Simulation):
         self.advance(1)
 
     def advance(self, steps: int, progress: bool = False) -> None:
-        """Makes so many steps, or as many as are left. Other threads of Python run meanwhile. Ctrl-C ends it
-        after the step that runs, or before it where that takes long. progress: show a bar, where tqdm is installed."""
+        """Makes a number of steps, or all remaining ones if there are fewer. Other Python threads run meanwhile. Ctrl-C
+        ends it after the current step, or within it if the step takes long. progress: shows a bar if tqdm is
+        installed."""
         steps = _count(steps)
         if not progress:
             self._advance(steps, None)
@@ -115,7 +116,7 @@ class Simulation(_core.Simulation):
         self.advance(steps, progress)
 
     def __reduce__(self) -> Any:
-        state = self.save()  # refuses one that has not been made
+        state = self.save()  # refuses an object whose __init__ has not run
         return _restored, (*self._made_from, state)
 
 
@@ -138,7 +139,7 @@ def _force_list(forces: Any) -> List[Force]:
 
 
 def _short(value: Any) -> str:
-    """As messages show it."""
+    """Returns a short text of a value for messages."""
     try:
         text = repr(value)
     except Exception:
@@ -211,7 +212,7 @@ def _json(value: Any, where: str, indent: Optional[int] = None) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """What json cannot write of itself."""
+    """Converts values that the json module cannot write."""
     if isinstance(value, (np.ndarray, np.generic)):
         if value.dtype.kind in "fc" and not np.isfinite(value).all():
             raise InputError("scene: found nan or inf in an array, expected finite numbers")
@@ -222,7 +223,7 @@ def _plain(value: Any) -> Any:
 
 
 def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
-    """A copy in which meshes are names of files that are written when the scene is read."""
+    """Returns a copy in which meshes are replaced by names of files, which are written when the scene is read."""
     if depth > _DEEPEST:
         raise InputError(
             f"scene: found lists and dictionaries nested deeper than {_DEEPEST} levels, expected fewer: one may contain "
@@ -234,7 +235,7 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes)):
         return [_with_mesh_files(entry, meshes, depth + 1) for entry in value]
     if isinstance(value, Mesh) or hasattr(value, "faces") or hasattr(value, "cells_dict"):
-        # A mesh answers with the vertices that it has now.
+        # A copy keeps the present vertices of the mesh.
         mesh = as_mesh(value)
         meshes.append(_copy_of(mesh) if mesh is value else mesh)
         return f"{_MESHES}/{len(meshes) - 1}.obj"
@@ -244,7 +245,7 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
 
 
 def _with_own_materials(plain: Any, collider: Any) -> Any:
-    """Adds the materials that the user has given a collider's mesh to its `group_materials`, which may say otherwise."""
+    """Adds the user's materials of a collider's mesh to its `group_materials`. Existing entries take precedence."""
     mesh = collider.get("file")
     if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
         return plain
@@ -259,8 +260,8 @@ def _copy_of(mesh: Mesh) -> Mesh:
 
 
 def _statements(mesh: Mesh) -> Iterator[List[str]]:
-    """Yields for each triangle the statements of an OBJ file that give it its names. A name that no line can hold counts
-    as none."""
+    """Yields for each triangle the statements of an OBJ file that give it its names. A name that does not fit into a
+    line is omitted."""
     columns = []
     for statement, names in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
         if names is not None:

@@ -1,7 +1,7 @@
 """A drop-in for trimesh's ray interface, exact: ``mesh.ray = ricochet.trimesh.RayMeshIntersector(mesh)``.
 
-Every hit and every miss is certain, in double precision. An edge or a vertex that triangles share is hit once. Containment
-is decided by exact parity in a closed mesh, and by winding number in an open one.
+Every hit and every miss is certain, in double precision. An edge or a vertex that triangles share is hit once.
+Containment is decided by exact parity in a closed mesh, and by winding number in an open one.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from ._results import AllHits, Hits
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-# Product of a triangle's scaled normal and a direction up to which it may be 0: the rounding of the edges, of the cross
-# product and of the sum are some 2^-50 together.
+# Largest product of a triangle's scaled normal and a direction that may be 0 without rounding. The roundings of the
+# edges, of the cross product and of the sum are some 2^-50 together.
 _PARALLEL = 2.0**-44
 
 
 class RayMeshIntersector:
     """The methods of trimesh.ray.ray_triangle.RayMeshIntersector, for one mesh with vertices and faces.
 
-    Every question is answered for the vertices and faces that the mesh has then.
+    Every query uses the current vertices and faces of the mesh.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
-        """scale_to_box is taken for trimesh's sake; double precision does not need it."""
+        """scale_to_box is accepted for compatibility with trimesh; double precision does not need it."""
         self.mesh = geometry
         self._followed: Optional[_Followed] = None
-        # trimesh makes intersectors before its meshes have vertices: then the class alone can say what it is.
+        # trimesh makes intersectors before its meshes have vertices, so the class is checked too.
         if not hasattr(type(geometry), "vertices") and not hasattr(geometry, "vertices"):
             as_mesh(geometry)
 
@@ -79,7 +79,7 @@ class RayMeshIntersector:
         return RayMeshIntersector(self.mesh)
 
     def __deepcopy__(self, _: Any) -> "RayMeshIntersector":
-        # trimesh copies its meshes so: the copy of the intersector asks the same mesh.
+        # trimesh deep-copies its meshes; the copied intersector still uses the same mesh.
         return RayMeshIntersector(self.mesh)
 
     def __getstate__(self) -> Any:
@@ -99,8 +99,8 @@ class RayMeshIntersector:
 
 
 class _Followed:
-    """A mesh as it was at one time, and the questions about it as trimesh understands them: a ray in the plane of a
-    triangle does not hit it."""
+    """State of a mesh at one time, with queries in the sense of trimesh: a ray in the plane of a triangle does not hit
+    it."""
 
     def __init__(self, queries: Mesh, state: Any = None, arrays: Any = None) -> None:
         self.queries = queries
@@ -156,7 +156,7 @@ class _Empty(_Followed):
 
 
 def _followed(mesh: Any, before: Optional[_Followed]) -> _Followed:
-    """Returns what a mesh is now: `before`, if it has not changed since."""
+    """Returns the current state of a mesh: `before`, if it has not changed since."""
     vertices, faces = getattr(mesh, "vertices", None), getattr(mesh, "faces", None)
     if vertices is None or faces is None:
         return before or _Followed(as_mesh(mesh))
@@ -170,7 +170,7 @@ def _followed(mesh: Any, before: Optional[_Followed]) -> _Followed:
 
 
 def _moved(before: Optional[_Followed], vertices: Any, faces: Any) -> Optional[Mesh]:
-    """Returns the same triangles with other vertices, which cost less than a new mesh; None if they are others."""
+    """Returns the mesh with moved vertices, which is cheaper than a new mesh; None if its triangles have changed."""
     if before is None or isinstance(before, _Empty) or not np.array_equal(before.queries.faces, faces):
         return None
     if np.shape(vertices) != before.queries.vertices.shape:
@@ -180,9 +180,10 @@ def _moved(before: Optional[_Followed], vertices: Any, faces: Any) -> Optional[M
 
 
 def _state_of(vertices: Any, faces: Any) -> Any:
-    """Returns the hashes that trimesh's arrays have of their content; None for others, to be compared entry by entry."""
+    """Returns the hashes of the content of trimesh's arrays; None for other arrays, which are compared entry by
+    entry."""
     if isinstance(vertices, np.ndarray) and isinstance(faces, np.ndarray):
-        with contextlib.suppress(TypeError):  # NumPy's own arrays have none
+        with contextlib.suppress(TypeError):  # NumPy's own arrays have no hash
             return hash(vertices), hash(faces)
     return None
 
@@ -198,7 +199,7 @@ def _normals(mesh: Mesh) -> Floats:
 
 
 def _rows(array: Any, rows: Integers) -> Floats:
-    """Returns rows of an array, of which one may stand for all."""
+    """Returns rows of an array; a single row is repeated."""
     whole = np.atleast_2d(np.asarray(array, dtype=float))
     chosen: Floats = whole[rows] if len(whole) != 1 else np.broadcast_to(whole, (len(rows), 3))
     return chosen

@@ -1,4 +1,4 @@
-"""Meshes of other packages, names of triangles, and how arguments of questions are read."""
+"""Meshes of other packages, names of triangles, and arguments of queries."""
 
 import pickle
 import tempfile
@@ -12,7 +12,7 @@ from support import BOX_FACES, BOX_VERTICES, ROOT, bouncing
 
 
 def cells(points, **blocks):
-    """A mesh as meshio has it; dictionaries keep their order."""
+    """A mesh in the form of meshio; dictionaries keep their order."""
     blocks = [types.SimpleNamespace(type=kind, data=data) for kind, data in blocks.items()]
     return types.SimpleNamespace(points=np.array(points, dtype=float), cells=blocks)
 
@@ -50,7 +50,7 @@ class Meshio(unittest.TestCase):
             mesh = ricochet.as_mesh(cells(dart, quad=[np.roll([3, 0, 1, 2], turn)]))
             self.assertEqual((len(mesh), mesh.area), (2, 1.0))
 
-    def test_polygons_of_any_number_of_corners(self):
+    def test_polygons_may_have_any_number_of_corners(self):
         star = np.array([[np.cos(a) * r, np.sin(a) * r, 0] for a, r in
                          zip(np.arange(10) * np.pi / 5, [2, 0.7] * 5)])
         area = 0.5 * np.abs(np.cross(star, np.roll(star, -1, axis=0)).sum(axis=0)[2])
@@ -97,7 +97,7 @@ class Meshio(unittest.TestCase):
         mesh = ricochet.as_mesh(cells(points, triangle7=[[0, 1, 2, 3, 4, 5, 6]]))
         self.assertEqual((len(mesh), mesh.bounds[1, 2]), (6, 0.2))
 
-    def test_quads_of_vtk_list_their_edges_in_another_order(self):
+    def test_quads_of_vtk_may_list_their_edges_in_another_order(self):
         nodes = quad_nodes(3)
         nodes[8:12] = nodes[8:10][::-1] + nodes[10:12][::-1]
         mesh = ricochet.as_mesh(cells(grid(3), VTK_LAGRANGE_QUADRILATERAL=[nodes]))
@@ -119,7 +119,7 @@ class Meshio(unittest.TestCase):
         with self.assertRaisesRegex(ricochet.InputError, "cells"):
             ricochet.as_mesh(cells(points, quad=[[0, 1, 2, 9]]))
 
-    def test_the_package_itself(self):
+    def test_meshes_of_the_meshio_package_are_read(self):
         try:
             import meshio
         except ImportError:
@@ -142,7 +142,7 @@ class Names(unittest.TestCase):
             particles=[{"position": [x, 0.1, 1.0]} for x in (-0.5, 0.5)])
 
     def rebounds(self, scene):
-        """Whether each of the two particles leaves the plate upward."""
+        """Returns whether each of the two particles leaves the plate upward."""
         simulation = ricochet.Simulation(scene, contacts=True)
         simulation.run(until=0.6)
         contacts = simulation.take_contacts()
@@ -152,7 +152,7 @@ class Names(unittest.TestCase):
         return ricochet.Mesh([[-1, -1, 0], [0, -1, 0], [0, 1, 0], [-1, 1, 0], [1, -1, 0], [1, 1, 0]],
                              [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]])
 
-    def test_materials_are_those_of_the_scene(self):
+    def test_materials_name_materials_of_the_scene(self):
         mesh = self.plate()
         self.assertIsNone(mesh.materials)
         self.assertEqual(self.rebounds(self.scene(mesh)), [False, False])
@@ -166,7 +166,7 @@ class Names(unittest.TestCase):
         mesh.materials = None
         self.assertEqual(self.rebounds(self.scene(mesh)), [False, False])
 
-    def test_groups_are_those_of_group_materials(self):
+    def test_groups_get_their_group_materials(self):
         mesh = self.plate()
         mesh.groups = np.array([1, 1, 2, 2])
         np.testing.assert_array_equal(mesh.groups, ["1", "1", "2", "2"])
@@ -184,7 +184,7 @@ class Names(unittest.TestCase):
         np.testing.assert_array_equal(simulation.collider_mesh("plate").faces, mesh.faces)
         np.testing.assert_array_equal(simulation.collider_mesh("plate").vertices, mesh.vertices)
 
-    def test_stay_with_the_mesh(self):
+    def test_names_stay_with_the_mesh(self):
         mesh = self.plate()
         mesh.materials, mesh.groups = ["soft", "soft", "hard", "hard"], [1, 2, 3, 4]
         mesh.set_vertices(mesh.vertices + [0, 0, 0.25])
@@ -200,7 +200,7 @@ class Names(unittest.TestCase):
 
     PARTS = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no slab\ng left side\nusemtl soft\nf 1 2 3\ng right\nusemtl a#b\nf 1 3 4\n"
 
-    def test_of_a_file_are_read(self):
+    def test_names_of_a_file_are_read(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "parts.obj"
             file.write_text(self.PARTS)
@@ -211,10 +211,10 @@ class Names(unittest.TestCase):
         np.testing.assert_array_equal(mesh.objects, ["slab", "slab"])
         np.testing.assert_array_equal(mesh.groups, ["left side", "right"])
         np.testing.assert_array_equal(mesh.materials, ["soft", "a#b"])
-        simulation = ricochet.Simulation(self.scene(mesh))  # "a#b" is no material, and nothing asks for it
+        simulation = ricochet.Simulation(self.scene(mesh))  # "a#b" is not a material, and no key needs it
         np.testing.assert_array_equal(simulation.collider_mesh("plate").faces, mesh.faces)
 
-    def test_of_a_file_mean_in_a_scene_as_much_as_the_file(self):
+    def test_a_mesh_with_names_of_a_file_acts_like_the_file(self):
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "plate.obj"
             file.write_text(
@@ -229,7 +229,7 @@ class Names(unittest.TestCase):
         mesh.materials = ["hard", "hard", "soft", "soft"]
         self.assertEqual(self.rebounds(self.scene(mesh)), [True, False])
 
-    def test_that_no_file_could_hold_are_refused(self):
+    def test_names_that_fit_into_no_file_are_refused(self):
         mesh = self.plate()
         for names, said in (
             (["a"], r"materials: found shape \(1,\), expected one name for each of 4 triangles"),
@@ -250,7 +250,7 @@ class Names(unittest.TestCase):
 
 
 class Arguments(unittest.TestCase):
-    def test_one_origin_or_direction_stands_for_all(self):
+    def test_one_origin_or_direction_applies_to_all(self):
         mesh = ricochet.as_mesh(ROOT / "meshes" / "bowl.obj")
         random = np.random.default_rng(5)
         many = random.uniform(-1, 1, (700, 3))
@@ -278,7 +278,7 @@ class Arguments(unittest.TestCase):
             with self.assertRaisesRegex(ricochet.InputError, r"expected numbers of shape \(n, 3\) or \(3,\)"):
                 mesh.first_hits(np.zeros(shape), np.ones((1, 3)))
 
-    def test_arrays_of_objects_are_named_as_such(self):
+    def test_messages_name_arrays_of_objects(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
         for entries in ([[0.5, 0.5, 0.5]], [[1, 2, 3]], [[np.float32(1), 2, 3.0]], [[2**63, -(2**63), 0]]):
             with self.assertRaisesRegex(ricochet.InputError, r"numbers as Python objects, dtype=object .*dtype=float"):
@@ -304,7 +304,7 @@ class Contacts(unittest.TestCase):
         simulation.run()
         return simulation.take_contacts()
 
-    def test_are_a_structured_array(self):
+    def test_contacts_are_a_structured_array(self):
         contacts = self.contacts()
         self.assertIsInstance(contacts, np.ndarray)
         self.assertIsInstance(contacts, ricochet.Contacts)
@@ -317,7 +317,7 @@ class Contacts(unittest.TestCase):
         twin = pickle.loads(pickle.dumps(contacts))
         np.testing.assert_array_equal(twin, contacts)
 
-    def test_have_a_table_with_a_number_in_each_column(self):
+    def test_contacts_have_a_table_with_a_number_in_each_column(self):
         contacts = self.contacts()
         table = contacts.table()
         self.assertEqual(table.dtype.names[:7], ("time", "particle", "collider", "triangle", "position_x", "position_y",
@@ -328,7 +328,7 @@ class Contacts(unittest.TestCase):
                 np.testing.assert_array_equal(table[f"{name}_{axis}"], contacts[name][:, k])
         self.assertTrue(np.shares_memory(table, contacts))
 
-    def test_go_straight_into_pandas(self):
+    def test_pandas_accepts_contacts_directly(self):
         try:
             import pandas
         except ImportError:

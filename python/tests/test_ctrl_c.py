@@ -1,11 +1,11 @@
-"""Ctrl-C ends questions and pictures."""
+"""Ctrl-C ends queries and pictures."""
 
 import os
 import subprocess
 import sys
 import unittest
 
-# Asks a question that takes seconds, and interrupts itself after a tenth of one.
+# Makes a query that takes seconds, and interrupts itself after a tenth of a second.
 ASKS = """
 import _thread, os, signal, sys, threading, time
 import numpy as np
@@ -55,7 +55,7 @@ QUESTIONS = ("first_hits", "all_hits", "count_hits", "occluded", "inside", "wind
 
 
 class CtrlC(unittest.TestCase):
-    def test_ends_every_question_with_the_mesh_intact(self):
+    def test_ctrl_c_ends_every_query_and_keeps_the_mesh_intact(self):
         for what in QUESTIONS:
             with self.subTest(what):
                 asked = subprocess.run([sys.executable, "-W", "ignore", "-c", ASKS, os.path.dirname(__file__), what],

@@ -1,4 +1,4 @@
-"""Forces of Python on all particles at once, compiled or not."""
+"""Python forces on all particles at once, compiled or not."""
 
 import gc
 import importlib.util
@@ -27,7 +27,7 @@ def pull(particles):
 
 
 class Forces(unittest.TestCase):
-    def test_forces_of_python_act_on_all_at_once(self):
+    def test_python_forces_act_on_all_particles_at_once(self):
         seen = []
 
         def spring(particles):
@@ -41,7 +41,7 @@ class Forces(unittest.TestCase):
         np.testing.assert_array_equal(seen[0].position, [[1, 0, 0], [0, 2, 0]])  # kept copies
         np.testing.assert_array_equal(seen[0].mass, [1, 4])
 
-    def test_what_a_force_throws_comes_out_of_the_step(self):
+    def test_a_step_passes_on_the_exception_of_a_force(self):
         def breaks(particles):
             raise KeyError("broken")
 
@@ -54,7 +54,7 @@ class Forces(unittest.TestCase):
         with self.assertRaises(ricochet.InputError):
             oscillators(forces=[7])
 
-    def test_a_force_is_named_in_what_is_wrong_with_it(self):
+    def test_error_messages_name_the_force(self):
         def whirl(particles):
             return particles.position * np.nan
 
@@ -77,7 +77,7 @@ class Forces(unittest.TestCase):
         with self.assertRaisesRegex(ricochet.InputError, r"forces\[0\] \(huge\).* on particle 1 of 0.001 kg"):
             ricochet.Simulation(scene, {"simulation.integrator": "rk4"}, forces=[huge]).step()
 
-    def test_what_a_force_is_given_cannot_be_written(self):
+    def test_the_input_of_a_force_is_read_only(self):
         for name in ("id", "position", "velocity", "mass", "radius"):
             def writes(particles, name=name):
                 getattr(particles, name)[0] = 7
@@ -86,7 +86,7 @@ class Forces(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "read-only"):
                 oscillators(forces=[writes]).step()
 
-    def test_ballistic_says_that_it_moves_as_velocity_verlet(self):
+    def test_ballistic_with_forces_warns_that_it_is_velocity_verlet(self):
         with self.assertWarnsRegex(UserWarning, "ballistic moves all particles like velocity_verlet"):
             silent = oscillators(None, forces=[pull])
         self.assertIn("velocity_verlet", silent.warnings[0])
@@ -99,7 +99,7 @@ class Forces(unittest.TestCase):
         silent.advance(100)
         self.assertEqual(said.state_hash, silent.state_hash)
 
-    def test_after_a_step_that_failed_it_says_so(self):
+    def test_a_simulation_reports_that_an_earlier_step_failed(self):
         def breaks(particles):
             raise KeyError("broken")
 
@@ -112,7 +112,7 @@ class Forces(unittest.TestCase):
                 call()
 
 
-    def test_that_hold_their_simulation_are_collected_with_it(self):
+    def test_forces_that_refer_to_their_simulation_are_collected_with_it(self):
         class Study:
             def __init__(self):
                 self.simulation = oscillators(forces=[self.force])
@@ -144,7 +144,7 @@ class CompiledForces(unittest.TestCase):
 
         return spring
 
-    def test_come_to_the_same_bits(self):
+    def test_compiled_forces_give_the_same_bits(self):
         plain = oscillators(forces=[pull])
         plain.run(until=1.0)
         for checked in (True, False):
@@ -152,7 +152,7 @@ class CompiledForces(unittest.TestCase):
             compiled.run(until=1.0)
             self.assertEqual(compiled.state_hash, plain.state_hash)
 
-    def test_may_have_more_arguments_with_defaults(self):
+    def test_compiled_forces_may_have_more_arguments_with_defaults(self):
         def spring(time, position, velocity, mass, radius, force, stiffness=4.0):
             force[:] = -stiffness * position
 
@@ -161,13 +161,13 @@ class CompiledForces(unittest.TestCase):
         plain.step()
         self.assertEqual(compiled.state_hash, plain.state_hash)
 
-    def test_may_have_been_compiled_by_the_user(self):
+    def test_the_user_may_have_compiled_a_force(self):
         import numba
 
         compiled = oscillators(forces=[ricochet.compiled_force(numba.njit(self.spring()))])
         compiled.step()
 
-    def test_raise_what_they_raise_out_of_the_step(self):
+    def test_a_step_passes_on_the_exception_of_a_compiled_force(self):
         def divides(time, position, velocity, mass, radius, force):
             force[0, 0] = 1.0 / (position[0, 1] - position[0, 2])
 
@@ -189,14 +189,14 @@ class CompiledForces(unittest.TestCase):
             with self.assertRaises(ricochet.RunError):
                 simulation.step()
 
-    def test_are_refused_where_they_are_not_finite(self):
+    def test_compiled_forces_that_are_not_finite_are_refused(self):
         def nan(time, position, velocity, mass, radius, force):
             force[1, 2] = np.nan
 
         with self.assertRaisesRegex(ricochet.InputError, r"forces\[0\] \(nan\).* on particle 1 "):
             oscillators(forces=[ricochet.compiled_force(nan)]).step()
 
-    def test_that_cannot_be_compiled_are_refused_with_one_line(self):
+    def test_forces_that_do_not_compile_are_refused_with_one_line(self):
         def writes(time, position, velocity, mass, radius, force):
             position[0, 0] = 5.0
 
@@ -223,7 +223,7 @@ class CompiledForces(unittest.TestCase):
 
 
 class States(unittest.TestCase):
-    def test_are_refused_by_simulations_with_other_forces(self):
+    def test_simulations_with_other_forces_refuse_a_state(self):
         def drag(particles):
             return -0.1 * particles.velocity
 
@@ -250,7 +250,7 @@ class States(unittest.TestCase):
         simulation = ricochet.Simulation(numbers, {"simulation.integrator": "rk4", "simulation.duration": 3.0})
         simulation.restore(made["plain"].save())
 
-    def test_that_are_no_states_leave_a_simulation_as_it_is(self):
+    def test_bytes_that_are_not_a_state_leave_a_simulation_unchanged(self):
         simulation = ricochet.Simulation(bouncing())
         simulation.advance(5)
         state = simulation.save()
@@ -269,7 +269,7 @@ class States(unittest.TestCase):
 
 
 class Pickles(unittest.TestCase):
-    def test_keep_the_forces(self):
+    def test_pickles_keep_the_forces(self):
         simulation = oscillators(forces=[pull])
         simulation.advance(5)
         twin = pickle.loads(pickle.dumps(simulation))

@@ -1,4 +1,4 @@
-"""What help() and editors see of the compiled classes."""
+"""Texts of the compiled classes for help() and editors."""
 
 import inspect
 import pydoc
@@ -8,7 +8,7 @@ import ricochet
 
 
 class Signatures(unittest.TestCase):
-    def test_are_those_that_python_reads(self):
+    def test_python_reads_the_signatures(self):
         for function, signature in (
             (ricochet.Mesh.first_hits, "(self, origins, directions, most=None, transform=None)"),
             (ricochet.Mesh.closest_points, "(self, points, within=inf, transform=None)"),
@@ -21,7 +21,7 @@ class Signatures(unittest.TestCase):
         ):
             self.assertEqual(str(inspect.signature(function)), signature, function)
 
-    def test_are_there_for_every_method(self):
+    def test_every_method_has_a_signature(self):
         for kind in (ricochet.Mesh, ricochet._core.Simulation):
             for name, member in inspect.getmembers(kind, inspect.isroutine):
                 if not name.startswith("_"):
@@ -29,7 +29,7 @@ class Signatures(unittest.TestCase):
 
 
 class Texts(unittest.TestCase):
-    def test_name_the_result_and_its_fields(self):
+    def test_texts_name_the_result_and_its_fields(self):
         shown = pydoc.render_doc(ricochet.Mesh, renderer=pydoc.plaintext)
         self.assertIn("first_hits(self, origins, directions, most=None, transform=None)", shown)
         for function, result in (
@@ -42,12 +42,12 @@ class Texts(unittest.TestCase):
         ):
             self.assertTrue(function.__doc__.endswith(result), function.__doc__)
 
-    def test_say_what_every_field_is(self):
+    def test_every_field_has_a_text(self):
         for kind in (ricochet.Hits, ricochet.AllHits, ricochet.Particles, ricochet.ForceInput, ricochet.TriangleTotals):
             for field in kind._fields:
                 self.assertNotIn("Alias for field", getattr(kind, field).__doc__, f"{kind.__name__}.{field}")
 
-    def test_say_what_every_property_is(self):
+    def test_every_property_has_a_text(self):
         for kind in (ricochet.Mesh, ricochet._core.Simulation):
             for name, member in vars(kind).items():
                 if isinstance(member, property):
@@ -55,7 +55,7 @@ class Texts(unittest.TestCase):
 
 
 class Package(unittest.TestCase):
-    def test_has_its_modules_without_an_import_of_their_own(self):
+    def test_the_package_imports_its_modules(self):
         self.assertEqual(ricochet.scene.Scene()["ricochet"], 1)
         self.assertTrue(ricochet.trimesh.RayMeshIntersector)
 

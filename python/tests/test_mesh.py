@@ -28,12 +28,12 @@ class Mesh(unittest.TestCase):
         np.testing.assert_array_equal(hits.ray, [0, 0])
         np.testing.assert_array_equal(hits.point, [[0, 0.25, 0.5], [1, 0.25, 0.5]])
 
-    def test_what_triangles_share_is_hit_once(self):
+    def test_a_shared_edge_or_vertex_is_hit_once(self):
         origins = [[-1, 0.5, 0.5], [-1, -1, -1], [-1, 0, 0]]
         directions = [[1, 0, 0], [1, 1, 1], [1, 0, 0]]
         np.testing.assert_array_equal(box().count_hits(origins, directions), [2, 2, 1])
 
-    def test_inside_goes_by_parity_or_by_winding_number(self):
+    def test_inside_uses_parity_or_winding_number(self):
         cubes = ricochet.Mesh(
             np.concatenate([BOX_VERTICES, np.array(BOX_VERTICES) + [0.5, 0.25, 0.125]]),
             np.concatenate([BOX_FACES, np.array(BOX_FACES) + len(BOX_VERTICES)]),
@@ -52,7 +52,7 @@ class Mesh(unittest.TestCase):
         self.assertEqual(len(mesh.vertices), len(soup))
         np.testing.assert_array_equal(mesh.inside([[0.5, 0.25, 0.5], [2, 2, 2]]), [True, False])
 
-    def test_reading_turns_scales_and_merges(self):
+    def test_reading_rotates_scales_and_merges(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "t.obj")
             with open(file, "w") as out:
@@ -78,7 +78,7 @@ class Mesh(unittest.TestCase):
                 with self.assertRaises(ricochet.InputError):
                     ricochet.Mesh.read(file, **wrong)
 
-    def test_a_transform_places_the_mesh_for_one_question(self):
+    def test_a_transform_places_the_mesh_for_one_query(self):
         transform = np.array([[0, -2, 0, 5], [2, 0, 0, -1], [0, 0, 2, 3], [0, 0, 0, 1]], dtype=float)
         corners = np.array(BOX_VERTICES) @ transform[:3, :3].T + transform[:3, 3]
         moved = ricochet.Mesh(corners, BOX_FACES)
@@ -110,13 +110,13 @@ class Mesh(unittest.TestCase):
             with self.assertRaises((ricochet.InputError, TypeError)):
                 box().inside(points, transform=wrong)
 
-    def test_a_miss_says_so(self):
+    def test_a_miss_has_triangle_minus_one(self):
         hits = box().first_hits([[5, 5, 5]], [[1, 0, 0]])
         self.assertEqual(hits.triangle[0], -1)
         self.assertEqual(hits.distance[0], np.inf)
         self.assertTrue(np.isnan(hits.point).all())
 
-    def test_a_ball_is_as_far_as_its_formula_says(self):
+    def test_distances_of_a_ball_agree_with_the_formula(self):
         mesh = ricochet.Mesh(*ball(5))
         self.assertTrue(mesh.is_closed)
         points = np.random.default_rng(2).uniform(-2, 2, (2000, 3))
@@ -133,7 +133,7 @@ class Mesh(unittest.TestCase):
         moved = box().sweep([[-3, 0.5, 0.4]], [[-3, 0.5, 0.4]], 0.5, BOX_VERTICES - [4, 0, 0])
         np.testing.assert_allclose(moved.distance, [0.625])
 
-    def test_moved_vertices_are_asked_and_arrays_keep_the_old_ones(self):
+    def test_queries_use_moved_vertices_and_arrays_keep_the_old_ones(self):
         mesh = box()
         old = mesh.vertices
         mesh.set_vertices(BOX_VERTICES + [10, 0, 0])
@@ -157,12 +157,12 @@ class Mesh(unittest.TestCase):
         np.testing.assert_array_equal(faces, BOX_FACES)
         np.testing.assert_array_equal(hits.distance, kept)
 
-    def test_a_pickled_mesh_answers_with_the_same_bits(self):
+    def test_a_pickled_mesh_gives_results_with_the_same_bits(self):
         mesh = ricochet.Mesh(*ball(3))
         twin = pickle.loads(pickle.dumps(mesh))
         np.testing.assert_array_equal(mesh.first_hits(*rays(1000)).distance, twin.first_hits(*rays(1000)).distance)
 
-    def test_answers_do_not_depend_on_threads_or_order(self):
+    def test_results_do_not_depend_on_threads_or_order(self):
         mesh = ricochet.Mesh(*ball(4))
         origins, directions = rays(5000)
         hits = mesh.first_hits(origins, directions)
@@ -175,7 +175,7 @@ class Mesh(unittest.TestCase):
         for a, b in zip(hits, alone):
             np.testing.assert_array_equal(a, b[::-1])
 
-    def test_any_layout_and_kind_of_number_is_taken(self):
+    def test_any_layout_and_kind_of_number_is_accepted(self):
         mesh = box()
         expected = mesh.first_hits([[-1, 0.25, 0.5]] * 2, [[1, 0, 0]] * 2).distance
         wide = np.zeros((2, 6))
@@ -215,7 +215,7 @@ class Mesh(unittest.TestCase):
         for k in (0, 999, 1999):
             self.assertEqual(meshes[k].first_hits([[-1, 0.25, 0.5]], [[1, 0, 0]]).distance[0], 2.0 * k + 1)
 
-    def test_two_threads_ask_at_once(self):
+    def test_two_threads_may_query_at_once(self):
         mesh = ricochet.Mesh(*ball(4))
         origins, directions = rays(20000)
         expected = mesh.first_hits(origins, directions).distance

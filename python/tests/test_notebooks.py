@@ -30,16 +30,16 @@ class Notebooks(unittest.TestCase):
             run(("".join(cell["source"]) for cell in text["cells"] if cell["cell_type"] == "code"), name)
         return printed.getvalue()
 
-    def test_the_first_scene(self):
+    def test_the_first_scene_runs(self):
         self.assertIn("500 balls", self.notebook("first_scene.ipynb"))
 
-    def test_the_bouncing_ball(self):
+    def test_the_bouncing_ball_runs(self):
         self.assertIn("order of symplectic Euler", self.notebook("bouncing_ball.ipynb"))
 
-    def test_molecules_in_a_tube(self):
+    def test_molecules_in_a_tube_run(self):
         self.assertIn("Clausing 0.6720", self.notebook("clausing.ipynb"))
 
-    def test_the_examples_of_the_documents(self):
+    def test_the_examples_of_the_documents_run(self):
         for document in ("README.md", "docs/python.md"):
             examples = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(encoding="utf-8"), re.DOTALL)
             self.assertTrue(examples, document)

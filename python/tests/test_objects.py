@@ -1,4 +1,4 @@
-"""Objects that have not been made, arguments that say what is wrong with them, and nesting without an end."""
+"""Objects without a run of __init__, error messages about arguments, and endless nesting."""
 
 import os
 import pickle
@@ -13,7 +13,7 @@ from support import BOX_FACES, BOX_VERTICES, bouncing
 
 POINTS = np.array([[0.5, 0.5, 0.5]])
 
-# Every method and property of a class, of an object whose __init__ has not run.
+# Uses every method and property of an object whose __init__ has not run.
 ASKS_ALL = """
 import sys
 import ricochet
@@ -39,13 +39,13 @@ print(asked)
 
 
 class NotMade(unittest.TestCase):
-    def test_objects_refuse_every_question(self):
+    def test_objects_without_init_refuse_every_call(self):
         for kind, least in (("Mesh", 15), ("Simulation", 20)):
             asked = subprocess.run([sys.executable, "-c", ASKS_ALL, kind], capture_output=True, text=True)
             self.assertEqual(asked.returncode, 0, f"{kind}: {asked.stdout} {asked.stderr}")
             self.assertGreaterEqual(int(asked.stdout), least)
 
-    def test_objects_are_refused_as_arguments(self):
+    def test_objects_without_init_are_refused_as_arguments(self):
         mesh = ricochet.Mesh.__new__(ricochet.Mesh)
         for call in (lambda: mesh.inside(POINTS), lambda: len(mesh), lambda: ricochet.as_mesh(mesh).vertices,
                      lambda: ricochet.Simulation(bouncing(colliders=[{"type": "mesh", "file": mesh}])),
@@ -57,7 +57,7 @@ class NotMade(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "has not been made"):
                 call()
 
-    def test_the_class_that_all_derive_from_makes_no_objects(self):
+    def test_the_common_base_class_makes_no_objects(self):
         root = ricochet.Mesh.__base__
 
         class Own(root):
@@ -67,7 +67,7 @@ class NotMade(unittest.TestCase):
             with self.assertRaisesRegex(TypeError, "cannot be made"):
                 make()
 
-    def test_meshes_go_through_every_protocol_of_pickle(self):
+    def test_every_protocol_of_pickle_copies_meshes(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
         for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
             twin = pickle.loads(pickle.dumps(mesh, protocol))
@@ -75,7 +75,7 @@ class NotMade(unittest.TestCase):
             simulation = pickle.loads(pickle.dumps(ricochet.Simulation(bouncing()), protocol))
             simulation.step()
 
-    def test_classes_of_the_users_may_not_use_themselves_before_they_are_made(self):
+    def test_derived_classes_may_not_use_an_object_before_init(self):
         test = self
 
         class Early(ricochet.Mesh):
@@ -103,7 +103,7 @@ class NotMade(unittest.TestCase):
         self.assertEqual(len(pickle.loads(pickle.dumps(made)).particles.id), 2)
 
 
-# A daemon thread that is in C++ code, or in a force, when the interpreter ends.
+# Runs a daemon thread that is in C++ code, or in a force, when the interpreter ends.
 ENDS = """
 import sys, threading, time
 import ricochet
@@ -137,7 +137,7 @@ print("ends")
 
 
 class Ends(unittest.TestCase):
-    def test_of_the_interpreter_are_quiet_while_a_daemon_thread_runs(self):
+    def test_the_interpreter_ends_quietly_while_a_daemon_thread_runs(self):
         for what in ("steps", "force", "mesh"):
             ended = subprocess.run([sys.executable, "-c", ENDS, os.path.dirname(__file__), what], capture_output=True,
                                    text=True, timeout=60)
@@ -150,7 +150,7 @@ class Messages(unittest.TestCase):
             call(*arguments, **keys)
         self.assertNotIn("\n", str(caught.exception))
 
-    def test_say_what_has_no_place_in_an_array(self):
+    def test_messages_name_entries_that_are_not_numbers(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
         self.refused(r"points: found NoneType", mesh.inside, [[None, 0, 0]])
         self.refused(r"points: found dict", mesh.inside, [[{}, 0, 0]])
@@ -161,7 +161,7 @@ class Messages(unittest.TestCase):
         self.refused(r"points: a copy of shape \(100000000000000, 3\) as doubles: asks for about 2.4 PB", mesh.inside,
                      np.broadcast_to(np.zeros(3), (10**14, 3)))
 
-    def test_name_files_whose_names_are_no_text(self):
+    def test_messages_name_files_whose_names_are_not_text(self):
         name = os.fsdecode(b"/not-there-\xff.obj")
         self.refused(r"^/not-there-\\xff.obj: no such file", ricochet.Mesh.read, name)
 
@@ -171,7 +171,7 @@ class Messages(unittest.TestCase):
 
         self.refused("^mesh: found Cells, expected", ricochet.as_mesh, Cells())
 
-    def test_of_masked_entries_and_of_none_for_a_number(self):
+    def test_messages_name_masked_entries_and_none(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
         points = np.ma.masked_array(np.full((2, 3), 0.5), mask=[[True, False, False], [False] * 3])
         self.refused("points: found masked entries", mesh.inside, points)
@@ -180,7 +180,7 @@ class Messages(unittest.TestCase):
         self.refused("scene: found nan or inf in an array", ricochet.Simulation,
                      bouncing(particles=[{"position": np.array([0.0, np.nan, 0.0])}]))
 
-    def test_of_scenes_that_never_end(self):
+    def test_messages_name_scenes_with_endless_nesting(self):
         endless = []
         endless.append(endless)
         self.refused("nested deeper than 64 levels", ricochet.Simulation, bouncing(particles=endless))
@@ -196,7 +196,7 @@ class Messages(unittest.TestCase):
         odd[0] = odd
         self.refused("scene: cannot be written as JSON", ricochet.Simulation, bouncing(particles=odd))
 
-    def test_of_times(self):
+    def test_messages_name_wrong_times(self):
         simulation = ricochet.Simulation(bouncing())
         for until in ("x", "1.0", b"1", [], {}, 10**400, np.nan, -1.0, 1j, object()):
             self.refused("^until: found .*, expected a time", simulation.run, until)

@@ -12,7 +12,7 @@ from support import ROOT
 
 
 class Package(unittest.TestCase):
-    def test_installs_into_a_clean_environment_and_runs_the_readme(self):
+    def test_package_installs_into_a_clean_environment_and_runs_the_readme(self):
         environment = {key: value for key, value in os.environ.items() if key not in ("PYTHONPATH", "LD_PRELOAD")}
         with tempfile.TemporaryDirectory() as folder:
             python = str(Path(folder) / "environment" / "bin" / "python")

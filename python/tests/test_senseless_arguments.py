@@ -1,4 +1,4 @@
-"""Every function with every kind of nonsense: an exception or an answer, never the end of the interpreter."""
+"""Every function with every kind of invalid argument gives an exception or a result, and never ends the interpreter."""
 
 import itertools
 import unittest
@@ -63,7 +63,7 @@ class SenselessArguments(unittest.TestCase):
         except ALLOWED as error:
             self.assertTrue(str(error))
 
-    def test_of_meshes(self):
+    def test_meshes_survive_invalid_arguments(self):
         for vertices, faces in itertools.product(NONSENSE, NONSENSE):
             self.tried(ricochet.Mesh, vertices, faces)
         for value in NONSENSE:
@@ -73,7 +73,7 @@ class SenselessArguments(unittest.TestCase):
             self.tried(ricochet.as_mesh, value)
             self.tried(ricochet.trimesh.RayMeshIntersector, value)
 
-    def test_of_questions(self):
+    def test_queries_survive_invalid_arguments(self):
         mesh = ricochet.Mesh(BOX_VERTICES, BOX_FACES)
         points = [[0.5, 0.5, 0.5], [2.0, 0.5, 0.5]]
         for a in NONSENSE:
@@ -92,7 +92,7 @@ class SenselessArguments(unittest.TestCase):
         mesh.set_vertices(BOX_VERTICES)
         self.assertTrue(mesh.inside([[0.5, 0.5, 0.5]])[0])
 
-    def test_of_simulations(self):
+    def test_simulations_survive_invalid_arguments(self):
         simulation = ricochet.Simulation(bouncing(), contacts=True)
         for a in NONSENSE:
             self.tried(ricochet.Simulation, a)

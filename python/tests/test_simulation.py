@@ -17,7 +17,7 @@ from support import ROOT, ball, bouncing
 
 
 class Simulation(unittest.TestCase):
-    def test_a_ball_falls_as_the_formula_says(self):
+    def test_a_falling_ball_agrees_with_the_formula(self):
         simulation = ricochet.Simulation(bouncing())
         simulation.run(until=0.25)
         self.assertAlmostEqual(simulation.time, 0.25)
@@ -28,7 +28,7 @@ class Simulation(unittest.TestCase):
         self.assertTrue(simulation.finished)
         self.assertGreater(simulation.statistics["contacts"], 0)
 
-    def test_steps_and_runs_come_to_the_same_bits(self):
+    def test_steps_and_runs_give_the_same_bits(self):
         one, other = ricochet.Simulation(bouncing()), ricochet.Simulation(bouncing())
         one.advance(100)
         for _ in range(100):
@@ -61,7 +61,7 @@ class Simulation(unittest.TestCase):
         simulation = ricochet.Simulation(bouncing())
         self.assertEqual(simulation.particles.position.ctypes.data, simulation.particles.position.ctypes.data)
 
-    def test_particles_come_and_go(self):
+    def test_particles_can_be_added_and_removed(self):
         simulation = ricochet.Simulation(bouncing())
         ids = simulation.add_particles([[0, 0, 5.0], [0, 1, 5.0]], velocity=[[1, 0, 0]] * 2, radius=0.2, mass=[1.0, 2.0])
         self.assertEqual(ids.tolist(), [2, 3])
@@ -117,13 +117,13 @@ class Simulation(unittest.TestCase):
                 hashes.add(simulation.state_hash)
             self.assertEqual(len(hashes), 1)
 
-    def test_a_typo_is_answered_as_the_tool_answers_it(self):
+    def test_a_typo_gives_the_same_message_as_in_the_tool(self):
         with self.assertRaisesRegex(ricochet.InputError, "materials.rubber.*restitutoin.*restitution"):
             ricochet.Simulation(bouncing(materials={"rubber": things.Material(restitutoin=0.8)}))
         with self.assertRaisesRegex(ValueError, "simulation.time_step"):
             ricochet.Simulation(bouncing(), {"simulation.time_step": -1})
 
-    def test_what_the_tool_warns_of_is_a_warning_but_that_nothing_moves(self):
+    def test_warnings_of_the_tool_are_python_warnings_except_that_nothing_moves(self):
         with self.assertWarnsRegex(UserWarning, "materials.wool: no collider uses this material"):
             simulation = ricochet.Simulation(bouncing(materials={"rubber": {}, "wool": {}}))
         self.assertEqual(len(simulation.warnings), 1)
@@ -132,11 +132,11 @@ class Simulation(unittest.TestCase):
             empty = ricochet.Simulation(bouncing(particles=[]))
         self.assertEqual(empty.add_particles([[0, 0, 1.0]]).tolist(), [0])
 
-    def test_overrides_are_those_of_the_tool(self):
+    def test_overrides_work_like_in_the_tool(self):
         simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 0.5})
         self.assertEqual(simulation.step_count, 50)
 
-    def test_a_pickled_simulation_goes_on_to_the_same_bits(self):
+    def test_a_pickled_simulation_continues_with_the_same_bits(self):
         for collider in (bouncing()["colliders"][0], {"type": "mesh", "file": ricochet.Mesh(*ball(2))}):
             scene = bouncing(materials={"rubber": {"restitution": 0.5}}, colliders=[collider])
             simulation = ricochet.Simulation(scene, contacts=True)
@@ -147,14 +147,14 @@ class Simulation(unittest.TestCase):
             twin.run()
             self.assertEqual(twin.state_hash, simulation.state_hash)
 
-    def test_a_state_that_is_damaged_is_refused(self):
+    def test_a_damaged_state_is_refused(self):
         simulation = ricochet.Simulation(bouncing())
         state = simulation.save()
         for damaged in (b"", state[:-9], b"x" * len(state)):
             with self.assertRaises(ricochet.InputError):
                 ricochet.Simulation(bouncing()).restore(damaged)
 
-    def test_two_threads_of_python_both_advance(self):
+    def test_two_python_threads_both_advance(self):
         simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 1e6})
         stop = threading.Event()
         looks = []
@@ -170,7 +170,7 @@ class Simulation(unittest.TestCase):
 
         thread = threading.Thread(target=run)
         thread.start()
-        # While that one steps in C++, this one runs, steps another, and comes to its end.
+        # While the other thread steps in C++, this one steps another simulation to its end.
         other = ricochet.Simulation(bouncing())
         other.run()
         while len(looks) < 2 and thread.is_alive():
@@ -180,12 +180,12 @@ class Simulation(unittest.TestCase):
         self.assertTrue(other.finished)
         self.assertGreater(simulation.step_index, 1000)
 
-    def test_a_simulation_that_is_stepped_refuses_other_threads(self):
+    def test_a_stepping_simulation_refuses_other_threads(self):
         simulation = ricochet.Simulation(bouncing(), {"simulation.duration": 1e6})
         refused = []
 
         def look():
-            # Within the run, while it waits for this: another thread of Python asks.
+            # Another Python thread reads the simulation during the run, which waits for it.
             def ask():
                 try:
                     simulation.particles
@@ -213,7 +213,7 @@ class Simulation(unittest.TestCase):
         simulation.step()
         self.assertEqual(simulation.step_index, before + 1)
 
-    # A step of the many would take minutes.
+    # A step of this many particles would take minutes.
     def test_control_c_ends_a_step_that_takes_long(self):
         for count in (1, 3000):
             with self.subTest(count=count):

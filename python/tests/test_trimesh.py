@@ -14,7 +14,7 @@ class Box:
 
 
 class Tracked(np.ndarray):
-    """An array whose hash is that of its content, as trimesh's are."""
+    """An array with a hash of its content, like trimesh's arrays."""
 
     def __hash__(self):
         return hash(self.tobytes())
@@ -30,7 +30,7 @@ class RayMeshIntersector(unittest.TestCase):
         self.origins = [[-1, 0.25, 0.5], [5, 5, 5]]
         self.directions = [[1, 0, 0], [1, 0, 0]]
 
-    def test_locations_are_those_of_all_hits(self):
+    def test_locations_are_returned_for_all_hits(self):
         locations, ray, triangle = self.ray.intersects_location(self.origins, self.directions)
         np.testing.assert_array_equal(locations, [[0, 0.25, 0.5], [1, 0.25, 0.5]])
         np.testing.assert_array_equal(ray, [0, 0])
@@ -38,7 +38,7 @@ class RayMeshIntersector(unittest.TestCase):
         locations, ray, triangle = self.ray.intersects_location(self.origins, self.directions, multiple_hits=False)
         np.testing.assert_array_equal(locations, [[0, 0.25, 0.5]])
 
-    def test_the_other_answers_agree(self):
+    def test_the_other_methods_agree_with_the_locations(self):
         triangle, ray = self.ray.intersects_id(self.origins, self.directions)
         self.assertEqual(len(triangle), 2)
         triangle, ray, locations = self.ray.intersects_id(
@@ -48,18 +48,18 @@ class RayMeshIntersector(unittest.TestCase):
         np.testing.assert_array_equal(self.ray.intersects_any(self.origins, self.directions), [True, False])
         np.testing.assert_array_equal(self.ray.contains_points([[0.5, 0.5, 0.5], [2, 0, 0]]), [True, False])
 
-    def test_keywords_that_it_does_not_know_are_refused_by_name(self):
+    def test_unknown_keywords_are_refused_by_name(self):
         for ask in (self.ray.intersects_id, self.ray.intersects_any, self.ray.intersects_location,
                     self.ray.intersects_first):
             with self.assertRaisesRegex(TypeError, "max_hits"):
                 ask(self.origins, self.directions, max_hits=1)
 
-    def test_what_is_no_mesh_is_refused_at_once(self):
+    def test_an_object_that_is_not_a_mesh_is_refused_at_once(self):
         for nothing in (7, None, [], object()):
             with self.assertRaisesRegex(ricochet.InputError, "^mesh: found"):
                 ricochet.trimesh.RayMeshIntersector(nothing)
 
-    def test_a_package_that_is_installed_can_use_it(self):
+    def test_an_installed_trimesh_can_use_it(self):
         try:
             import trimesh
         except ImportError:
@@ -76,7 +76,7 @@ class Following(unittest.TestCase):
     def both(self, ray):
         return list(ray.intersects_any([[0.25, 0.5, 5], [10.25, 0.5, 5]], [[0, 0, -1]] * 2))
 
-    def test_vertices_that_are_replaced(self):
+    def test_replaced_vertices_are_followed(self):
         mesh = own()
         ray = ricochet.trimesh.RayMeshIntersector(mesh)
         self.assertEqual(self.both(ray), [True, False])
@@ -84,7 +84,7 @@ class Following(unittest.TestCase):
         self.assertEqual(self.both(ray), [False, True])
         self.assertEqual(list(ray.contains_points([[0.5, 0.5, 0.5], [10.5, 0.5, 0.5]])), [False, True])
 
-    def test_vertices_and_faces_that_are_changed_in_place(self):
+    def test_vertices_and_faces_changed_in_place_are_followed(self):
         for kind in (np.ndarray, Tracked):
             mesh = own()
             mesh.vertices, mesh.faces = mesh.vertices.view(kind), mesh.faces.view(kind)
@@ -96,7 +96,7 @@ class Following(unittest.TestCase):
             self.assertEqual(self.both(ray), [False, False])
             self.assertFalse(ray.contains_points([[10.5, 0.5, 0.5]])[0])
 
-    def test_a_mesh_that_gets_its_faces_later(self):
+    def test_a_mesh_may_get_its_faces_later(self):
         mesh = own(np.zeros((0, 3)), np.zeros((0, 3), dtype=int))
         ray = ricochet.trimesh.RayMeshIntersector(mesh)
         self.assertEqual(self.both(ray), [False, False])
@@ -108,7 +108,7 @@ class Following(unittest.TestCase):
         mesh.faces = BOX_FACES[:0]
         self.assertEqual(self.both(ray), [False, False])
 
-    def test_a_mesh_whose_constructor_makes_the_intersector(self):
+    def test_the_constructor_of_a_mesh_may_make_the_intersector(self):
         class Mesh:
             def __init__(self):
                 self.ray = ricochet.trimesh.RayMeshIntersector(self)
@@ -119,7 +119,7 @@ class Following(unittest.TestCase):
 
         self.assertEqual(self.both(Mesh().ray), [True, False])
 
-    def test_answers_after_many_changes_are_those_of_a_new_mesh(self):
+    def test_results_after_many_changes_equal_a_new_mesh(self):
         random = np.random.default_rng(7)
         vertices, faces = ball(2)
         mesh = own(vertices, faces)
@@ -147,7 +147,7 @@ class Following(unittest.TestCase):
 
 
 class Containment(unittest.TestCase):
-    def test_of_an_open_mesh_goes_by_winding_number(self):
+    def test_containment_in_an_open_mesh_uses_winding_numbers(self):
         vertices, faces = ball(3)
         middles = vertices[faces].mean(axis=1)
         open_faces = faces[middles[:, 2] < 0.8]
@@ -159,14 +159,14 @@ class Containment(unittest.TestCase):
             np.testing.assert_array_equal(found[below], closed[below])
             self.assertFalse(found[points[:, 2] > 1.0].any())
 
-    def test_of_triangles_that_share_no_vertices_is_that_of_the_closed_mesh(self):
+    def test_triangles_without_shared_vertices_contain_like_the_closed_mesh(self):
         vertices, faces = ball(3)
         soup = own(vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
         points = np.random.default_rng(4).uniform(-1.2, 1.2, (3000, 3))
         np.testing.assert_array_equal(ricochet.trimesh.RayMeshIntersector(soup).contains_points(points),
                                       ricochet.Mesh(vertices, faces).inside(points))
 
-    def test_of_a_cavity_is_outside(self):
+    def test_a_cavity_is_outside(self):
         inner = 0.25 + 0.5 * BOX_VERTICES
         mesh = own(np.concatenate([BOX_VERTICES, inner]), np.concatenate([BOX_FACES, BOX_FACES[:, ::-1] + 8]))
         ray = ricochet.trimesh.RayMeshIntersector(mesh)
@@ -174,7 +174,7 @@ class Containment(unittest.TestCase):
 
 
 class InThePlane(unittest.TestCase):
-    """trimesh leaves out triangles that lie in the direction of a ray."""
+    """trimesh ignores triangles that are parallel to a ray."""
 
     def hits(self, mesh, origin, direction):
         ray = ricochet.trimesh.RayMeshIntersector(mesh)

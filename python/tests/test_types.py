@@ -1,4 +1,4 @@
-"""The package and its stubs as a type checker sees them."""
+"""The package and its stubs, checked by a type checker."""
 
 import ast
 import importlib.util
@@ -35,7 +35,7 @@ scene.Material(restitutoin=0.5)
 
 
 class Stub(unittest.TestCase):
-    def test_of_the_compiled_module_names_what_there_is(self):
+    def test_the_stub_of_the_compiled_module_is_complete(self):
         stub = ast.parse((Path(ricochet.__file__).parent / "_core.pyi").read_text(encoding="utf-8"))
         for entry in stub.body:
             if isinstance(entry, ast.ClassDef) and entry.name in ("Mesh", "Simulation"):

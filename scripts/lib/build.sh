@@ -1,11 +1,11 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154  # shared names: set here, used there
-# Configuring and building. Sourced after common.sh.
+# Functions to configure and build. Sourced after common.sh.
 
 cache_value() { sed -n "s/^$2:[A-Z]*=//p" "$1/CMakeCache.txt"; }
 
-# configure PRESET FOLDER [CMAKE-ARGUMENT...]: from a preset of CMakePresets.json into FOLDER (below the root).
-# A folder that was configured for another place or with another generator is configured anew.
+# configure PRESET FOLDER [CMAKE-ARGUMENT...]: configures a preset of CMakePresets.json in FOLDER (below the root).
+# A folder that was configured for another source folder or generator is configured again from scratch.
 configure() {
     local preset="$1" folder="$root/$2"
     local -a fresh=()
@@ -13,7 +13,7 @@ configure() {
     if [[ -f "$folder/CMakeCache.txt" ]]; then
         if [[ "$(cache_value "$folder" CMAKE_HOME_DIRECTORY)" != "$root" ]] ||
             [[ "$(cache_value "$folder" CMAKE_GENERATOR)" != Ninja ]]; then
-            say "$folder was configured for another folder or generator: configuring it anew"
+            say "$folder was configured for another folder or generator: configuring it again"
             fresh=(--fresh)
         fi
     fi

@@ -1,5 +1,6 @@
-# Input, in three parts with a line "--" between them: `sha256sum` of every source file; `grep` of their quoted include
-# lines; the files asked for. Output: each file asked for with the hashes of itself and of all that it includes.
+# Input: three parts with a line "--" between them. The first is `sha256sum` of every source file, the second is `grep`
+# of their quoted include lines, the third lists files. Output: each listed file with the hashes of itself and of all
+# files that it includes.
 function resolve(from, name,    folder, i, candidate) {
     folder = from
     sub(/[^\/]*$/, "", folder)
@@ -12,7 +13,7 @@ function resolve(from, name,    folder, i, candidate) {
     return ""
 }
 
-# Marks what `file` includes, directly or not, in the array `seen` and appends the hashes to `material`.
+# Marks `file` and all files that it includes, directly or not, in the array `seen`. Appends their hashes to `material`.
 function visit(file,    n, list, i) {
     if (file in seen) return
     seen[file] = 1

@@ -1,13 +1,12 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154  # shared names: set here, used there
-# The style gate: clang-format on every file, clang-tidy on every compiled one where that is asked for. Sourced after
-# common.sh.
+# Style checks: clang-format on every file, and clang-tidy on every compiled file on request. Sourced after common.sh.
 #
-# Another release of these tools formats and complains differently, so one release is the reference: that of Debian 12.
-# Where it is not at hand the gate is left out and says so.
+# Releases of these tools format and warn differently, so the release of Debian 12 is the reference. Without it the
+# check is skipped with a message.
 lint_release=14
 
-# reference_tool NAME: the command of the reference release; fails when there is none.
+# reference_tool NAME: prints the command of the reference release; fails if there is none.
 reference_tool() {
     local command
     for command in "$1-$lint_release" "$1"; do
@@ -19,7 +18,7 @@ reference_tool() {
     return 1
 }
 
-# Every source file of the project, relative to the root.
+# Prints every source file of the project, relative to the root.
 source_files() {
     (
         cd "$root" || exit
@@ -30,14 +29,14 @@ source_files() {
     )
 }
 
-# compiled_files FOLDER: those of them that the build in FOLDER compiles.
+# compiled_files FOLDER: prints the source files that the build in FOLDER compiles.
 compiled_files() {
     sed -n "s|^ *\"file\": \"$root/\(.*\)\",\{0,1\}\$|\1|p" "$root/$1/compile_commands.json" |
         grep -E '^(src|tests|meshes|bench)/' | sort -u
 }
 
-# tidy_keys TOOL FOLDER: for every compiled file its name and a hash of all that the verdict depends on: the file, the
-# project's headers that it includes (directly or not), the settings and the tool.
+# tidy_keys TOOL FOLDER: prints for every compiled file its name and a hash of all inputs of the check. These are the
+# file, the project's headers that it includes (directly or not), the settings and the tool.
 tidy_keys() {
     local tool="$1" folder="$2" settings file material
     settings="$( (cd "$root" && find . -name .clang-tidy -not -path './build*' | sort | xargs cat) | sha256sum)"
@@ -54,13 +53,13 @@ tidy_keys() {
     done
 }
 
-# tidy_one TOOL FOLDER FILE KEY: checks one file and keeps the key as a stamp when it is clean.
+# tidy_one TOOL FOLDER FILE KEY: checks one file and stores the key as a stamp if the file is clean.
 tidy_one() {
     local stamp="$root/$2/lint/$3.stamp"
     if "$1" -p "$root/$2" --quiet "$root/$3" >"$stamp.log" 2>&1; then
         echo "$4" >"$stamp"
     else
-        # Only what was found: not the count of warnings that system headers would have given.
+        # Prints the findings without the count of suppressed warnings in system headers.
         grep --invert-match -E '^[0-9]+ warnings? (and [0-9]+ errors? )?generated|^Suppressed |^Use -header-filter' \
             "$stamp.log" >&2
         return 1
@@ -71,7 +70,7 @@ lint_format() {
     local tool="$1"
     say "clang-format: $(source_files | wc -l) files"
     (cd "$root" && source_files | xargs "$tool" --dry-run --Werror) ||
-        die "clang-format found differences (to mend them: $tool -i FILE)"
+        die "clang-format found differences (to fix them: $tool -i FILE)"
 }
 
 lint_tidy() {
@@ -92,17 +91,17 @@ lint_tidy() {
         die "clang-tidy found something (above)"
 }
 
-# lint format|all FOLDER JOBS: the format, or format and style.
+# lint format|all FOLDER JOBS: checks the format, or format and style.
 lint() {
     local format tidy
     if ! format="$(reference_tool clang-format)"; then
-        say "Format is not checked here: that takes clang-format $lint_release (Debian 12)"
+        say "Format is not checked: clang-format $lint_release (Debian 12) is missing"
     else
         lint_format "$format"
     fi
     if [[ "$1" == format ]]; then return 0; fi
     if ! tidy="$(reference_tool clang-tidy)"; then
-        say "Style is not checked here: that takes clang-tidy $lint_release (Debian 12)"
+        say "Style is not checked: clang-tidy $lint_release (Debian 12) is missing"
     else
         lint_tidy "$tidy" "$2" "$3"
     fi

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2034,SC2154  # shared names: set here, used there
-# The one list of packages, and how the missing ones are installed. Sourced after common.sh.
+# The only list of packages, and the installation of missing ones. Sourced after common.sh.
 
 packages_build=(
     g++ cmake ninja-build
@@ -18,8 +18,8 @@ packages_tidy=(clang-tidy)
 packages_clang=(clang)
 packages_assimp=(libassimp-dev)           # mesh files in FBX, DAE, 3DS and others
 packages_mpi=(libopenmpi-dev openmpi-bin) # runs that several processes share
-# Tests that read the output with the programs users have. Without them those tests say that they were skipped.
-# Blender, which one of them uses too, is left to who wants it: half a gigabyte.
+# Programs of users with which tests read the output. Without them these tests are reported as skipped. Blender, which
+# one test uses too, is not listed because of its size of half a gigabyte.
 packages_optional=(ffmpeg gnuplot-nox python3-vtk9 chromium mypy python3-tqdm python3-venv "${packages_assimp[@]}" "${packages_mpi[@]}")
 
 # The names are the same on Debian 12, Debian 13 and Ubuntu 24.04.
@@ -28,7 +28,7 @@ package_installed() {
     [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
 }
 
-# missing_packages NAME...: those of the list that are not installed, one a line.
+# missing_packages NAME...: prints the names that are not installed, one per line.
 missing_packages() {
     local name
     for name in "$@"; do
@@ -36,12 +36,12 @@ missing_packages() {
     done
 }
 
-# packages_installed NAME...: true when all of them are.
+# packages_installed NAME...: true if all of them are installed.
 packages_installed() {
     [[ -z "$(missing_packages "$@")" ]]
 }
 
-# apt COMMAND...: apt-get without questions, as root or through sudo.
+# apt_run COMMAND...: runs apt-get without prompts, as root or through sudo.
 apt_run() {
     local -a command=(env DEBIAN_FRONTEND=noninteractive LC_ALL=C apt-get --yes --quiet
         -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300 "$@")
@@ -49,7 +49,8 @@ apt_run() {
     "${command[@]}" </dev/null
 }
 
-# True when apt knows a version to install for every name given; false before the first update on a fresh system.
+# apt_knows NAME...: true if apt knows a version to install for every name; false before the first update on a fresh
+# system.
 apt_knows() {
     local name
     for name in "$@"; do
@@ -60,17 +61,17 @@ apt_knows() {
 
 apt_install() {
     apt_knows "$@" || apt_run update
-    # A list of packages that has gone stale names files that are no longer there: update once and try again.
+    # An outdated package list names files that no longer exist, so update once and try again.
     apt_run install --no-install-recommends "$@" || { apt_run update && apt_run install --no-install-recommends "$@"; }
 }
 
-# ensure_packages INSTALL(yes|no) NAME...: installs what is missing and says so, or refuses and says what is missing.
+# ensure_packages INSTALL(yes|no) NAME...: installs missing packages with a message, or lists them and fails.
 ensure_packages() {
     local install="$1" list
     local -a missing
     shift
     if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-        say "This is not a Debian or Ubuntu system: nothing is installed here. Needed, by Debian's names: $*"
+        say "This is not a Debian or Ubuntu system: nothing is installed. Needed packages, by their Debian names: $*"
         return 0
     fi
     mapfile -t missing < <(missing_packages "$@")
@@ -84,7 +85,7 @@ ensure_packages() {
     apt_install "${missing[@]}" || die "apt could not install: $list"
 }
 
-# ensure_optional_packages INSTALL NAME...: as above, but goes on without what cannot be had.
+# ensure_optional_packages INSTALL NAME...: like ensure_packages, but continues without packages that are not available.
 ensure_optional_packages() {
     local install="$1" name
     local -a missing
@@ -92,7 +93,7 @@ ensure_optional_packages() {
     command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || return 0
     mapfile -t missing < <(missing_packages "$@")
     for name in "${missing[@]}"; do
-        # The two VTK wrappers for Python exclude each other; either serves.
+        # The two VTK wrappers for Python exclude each other; either is sufficient.
         if [[ "$name" == python3-vtk9 ]] && package_installed python3-paraview; then continue; fi
         if [[ "$install" == no ]] || { ((EUID != 0)) && ! command -v sudo >/dev/null; }; then
             say "Optional package not installed: $name (the tests that use it will be skipped)"

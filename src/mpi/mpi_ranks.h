@@ -23,8 +23,8 @@ namespace ricochet::mpi {
 void agree_to_end();
 
 /// Ends the use of MPI at the end of the process, after its last output. A process that was started alone does nothing.
-/// If the ranks have agreed to end, it waits until all have called it, because a launcher may kill all ranks when one
-/// ends with an error. Otherwise it aborts all ranks, including this one, with this exit code.
+/// If the ranks have agreed to end, it waits until all have called it. Otherwise a launcher could kill all ranks when
+/// one ends with an error. Without that agreement it aborts all ranks, including this one, with this exit code.
 void end_process(int exit_code);
 
 }  // namespace ricochet::mpi

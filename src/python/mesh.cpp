@@ -96,7 +96,7 @@ py::array triangulated(const py::object& vertices, const py::object& offsets, co
 constexpr py::ssize_t kFewQuestions = 256;
 
 /// Makes `count` queries while other Python threads run; Ctrl-C ends them. Uses a copy of the mesh, so that
-/// set_vertices() may run concurrently. transform: placement of the mesh, or None for none.
+/// set_vertices() may run concurrently. transform: placement of the mesh, or None.
 template <class Ask>
 auto ask(const MeshQueries& mesh, py::ssize_t count, const py::object& transform, const Ask& question) {
     const auto answer = [&](const auto& asked) {
@@ -345,9 +345,9 @@ constexpr const char* kMeshText = R"(A mesh of triangles, with exact queries.
 
 vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 3).
 
-Hits and first hits are decided exactly for the given doubles, also at edges and vertices, and far from the origin. Results
-have the same bits for any number of threads and any order of queries. Queries use all threads and let other Python threads
-run. A wrong argument raises ricochet.InputError, a ValueError.
+Hits and first hits are decided exactly for the given doubles, also at edges and vertices, and far from the origin.
+Results have the same bits for any number of threads and any order of queries. Queries use all threads and let other
+Python threads run. A wrong argument raises ricochet.InputError, a ValueError.
 
 transform: a matrix of shape (4, 4) that places the mesh for one query: a rotation or reflection times one scale, and a
 translation. The query is mapped and rounded, and nothing is copied.)";

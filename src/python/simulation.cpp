@@ -325,7 +325,7 @@ void bind_state(py::class_<Handle>& type) {
             "List of the warnings that the tool would print.")
         .def_property_readonly("particles", &particles_of,
                                "ricochet.Particles: the particles as read-only arrays, without a copy. They keep their "
-                               "values when the simulation goes on.")
+                               "values when the simulation continues.")
         .def_property_readonly("attributes", &attributes_of,
                                "Dictionary of arrays: the visible attributes of particles, by name.")
         .def_property_readonly("statistics", &statistics_of, "Dictionary of counts over the run so far.")

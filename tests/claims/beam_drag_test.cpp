@@ -1,5 +1,5 @@
-// Force and torque of a parallel cold beam on bodies: drag coefficients on the frontal area, F / (1/2 rho v^2 A), by
-// closed form.
+// Force and torque of a parallel cold beam on bodies. Drag coefficients on the frontal area, F / (1/2 rho v^2 A), are
+// compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,16 +35,17 @@ Material lambert() {
     return material;
 }
 
-/// The beam flies along +x through a rectangle of the y-z plane, one molecule of unit mass and speed after the other.
+/// Beam along +x through a rectangle of the y-z plane. Its molecules have unit mass and speed and fly one after the
+/// other.
 struct Beam {
     double y_from, y_to, z_from, z_to;
     [[nodiscard]] double area() const { return (y_to - y_from) * (z_to - z_from); }
 };
 
 struct Answer {
-    Sample drag;  // F_x / (1/2 rho v^2) per molecule: its mean is the drag coefficient times the frontal area
+    Sample drag;  // F_x / (1/2 rho v^2) per molecule; the mean is the drag coefficient times the frontal area
     Sample lift;
-    Sample torque;  // about z, over 1/2 rho v^2
+    Sample torque;  // about z, divided by 1/2 rho v^2
 };
 
 Answer shine(const std::vector<ColliderDescription>& body, const Material& material, const Beam& beam, int molecules) {
@@ -62,7 +63,7 @@ Answer shine(const std::vector<ColliderDescription>& body, const Material& mater
         for (const ContactRecord& record : course.scratch.records) {
             moment += cross(record.position, record.mass * (record.velocity_before - record.velocity_after));
         }
-        // rho = 1 / (v A) per molecule and second through the beam's area A.
+        // One molecule per second through the beam's area A gives rho = 1 / (v A).
         answer.drag.add(2.0 * beam.area() * impulse.x);
         answer.lift.add(2.0 * beam.area() * impulse.y);
         answer.torque.add(2.0 * beam.area() * moment.z);
@@ -78,8 +79,9 @@ void expect_drag(const std::vector<ColliderDescription>& body, const Material& m
     EXPECT_NEAR(answer.lift.mean(), 0.0, 4.0 * answer.lift.error() + 1e-12);
 }
 
-// Absorption keeps the momentum of arrival: the hit list has it, the records' velocity after is zero.
-TEST(FlatPlateInABeam, HasDragFourAsAMirrorTwoAsASinkAndTenThirdsByTheCosineLaw) {
+// Absorption transfers the momentum of arrival. The hit list contains it, and the velocity after the impact is zero in
+// the records.
+TEST(FlatPlateInABeam, HasDragFourIfSpecularTwoIfAbsorbingAndTenThirdsIfDiffuse) {
     const std::vector<ColliderDescription> plate{{"plate", CuboidShape{{0.02, 1, 1}, {}}, 0}};
     const Beam beam{-0.5, 0.5, -0.5, 0.5};
     expect_drag(plate, specular(), beam, 4.0, 1.0);
@@ -87,7 +89,7 @@ TEST(FlatPlateInABeam, HasDragFourAsAMirrorTwoAsASinkAndTenThirdsByTheCosineLaw)
     expect_drag(plate, lambert(), beam, 10.0 / 3.0, 1.0);
 }
 
-TEST(SphereInABeam, HasDragTwoAsAMirrorAndTwentySixNinthsByTheCosineLaw) {
+TEST(SphereInABeam, HasDragTwoIfSpecularAndTwentySixNinthsIfDiffuse) {
     const std::vector<ColliderDescription> sphere{{"sphere", BallShape{1.0, {}}, 0}};
     const Beam beam{-1, 1, -1, 1};
     expect_drag(sphere, specular(), beam, 2.0, kPi);
@@ -95,12 +97,12 @@ TEST(SphereInABeam, HasDragTwoAsAMirrorAndTwentySixNinthsByTheCosineLaw) {
     expect_drag(sphere, absorbing(), beam, 2.0, kPi);
 }
 
-TEST(CylinderAcrossABeam, HasDragEightThirdsAsAMirror) {
+TEST(CylinderAcrossABeam, HasDragEightThirdsIfSpecular) {
     const std::vector<ColliderDescription> cylinder{{"cylinder", CylinderShape{1.0, 4.0, {}}, 0}};
     expect_drag(cylinder, specular(), {-1, 1, -1, 1}, 8.0 / 3.0, 4.0);
 }
 
-/// A cone of half angle 30 degrees with its tip towards the beam.
+/// Returns a cone of half angle 30 degrees with its tip towards the beam.
 TriangleMesh cone(int sides) {
     TriangleMesh mesh{{{0, 0, 0}}, {}};
     const auto n = static_cast<std::uint32_t>(sides);
@@ -113,22 +115,23 @@ TriangleMesh cone(int sides) {
     return mesh;
 }
 
-TEST(ConeInABeam, HasDragFourTimesTheSquaredSineOfItsHalfAngleAsAMirror) {
+TEST(ConeInABeam, HasDragFourTimesTheSquaredSineOfItsHalfAngleIfSpecular) {
     constexpr int kSides = 512;
-    // Facets lean by cos(pi / n) less in the tangent, the polygon's area is smaller by 2 (pi / n)^2 / 3.
+    // The tangent of the facets' inclination is smaller by the factor cos(pi / n). The polygon's area is smaller by 2
+    // (pi / n)^2 / 3.
     const double faceting = 4.0 * (kPi / kSides) * (kPi / kSides);
     expect_drag({testing::mesh_collider(cone(kSides))}, specular(), {-1, 1, -1, 1}, 1.0, kPi, faceting);
 }
 
-// The beam hits the half y > 0 of a plate: torque about z is minus the force times the mean lever.
-TEST(HalfLitPlate, IsTurnedByTheForceTimesItsLever) {
+// The beam hits the half y > 0 of a plate. The torque about z is minus the force times the mean lever arm.
+TEST(HalfLitPlate, HasATorqueOfTheForceTimesItsLeverArm) {
     const std::vector<ColliderDescription> plate{{"plate", CuboidShape{{0.02, 1, 1}, {}}, 0}};
     const Answer answer = shine(plate, specular(), {0.0, 0.5, -0.5, 0.5}, test::scaled(60000));
     EXPECT_NEAR(answer.drag.mean(), 4.0 * 0.5, 1e-12);
     EXPECT_NEAR(answer.torque.mean(), -4.0 * 0.5 * 0.25, 4.0 * answer.torque.error());
 }
 
-// The same sums are kept per triangle by the simulation.
+// The simulation accumulates the same sums per triangle.
 TEST(ImpulsePerTriangle, AddsUpToTheForceOnThePlate) {
     SimulationSetup setup;
     setup.options.duration = 10.0;

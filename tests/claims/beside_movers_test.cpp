@@ -1,5 +1,5 @@
-// What particles do in contact with surfaces at rest while other colliders move elsewhere: no otherwise than without
-// those, until one comes to them.
+// Particles in contact with surfaces at rest behave the same with and without colliders that move elsewhere, until such
+// a collider reaches them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ namespace RICOCHET_FILE {
 
 constexpr Vec3 kGravity{0, 0, -9.81};
 
-/// Grains that settle on a floor, and a blade that goes round above a part of it, now and then.
+/// Returns grains that settle on a floor. A blade rotates above part of the floor and sweeps it from time to time.
 SimulationSetup swept_floor(bool sleeping, std::uint64_t seed) {
     FrameDescription arm;
     arm.name = "arm";
@@ -49,7 +49,7 @@ Vec3 given_to_floor(const Simulation& simulation) {
     return sum;
 }
 
-TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
+TEST(WhatRests, SleepsBesideMovingCollidersUntilOneArrivesWithTheSameBits) {
     for (const std::uint64_t seed : {1U, 2U}) {
         SCOPED_TRACE(seed);
         Simulation asleep(swept_floor(true, seed));
@@ -61,7 +61,7 @@ TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
             most = std::max(most, asleep.statistics().asleep);
             ASSERT_EQ(asleep.state_hash(), awake.state_hash()) << "s: " << asleep.time();
         }
-        // What wakes between steps that are made together has none to make up for.
+        // A particle that wakes between steps computed together has no deferred steps to catch up.
         Simulation together(swept_floor(true, seed));
         while (!together.finished()) together.advance(50);
         EXPECT_EQ(together.state_hash(), awake.state_hash());
@@ -69,13 +69,14 @@ TEST(WhatRests, SleepsBesideCollidersThatMoveUntilOneComesWithTheSameBits) {
         EXPECT_EQ(awake.statistics().asleep, 0U);
         EXPECT_EQ(asleep.statistics().contacts, awake.statistics().contacts);
         EXPECT_EQ(asleep.statistics().squeezed, 0U);
-        // Their weight is in the totals all the same.
+        // The totals include the weight of sleeping particles.
         EXPECT_LT(length(given_to_floor(asleep) - given_to_floor(awake)), 1e-11 * length(given_to_floor(awake)));
     }
 }
 
-// With a verifier nothing sleeps beside what moves: what slept in the saved state has pressed until then.
-TEST(WhatRests, PressesOnTheFloorWhereItsSleepIsResumedUnderVerification) {
+// With a verifier, particles beside moving colliders do not sleep. Particles that slept in the saved state have loaded
+// the floor until then.
+TEST(WhatRests, LoadsTheFloorAfterItsSleepIsResumedUnderVerification) {
     SimulationSetup verified = swept_floor(true, 1);
     verified.options.verify = true;
     Simulation whole(swept_floor(true, 1));
@@ -97,10 +98,10 @@ TEST(WhatRests, PressesOnTheFloorWhereItsSleepIsResumedUnderVerification) {
     EXPECT_LT(length(given_to_floor(second) - given_to_floor(whole)), 1e-11 * length(given_to_floor(whole)));
 }
 
-// A slanted face at 1 m/s that meets the upper half of a sphere on a floor: both answer at once, u . n = -e u_before .
-// n at the face and no more than that at the floor, so the sphere goes off along the floor at 1 + e. One after the
-// other they would throw it to and fro in almost no time, by ever smaller speeds, until it counted as squeezed.
-TEST(WhatRests, AndIsMetFromAboveAnswersWithWhatItRestsOn) {
+// A slanted face at 1 m/s hits the upper half of a sphere on a floor. Both contacts are resolved together: u . n = -e
+// u_before . n at the face and at most that at the floor. The sphere leaves along the floor at 1 + e. Sequential
+// impacts would bounce it between both surfaces at ever smaller speeds in almost no time, until it counted as pinched.
+TEST(WhatRests, AndIsHitFromAboveReboundsTogetherWithItsSupport) {
     for (const double friction : {0.0, 0.2}) {
         SCOPED_TRACE(friction);
         SimulationSetup setup = setup_of(0.01, 0.1, {"steel", 0.3, friction}, kGravity);
@@ -128,7 +129,7 @@ TEST(WhatRests, AndIsMetFromAboveAnswersWithWhatItRestsOn) {
     }
 }
 
-TEST(WhatSlides, BesideCollidersThatMoveGainsNoEnergyByAnyIntegrator) {
+TEST(WhatSlides, GainsNoEnergyBesideMovingCollidersWithAnyIntegrator) {
     for (const IntegratorKind integrator :
          {IntegratorKind::symplectic_euler, IntegratorKind::implicit_euler, IntegratorKind::forward_euler,
           IntegratorKind::midpoint, IntegratorKind::velocity_verlet}) {

@@ -1,5 +1,4 @@
-/// \file
-/// Particles that bounce without loss in a mesh, and independent checks of where they get to.
+/// \file Particles that bounce without loss in a mesh, with independent checks of their positions.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +13,33 @@
 
 namespace ricochet::testing {
 
-/// What came of a run.
+/// Results of a run.
 struct BilliardTally {
     std::uint64_t contacts = 0;
-    std::uint64_t stayed = 0;             ///< contacts after which the particle stood where its path began
+    std::uint64_t stayed = 0;             ///< contacts after which the particle is at the start of its path
     std::uint64_t not_inside = 0;         ///< particles outside, or on the surface, at any check
-    std::uint64_t checked_segments = 0;   ///< segments tested again by the exact oracle
-    std::uint64_t crossing_segments = 0;  ///< of these, segments that intersect a triangle
-    std::uint64_t budget_exhausted = 0;   ///< steps that spent their bounces
+    std::uint64_t checked_segments = 0;   ///< segments tested again by the exact reference
+    std::uint64_t crossing_segments = 0;  ///< checked segments that intersect a triangle
+    std::uint64_t budget_exhausted = 0;   ///< steps that exhausted their bounce budget
 };
 
-/// A mesh placed in the world, with its oracle.
+/// Mesh placed in the world, with its reference.
 class Billiard {
 public:
     Billiard(const NamedMesh& mesh, const Placement& placement);
 
-    /// Points strictly inside, uniform in the volume (for an open mesh: in its box). The same for the same seed.
+    /// Returns points strictly inside, uniform in the volume (or in the bounding box of an open mesh). The same seed
+    /// gives the same points.
     [[nodiscard]] std::vector<Vec3> start_points(int count, std::uint64_t seed) const;
 
-    /// Random directions, about `impacts` impacts a step; `gravity` in mean free paths per step squared (0: straight
-    /// flight).
+    /// Flies in random directions, with about `impacts` impacts per step. `gravity` is in mean free paths per step
+    /// squared (0: straight flight).
     [[nodiscard]] BilliardTally fly(int particles, int steps, double impacts, double gravity, IntegratorKind kind,
                                     std::uint64_t seed) const;
 
-    /// Every flight is aimed at a vertex or a point of an edge; after an impact of the triangle just hit (two times in
-    /// three) or of any. Some flights end exactly there. One segment in `check_every` is tested by the oracle.
+    /// Aims every flight at a vertex or a point of an edge. After an impact, the target is on the triangle just hit in
+    /// two of three cases, or else on any triangle. Some flights end exactly there. The reference tests one segment in
+    /// `check_every`.
     [[nodiscard]] BilliardTally aim(int particles, int impacts, int check_every, std::uint64_t seed) const;
 
     [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -50,12 +51,12 @@ private:
 
     TriangleMesh mesh_;  // in world coordinates
     CollisionWorld world_;
-    std::unique_ptr<ParityOracle> oracle_;  // none for an open mesh
+    std::unique_ptr<ParityOracle> oracle_;  // null for an open mesh
     double mean_free_path_ = 0.0;
 };
 
-/// True when the closed segment intersects a triangle of the mesh: exact, and independent of the library's predicates
-/// and hierarchy. Linear in the number of triangles.
+/// Returns true if the closed segment intersects a triangle of the mesh. The test is exact and independent of the
+/// library's predicates and hierarchy. Its work is linear in the number of triangles.
 [[nodiscard]] bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q);
 
 }  // namespace ricochet::testing

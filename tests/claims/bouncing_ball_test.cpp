@@ -1,5 +1,5 @@
-// A ball that is dropped on a floor: every impact, every apex, the time to rest and the path length, by closed form,
-// whatever the time step and however the floor is cut into triangles.
+// A ball dropped on a floor matches the closed form at every impact and every apex, in the time to rest and in the path
+// length. The time step and the triangulation of the floor must not matter.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ const double kFall = std::sqrt(2.0 * kHeight / kG);
 
 struct Bounce {
     double time;
-    double rebound;  // m/s
+    double rebound;  // in m/s
     [[nodiscard]] double apex() const { return rebound * rebound / (2.0 * kG); }
 };
 
@@ -63,8 +63,8 @@ class DroppedBall : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Restitutions, DroppedBall, ::testing::Values(0.5, 0.8, 0.9),
                          [](const auto& e) { return fmt::format("e{}", std::lround(10.0 * e.param)); });
 
-// Impact n at t0 (1 + 2 (e + ... + e^(n - 1))), then an apex of h e^(2n).
-TEST_P(DroppedBall, HitsTheFloorAndRisesAsTheClosedFormSaysAtAnyTimeStep) {
+// Impact n occurs at t0 (1 + 2 (e + ... + e^(n - 1))), followed by an apex of h e^(2n).
+TEST_P(DroppedBall, MatchesTheClosedFormOfImpactsAndApexesAtAnyTimeStep) {
     const double e = GetParam();
     for (const double time_step : {1e-4, 1e-3, 1.0 / 60.0, 0.1, 1.0}) {
         SCOPED_TRACE(time_step);
@@ -81,12 +81,12 @@ TEST_P(DroppedBall, HitsTheFloorAndRisesAsTheClosedFormSaysAtAnyTimeStep) {
     }
 }
 
-TEST_P(DroppedBall, ComesToRestWhenAndAfterThePathLengthThatTheSeriesSays) {
+TEST_P(DroppedBall, ComesToRestAtTheTimeAndPathLengthOfTheSeries) {
     const double e = GetParam();
     const double total = time_to_rest(e);
     for (const double time_step : {1e-4, 1.0 / 60.0, 1.0}) {
         SCOPED_TRACE(time_step);
-        // Held without tangential motion, the last 2 v / (g (1 - e)) seconds at v = 1 mm/s count as rest already.
+        // In contact without tangential motion, the last 2 v / (g (1 - e)) seconds at v = 1 mm/s count as rest already.
         EXPECT_FALSE(drop(plane(), e, time_step, total - 2.1e-3 / (kG * (1.0 - e))).rests);
         const Drop dropped = drop(plane(), e, time_step, total + 2e-4);
         EXPECT_TRUE(dropped.rests);
@@ -125,7 +125,7 @@ void expect_same_bits(const Drop& a, const Drop& b) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(a.end_height), std::bit_cast<std::uint64_t>(b.end_height));
 }
 
-TEST(DroppedBallOnMeshes, BouncesBitForBitAlikeOnAPlaneTwoTrianglesAndTwoMillion) {
+TEST(DroppedBallOnMeshes, BouncesWithTheSameBitsOnAPlaneTwoTrianglesAndTwoMillion) {
     const int cells = test::kSanitized || !test::kOptimised ? 64 : 1024;
     for (const double e : {0.5, 0.9, 1.0}) {
         SCOPED_TRACE(e);

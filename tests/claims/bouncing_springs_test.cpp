@@ -1,5 +1,5 @@
-// Particles on springs that bounce: the order stays two, momentum is kept to rounding, and energy drifts no more than
-// it does without walls.
+// Particles on springs that bounce: the order stays two, momentum is conserved to rounding, and energy drifts no more
+// than without walls.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ namespace RICOCHET_FILE {
 
 using test::case_factor;
 
-/// Numbers from -1 to 1.
+/// Random numbers from -1 to 1.
 class Uniform {
 public:
     explicit Uniform(std::uint64_t seed) : generator_(seed) {}
@@ -66,10 +66,10 @@ Simulation finished(SimulationSetup setup, const Integrator& integrator, double 
     return simulation;
 }
 
-/// How the energy of a run changed: parts of the first.
+/// Changes of the energy in a run, relative to the first energy.
 struct EnergyCourse {
     double at_end = 0.0;
-    double largest = 0.0;  ///< either way
+    double largest = 0.0;  ///< in either direction
     std::uint64_t contacts = 0;
 };
 
@@ -89,9 +89,10 @@ EnergyCourse energy_course(SimulationSetup setup, const Integrator& integrator, 
     return course;
 }
 
-// The order.
+// ---- order
+// -----------------------------------------------------------------------------------------------------------
 
-/// A dumbbell of unequal masses in a ball, with drag and a force of time.
+/// Returns a dumbbell of unequal masses in a ball, with drag and a time-dependent force.
 SimulationSetup dumbbell(double damping, bool has_forces) {
     SimulationSetup setup;
     setup.particles = {bead({0.1, 0.05, -0.2}, {1.1, 0.7, -0.9}, 1.0), bead({0.4, 0.15, 0.1}, {-0.3, 0.9, 0.5}, 2.0)};
@@ -117,7 +118,7 @@ EndState end_of_dumbbell(double damping, bool has_forces, IntegratorKind kind, i
     return {run.particles().position[0], run.particles().velocity[0], run.statistics().contacts};
 }
 
-/// Slope of log(error) against log(step), least squares.
+/// Returns the slope of log(error) against log(step), by least squares.
 double measured_order(double damping, bool has_forces, IntegratorKind kind) {
     const EndState reference = end_of_dumbbell(damping, has_forces, IntegratorKind::rk4, 40000);
     EXPECT_GE(reference.contacts, 4U);
@@ -150,12 +151,12 @@ TEST(BouncingSprings, KeepOrderTwo) {
     }
 }
 
-TEST(BouncingSprings, KeepOrderThreeByRk4WithoutDampers) {
+TEST(BouncingSprings, KeepOrderThreeWithRk4WithoutDampers) {
     EXPECT_GT(measured_order(0.0, false, IntegratorKind::rk4), 2.7);
     EXPECT_GT(measured_order(0.0, true, IntegratorKind::rk4), 2.7);
 }
 
-// A damper feels a bounce at once, at both ends.
+// A damper transmits a bounce immediately to both ends.
 TEST(BouncingSprings, KeepOrderTwoWithDampers) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4, IntegratorKind::ballistic}) {
@@ -164,9 +165,11 @@ TEST(BouncingSprings, KeepOrderTwoWithDampers) {
     }
 }
 
-// Momentum.
+// ---- momentum
+// --------------------------------------------------------------------------------------------------------
 
-/// A square net of `nodes` x `nodes` points, 5 cm apart, that moves, with a random motion of every node.
+/// Returns a square net of `nodes` x `nodes` points, 5 cm apart. It moves as a whole, and every node has an additional
+/// random velocity.
 SimulationSetup net(int nodes, double damping, const Vec3& velocity) {
     SimulationSetup setup;
     Uniform uniform(7);
@@ -188,7 +191,8 @@ Vec3 momentum(const Particles& particles) {
     return sum;
 }
 
-// A floor without friction takes none along it: what one end of a spring gains there the other has lost.
+// A floor without friction takes no momentum along it. The momentum that one end of a spring gains there is lost by the
+// other end.
 TEST(BouncingSprings, KeepMomentumAlongAFloorToRounding) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4,
@@ -209,9 +213,11 @@ TEST(BouncingSprings, KeepMomentumAlongAFloorToRounding) {
     }
 }
 
-// Energy.
+// ---- energy
+// ----------------------------------------------------------------------------------------------------------
 
-/// 100 chains of ten beads. No oscillation is faster than 89 per second: velocity Verlet is stable below 22 ms.
+/// Returns 100 chains of ten beads. No oscillation is faster than 89 per second, so velocity Verlet is stable below 22
+/// ms.
 SimulationSetup chains(std::uint64_t seed, bool in_box) {
     constexpr std::uint64_t kBeads = 10;
     SimulationSetup setup;
@@ -229,7 +235,7 @@ SimulationSetup chains(std::uint64_t seed, bool in_box) {
     return setup;
 }
 
-/// Where they are after a second of bouncing about: a start, with or without the box, in which nothing is special.
+/// Returns the state after a second of bouncing, with or without the box. It is a start without any symmetry.
 SimulationSetup hot_chains(std::uint64_t seed, bool in_box) {
     SimulationSetup setup = chains(seed, in_box);
     const Simulation warm = finished(chains(seed, true), IntegratorKind::rk4, 1e-3, 1.0);
@@ -240,8 +246,8 @@ SimulationSetup hot_chains(std::uint64_t seed, bool in_box) {
     return setup;
 }
 
-// 4500 bounces, at 45 % of the step at which the method explodes. The single run wanders by chance.
-TEST(BouncingSpringsEnergy, IsKeptByVelocityVerletInABox) {
+// 4500 bounces, at 45 % of the step at which the method diverges. The energy of a single run varies randomly.
+TEST(BouncingSpringsEnergy, IsConservedByVelocityVerletInABox) {
     const int runs = case_factor(12);
     double sum = 0.0;
     for (int k = 0; k < runs; ++k) {
@@ -257,8 +263,8 @@ TEST(BouncingSpringsEnergy, IsKeptByVelocityVerletInABox) {
     EXPECT_LT(std::fabs(sum / runs), 0.01 / std::sqrt(runs));
 }
 
-// What the Runge-Kutta methods lose or gain on springs they lose or gain with bounces too, and no more.
-TEST(BouncingSpringsEnergy, DriftsAsWithoutBouncesByRungeKuttaMethods) {
+// The gain or loss of Runge-Kutta methods on springs is the same with bounces and without.
+TEST(BouncingSpringsEnergy, DriftsWithRungeKuttaMethodsAsWithoutBounces) {
     struct Case {
         IntegratorKind kind;
         double time_step;
@@ -272,9 +278,9 @@ TEST(BouncingSpringsEnergy, DriftsAsWithoutBouncesByRungeKuttaMethods) {
     }
 }
 
-// 400 nodes, 28 % of the step at which velocity Verlet explodes. The energy that it keeps is not exactly the one that
-// is measured; the difference grows while the throw becomes oscillation.
-TEST(BouncingSpringsEnergy, OfANetInAMeshIsKeptByVelocityVerletAndRk4) {
+// 400 nodes, 28 % of the step at which velocity Verlet diverges. The energy that it conserves differs slightly from the
+// measured energy. The difference grows while the throw turns into oscillation.
+TEST(BouncingSpringsEnergy, IsConservedByVelocityVerletAndRk4ForANetInAMesh) {
     const auto net_in_mesh = [] {
         SimulationSetup setup = net(20, 0.0, {1.5, 0.7, 2.0});
         const auto mesh = std::make_shared<const TriangleMesh>(testing::sphere_mesh({}, 1.0, 4));
@@ -290,7 +296,8 @@ TEST(BouncingSpringsEnergy, OfANetInAMeshIsKeptByVelocityVerletAndRk4) {
     EXPECT_LT(rk4.largest, 0.001);
 }
 
-// Threads.
+// ---- threads
+// ---------------------------------------------------------------------------------------------------------
 
 TEST(BouncingSprings, GiveTheSameBitsForAnyThreadCount) {
     for (const IntegratorKind kind :
@@ -308,7 +315,7 @@ TEST(BouncingSprings, GiveTheSameBitsForAnyThreadCount) {
     }
 }
 
-// Every segment of changed paths is certified as any other.
+// Every segment of changed paths is certified like any other.
 TEST(BouncingSprings, NeverLeak) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::rk4}) {
         SimulationSetup setup = net(10, 0.0, {1.0, 0.5, -2.0});

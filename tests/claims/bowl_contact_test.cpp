@@ -1,4 +1,4 @@
-// Do points that slide and spheres that roll in a bowl of a ball swing as pendulums do?
+// Points that slide and spheres that roll in a ball-shaped bowl swing like pendulums.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr double kG = kStandardGravity;
 
 ColliderDescription bowl() { return {"bowl", BallShape{1.0, {}}, 0}; }
 
-/// A sphere or point at rest on the inside of the unit ball, an angle beside the lowest point. Points are 1e-13 m
-/// inside: one that is rounded onto the other side stays there.
+/// Returns a sphere or point at rest on the inside of the unit ball, at an angle from the lowest point. Points are
+/// 1e-13 m inside, because a point rounded to the other side would stay there.
 ContactScene in_bowl(double angle, double radius, double friction, double time_step, double duration) {
     ContactScene scene;
     scene.colliders = {bowl()};
@@ -30,7 +30,7 @@ ContactScene in_bowl(double angle, double radius, double friction, double time_s
     return scene;
 }
 
-/// Complete elliptic integral K(k), by the arithmetic-geometric mean.
+/// Returns the complete elliptic integral K(k), by the arithmetic-geometric mean.
 double complete_elliptic_integral(double k) {
     double a = 1.0;
     double b = std::sqrt(1.0 - k * k);
@@ -42,8 +42,8 @@ double complete_elliptic_integral(double k) {
     return 0.5 * kPiNumber / a;
 }
 
-/// When x passes through zero between two states `h` apart: on the cubic through both, whose error h^4 x''''/ 384 is
-/// below 1e-9 m for the swings and steps here.
+/// Returns the time at which x passes through zero between two states `h` apart, on the cubic through both. Its error
+/// h^4 x''''/ 384 is below 1e-9 m for the swings and steps here.
 double zero_between(const Particle& from, const Particle& to, double h) {
     double low = 0.0;
     double high = 1.0;
@@ -59,7 +59,7 @@ double zero_between(const Particle& from, const Particle& to, double h) {
     return low * h;
 }
 
-/// The mean period of five swings, from passage to passage through the lowest point.
+/// Returns the mean period of five swings, between passages through the lowest point.
 double period_of(const ContactScene& scene) {
     std::vector<double> passages;
     Particle last = scene.particle;
@@ -82,14 +82,14 @@ TEST(APointInABowl, SwingsWithThePeriodOfAPendulumToSecondOrder) {
         };
         const double coarse = error(0.01);
         EXPECT_LT(coarse, 1e-4) << angle;
-        // A quarter of it at half the step, with a hundredth of that for the next order; or what the passages are found
-        // to.
+        // At half the step the error is a quarter, with one hundredth of that for the next order, or at the accuracy of
+        // the passages.
         EXPECT_LT(error(0.005), std::max(0.25 * 1.01 * coarse, 1e-9)) << angle;
     }
 }
 
-// The pendulum's small swings; a tenth of a radian would add 6e-4, this adds 6e-6.
-TEST(ASphereInABowl, RollsAsAPendulumOfSevenFifthsOfItsLength) {
+// Small swings of the pendulum: an amplitude of a tenth of a radian would add 6e-4, this one adds 6e-6.
+TEST(ASphereInABowl, RollsLikeAPendulumOfSevenFifthsOfItsLength) {
     for (const double radius : {0.01, 0.1, 0.4}) {
         const double expected = 2.0 * kPiNumber * std::sqrt(7.0 * (1.0 - radius) / (5.0 * kG));
         const double period = period_of(in_bowl(0.01, radius, 0.5, 0.01, 20.0));
@@ -97,7 +97,7 @@ TEST(ASphereInABowl, RollsAsAPendulumOfSevenFifthsOfItsLength) {
     }
 }
 
-/// The largest change of energy over a run, relative to what the swing turns over.
+/// Returns the largest change of energy over a run, relative to the energy that the swing converts.
 double worst_energy(const ContactScene& scene, double inertia) {
     const double first = kG * scene.particle.position.z;
     const double swing = first + kG * (1.0 - scene.particle.radius);
@@ -111,8 +111,8 @@ double worst_energy(const ContactScene& scene, double inertia) {
     return worst / swing;
 }
 
-/// Angle from the lowest point, rad, of a sphere of radius r that rolls in the unit bowl, by the classical Runge-Kutta
-/// method in small steps: phi'' = -5 g sin(phi) / (7 (1 - r)).
+/// Returns the angle from the lowest point, in rad, of a sphere of radius r that rolls in the unit bowl. The classical
+/// Runge-Kutta method integrates phi'' = -5 g sin(phi) / (7 (1 - r)) in small steps.
 double rolled_angle(double angle, double radius, double time) {
     constexpr int kSteps = 20000;
     const double h = time / kSteps;
@@ -132,8 +132,8 @@ double rolled_angle(double angle, double radius, double time) {
     return angle;
 }
 
-// The way straight on comes out of the ball behind a sphere that is small beside it; that must not count as a turn.
-TEST(ASphereInABowl, RollsOnHoweverSmallItIs) {
+// A straight path leaves the ball behind a sphere that is small compared with it. That must not count as a reversal.
+TEST(ASphereInABowl, RollsOnForAnyRadius) {
     const double start = kPiNumber / 6.0;
     for (const double radius : {0.1, 1e-3, 1e-5, 1e-6, 1e-9}) {
         for (const auto& [step, bound] : {std::pair{0.01, 1e-6}, std::pair{0.1, 2e-3}}) {
@@ -149,21 +149,21 @@ TEST(ASphereInABowl, RollsOnHoweverSmallItIs) {
     }
 }
 
-// The contract's bounds: of rounding, some 1e-16 of g R a step that the swing's 0.005 g R make 2e-14 of it.
-TEST(APointInABowl, KeepsTheEnergyOfAHundredSwingsThroughTheWholeProgram) {
+// Required bounds: the rounding of about 1e-16 of g R per step is 2e-14 of the swing's 0.005 g R.
+TEST(APointInABowl, ConservesTheEnergyOfAHundredSwingsInTheWholeProgram) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         EXPECT_LT(worst_energy(in_bowl(angle, 0.0, 0.0, 0.02, 220.0), 0.0), bound) << angle;
     }
 }
 
-TEST(ASphereInABowl, KeepsTheEnergyOfAHundredSwingsWhileItRolls) {
+TEST(ASphereInABowl, ConservesTheEnergyOfAHundredSwingsWhileItRolls) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         EXPECT_LT(worst_energy(in_bowl(angle, 0.1, 10.0, 0.02, 220.0), 0.4), bound) << angle;
     }
 }
 
-// v' = -mu v^2 / R without gravity: only the surface's curvature presses.
-TEST(APointInABowl, IsSlowedByTheFrictionOfItsOwnTurningByEveryIntegrator) {
+// v' = -mu v^2 / R without gravity, because only the curvature of the surface causes a normal force.
+TEST(APointInABowl, IsSlowedByFrictionOfTheCentripetalForceWithEveryIntegrator) {
     for (const IntegratorKind kind :
          {IntegratorKind::ballistic, IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
           IntegratorKind::implicit_euler, IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
@@ -176,7 +176,7 @@ TEST(APointInABowl, IsSlowedByTheFrictionOfItsOwnTurningByEveryIntegrator) {
     }
 }
 
-/// Angle and rate after a second of a point that slides up a bowl, stops at 0.424 s and slides back.
+/// Returns angle and rate after a second of a point that slides up a bowl, stops at 0.424 s and slides back.
 std::array<double, 2> slid_up_and_back(double friction, double speed) {
     std::array<double, 2> state{0.0, speed};
     const double step = 1e-5;
@@ -196,7 +196,7 @@ std::array<double, 2> slid_up_and_back(double friction, double speed) {
     return state;
 }
 
-TEST(APointInABowl, SlidesBackToSecondOrderAfterItsSlipHasTurnedRound) {
+TEST(APointInABowl, SlidesBackToSecondOrderAfterItsSlipReverses) {
     const double expected = slid_up_and_back(0.2, 3.0)[0];
     for (const auto& [step, bound] : {std::pair{0.02, 1e-5}, std::pair{0.01, 2.5e-6}, std::pair{0.0025, 1.6e-7}}) {
         ContactScene scene = in_bowl(0.0, 0.0, 0.2, step, 1.0);

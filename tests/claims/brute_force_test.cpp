@@ -1,4 +1,5 @@
-// Random meshes, particles and steps: the program with all its culling against the same rules for every triangle.
+// Compares the program with all its culling to the same rules applied to every triangle, for random meshes, particles
+// and steps.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +20,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Everything about a case follows from its number.
+/// Random case that depends on its number only.
 class RandomCase {
 public:
     explicit RandomCase(std::uint64_t seed) : random_(seed, 21, 0) {}
@@ -60,7 +61,7 @@ private:
         return {2.0 * x - 1.0, 2.0 * y - 1.0, 2.0 * random_.uniform() - 1.0};
     }
 
-    /// A soup, a crumpled ball, or slivers.
+    /// Returns a triangle soup, a crumpled ball, or slivers.
     std::shared_ptr<const TriangleMesh> mesh() {
         auto result = std::make_shared<TriangleMesh>();
         const std::size_t kind = pick(3);

@@ -1,5 +1,5 @@
-// Colliders that close exactly on a surface, or on each other, and open again: nothing passes them. What they leave no
-// room waits, and is free again afterwards.
+// Colliders that close exactly on a surface, or on each other, and open again let no particle pass. Particles without
+// space stall and are free again afterwards.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace RICOCHET_FILE {
 
 enum class Against { plane, box, jaw };
 
-/// How a scene stands in the world.
+/// Placement of a scene in the world.
 struct Placed {
     double scale = 1.0;
     Vec3 shift;
@@ -33,12 +33,12 @@ struct Placed {
     [[nodiscard]] Vec3 point(const Vec3& p) const { return scale * turned(p) + shift; }
 };
 
-/// A press along x between 0 and 1: what comes from -0.4 closes on what is at 1 at `closed` seconds.
+/// Press along x between 0 and 1. The piston from -0.4 reaches the wall at 1 after `closed` seconds.
 struct Press {
     Placed placed{};
     Against against = Against::plane;
     bool is_mesh = false;
-    double over = 0.0;  ///< by which it comes too far
+    double over = 0.0;  ///< distance by which it overshoots
     double restitution = 0.0;
     double friction = 0.0;
     double time_step = 1.0 / 60.0;
@@ -91,7 +91,7 @@ SimulationSetup scene_of(const Press& press) {
     return setup;
 }
 
-/// On the piston's own and the wall's own side, by windings; and no clock stands still.
+/// Expects that particles are on the correct side of piston and wall, by winding numbers, and that none is stalled.
 void expect_free_between(Simulation& simulation, const Press& press) {
     while (!simulation.finished()) simulation.step();
     EXPECT_EQ(simulation.statistics().violations, 0U);
@@ -112,7 +112,7 @@ void expect_free_between(Simulation& simulation, const Press& press) {
     }
 }
 
-TEST(APistonThatClosesExactlyOnAWall, LetsNothingThroughAndLetsItGoAgain) {
+TEST(APistonThatClosesExactlyOnAWall, LetsNoParticleThroughAndReleasesAllAgain) {
     for (const Against against : {Against::plane, Against::box, Against::jaw}) {
         for (const bool is_mesh : {false, true}) {
             for (const double restitution : {0.0, 0.01, 0.1, 0.2, 1.0}) {
@@ -132,8 +132,8 @@ TEST(APistonThatClosesExactlyOnAWall, LetsNothingThroughAndLetsItGoAgain) {
     }
 }
 
-// Turned, shifted and scaled, a little short of it or beyond, at any time step.
-TEST(APistonThatCloses, LetsNothingThroughWhereverItStands) {
+// The press is rotated, shifted and scaled, stops slightly short of the wall or beyond it, and uses any time step.
+TEST(APistonThatCloses, LetsNoParticleThroughInAnyPlacement) {
     for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(120)); ++seed) {
         SCOPED_TRACE(seed);
         RandomSequence random(seed, 3, 0);

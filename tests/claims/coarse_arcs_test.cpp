@@ -1,5 +1,5 @@
-// Lasting contact on curved surfaces with steps that are long beside a swing: energy is kept, and with it the speed
-// along a cylinder, which nothing pulls at.
+// Persistent contact on curved surfaces with steps that are long compared with a swing. Energy is conserved, and so is
+// the speed along a cylinder, on which no force acts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,14 +15,14 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Of a solid sphere or a point, over the mass, m^2/s^2.
+/// Returns the energy of a solid sphere or a point per unit mass, in m^2/s^2.
 double energy_of(const Particle& particle, const Vec3& gravity) {
     const double turning = 0.4 * particle.radius * particle.radius * length_squared(particle.spin);
     return 0.5 * (length_squared(particle.velocity) + turning) - dot(gravity, particle.position);
 }
 
-/// A particle of this radius at an angle from the lowest line of a smooth lying cylinder of radius 1, with speeds along
-/// it and across, all turned.
+/// Returns a particle of this radius on a smooth horizontal cylinder of radius 1, at an angle from its lowest line. It
+/// has speeds along the cylinder and across it. The whole scene is rotated by `turn`.
 ContactScene in_cylinder(double radius, double angle, double along, double across, const Placement& turn,
                          double height = 50.0) {
     const AffineMap map = world_from_local(turn);
@@ -45,8 +45,9 @@ Placement random_turn(RandomSequence& random) {
     return turn;
 }
 
-// At the start the speed is along the axis, in which direction nothing bends: arcs were as long as the step.
-TEST(SwingWithAxialSpeed, KeepsItsEnergyAndItsAxialSpeedWithAnyStep) {
+// The initial speed is along the axis, in which direction the surface has no curvature. Arcs must not be as long as the
+// step.
+TEST(SwingWithAxialSpeed, ConservesItsEnergyAndItsAxialSpeedWithAnyStep) {
     for (int k = 0; k < test::scaled(100) * test::case_factor(20); ++k) {
         RandomSequence random(92, 0, static_cast<std::uint64_t>(k));
         const double step = std::exp(std::log(100.0) * random.uniform()) * 0.01;
@@ -65,7 +66,7 @@ TEST(SwingWithAxialSpeed, KeepsItsEnergyAndItsAxialSpeedWithAnyStep) {
     }
 }
 
-// A swing of 1e-3 rad is harmonic: about its lowest place the arcs were bound by its small speed alone.
+// A swing of 1e-3 rad is harmonic. Near its lowest point its speed alone would not limit the arcs enough.
 TEST(SmallSwing, HasItsPeriodWithAnyStep) {
     for (const double step : {0.01, 0.1, 0.5, 1.0}) {
         ContactScene scene = in_cylinder(0.0, 1e-3, 0.3, 0.0, {});
@@ -77,7 +78,7 @@ TEST(SmallSwing, HasItsPeriodWithAnyStep) {
     }
 }
 
-TEST(SwingInABowl, KeepsItsEnergyWithAnyStep) {
+TEST(SwingInABowl, ConservesItsEnergyWithAnyStep) {
     for (int k = 0; k < test::scaled(60) * test::case_factor(20); ++k) {
         RandomSequence random(93, 0, static_cast<std::uint64_t>(k));
         const double step = std::exp(std::log(100.0) * random.uniform()) * 0.01;
@@ -96,8 +97,8 @@ TEST(SwingInABowl, KeepsItsEnergyWithAnyStep) {
     }
 }
 
-// Its bend was taken over a step along it that was a part of its length.
-TEST(LongPipe, BendsAsAShortOne) {
+// The curvature must not be sampled over a step that is a fraction of the pipe's length.
+TEST(LongPipe, CurvesLikeAShortOne) {
     for (const double radius : {0.0, 0.01, 0.3}) {
         for (const double height : {2e3, 2e4}) {
             ContactScene pipe = in_cylinder(radius, 0.3, 0.2, 0.5, {}, 3.0);
@@ -112,8 +113,8 @@ TEST(LongPipe, BendsAsAShortOne) {
     }
 }
 
-// Thrown upwards it leaves the wall where that presses no more, and that is found in one flight.
-TEST(LongPipe, LetsGoOnceOfWhatFallsOffItsRoof) {
+// A particle thrown upwards leaves the wall when the normal force ends. The departure must be found in one flight.
+TEST(LongPipe, ReleasesAParticleFromItsRoofOnce) {
     ContactScene scene = in_cylinder(0.0, 0.0, 0.3, std::sqrt(3.5 * kG), {}, 2e4);
     scene.time_step = 0.5;
     scene.duration = 1.0;

@@ -1,4 +1,4 @@
-// Do the counts of impacts stay the same as the time step is halved, for particles that are carried, slide or roll?
+// The numbers of impacts do not change as the time step is halved, for particles that are carried, slide or roll.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kStep = 0.01;
 
-/// A plank, 2 x 1 x 0.2 m, of 3 kg that turns about y, or moves along z on a spring.
+/// Returns a plank of 2 x 1 x 0.2 m and 3 kg that turns about y, or moves along z on a spring.
 SimulationSetup plank_setup(JointKind joint, double spring, double damping, const Particle& particle) {
     SimulationSetup setup = ricochet::testing::setup_of(kStep, 1.0, Material{"wood", 0.5, 0.4}, {0, 0, -kG});
     setup.options.record_contacts = true;
@@ -55,12 +55,12 @@ struct Counts {
     std::uint64_t contacts = 0;
     std::uint64_t rows = 0;
     std::uint64_t hits = 0;  ///< of all surfaces
-    double slowest = 1e300;  ///< m/s, approach of a row
-    Vec3 impulse;            ///< N s, given to all surfaces
-    Vec3 momentum;           ///< kg m/s, of the particle at the end
+    double slowest = 1e300;  ///< smallest approach speed of a record, in m/s
+    Vec3 impulse;            ///< given to all surfaces, in N s
+    Vec3 momentum;           ///< of the particle at the end, in kg m/s
 };
 
-/// make: makes the setup anew for each run.
+/// make: returns a new setup for each run.
 template <class Make>
 Counts counts_of(const Make& make, double time_step) {
     SimulationSetup setup = make();
@@ -85,20 +85,20 @@ Counts counts_of(const Make& make, double time_step) {
     return counts;
 }
 
-TEST(TheCountsOfAParticleThatIsCarried, AreNoneAtAnyTimeStepWhereItRidesFromTheStart) {
+TEST(TheCountsOfAParticleThatIsCarried, AreZeroAtAnyTimeStepIfItIsCarriedFromTheStart) {
     const auto setup = [] { return plank_setup(JointKind::hinge, 0.0, 0.0, ball_at({0.3, 0.05, 0.15})); };
     for (const double part : {1.0, 0.5, 0.25}) {
         const Counts counts = counts_of(setup, part * kStep);
         EXPECT_EQ(counts.contacts, 0U) << part;
         EXPECT_EQ(counts.rows, 0U) << part;
         EXPECT_EQ(counts.hits, 0U) << part;
-        // The impulses that are no hits are complete all the same: all that gravity gave and the ball has not.
+        // Impulses without impacts are complete: gravity's impulse minus the ball's momentum.
         const Vec3 given = Vec3{0, 0, -0.5 * kG} - counts.momentum;
         EXPECT_LT(length(counts.impulse - given), 1e-9) << part;
     }
 }
 
-TEST(TheCountsOfAParticleThatIsCarried, AreThoseOfItsBouncesAtAnyTimeStep) {
+TEST(TheCountsOfAParticleThatIsCarried, AreTheNumberOfItsBouncesAtAnyTimeStep) {
     const auto setup = [] { return plank_setup(JointKind::hinge, 40.0, 1.0, ball_at({0.3, 0.05, 0.5})); };
     std::array<Counts, 3> counts;
     for (std::size_t k = 0; k < counts.size(); ++k) {
@@ -113,8 +113,8 @@ TEST(TheCountsOfAParticleThatIsCarried, AreThoseOfItsBouncesAtAnyTimeStep) {
     EXPECT_GT(counts[0].contacts, 5U);
 }
 
-// A particle that the plank throws up has left it: its landing counts.
-TEST(TheCountsOfAParticleThatIsCarried, HaveItsLandingAfterTheBodyHasThrownItUp) {
+// A particle that the plank throws up has left it, so its landing counts.
+TEST(TheCountsOfAParticleThatIsCarried, IncludeItsLandingAfterTheBodyHasThrownItUp) {
     const auto setup = [] {
         SimulationSetup thrown = plank_setup(JointKind::slider, 2000.0, 0.0, ball_at({0.1, 0.05, 0.15}));
         thrown.bodies[0].rate = 3.0;
@@ -129,7 +129,7 @@ TEST(TheCountsOfAParticleThatIsCarried, HaveItsLandingAfterTheBodyHasThrownItUp)
     }
 }
 
-/// Something that slides along a slope without friction into a wall with it.
+/// Returns a particle that slides down a slope without friction into a wall with friction.
 SimulationSetup slide_setup(double radius) {
     SimulationSetup setup =
         ricochet::testing::setup_of(kStep, 0.6, Material{"floor", 0.5, 0.0}, {0, -0.6 * kG, -0.8 * kG});
@@ -141,8 +141,8 @@ SimulationSetup slide_setup(double radius) {
     return setup;
 }
 
-// After a wall it goes on along the floor: no landing of a ten-millionth of its speed.
-TEST(TheCountsOfAParticleThatSlides, AreOneAtAWallAtAnyTimeStep) {
+// After the wall the particle continues along the floor, without a landing at a ten-millionth of its speed.
+TEST(TheCountsOfAParticleThatSlides, IncludeOneImpactAtAWallAtAnyTimeStep) {
     for (const double radius : {0.0, 0.05}) {
         for (const double part : {1.0, 0.5, 0.25}) {
             const Counts counts = counts_of([&] { return slide_setup(radius); }, part * kStep);
@@ -152,7 +152,7 @@ TEST(TheCountsOfAParticleThatSlides, AreOneAtAWallAtAnyTimeStep) {
     }
 }
 
-/// A sphere in a trough of facets.
+/// Returns a sphere in a trough of facets.
 SimulationSetup trough_setup() {
     TriangleMesh trough;
     constexpr std::uint32_t kFacets = 12;
@@ -171,8 +171,8 @@ SimulationSetup trough_setup() {
     return setup;
 }
 
-// It rolls up and down over the edges between them.
-TEST(TheCountsOfAParticleThatRolls, AreThoseOfTheFacetsAtAnyTimeStep) {
+// The sphere rolls up and down over the edges between the facets.
+TEST(TheCountsOfAParticleThatRolls, AreTheNumberOfCrossedFacetsAtAnyTimeStep) {
     const Counts whole = counts_of(trough_setup, kStep);
     for (const double part : {0.5, 0.25}) {
         const Counts counts = counts_of(trough_setup, part * kStep);

@@ -1,5 +1,5 @@
-// Does anything that slides, rolls or spins on a surface gain energy? Every kind of curved surface, from inside, with
-// any friction and resistance to rolling, with and without spin.
+// Particles that slide, roll or spin on the inside of a curved surface gain no energy. The tests cover every kind of
+// curved surface and any friction and rolling resistance, with and without spin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ double energy_of(const Particle& p) {
     return 0.5 * length_squared(p.velocity) + 0.2 * p.radius * p.radius * length_squared(p.spin) + kG * p.position.z;
 }
 
-/// The most that a run gains in one step, J/kg.
+/// Returns the largest energy gain of a run in one step, in J/kg.
 double largest_gain(const ContactScene& scene) {
     double last = energy_of(scene.particle);
     double worst = 0.0;
@@ -31,7 +31,8 @@ double largest_gain(const ContactScene& scene) {
     return worst;
 }
 
-/// Of a step: some hundred intervals at most, each with 4e-16 of the largest term, g times 1.2 m and v^2 / 2.
+/// Rounding of a step: at most about a hundred intervals, each with 4e-16 of the largest term, g times 1.2 m and v^2 /
+/// 2.
 constexpr double kRounding = 100 * 4e-16 * 15.0;
 
 struct Room {
@@ -60,7 +61,7 @@ ContactScene tumbling(const Room& room, const Material& material, double radius,
     return scene;
 }
 
-/// Points, small and large spheres, with and without spin, in every room.
+/// Expects no gain for points, small and large spheres, with and without spin, in every room.
 void expect_no_gain(const Material& material) {
     for (const Room& room : rooms()) {
         for (const auto& [radius, spin] : {std::pair{0.0, Vec3{}}, std::pair{0.02, Vec3{}}, std::pair{0.2, Vec3{}},
@@ -88,8 +89,9 @@ TEST(ContactOnACurve, GainsNoEnergyFromResistanceToRolling) {
     }
 }
 
-// Along the rim of a cylinder, where side and cap hold together: pressed into it by gravity, at 1 m/s.
-TEST(TheRimOfACylinder, HoldsSpheresWithoutGainOrLossOfTime) {
+// Gravity presses spheres into the rim of a cylinder, where side and cap both support them. They move along it at 1
+// m/s.
+TEST(TheRimOfACylinder, SupportsSpheresWithoutEnergyGainOrLossOfTime) {
     for (const auto& [friction, spin] :
          {std::pair{0.0, Vec3{}}, std::pair{0.2, Vec3{}}, std::pair{1.4, Vec3{3, 4, 5}}}) {
         for (const double radius : {0.01, 0.1}) {
@@ -97,7 +99,7 @@ TEST(TheRimOfACylinder, HoldsSpheresWithoutGainOrLossOfTime) {
                 ContactScene scene;
                 scene.colliders = {{"drum", CylinderShape{1.0, 2.0, {{}, {1, 0, 0}, 30.0}}, 0}};
                 scene.materials = {{"", 0.2, friction}};
-                // Lowest point of the lower cap's rim; along it.
+                // Lowest point of the lower cap's rim, and the direction along it.
                 const double a = radians(30.0);
                 const Vec3 across{0, std::cos(a), std::sin(a)};
                 const Vec3 axis{0, -std::sin(a), std::cos(a)};

@@ -1,5 +1,5 @@
-/// \file
-/// One sphere or point in lasting contact, run through the library's interface: what the tests of contact share.
+/// \file One sphere or point in persistent contact, run through the library's interface. Shared by the tests of
+/// contact.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ inline constexpr double kStandardGravity = 9.81;
 inline constexpr double kPiNumber = 3.14159265358979323846;
 [[nodiscard]] constexpr double radians(double degrees) { return degrees * kPiNumber / 180.0; }
 
-/// What a run with one particle starts from. Collider i is of material i where there is more than one, else of the
-/// only one.
+/// Initial state of a run with one particle. If there are several materials, collider i has material i. Otherwise all
+/// have the only one.
 struct ContactScene {
     std::vector<ColliderDescription> colliders;
     std::vector<Material> materials;
@@ -46,13 +46,13 @@ struct ContactScene {
     return Simulation(std::move(setup));
 }
 
-/// Nothing of the particle's time was lost.
+/// Expects that the particle lost no simulated time.
 inline void expect_no_time_lost(const Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
     EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
 }
 
-/// The particle at the end of the run.
+/// Returns the particle at the end of the run.
 [[nodiscard]] inline Particle end_of(const ContactScene& scene) {
     Simulation simulation = simulation_of(scene);
     while (!simulation.finished()) simulation.step();
@@ -60,7 +60,7 @@ inline void expect_no_time_lost(const Simulation& simulation) {
     return simulation.particles().at(0);
 }
 
-/// Calls visit(time, particle) at the start and after every step until it says no.
+/// Calls visit(time, particle) at the start and after every step until it returns false.
 template <class Visit>
 void watch(const ContactScene& scene, Visit&& visit) {
     Simulation simulation = simulation_of(scene);
@@ -72,7 +72,7 @@ void watch(const ContactScene& scene, Visit&& visit) {
     expect_no_time_lost(simulation);
 }
 
-/// One step of the classical Runge-Kutta method for a state of numbers: references are integrated with it.
+/// Returns the state after one step of the classical Runge-Kutta method. References are integrated with it.
 template <class State, class Rates>
 [[nodiscard]] State runge_kutta_step(const State& y, double h, const Rates& rates) {
     const auto moved = [&](const State& rate, double by) {

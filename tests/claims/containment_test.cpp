@@ -1,7 +1,7 @@
-// Nothing leaks: particles that start inside a closed mesh end inside it, by an exact parity test that shares nothing
-// with the library; and the segments they travel intersect no triangle, by rational arithmetic, open meshes included.
+// Containment: particles that start inside a closed mesh end inside it, by an exact parity test that shares no code
+// with the library. Their segments intersect no triangle, by rational arithmetic, also in open meshes.
 //
-// A long run: the same claims with ten thousand particles and a thousand steps.
+// A long run tests the same claims with ten thousand particles and a thousand steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Impacts a step, about.
+/// Approximate number of impacts per step.
 const double kImpacts = test::is_long_run() ? 0.75 : 1.5;
 
-/// How much is done with one placement of the mesh.
+/// Amount of work for one placement of the mesh.
 struct Amount {
     int particles;
     int steps;
 };
 Amount amount(const std::string& mesh, std::size_t placement) {
     const bool is_real = mesh.find('.') != std::string::npos;
-    // The full number for real meshes where they are and moved by a thousand diagonals.
+    // Real meshes get the full number in their original placement and moved by a thousand diagonals.
     if (test::is_long_run()) return {test::scaled(is_real && placement < 2 ? 10000 : 1000), 1000};
-    // The largest mesh takes its time to load; there is no need to repeat everything on it by default.
+    // The largest mesh takes long to load, so short runs test only some placements of it in full.
     return {test::scaled(mesh == "armadillo.obj" && placement > 1 ? 20 : 60), 50};
 }
 
@@ -48,7 +48,7 @@ protected:
 };
 
 using ClosedMesh = Containment;
-using MessyMesh = Containment;  // open, non-manifold, crossing itself
+using MessyMesh = Containment;  // open, non-manifold, or self-intersecting
 
 std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
     std::string name = info.param.substr(0, info.param.find('.'));
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Real, MessyMesh,
                          ::testing::Values("stanford-bunny.obj", "teapot.obj", "featuretype.stl", "cycloidal.ply"),
                          test_name);
 
-TEST_P(ClosedMesh, HoldsWhatFliesStraight) {
+TEST_P(ClosedMesh, ContainsStraightFlights) {
     everywhere([](const Billiard& billiard, const Amount& n) {
         ASSERT_TRUE(billiard.is_closed());
         const BilliardTally tally = billiard.fly(n.particles, n.steps, kImpacts, 0.0, IntegratorKind::ballistic, 1);
@@ -75,7 +75,7 @@ TEST_P(ClosedMesh, HoldsWhatFliesStraight) {
     });
 }
 
-TEST_P(ClosedMesh, HoldsWhatFallsOnParabolas) {
+TEST_P(ClosedMesh, ContainsParabolicFlights) {
     everywhere([](const Billiard& billiard, const Amount& n) {
         const BilliardTally tally =
             billiard.fly(std::max(1, n.particles / 4), n.steps, kImpacts, 0.5, IntegratorKind::ballistic, 2);
@@ -84,7 +84,7 @@ TEST_P(ClosedMesh, HoldsWhatFallsOnParabolas) {
     });
 }
 
-TEST_P(ClosedMesh, HoldsWhatFallsInStraightPieces) {
+TEST_P(ClosedMesh, ContainsFallsInStraightPieces) {
     everywhere([](const Billiard& billiard, const Amount& n) {
         const BilliardTally tally =
             billiard.fly(std::max(1, n.particles / 4), n.steps, kImpacts, 0.5, IntegratorKind::symplectic_euler, 3);
@@ -93,7 +93,7 @@ TEST_P(ClosedMesh, HoldsWhatFallsInStraightPieces) {
     });
 }
 
-TEST_P(ClosedMesh, HoldsWhatIsAimedAtItsVerticesAndEdges) {
+TEST_P(ClosedMesh, ContainsParticlesAimedAtItsVerticesAndEdges) {
     everywhere([](const Billiard& billiard, const Amount& n) {
         const int check_every = std::max(1, n.particles * n.steps / 200);
         const BilliardTally tally = billiard.aim(n.particles, n.steps, check_every, 4);
@@ -113,9 +113,9 @@ TEST_P(MessyMesh, IsNotCrossedByAnySegment) {
     });
 }
 
-// At a vertex at the world's origin coordinates have no smallest size: positions next to it can be far smaller than the
-// rounding of distances from the triangles that share it.
-TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
+// At a vertex at the world's origin, coordinates have no smallest size. Nearby positions can be far smaller than the
+// rounding of distances from the triangles that share the vertex.
+TEST(VertexAtTheOrigin, ContainsParticlesAimedAtItAThousandTimes) {
     const NamedMesh wedge = *mesh_by_name("wedge");
     ASSERT_NE(std::find(wedge.mesh.vertices.begin(), wedge.mesh.vertices.end(), Vec3{}), wedge.mesh.vertices.end());
     const BilliardTally tally = Billiard(wedge, {}).aim(test::scaled(60), 1000, 1 << 30, 4);
@@ -123,8 +123,8 @@ TEST(VertexAtTheOrigin, HoldsWhatIsAimedAtItAThousandTimes) {
     EXPECT_GT(tally.contacts, 0U);
 }
 
-// The reference must be able to tell: a segment through a wall is found, one beside it is not.
-TEST(SegmentOracle, TellsASegmentThroughAWallFromOneBesideIt) {
+// The reference must find a segment through a wall and no intersection of one beside it.
+TEST(SegmentOracle, DistinguishesASegmentThroughAWallFromOneBesideIt) {
     const NamedMesh box = made_meshes().front();
     const Billiard billiard(box, {});
     const Vec3 inside = billiard.start_points(1, 1).front();

@@ -1,5 +1,5 @@
-// A bounce does not lower the order of an integrator: measured with forces of a particle's own state and time, a curved
-// wall and several bounces.
+// A bounce does not reduce the order of an integrator. The measurements use forces that depend on state and time, a
+// curved wall and several bounces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kDuration = 1.6;
 
-/// Gravity, quadratic drag and a force that swings with time, per mass.
+/// Returns gravity, quadratic drag and a force that oscillates in time, per unit mass.
 Vec3 smooth_force(const ForceInput& input) {
     const double speed = length(input.velocity);
     return input.mass *
@@ -26,7 +26,7 @@ struct EndState {
     std::uint64_t contacts = 0;
 };
 
-/// A point that bounces inside a ball of radius 1, with restitution 0.95.
+/// Runs a point that bounces inside a ball of radius 1, with restitution 0.95.
 EndState run(const Integrator& integrator, int steps) {
     SimulationSetup setup;
     setup.options.integrator = integrator;
@@ -46,7 +46,7 @@ EndState run(const Integrator& integrator, int steps) {
     return {simulation.particles().position[0], simulation.particles().velocity[0], simulation.statistics().contacts};
 }
 
-/// Slope of log(error) against log(step), least squares over the given numbers of steps.
+/// Returns the slope of log(error) against log(step), by least squares over the given numbers of steps.
 double measured_order(IntegratorKind integrator, const std::vector<int>& step_counts, const EndState& reference) {
     double sx = 0.0;
     double sy = 0.0;
@@ -100,7 +100,7 @@ TEST_F(OrderWithBounces, VelocityVerletKeepsOrderTwo) {
     EXPECT_NEAR(measured_order(IntegratorKind::velocity_verlet, geometric(100, 1.15, 24), reference()), 2.0, 0.1);
 }
 
-// From one step for the whole run down; the error is that of some sub-steps, times what bounces make of it.
+// Starts with one step for the whole run. The error is the error of some substeps, amplified by bounces.
 TEST_F(OrderWithBounces, DormandPrinceKeepsItsTolerance) {
     for (const double tolerance : {1e-5, 1e-7, 1e-9}) {
         for (const int steps : {1, 10, 100}) {

@@ -1,5 +1,5 @@
-// Does a sphere that rolls between curved surfaces do so as its equations say, with resistance to rolling and spinning
-// too, by every kind of integrator, and without a gain of energy?
+// A sphere that rolls between curved surfaces follows its equations, also with rolling and spinning resistance, with
+// every kind of integrator, and without a gain of energy.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,9 +13,9 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// A sphere of radius 0.2 m at rest between two balls of radius 0.5 m whose centres are 1.2 m apart along x, an angle
-/// beside their saddle. Its centre moves on a circle of radius `height` about the axis, its contacts stand `arm` from
-/// the sphere's own axis of rotation.
+/// Sphere of radius 0.2 m at rest between two balls of radius 0.5 m, at an angle from their saddle. The centres of the
+/// balls are 1.2 m apart along x. The sphere's centre moves on a circle of radius `height` about the axis. The contacts
+/// are `arm` from the sphere's own axis of rotation.
 struct Saddle {
     double away = 0.6;
     double distance = 0.7;
@@ -36,7 +36,7 @@ ContactScene in_saddle(const Saddle& saddle, double angle, const Material& mater
     return scene;
 }
 
-/// The angle after 0.3 s from rest: h (1 + 2/5 r^2 / arm^2) angle'' = g sin angle, while it rolls.
+/// Returns the angle after 0.3 s from rest: h (1 + 2/5 r^2 / arm^2) angle'' = g sin angle, while it rolls.
 double angle_of_reference(const Saddle& saddle, double angle) {
     const double ratio = saddle.radius / saddle.arm;
     const double factor = kG / (saddle.height * (1.0 + 0.4 * ratio * ratio));
@@ -49,7 +49,7 @@ double angle_of_reference(const Saddle& saddle, double angle) {
     return state[0];
 }
 
-TEST(ASphereBetweenTwoBalls, RollsOffAsItsEquationSays) {
+TEST(ASphereBetweenTwoBalls, RollsOffAsItsEquationPredicts) {
     const Saddle saddle;
     const double expected = angle_of_reference(saddle, 0.5);
     for (const double step : {0.05, 0.02, 0.01, 0.005}) {
@@ -71,7 +71,7 @@ TEST(ASphereBetweenTwoBalls, GainsNoEnergyFromResistance) {
                 Material material{"", 0.0, 2.0};
                 material.rolling_friction = rolling;
                 material.spinning_friction = spinning;
-                double last = kG;  // above all that follows
+                double last = kG;  // above all later energies
                 watch(in_saddle(saddle, angle, material, step), [&](double time, const Particle& p) {
                     if (time > 0.0) {
                         EXPECT_LE(energy_of(p), last + 1e-11) << rolling << ", " << spinning << ", " << step;
@@ -84,8 +84,9 @@ TEST(ASphereBetweenTwoBalls, GainsNoEnergyFromResistance) {
     }
 }
 
-// About the normal, which turns under what rolls, resistance holds it all the way: no spin begins and ends there.
-TEST(ASphereThatRollsOverACylinder, IsHeldByResistanceToSpinningWithoutLossOfTime) {
+// The normal turns as the sphere rolls. Resistance to spinning about it must last for the whole motion, without
+// repeated starts and ends of spin.
+TEST(ASphereThatRollsOverACylinder, IsBrakedBySpinningResistanceWithoutLossOfTime) {
     ContactScene scene;
     scene.colliders = {{"log", CylinderShape{0.26, 1.6, {{0.6, 0, -0.07}, {1.19, 0.75, 0.72}, 140.0}}, 0}};
     scene.materials = {{"", 0.0, 0.5}};
@@ -101,8 +102,8 @@ TEST(ASphereThatRollsOverACylinder, IsHeldByResistanceToSpinningWithoutLossOfTim
     }
 }
 
-// m v' = -rolling_friction m g 5/7 while it rolls; the spin about the normal falls by spinning_friction g / (2/5 r^2).
-TEST(ResistanceToTurning, BrakesByAnyIntegrator) {
+// While it rolls, m v' = -rolling_friction m g 5/7. The spin about the normal falls by spinning_friction g / (2/5 r^2).
+TEST(ResistanceToTurning, BrakesWithAnyIntegrator) {
     for (const auto kind : {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
                             IntegratorKind::implicit_euler, IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
                             IntegratorKind::rk4, IntegratorKind::dormand_prince, IntegratorKind::ballistic}) {
@@ -116,7 +117,7 @@ TEST(ResistanceToTurning, BrakesByAnyIntegrator) {
         scene.time_step = 0.01;
         scene.duration = 1.0;
         const Particle end = end_of(scene);
-        // It falls 1e-12 m in 5e-7 s; with forward Euler, whose first step is straight, in two steps.
+        // The sphere falls 1e-12 m in 5e-7 s. With forward Euler, whose first step is straight, it takes two steps.
         const double late = kind == IntegratorKind::forward_euler ? 1.01 * scene.time_step : 1e-6;
         const double braking = 5.0 / 7.0 * 0.02 * kG;
         const double slowing = 0.003 * kG / (0.4 * 0.01);

@@ -1,4 +1,4 @@
-// Does friction on curved shapes brake by the whole normal force, the centripetal part included?
+// Friction on curved shapes depends on the whole normal force, including the centripetal part.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,10 +11,10 @@ namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
-constexpr double kFriction = 0.02;  // little: spheres go on slipping
+constexpr double kFriction = 0.02;  // small, so that spheres keep slipping
 
-/// Where it slides, with a sign for the side: the normal force is side * (g cos - v^2 / rho) on the outside (1), by the
-/// angle to the highest point, and the same inside (-1), by the angle to the lowest.
+/// Motion along a circle with a sign for the side. On the outside (1) the normal force is side * (g cos - v^2 / rho)
+/// with the angle from the highest point. On the inside (-1) the angle is from the lowest point.
 struct Slide {
     const char* name;
     double radius;
@@ -22,7 +22,7 @@ struct Slide {
     double gravity;
 };
 
-/// Angle, speed and radius times spin of what slips on a circle.
+/// Angle, speed and radius times spin of a particle that slips on a circle.
 using State = std::array<double, 3>;
 
 State rates(const Slide& slide, const State& y) {
@@ -34,7 +34,7 @@ State rates(const Slide& slide, const State& y) {
 }
 
 ContactScene scene_of(const Slide& slide, double angle, double speed, double time_step) {
-    // Points are 1e-13 m off: one that is rounded onto the other side stays there.
+    // Points are 1e-13 m off the surface, because a point rounded to the other side would stay there.
     const double off = slide.radius > 0.0 ? slide.radius : 1e-13;
     const double up = slide.inside ? -1.0 : 1.0;
     const double rho = 1.0 - up * -off;
@@ -75,7 +75,7 @@ TEST_P(FrictionOnACurve, BrakesByTheWholeNormalForce) {
     for (const double step : {0.001, 0.01}) {
         const ContactScene scene = scene_of(slide, angle, speed, step);
         const Particle end = end_of(scene);
-        // As for other motions on curves: 1e-4 at dt 1e-3, second order allowing 1e-2 at ten times that.
+        // Same bounds as for other motions on curves: 1e-4 at dt 1e-3, and by second order 1e-2 at ten times that.
         const double bound = 1e-4 * (step / 1e-3) * (step / 1e-3);
         EXPECT_NEAR(std::atan2(end.position.x, std::fabs(end.position.z)), y[0], bound) << step;
         EXPECT_NEAR(length(end.velocity), y[1], bound) << step;

@@ -27,7 +27,7 @@ double distance_of_line(const Vec3& through, const Vec3& direction, const Vec3& 
     return length(cross(point - through, direction)) / length(direction);
 }
 
-TEST(SphericalMirror, KeepsTheAngleOfIncidenceAndTheChordForEver) {
+TEST(SphericalMirror, KeepsTheAngleOfIncidenceAndTheChordForever) {
     Course course({{"ball", BallShape{1.0, {}}, 0}}, kMirror, {}, IntegratorKind::ballistic, 1000000);
     ForceInput state = at({0.3, 0.1, -0.5}, {0.7, 0.4, 0.2});
     (void)course.move(state, 5000.0);
@@ -42,20 +42,20 @@ TEST(SphericalMirror, KeepsTheAngleOfIncidenceAndTheChordForEver) {
     }
 }
 
-// Half axes 5, 3, 3: foci at +-4 on the x axis.
-TEST(EllipsoidalMirror, SendsWhatComesFromOneFocusThroughTheOtherAtEveryBounce) {
+// With half axes 5, 3, 3 the foci are at +-4 on the x axis.
+TEST(EllipsoidalMirror, SendsRaysFromOneFocusThroughTheOtherAtEveryBounce) {
     Placement placement;
     placement.scale = {5, 3, 3};
     Course course({{"egg", BallShape{1.0, placement}, 0}}, kMirror, {});
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(300); ++i) {
         ForceInput state = at({4, 0, 0}, random.unit_vector());
-        (void)course.move(state, 45.0);  // 10 a bounce: from focus to wall to focus
+        (void)course.move(state, 45.0);  // 10 m per bounce, from focus to wall to focus
         const std::vector<ContactRecord>& hits = course.scratch.records;
         ASSERT_GE(hits.size(), 4U);
         for (std::size_t k = 0; k < 4; ++k) {
             const Vec3 focus{k % 2 == 0 ? -4.0 : 4.0, 0, 0};
-            // Focal rays are an unstable orbit: every bounce stretches an error by at most (a + c) / (a - c) = 9.
+            // Focal rays are an unstable orbit. Every bounce amplifies an error by at most (a + c) / (a - c) = 9.
             ASSERT_LT(distance_of_line(hits[k].position, hits[k].velocity_after, focus),
                       1e-13 * std::pow(9.0, 1.0 + static_cast<double>(k)))
                 << "ray " << i << ", bounce " << k;
@@ -63,7 +63,7 @@ TEST(EllipsoidalMirror, SendsWhatComesFromOneFocusThroughTheOtherAtEveryBounce) 
     }
 }
 
-/// Root mean square distance from the other focus after one bounce in a faceted ellipsoid.
+/// Returns the root mean square distance from the other focus after one bounce in a faceted ellipsoid.
 double focal_blur(int levels, int rays) {
     Placement placement;
     placement.scale = {5, 3, 3};
@@ -82,8 +82,9 @@ double focal_blur(int levels, int rays) {
     return std::sqrt(squares.mean());
 }
 
-// A facet's normal errs by its size over the radius of curvature, so the blur halves with the facets.
-TEST(EllipsoidalMirror, AsAScaledSphereMeshFocusesTheBetterTheFinerItIs) {
+// The normal of a facet has an error of its size over the radius of curvature. The blur therefore halves with the
+// facets.
+TEST(EllipsoidalMirror, FocusesBetterAsAFinerSphereMesh) {
     const int rays = test::scaled(2000);
     const double coarse = focal_blur(5, rays);
     const double fine = focal_blur(7, rays);
@@ -91,7 +92,7 @@ TEST(EllipsoidalMirror, AsAScaledSphereMeshFocusesTheBetterTheFinerItIs) {
     EXPECT_NEAR(fine / coarse, 0.25, test::kSanitized ? 0.1 : 0.03);
 }
 
-/// z = (x^2 + y^2) / 4: focus at (0, 0, 1).
+/// z = (x^2 + y^2) / 4 has its focus at (0, 0, 1).
 TriangleMesh paraboloid(int cells) {
     TriangleMesh mesh = testing::floor_mesh(1.0, cells);
     for (Vec3& v : mesh.vertices) v.z = 0.25 * (v.x * v.x + v.y * v.y);
@@ -119,14 +120,14 @@ TEST(ParabolicMirror, CollectsABeamAlongItsAxisInTheFocus) {
     EXPECT_NEAR(blur_at_focus(128, rays) / coarse, 0.25, test::kSanitized ? 0.1 : 0.03);
 }
 
-/// Value of a coordinate that bounces between -1/2 and 1/2, by unfolding.
+/// Returns a coordinate that bounces between -1/2 and 1/2, by unfolding.
 double folded(double x) {
     const double u = std::fmod(x + 0.5, 2.0);
     const double positive = u < 0.0 ? u + 2.0 : u;
     return (positive < 1.0 ? positive : 2.0 - positive) - 0.5;
 }
 
-TEST(BoxOfMirrors, HoldsTheUnfoldedPositionAfterAMillionBounces) {
+TEST(BoxOfMirrors, MatchesTheUnfoldedPositionAfterAMillionBounces) {
     Course course({{"box", CuboidShape{{1, 1, 1}, {}}, 0}}, kMirror, {});
     const Vec3 start{0.1, -0.2, 0.3};
     const Vec3 v{1.0, 0.71, 0.33};

@@ -1,5 +1,5 @@
-// One particle strikes one free body and does not rebound: whatever follows, hits, slides and rolls between the two,
-// they are alone, and keep their momentum to rounding, and their angular momentum nearly.
+// One particle hits one free body without rebound. Later impacts, slides and rolls involve only the two of them. They
+// conserve momentum to rounding, and angular momentum approximately.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace RICOCHET_FILE {
 
 const Vec3 kSize{1.0, 0.6, 0.4};
 
-/// A box of 1 kg about the origin, and a particle as heavy as that or heavier that flies at it.
+/// Returns a box of 1 kg about the origin, and a particle of at least that mass that flies towards it.
 SimulationSetup dead_hit(std::uint64_t k) {
     RandomSequence random(94, 0, k);
     SimulationSetup setup;
@@ -65,8 +65,9 @@ Totals totals_of(const Simulation& simulation) {
             0.5 * (p.mass * length_squared(p.velocity) + inertia * length_squared(p.spin)) + body.kinetic_energy};
 }
 
-// Where no load fits to what lies on a body its search is given up: the body took one load, and its path another.
-TEST(AHeavyParticleOnAFreeBody, KeepsBothMomenta) {
+// If no load is consistent for a particle resting on a body, the search for it ends. The body must then not receive a
+// different load than the particle's path.
+TEST(AHeavyParticleOnAFreeBody, ConservesBothMomenta) {
     for (int k = 0; k < test::scaled(12) * test::case_factor(50); ++k) {
         Simulation simulation(dead_hit(static_cast<std::uint64_t>(k)));
         const Totals before = totals_of(simulation);
@@ -75,7 +76,7 @@ TEST(AHeavyParticleOnAFreeBody, KeepsBothMomenta) {
         const std::string text = "case " + std::to_string(k);
         const double scale = length(before.momentum);
         EXPECT_LT(length(after.momentum - before.momentum), 1e-12 * scale) << text;
-        // Each of some hundred impacts shifts the particle by its contact offset.
+        // Each of some hundred impacts moves the particle by its contact offset.
         EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-8 * scale) << text;
         EXPECT_LT(after.energy, before.energy * (1.0 + 1e-3)) << text;
     }

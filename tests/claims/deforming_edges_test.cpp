@@ -1,6 +1,6 @@
-// What lies or slides on the edge between two faces of a mesh that deforms does there what it does beside it.
+// Particles at rest or sliding on the edge between two faces of a deforming mesh behave as beside the edge.
 //
-// A long run: more planes that turn.
+// A long run tests more turning planes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,8 +45,9 @@ double number(std::uint64_t seed, std::uint32_t index, double low, double high) 
     return low + (high - low) * RandomSequence(seed, 0, index).uniform();
 }
 
-// Frictionless, from rest, down z = 0.3 x: after 1 s the speed is g sin(a), along a grid line as beside it.
-TEST(AStillSlopeWithKeys, LetsSlideAlongGridLinesAsBesideThem) {
+// A particle slides without friction from rest down z = 0.3 x. After 1 s the speed is g sin(a), on a grid line and
+// beside it.
+TEST(AStillSlopeWithKeys, LetsParticlesSlideEquallyOnGridLinesAndBesideThem) {
     const double slope = 0.3;
     const double along = std::sqrt(1.0 + slope * slope);
     const double speed = kG * slope / along;
@@ -74,9 +75,9 @@ TEST(AStillSlopeWithKeys, LetsSlideAlongGridLinesAsBesideThem) {
     }
 }
 
-// Its two faces stay one plane, which turns about the y axis by 1/10 rad/s and is steeper than friction in the end
-// only.
-TEST(ATiltingQuad, HoldsAPointThatRestsOnItsDiagonal) {
+// The two faces stay in one plane, which turns about the y axis at 1/10 rad/s. Only at the end is it too steep for
+// friction.
+TEST(ATiltingQuad, KeepsAPointAtRestOnItsDiagonal) {
     const auto tilting = [](const Vec3& v, double time) { return Vec3{v.x, v.y, 0.1 * time * v.x}; };
     for (const double time_step : {0.005, 0.02}) {
         SCOPED_TRACE(time_step);
@@ -96,7 +97,7 @@ TEST(ATiltingQuad, HoldsAPointThatRestsOnItsDiagonal) {
     }
 }
 
-// Two faces of one plane whose slope changes from key to key, as it rises: the ball lies on their diagonal.
+// Two faces stay in one plane. As it rises, its slope changes from key to key. The ball lies on their diagonal.
 TEST(ARisingSheet, CarriesABallOnItsDiagonal) {
     const auto rising = [](const Vec3& v, double time) {
         return Vec3{v.x, v.y, 0.23 * time + 0.04 * std::sin(6.0 * time) * v.x};
@@ -119,9 +120,9 @@ TEST(ARisingSheet, CarriesABallOnItsDiagonal) {
     }
 }
 
-// Points and spheres on grid lines of a grid whose plane turns and rises at random: no faster than gravity and the
-// plane make them.
-TEST(APlaneThatTurns, ThrowsNothingFromItsGridLines) {
+// The plane of a grid turns and rises at random. Points and spheres on grid lines become no faster than gravity and the
+// plane can make them.
+TEST(APlaneThatTurns, ThrowsNoParticleFromItsGridLines) {
     for (std::uint64_t seed = 1; seed <= (test::is_long_run() ? 40U : 2U); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Vec3 from{number(seed, 0, -0.3, 0.3), number(seed, 1, -0.3, 0.3), 0.0};
@@ -140,7 +141,7 @@ TEST(APlaneThatTurns, ThrowsNothingFromItsGridLines) {
         }
         Simulation simulation(std::move(setup));
         while (!simulation.finished()) simulation.step();
-        // It falls no steeper than this, and is pushed no faster than the plane rises within reach.
+        // The bound covers a fall at this slope and the speed of the rising plane within the grid.
         const double most = kG * 0.6 + 4.0 * (std::fabs(rate.x) + std::fabs(rate.y)) + rate.z;
         for (const Vec3& v : simulation.particles().velocity) EXPECT_LT(length(v), most);
         expect_sound_and_whole(simulation);

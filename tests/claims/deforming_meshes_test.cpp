@@ -1,6 +1,6 @@
-// Nothing gets through meshes that deform, and what they hit bounces as their surfaces move.
+// Particles never pass through deforming meshes, and they rebound according to the motion of the surface.
 //
-// A long run: many more particles and steps.
+// A long run has many more particles and steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,8 +49,8 @@ int count_outside(const Simulation& simulation) {
     return outside;
 }
 
-// By the side of the mesh as it stands after each step, counted here, and by the verifier.
-TEST(ABreathingSphere, KeepsWhatBeginsInside) {
+// The side of each particle is determined after each step from the current mesh, and by the verifier.
+TEST(ABreathingSphere, KeepsParticlesThatStartInside) {
     for (const double radius : {0.0, 0.03}) {
         for (const double restitution : {1.0, 0.5}) {
             const bool is_long = test::is_long_run();
@@ -78,7 +78,8 @@ TEST(ABreathingSphere, KeepsWhatBeginsInside) {
     }
 }
 
-/// By the height of the first collider, a sheet, above or below each particle after each step.
+/// Expects that each particle stays on its side of the first collider, a sheet, by the height of the sheet after each
+/// step.
 void expect_held_above(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     int below = 0;
@@ -92,7 +93,7 @@ void expect_held_above(SimulationSetup setup) {
     EXPECT_GT(simulation.statistics().contacts, 0U);
 }
 
-TEST(AWavingSheet, HoldsTheRainAboveIt) {
+TEST(AWavingSheet, KeepsTheRainAboveIt) {
     for (const double radius : {0.0, 0.02}) {
         SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
@@ -113,8 +114,8 @@ TEST(AWavingSheet, HoldsTheRainAboveIt) {
     }
 }
 
-// Two halves that fold about the y axis from flat to a narrow valley and open again, between walls.
-TEST(AFoldingStrip, LetsNothingThrough) {
+// Two halves fold about the y axis from flat to a narrow valley and open again, between walls.
+TEST(AFoldingStrip, LetsNoParticleThrough) {
     for (const double radius : {0.0, 0.02}) {
         SCOPED_TRACE(radius);
         const bool is_long = test::is_long_run();
@@ -133,8 +134,8 @@ TEST(AFoldingStrip, LetsNothingThrough) {
     }
 }
 
-// The same plate, once by its vertices and once by its frame.
-TEST(APlateWhoseVerticesTranslate, IsThatPlateInAMovingFrame) {
+// The same plate moves once by its vertices and once by its frame.
+TEST(APlateWhoseVerticesTranslate, EqualsThePlateInAMovingFrame) {
     const Vec3 velocity{0.3, -0.2, 0.7};
     for (const double radius : {0.0, 0.05}) {
         std::vector<std::vector<ContactRecord>> contacts;
@@ -177,7 +178,7 @@ TEST(APlateWhoseVerticesTranslate, IsThatPlateInAMovingFrame) {
     }
 }
 
-// A wall comes at u from time to time: the ball gains 2 u where it meets it moving, and nothing where it stands.
+// A wall starts to move at speed u. The ball gains 2 u if the wall moves at the impact, and nothing if it is at rest.
 TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
     const auto press = [](const Vec3& v, double time) { return v + Vec3{0, 0, time < 1.0 ? 0.0 : 0.5 * (time - 1.0)}; };
     for (const auto& [start, expected] : {std::pair{0.5, 1.0}, std::pair{1.5, 2.0}}) {
@@ -191,8 +192,8 @@ TEST(AnElasticBall, GainsTwiceTheSpeedOfTheSurface) {
     }
 }
 
-// A plate that rises, stands, and tips: what lies on it without a rebound goes with it, and slides where it is steep.
-TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
+// A plate rises, stops, and tilts. Particles on it without rebound move with it, and slide if it is steep.
+TEST(WhatLiesOnAMeshThatDeforms, MovesWithIt) {
     const auto lift = [](const Vec3& v, double time) { return v + Vec3{0.2 * time, 0, 0.5 * time}; };
     for (const double radius : {0.0, 0.05}) {
         SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.0, 0.5});
@@ -211,12 +212,13 @@ TEST(WhatLiesOnAMeshThatDeforms, GoesWithIt) {
     }
 }
 
-// At rest is what does not move against what it lies on, moving or not; what slides or rolls is not.
-TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingWhereItRestsOnIt) {
+// A particle counts as resting if it does not move relative to its support, which may move itself. Sliding and rolling
+// particles do not count.
+TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingIfItRestsOnIt) {
     struct Sample {
-        double lift;      ///< m/s, of the plate
-        double friction;  ///< that rolls too
-        double speed;     ///< m/s, along it at first
+        double lift;      ///< of the plate, in m/s
+        double friction;  ///< also in rolling
+        double speed;     ///< initial speed along the plate, in m/s
         std::uint64_t resting;
     };
     for (const Sample& sample : {Sample{0.0, 0.5, 0.3, 2}, {0.3, 0.5, 0.3, 2}, {0.0, 0.0, 0.3, 0}}) {
@@ -237,7 +239,7 @@ TEST(WhatLiesOnAMeshThatDeforms, CountsAsRestingWhereItRestsOnIt) {
     }
 }
 
-/// Runs it on a mesh with two equal keys and on the same mesh at rest, and expects the same way to first order.
+/// Runs a particle on a mesh with two equal keys and on the same mesh at rest. Expects the same path to first order.
 void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, double time_step, double duration) {
     std::vector<Vec3> ends;
     for (const bool deforms : {false, true}) {
@@ -261,7 +263,7 @@ void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, doubl
                                                      << ends[1].x << " " << ends[1].y << " " << ends[1].z;
 }
 
-TEST(AMeshWithEqualKeys, LetsGoAtAConvexEdge) {
+TEST(AMeshWithEqualKeys, ReleasesAtAConvexEdge) {
     const TriangleMesh box = box_mesh({-0.5, -0.5, -0.05}, {0.5, 0.5, 0.05});
     for (const double radius : {0.0, 0.04}) {
         for (const Vec3& velocity : {Vec3{0.1, 0, 0}, Vec3{0.1, 0.07, 0}, Vec3{1.0, 0, 0}}) {
@@ -271,7 +273,7 @@ TEST(AMeshWithEqualKeys, LetsGoAtAConvexEdge) {
     }
 }
 
-TEST(AMeshWithEqualKeys, HasRidgesThatAreNoWalls) {
+TEST(AMeshWithEqualKeys, HasRidgesThatDoNotActAsWalls) {
     for (const double height : {0.01, 0.05, 0.1, 0.5}) {
         TriangleMesh roof = sheet(1.0, 2);
         for (Vec3& v : roof.vertices) v.z = height * (1.0 - std::fabs(v.x));
@@ -283,7 +285,7 @@ TEST(AMeshWithEqualKeys, HasRidgesThatAreNoWalls) {
     }
 }
 
-TEST(AMeshWithEqualKeys, HasInnerEdgesThatAreNotFelt) {
+TEST(AMeshWithEqualKeys, HasInnerEdgesWithoutEffect) {
     for (const double slope : {0.0, 0.3}) {
         TriangleMesh incline = sheet(2.0, 4);
         for (Vec3& v : incline.vertices) v.z = -slope * v.x;
@@ -295,7 +297,7 @@ TEST(AMeshWithEqualKeys, HasInnerEdgesThatAreNotFelt) {
     }
 }
 
-TEST(AMeshWithEqualKeys, HasADomeThatIsSlidDown) {
+TEST(AMeshWithEqualKeys, LetsParticlesSlideDownItsDome) {
     const TriangleMesh dome = sphere_mesh({}, 1.0, 2);
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);
@@ -303,9 +305,9 @@ TEST(AMeshWithEqualKeys, HasADomeThatIsSlidDown) {
     }
 }
 
-// Friction draws the particle to 0.4 m/s before the key, and by 0.37 m/s the other way after it, where a step ends on
-// it.
-TEST(WorkOnAPlate, CountsItsVelocityBeforeAKeyUntilThere) {
+// Friction pulls the particle to 0.4 m/s before the key, and by 0.37 m/s in the opposite direction after it. A step
+// ends on the key.
+TEST(WorkOnAPlate, UsesTheVelocityBeforeAKeyUntilTheKey) {
     const double key = 0.63;
     const auto pose_at = [&](double time) {
         return Vec3{time < key ? 0.4 * time : 0.4 * key - 0.3 * (time - key), 0.0, 0.0};
@@ -353,7 +355,7 @@ SimulationSetup lung_setup() {
     return setup;
 }
 
-TEST(MeshesThatDeform, GoOnToTheSameBitsFromASavedState) {
+TEST(MeshesThatDeform, ResumeToTheSameBitsFromASavedState) {
     Simulation whole(lung_setup());
     while (whole.step_index() < 20) whole.step();
     std::vector<std::byte> bytes;
@@ -376,7 +378,7 @@ TEST(MeshesThatDeform, GoOnToTheSameBitsFromASavedState) {
     EXPECT_THROW(static_cast<void>(restored(std::move(other))), InputError);
 }
 
-TEST(MeshesThatDeform, AreKnownToTheExactResponseOnly) {
+TEST(MeshesThatDeform, AreSupportedByTheExactResponseOnly) {
     for (const ResponseKind kind : {ResponseKind::rollback, ResponseKind::project, ResponseKind::penalty}) {
         SimulationSetup setup = lung_setup();
         setup.options.response = kind;

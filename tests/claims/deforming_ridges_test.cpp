@@ -1,4 +1,4 @@
-// What lies on, or comes down on, the ridge of a mesh that deforms rests there, or slides off, as on one at rest.
+// A particle on the ridge of a deforming mesh rests there or slides off, as on a ridge at rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,18 +14,18 @@ namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
-constexpr double kPlace = 0.7;  // m, along the ridge
+constexpr double kPlace = 0.7;  // along the ridge, in m
 
-/// About the z axis: coordinates of vertices have rounding.
+/// Rotates about the z axis, so that the coordinates of vertices are rounded.
 Vec3 turned(const Vec3& v, double angle) {
     return {v.x * std::cos(angle) - v.y * std::sin(angle), v.x * std::sin(angle) + v.y * std::cos(angle), v.z};
 }
 
-/// Two faces of one slope that fall off to both sides of the y axis; turned, and in motion.
+/// Two faces with equal slope that fall off to both sides of the y axis, rotated and moving.
 struct Ridge {
     double slope = 0.1;
     double angle = 0.0;
-    Vec3 velocity;  ///< m/s
+    Vec3 velocity;  ///< in m/s
     double friction = 0.0;
 
     [[nodiscard]] SimulationSetup setup() const {
@@ -40,7 +40,8 @@ struct Ridge {
         setup.colliders = {{"ridge", deforming(roof, moving, {0.0, 2.0}), 0}};
         return setup;
     }
-    /// Where something ends that began beside the middle of the ridge, in the ridge's own coordinates.
+    /// Returns the final position, in the ridge's coordinates, of a particle that starts beside the middle of the
+    /// ridge.
     [[nodiscard]] Vec3 end_of(const Vec3& from) const {
         SimulationSetup scene = setup();
         scene.particles = {particle_of(turned(from, angle), turned(velocity, angle))};
@@ -67,7 +68,7 @@ void for_each_ridge(std::vector<double> slopes, const Check& check) {
     }
 }
 
-// On the ridge and within rounding of it: also with the friction that is just enough, 0.5 on a slope of 0.5.
+// The point starts on the ridge or within rounding of it. Friction of 0.5 is just enough on a slope of 0.5.
 TEST(ADeformingRidge, HoldsAPointByFriction) {
     for_each_ridge({0.1, 0.4, 0.5}, [](Ridge ridge) {
         ridge.friction = 0.5;
@@ -81,7 +82,8 @@ TEST(ADeformingRidge, HoldsAPointByFriction) {
     });
 }
 
-// From rest: after 1 s it is down by g sin^2(a) / 2. On the ridge itself it may stay, as on one at rest.
+// The point starts from rest. After 1 s it has descended by g sin^2(a) / 2. On the ridge itself it may stay, as on a
+// ridge at rest.
 TEST(ADeformingRidge, LetsAPointSlideOff) {
     for_each_ridge({0.1, 0.5, 1.5}, [](const Ridge& ridge) {
         const double way = 0.5 * kG * ridge.slope / (1.0 + ridge.slope * ridge.slope);
@@ -98,8 +100,8 @@ TEST(ADeformingRidge, LetsAPointSlideOff) {
     });
 }
 
-// Over an edge that turns as well as it comes round: each of the spheres leaves it for good.
-TEST(ADeformingRidge, IsLeftBySpheresThatComeRoundIt) {
+// The spheres move around an edge that turns too. Each sphere leaves it permanently.
+TEST(ADeformingRidge, ReleasesSpheresThatRollAroundIt) {
     for (const double turning : {-0.3, -0.1, 0.1, 0.3}) {
         for (const double along : {-1.0, 1.0}) {
             SCOPED_TRACE(::testing::Message() << turning << " /s, " << along << " m/s");

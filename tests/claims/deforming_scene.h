@@ -1,5 +1,4 @@
-/// \file
-/// Meshes that deform as functions say: what their tests share.
+/// \file Meshes that deform by given functions. Shared by their tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@
 
 namespace ricochet::testing {
 
-/// Times from begin to end, s.
+/// Returns evenly spaced times from begin to end, in s.
 [[nodiscard]] inline std::vector<double> evenly(double begin, double end, int parts) {
     std::vector<double> times;
     for (int k = 0; k <= parts; ++k) times.push_back(begin + (end - begin) * k / parts);
@@ -25,7 +24,7 @@ namespace ricochet::testing {
 
 using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
 
-/// A mesh each of whose vertices goes where a function says. Where it repeats, it ends as it has begun, to the bit.
+/// Returns a mesh whose vertices follow a function. A repeating mesh ends exactly at its first positions.
 [[nodiscard]] inline MeshShape deforming(const TriangleMesh& mesh, const Deform& deform, std::vector<double> times,
                                          MeshEnds ends = MeshEnds::hold) {
     const double first = times.front();
@@ -41,7 +40,7 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
     return shape;
 }
 
-/// A sheet z = 0 over the square |x|, |y| <= half.
+/// Returns a sheet z = 0 over the square |x|, |y| <= half.
 [[nodiscard]] inline TriangleMesh sheet(double half, int parts) {
     TriangleMesh mesh;
     for (int j = 0; j <= parts; ++j) {
@@ -59,25 +58,25 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
     return mesh;
 }
 
-/// A shape that grows, shrinks and is sheared.
+/// Returns a vertex of a shape that grows, shrinks and is sheared.
 [[nodiscard]] inline Vec3 breathing(const Vec3& vertex, double time) {
     const double size = 1.0 + 0.25 * std::sin(7.0 * time);
     return size * vertex + 0.05 * std::sin(11.0 * time) * Vec3{vertex.y, vertex.z, vertex.x};
 }
 
-/// A sheet with waves in both directions.
+/// Returns a vertex of a sheet with waves in both directions.
 [[nodiscard]] inline Vec3 waving(const Vec3& v, double time) {
     return {v.x + 0.05 * std::sin(5.0 * v.y + 4.0 * time), v.y,
             0.2 * std::sin(4.0 * v.x - 9.0 * time) + 0.1 * std::cos(3.0 * v.y + 5.0 * time)};
 }
 
-/// Two halves that fold about the y axis from flat to a narrow valley and open again.
+/// Returns a vertex of two halves that fold about the y axis from flat to a narrow valley and open again.
 [[nodiscard]] inline Vec3 folding(const Vec3& v, double time) {
     const double angle = 1.3 * std::pow(std::sin(2.0 * time), 2);
     return {v.x * std::cos(angle), v.y, std::fabs(v.x) * std::sin(angle)};
 }
 
-/// z of a sheet's triangles above a point, where they are a graph.
+/// Returns the z coordinate of a sheet above a point, if the sheet is a graph.
 [[nodiscard]] inline double height_of(const TriangleMesh& mesh, double x, double y) {
     for (const Triangle& t : mesh.triangles) {
         const Vec3 a = mesh.vertices[t[0]];
@@ -91,7 +90,7 @@ using Deform = std::function<Vec3(const Vec3& vertex, double time)>;
     return std::nan("");
 }
 
-/// The verifier has found nothing, and no particle has been given up.
+/// Expects that the verifier found no violation and no particle was given up.
 inline void expect_sound(const Simulation& simulation) {
     const SimulationStatistics& statistics = simulation.statistics();
     EXPECT_EQ(statistics.violations, 0U);

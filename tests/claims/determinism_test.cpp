@@ -1,5 +1,5 @@
-// The same scene gives the same bits for any number of threads, and trajectories do not depend on how a mesh's
-// triangles are numbered.
+// The same scene gives the same bits for any number of threads. Trajectories do not depend on the numbering of a mesh's
+// triangles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -112,7 +112,7 @@ TEST_P(Determinism, TheStateDoesNotDependOnWhetherRestingParticlesSleep) {
         setup.acceleration.sleeping = sleeping;
         setup.options.duration = 4.0;
         setup.materials[1] = {"felt", 0.3, 0.5};
-        setup.materials[1].rolling_friction = 0.2;  // without it spheres roll on
+        setup.materials[1].rolling_friction = 0.2;  // without it, spheres keep rolling
         setup.emitters[0].rate = {};
         setup.emitters[0].lifetime = {100.0, 0.0};
         return Simulation(std::move(setup));

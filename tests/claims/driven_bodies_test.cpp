@@ -1,4 +1,4 @@
-// Do bodies that particles push take what the particles lose, to rounding, and does no energy come in?
+// Bodies that particles push receive the momentum that the particles lose, to rounding, and no energy is created.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ FrameDescription driven_frame(const std::string& name, const Vec3& at = {}) {
     return frame;
 }
 
-/// A box of uniform density about its frame's origin.
+/// Returns a box of uniform density about its frame's origin.
 BodyDescription box_body(const std::string& frame, double mass, const Vec3& size, JointKind joint,
                          const Vec3& axis = {1, 0, 0}) {
     BodyDescription body;
@@ -69,7 +69,7 @@ SimulationSetup setup_with(std::vector<BodyDescription> bodies, const Vec3& size
     return setup;
 }
 
-/// Of particles, as solid spheres, and bodies.
+/// Totals of particles, as solid spheres, and bodies.
 struct Totals {
     Vec3 momentum;
     Vec3 angular_momentum;  // about the origin
@@ -99,8 +99,8 @@ void run(Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-// m v + M V and the velocity between them turned around: v' = (m - M) / (m + M) v, V' = 2 m / (m + M) v.
-TEST(AnElasticHit, SharesVelocitiesWithABodyAsInClosedForm) {
+// m v + M V is conserved and the relative velocity is reversed: v' = (m - M) / (m + M) v, V' = 2 m / (m + M) v.
+TEST(AnElasticHit, ExchangesVelocitiesWithABodyAsInClosedForm) {
     for (const JointKind joint : {JointKind::free, JointKind::slider}) {
         for (const double mass : {0.1, 1.0, 10.0, 1000.0}) {
             for (const double radius : {0.0, 0.1}) {
@@ -112,14 +112,14 @@ TEST(AnElasticHit, SharesVelocitiesWithABodyAsInClosedForm) {
                 EXPECT_NEAR(simulation.particles().velocity[0].x, 3.0 * (1.0 - mass) / (1.0 + mass), 1e-13);
                 EXPECT_NEAR(simulation.bodies()[0].velocity.x, 3.0 * 2.0 / (1.0 + mass), 1e-13);
                 EXPECT_LT(length(simulation.bodies()[0].angular_velocity), 1e-13);
-                const double hit = (1.5 - radius) / 3.0;  // s
+                const double hit = (1.5 - radius) / 3.0;  // in s
                 EXPECT_NEAR(simulation.bodies()[0].center.x, (1.0 - hit) * 6.0 / (1.0 + mass), 0.1 * 6.0);
             }
         }
     }
 }
 
-// On a hinge: effective mass I / arm^2.
+// On a hinge the effective mass is I / arm^2.
 TEST(AnElasticHit, TurnsADoorByItsMomentOfInertia) {
     const Vec3 size{0.1, 2, 1};
     BodyDescription door = box_body("door", 12.0, size, JointKind::hinge, {0, 0, 1});
@@ -134,8 +134,8 @@ TEST(AnElasticHit, TurnsADoorByItsMomentOfInertia) {
     EXPECT_NEAR(simulation.bodies()[0].rate, -0.8 * 0.5 * (2.0 - after) / inertia, 1e-13);
 }
 
-// Off its centre, with friction and spin: nothing is lost of momentum and angular momentum; energy only shrinks.
-TEST(ACloudOnATumblingBody, KeepsMomentumAndAngularMomentum) {
+// Hits off the centre, with friction and spin, conserve momentum and angular momentum. Energy only decreases.
+TEST(ACloudOnATumblingBody, ConservesMomentumAndAngularMomentum) {
     for (const double restitution : {1.0, 0.6}) {
         for (const double friction : {0.0, 0.5}) {
             const Vec3 size{1.0, 0.6, 0.3};
@@ -159,7 +159,7 @@ TEST(ACloudOnATumblingBody, KeepsMomentumAndAngularMomentum) {
             while (!simulation.finished()) {
                 simulation.step();
                 const Totals now = totals_of(simulation);
-                // The body's own turning is a method of second order; hits take energy, or leave it.
+                // The integration of the body's rotation has second order. Hits take energy or conserve it.
                 EXPECT_LT(now.energy, energy * (1.0 + 1e-6));
                 energy = now.energy;
             }
@@ -172,9 +172,9 @@ TEST(ACloudOnATumblingBody, KeepsMomentumAndAngularMomentum) {
     }
 }
 
-// A piston between two gases in a tube: elastic hits from both sides.
-TEST(APistonBetweenTwoGases, KeepsTheEnergyThroughHundredsOfHits) {
-    for (const double mass : {0.1, 1.0, 100.0}) {  // that of one particle, of ten, of a thousand
+// A piston between two gases in a tube has elastic hits from both sides.
+TEST(APistonBetweenTwoGases, ConservesEnergyThroughHundredsOfHits) {
+    for (const double mass : {0.1, 1.0, 100.0}) {  // of one particle, of ten, of a thousand
         const Vec3 size{0.2, 1.2, 1.2};
         auto setup = setup_with({box_body("piston", mass, size, JointKind::slider)}, size, 0.02, 12.0);
         setup.colliders.push_back({"tube", CuboidShape{{4, 1, 1}, {}}, 0});
@@ -202,7 +202,7 @@ TEST(APistonBetweenTwoGases, KeepsTheEnergyThroughHundredsOfHits) {
     }
 }
 
-// A pile of spheres without restitution on a plate on a spring: it comes to rest, and none of its time is lost.
+// A pile of spheres without restitution lies on a plate on a spring. It comes to rest and loses no simulated time.
 TEST(APileOnAPlate, ComesToRestAndIsCarried) {
     const Vec3 size{1.2, 1.2, 0.1};
     BodyDescription plate = box_body("plate", 20.0, size, JointKind::slider, {0, 0, 1});
@@ -223,8 +223,8 @@ TEST(APileOnAPlate, ComesToRestAndIsCarried) {
     for (const Vec3& v : simulation.particles().velocity) EXPECT_LT(length(v), 1e-3);
 }
 
-// What the record says that a collider was given is what the body has taken.
-TEST(TheRecordOfABody, IsItsMomentumAndItsWork) {
+// The recorded impulses on a collider must equal the momentum of the body.
+TEST(TheRecordOfABody, EqualsItsMomentumAndItsWork) {
     const Vec3 size{0.3, 1, 1};
     auto setup = setup_with({box_body("plate", 5.0, size, JointKind::free)}, size, 0.01, 1.0);
     RandomSequence random(2, 1, 0);
@@ -241,7 +241,7 @@ TEST(TheRecordOfABody, IsItsMomentumAndItsWork) {
     EXPECT_GT(given.work, 0.0);
 }
 
-// A plate on a hinge is a pendulum: against its own equation, integrated finely; of second order.
+// A plate on a hinge is a pendulum. It is compared with a fine integration of its equation, to second order.
 TEST(ABodyOnAHinge, SwingsLikeAPendulum) {
     const auto angle_at = [](double time_step) {
         const Vec3 size{0.1, 0.1, 1.0};
@@ -271,8 +271,8 @@ TEST(ABodyOnAHinge, SwingsLikeAPendulum) {
     EXPECT_NEAR(coarse / fine, 4.0, 0.6);
 }
 
-// Dry friction takes off f t / I and then holds; a motor brings the rate up by M t / I and no further.
-TEST(FrictionAndMotor, ChangeTheRateSteadilyAndHoldIt) {
+// Dry friction reduces the rate by f t / I and then stops it. A motor raises the rate by M t / I up to its limit.
+TEST(FrictionAndMotor, ChangeTheRateUniformlyAndThenKeepIt) {
     const Vec3 size{0.1, 2, 1};
     BodyDescription body = box_body("door", 12.0, size, JointKind::hinge, {0, 0, 1});
     const double inertia = 12.0 * (0.01 + 4.0) / 12.0;
@@ -291,7 +291,7 @@ TEST(FrictionAndMotor, ChangeTheRateSteadilyAndHoldIt) {
         run(driven);
         EXPECT_NEAR(driven.bodies()[0].rate, std::min(1.5, 8.0 * duration / inertia), 1e-12);
     }
-    // Against friction, and with a drive against friction and damping: no bias by the step.
+    // The motor works against friction, and the drive against friction and damping. The step must not bias the result.
     body.settings.friction = 3.0;
     body.settings.motor_most = 40.0;
     for (const double time_step : {0.01, 0.1}) {
@@ -305,8 +305,8 @@ TEST(FrictionAndMotor, ChangeTheRateSteadilyAndHoldIt) {
     EXPECT_NEAR(damped.bodies()[0].rate, (6.0 - 1.0) / 2.0, 1e-9);
 }
 
-// A free body that nothing touches keeps its angular momentum, and its energy better by four with half the step.
-TEST(AFreeBody, TumblesWithItsAngularMomentum) {
+// A free body without contact conserves its angular momentum. Its energy error falls by four at half the step.
+TEST(AFreeBody, TumblesWithConstantAngularMomentum) {
     const auto energy_error = [](double time_step) {
         BodyDescription body = box_body("block", 3.0, {1.0, 0.6, 0.2}, JointKind::free);
         body.angular_velocity = {0.3, 4.0, 0.2};  // near the unstable axis
@@ -319,7 +319,7 @@ TEST(AFreeBody, TumblesWithItsAngularMomentum) {
         }
         const BodyState after = simulation.bodies()[0];
         EXPECT_LT(length(after.angular_momentum - before.angular_momentum), 1e-14);
-        EXPECT_GT(largest, 2.0);  // it turns over
+        EXPECT_GT(largest, 2.0);  // it flips over
         return std::fabs(after.kinetic_energy / before.kinetic_energy - 1.0);
     };
     const double coarse = energy_error(0.01);
@@ -327,8 +327,8 @@ TEST(AFreeBody, TumblesWithItsAngularMomentum) {
     EXPECT_LT(energy_error(0.005), 0.35 * coarse);
 }
 
-// On a spring: the weight of what rests on it is carried, too.
-TEST(APlateOnASpring, SinksByItsOwnWeightAndThatOfWhatRestsOnIt) {
+// The spring also carries the weight of particles at rest on the plate.
+TEST(APlateOnASpring, SinksByItsOwnWeightAndItsLoad) {
     for (const auto& [radius, restitution] : {std::pair(0.0, 0.3), std::pair(0.05, 0.3), std::pair(0.05, 0.0)}) {
         const Vec3 size{1, 1, 0.1};
         BodyDescription plate = box_body("plate", 4.0, size, JointKind::slider, {0, 0, 1});
@@ -345,7 +345,7 @@ TEST(APlateOnASpring, SinksByItsOwnWeightAndThatOfWhatRestsOnIt) {
     }
 }
 
-/// Grains that fall on a plate on a spring and lie on it.
+/// Returns grains that fall on a plate on a spring and lie on it.
 SimulationSetup grains_on_a_plate() {
     const Vec3 size{1, 1, 0.1};
     BodyDescription plate = box_body("plate", 4.0, size, JointKind::slider, {0, 0, 1});
@@ -362,7 +362,7 @@ SimulationSetup grains_on_a_plate() {
     return setup;
 }
 
-TEST(BodiesThatArePushed, GoOnFromASavedStateToTheSameBits) {
+TEST(BodiesThatArePushed, ResumeFromASavedStateToTheSameBits) {
     for (const int steps : {0, 1, 61, 120, 180}) {
         std::vector<std::byte> saved;
         Simulation whole(grains_on_a_plate());
@@ -382,7 +382,7 @@ TEST(BodiesThatArePushed, GoOnFromASavedStateToTheSameBits) {
     }
 }
 
-// A pendulum without a collider beside a belt: loads are none of its.
+// A pendulum without a collider swings beside a belt. Loads on the belt must not affect it.
 TEST(ABodyWithoutColliders, SwingsBesideABelt) {
     BodyDescription rod = box_body("rod", 2.0, {0.1, 0.1, 1.0}, JointKind::hinge, {0, 1, 0});
     rod.center = {0, 0, -0.5};

@@ -1,6 +1,7 @@
-// What an emitter promises about its particles, as statistics: every quantity is uniform between mean - spread and mean
-// + spread, and independent of the others; births do not depend on time steps, threads or output. Seeds are fixed; each
-// chi-square stays below the value that chance exceeds once in a million, each mean within five standard errors.
+// Statistics of emitted particles. Every quantity is uniform between mean - spread and mean + spread, and independent
+// of the others. Births do not depend on time steps, threads or output.
+// Seeds are fixed. Each chi-square stays below the value that chance exceeds once in a million, and each mean within
+// five standard errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +88,7 @@ TEST(EmitterStatistics, EveryQuantityIsUniformAroundItsMean) {
     }
 }
 
-TEST(EmitterStatistics, QuantitiesAreNotCorrelated) {
+TEST(EmitterStatistics, QuantitiesAreUncorrelated) {
     const auto births = births_of(everything());
     const auto n = static_cast<double>(births.size());
     for (std::size_t a = 0; a < quantities().size(); ++a) {
@@ -97,14 +98,14 @@ TEST(EmitterStatistics, QuantitiesAreNotCorrelated) {
                 sum += (quantities()[a].of(p) - quantities()[a].mean) / quantities()[a].spread *
                        (quantities()[b].of(p) - quantities()[b].mean) / quantities()[b].spread;
             }
-            // The product of two independent ones has the standard deviation 1/3.
+            // The product of two independent quantities has the standard deviation 1/3.
             EXPECT_LT(std::fabs(sum / n), 5.0 / (3.0 * std::sqrt(n)))
                 << quantities()[a].name << " " << quantities()[b].name;
         }
     }
 }
 
-TEST(EmitterStatistics, GivingParticlesAttributesChangesNothingElseAboutThem) {
+TEST(EmitterStatistics, AttributesOfParticlesChangeNothingElse) {
     EmitterDescription plain = everything();
     plain.attributes.clear();
     EmitterDescription one = everything();
@@ -116,7 +117,7 @@ TEST(EmitterStatistics, GivingParticlesAttributesChangesNothingElseAboutThem) {
         ASSERT_EQ(all[i].velocity, none[i].velocity);
         ASSERT_EQ(all[i].lifetime, none[i].lifetime);
         ASSERT_EQ(all[i].mass, none[i].mass);
-        ASSERT_EQ(all[i].attributes[2], some[i].attributes[2]);  // nor does one attribute change another
+        ASSERT_EQ(all[i].attributes[2], some[i].attributes[2]);  // one attribute does not change another
     }
 }
 
@@ -154,13 +155,14 @@ TEST(EmitterStatistics, ARatePerFrameIsDrawnForEveryFrameAndSpreadEvenlyInsideIt
         sum += count;
         squares += (count - 50.0) * (count - 50.0);
     }
-    // Uniform of half width 20: variance 133.3, of the mean of 2400 frames 0.236^2; five of them.
+    // The distribution is uniform with half width 20 and variance 133.3. The mean of 2400 frames has a standard
+    // deviation of 0.236. The limit is five of them.
     EXPECT_NEAR(sum / frames, 50.0, 1.2);
     EXPECT_NEAR(squares / frames, 400.0 / 3.0, 5 * std::sqrt(0.8 / frames) * 133.3);
     for (const double place : places) EXPECT_NEAR(place, sum / 20.0, 0.02 * sum / 20.0);
 }
 
-TEST(EmitterStatistics, ARatePerAreaIsTheRatePerFrameTimesTheAreaOnTheScreen) {
+TEST(EmitterStatistics, ARatePerAreaEqualsTheRatePerFrameTimesTheScreenArea) {
     EmitterDescription emitter;
     emitter.shape = BoxShape{{}, {3, 2, 0}};  // 600 pixels, see ScreenArea
     emitter.rate_per_area = {0.01, 0.0};
@@ -170,7 +172,7 @@ TEST(EmitterStatistics, ARatePerAreaIsTheRatePerFrameTimesTheAreaOnTheScreen) {
     EXPECT_EQ(Emitter(emitter, 1, 0, surroundings).births(0.0, 10.0).size(), 450U);
 }
 
-TEST(EmitterStatistics, ASeedOfItsOwnDependsOnNothingElse) {
+TEST(EmitterStatistics, ParticlesOfAnEmitterWithASeedDependOnNothingElse) {
     EmitterDescription emitter = everything();
     emitter.burst = 3;
     emitter.seed = 99;

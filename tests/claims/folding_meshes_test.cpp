@@ -1,4 +1,4 @@
-// Meshes that deform and leave particles no room for a time: those wait, and go on when there is room again.
+// Deforming meshes leave particles no space for a while. The particles stall, and continue when there is space again.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Runs to the end. Returns how many particle-steps were squeezed after a time, s.
+/// Runs to the end. Returns the number of particle steps that were pinched after a time, in s.
 std::uint64_t squeezed_after(double time, Simulation& simulation) {
     std::optional<std::uint64_t> before;
     while (!simulation.finished()) {
@@ -31,7 +31,8 @@ std::uint64_t squeezed_after(double time, Simulation& simulation) {
     return simulation.statistics().squeezed - before.value_or(0);
 }
 
-/// A plate beside the wall x = 0 that comes to within `gap` of it at 1 s and goes back, as it deforms or as a body.
+/// Returns a plate beside the wall x = 0. It approaches the wall to `gap` at 1 s and returns, as a deforming mesh or as
+/// a body.
 SimulationSetup pinching(double gap, bool deforms, double restitution, double time_step) {
     SimulationSetup setup = setup_of(time_step, 3.0, {"", restitution, 0.0}, {0, 0, -0.05});
     setup.options.verify = true;
@@ -53,7 +54,7 @@ SimulationSetup pinching(double gap, bool deforms, double restitution, double ti
     return setup;
 }
 
-TEST(ABallThatAPlatePinches, FallsOnWhetherThePlateDeformsOrMoves) {
+TEST(ABallThatAPlatePinches, FallsOnAfterwardsBesideDeformingAndMovingPlates) {
     for (const double restitution : {0.0, 0.1, 0.3}) {
         for (const double time_step : {1.0 / 60.0, 1.0 / 120.0}) {
             SCOPED_TRACE(std::to_string(restitution) + " " + std::to_string(time_step));
@@ -94,7 +95,7 @@ TEST(PointsThatADeformingPlateLeavesNoRoom, AreFreeAgainBesideIt) {
     }
 }
 
-/// A box of 2 m whose lid goes through its floor between 0 and 2 s, and which moves and turns meanwhile.
+/// Box of 2 m whose lid passes through its floor between 0 and 2 s. Meanwhile the box moves and turns.
 struct FoldingBox {
     Vec3 way;
     Vec3 axis{0, 0, 1};
@@ -111,7 +112,7 @@ struct FoldingBox {
     }
 };
 
-/// All are in the box where the run ends, by windings, and none waits.
+/// Expects that all particles are in the box at the end of the run, by winding numbers, and that none is stalled.
 void expect_all_in_the_box(const FoldingBox& fold, double restitution, double time_step, std::uint64_t seed) {
     SimulationSetup setup = setup_of(time_step, 4.0, {"", restitution, 0.0});
     setup.options.verify = true;
@@ -131,7 +132,7 @@ void expect_all_in_the_box(const FoldingBox& fold, double restitution, double ti
     for (const Vec3& p : simulation.particles().position) EXPECT_EQ(winding_number(whole, p), 1);
 }
 
-TEST(ABoxThatFoldsThroughItself, FreesItsParticlesWhenItIsWholeAgain) {
+TEST(ABoxThatFoldsThroughItself, FreesItsParticlesWhenItIsUnfoldedAgain) {
     for (const double restitution : {0.0, 0.2, 1.0}) {
         for (const double time_step : {0.02, 0.01}) {
             SCOPED_TRACE(std::to_string(restitution) + " " + std::to_string(time_step));
@@ -140,7 +141,7 @@ TEST(ABoxThatFoldsThroughItself, FreesItsParticlesWhenItIsWholeAgain) {
     }
 }
 
-TEST(ABoxThatFoldsThroughItself, FreesThemWhereverItHasGoneAndTurned) {
+TEST(ABoxThatFoldsThroughItself, FreesThemAfterAnyMotionAndRotation) {
     for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(12)); ++seed) {
         SCOPED_TRACE(seed);
         RandomSequence random(seed, 23, 0);
@@ -154,8 +155,9 @@ TEST(ABoxThatFoldsThroughItself, FreesThemWhereverItHasGoneAndTurned) {
     }
 }
 
-// It goes through a particle, and stays beyond it: that waits, and the verifier says where it has ended.
-TEST(AParticleThatAMeshHasPassed, WaitsAndIsReportedWhereTheRunEnds) {
+// The mesh passes through a particle and stays beyond it. The particle stalls, and the verifier reports its final
+// position.
+TEST(AParticleThatAMeshHasPassed, StallsAndIsReportedAtTheEndOfTheRun) {
     SimulationSetup setup = setup_of(0.02, 1.5, {"", 0.2, 0.0});
     setup.options.verify = true;
     const auto fold = [](const Vec3& v, double time) {

@@ -1,5 +1,5 @@
-// Exact, rollback, project and penalty side by side: what each promises and what it does not, and what all agree
-// on as steps shrink.
+// Compares the responses exact, rollback, project and penalty: their guarantees, their limits, and their common results
+// as steps shrink.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -46,12 +46,12 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryResponse, ::testing::ValuesIn(response_kind
 
 TEST_P(EveryResponse, IsKnownByItsName) { EXPECT_EQ(response_from_name(name_of(GetParam())), GetParam()); }
 
-TEST(ResponseNames, AreNotAnythingElse) {
+TEST(ResponseNames, IncludeNoOthers) {
     for (const char* name : {"", "Exact", "exact ", "rollbak", "bounce"})
         EXPECT_FALSE(response_from_name(name)) << name;
 }
 
-TEST(ResponseSettingsCheck, RefusesWhatIsOutOfRangeInOneLineThatNamesIt) {
+TEST(ResponseSettingsCheck, RefusesValuesOutOfRangeInOneLineThatNamesThem) {
     struct Wrong {
         const char* word;
         std::function<void(SimulationOptions&, double)> set;
@@ -141,16 +141,16 @@ TEST(PenaltyWarning, AsksForEnoughSubsteps) {
     EXPECT_FALSE(warnings(enough - 1).empty());
 }
 
-/// A bullet shot at a plate of a centimetre, in steps of a millisecond.
+/// A bullet is shot at a plate of 1 cm, in steps of 1 ms.
 constexpr double kThickness = 0.01;
 constexpr double kStep = 1e-3;
 constexpr double kOffset = 1e-4;
 constexpr std::uint32_t kSubsteps = 4;
-constexpr double kStiffness = 4e3;  // N/m; under a gram omega = 2000 / s, half a radian a sub-step
+constexpr double kStiffness = 4e3;  // in N/m; for one gram omega = 2000 / s, half a radian per substep
 
 struct Shot {
-    double travel;  ///< m in a step
-    double phase;   ///< the first step ends behind the plate's front by this part of a step's travel
+    double travel;  ///< in m per step
+    double phase;  ///< distance of the end of the first step behind the plate's front, relative to the travel of a step
 };
 
 std::vector<Shot> shots() {
@@ -188,7 +188,7 @@ Flown shoot(ResponseKind kind, const Shot& shot) {
             simulation.particles().position[0].x < 0.0 && simulation.particles().velocity[0].x < 0.0};
 }
 
-/// True when some end of a step of this length lies in [from, to] behind the front.
+/// Returns true if a step of this length ends in [from, to] behind the front.
 bool some_step_ends_in(double from, double to, double way, double start) {
     const double first = start + std::ceil((from - start) / way) * way;
     return first <= to;
@@ -204,8 +204,8 @@ TEST(BulletAndPlate, ExactAndRollbackStopEveryBullet) {
     }
 }
 
-// Stopped where a step ends in the near half of the plate or in the layer before it.
-TEST(BulletAndPlate, ProjectStopsABulletWhereAStepEndsInTheNearHalfAndOnlyThere) {
+// Project stops the bullet if a step ends in the near half of the plate or in the layer before it.
+TEST(BulletAndPlate, ProjectStopsABulletIfAndOnlyIfAStepEndsInTheNearHalf) {
     for (const Shot& shot : shots()) {
         SCOPED_TRACE(fmt::format("travel {}, phase {}", shot.travel, shot.phase));
         const double start = (shot.phase - 2.0) * shot.travel;
@@ -214,7 +214,7 @@ TEST(BulletAndPlate, ProjectStopsABulletWhereAStepEndsInTheNearHalfAndOnlyThere)
     }
 }
 
-TEST(BulletAndPlate, ProjectMissesSomePhaseFromHalfAPlateAStepOnAndSeesNothingFromAPlateAndTwoOffsetsOn) {
+TEST(BulletAndPlate, ProjectMissesSomePhasesBeyondHalfAPlatePerStepAndAllBeyondAPlateAndTwoOffsets) {
     const auto count = [](double travel, const std::function<bool(const Flown&)>& is) {
         int number = 0;
         for (int phase = 0; phase < 48; ++phase) {
@@ -230,9 +230,9 @@ TEST(BulletAndPlate, ProjectMissesSomePhaseFromHalfAPlateAStepOnAndSeesNothingFr
     EXPECT_GT(count(1.1 * (kThickness + 2.0 * kOffset), unseen), 0);
 }
 
-// Whatever sub-step ends in the plate pushes; when the first one that does lies in the near half, and the spring is
-// hard enough to turn the bullet there, it comes back.
-TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndStepsOverThePlateWhereNoSubstepEndsInIt) {
+// Every substep that ends in the plate pushes. The bullet returns if the first such substep ends in the near half, and
+// if the spring is hard enough.
+TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndMissesThePlateIfNoSubstepEndsInIt) {
     const double omega = std::sqrt(kStiffness / 1e-3);
     int slow = 0;
     int over = 0;
@@ -255,7 +255,7 @@ TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndStepsOverThePlateWhereNoSubstepEn
     EXPECT_GT(slow, 10);
 }
 
-/// A ball thrown down a slope, with losses and friction; it bounces three times.
+/// A ball is thrown down a slope, with losses and friction. It bounces three times.
 constexpr double kDuration = 1.45;
 constexpr double kRestitution = 0.8;
 constexpr double kFriction = 0.1;
@@ -263,8 +263,8 @@ constexpr double kAngle = 0.3;
 const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 const Vec3 kAcross{0, 1, 0};
-constexpr double kHeight = 0.5;     // along the normal, m
-const Vec3 kThrown{1.3, 0.4, 0.2};  // downhill, across, along the normal, m/s
+constexpr double kHeight = 0.5;     // along the normal, in m
+const Vec3 kThrown{1.3, 0.4, 0.2};  // downhill, across, along the normal, in m/s
 
 struct EndState {
     Vec3 position;  ///< downhill, across, along the normal
@@ -274,8 +274,8 @@ struct EndState {
     }
 };
 
-/// From impact to impact by closed form. Friction slips at every impact: it takes mu (1 + e) v off the tangential
-/// speed.
+/// Returns the end of the flight by closed forms from impact to impact. Friction slips at every impact and reduces the
+/// tangential speed by mu (1 + e) v.
 EndState closed_form() {
     const Vec3 pull{kG * std::sin(kAngle), 0, -kG * std::cos(kAngle)};
     EndState now{{0, 0, kHeight}, kThrown};
@@ -298,7 +298,7 @@ EndState closed_form() {
     return now;
 }
 
-/// Distance of a run's end from the closed form.
+/// Returns the distance of a run's end from the closed form.
 double error_of(ResponseKind kind, int steps, const std::function<void(SimulationOptions&)>& set = {}) {
     SimulationSetup setup;
     setup.options.response = kind;
@@ -320,12 +320,13 @@ double error_of(ResponseKind kind, int steps, const std::function<void(Simulatio
 }
 
 struct Errors {
-    std::vector<double> steps;  ///< s
+    std::vector<double> steps;  ///< in s
     std::vector<double> errors;
     [[nodiscard]] double slope() const { return fitted_slope(steps, errors); }
 };
 
-/// Errors for steps over six halvings and more, of uneven numbers so that impacts fall anywhere in a step.
+/// Returns errors for steps over more than six halvings. Step numbers are uneven, so that impacts occur anywhere in a
+/// step.
 Errors errors_of(ResponseKind kind, double factor, const std::function<void(SimulationOptions&)>& set = {}) {
     Errors result;
     for (double steps = 100.0; steps < 100.0 * 80.0; steps *= factor) {
@@ -335,18 +336,19 @@ Errors errors_of(ResponseKind kind, double factor, const std::function<void(Simu
     return result;
 }
 
-TEST(FourResponses, ExactAgreesWithTheClosedFormToRoundingWhateverTheStep) {
+TEST(FourResponses, ExactMatchesTheClosedFormToRoundingWithAnyStep) {
     for (const int steps : {1, 7, 97, 1000, 10000}) EXPECT_LT(error_of(ResponseKind::exact, steps), 2e-11) << steps;
 }
 
-TEST(FourResponses, RollbackAgreesWithTheClosedFormInTheFirstOrderOfItsToleranceWhateverTheStep) {
+TEST(FourResponses, RollbackMatchesTheClosedFormToFirstOrderInItsToleranceWithAnyStep) {
     Errors all;
     for (const int steps : {1, 7, 97, 1000}) {
         for (double tolerance = 1e-3; tolerance > 1e-11; tolerance /= 3.0) {
             const double error = error_of(ResponseKind::rollback, steps, [&](SimulationOptions& options) {
                 options.rollback.time_tolerance = tolerance;
             });
-            EXPECT_LT(error, 100.0 * tolerance) << steps << " steps";  // accelerations and their errors over three hops
+            // accelerations and their errors over three bounces
+            EXPECT_LT(error, 100.0 * tolerance) << steps << " steps";
             all.steps.push_back(tolerance);
             all.errors.push_back(error);
         }
@@ -354,12 +356,12 @@ TEST(FourResponses, RollbackAgreesWithTheClosedFormInTheFirstOrderOfItsTolerance
     EXPECT_NEAR(all.slope(), 1.0, 0.1);
 }
 
-TEST(FourResponses, ProjectAgreesWithTheClosedFormInTheFirstOrderOfTheStep) {
+TEST(FourResponses, ProjectMatchesTheClosedFormToFirstOrderInTheStep) {
     EXPECT_NEAR(errors_of(ResponseKind::project, 1.11).slope(), 1.0, 0.2);
 }
 
-// Contacts of two steps, with sub-steps that shrink faster than the steps.
-TEST(FourResponses, PenaltyAgreesWithTheClosedFormInTheFirstOrderOfTheStepWhereContactsAreResolvedTheBetter) {
+// Contacts last two steps, and substeps shrink faster than the steps.
+TEST(FourResponses, PenaltyMatchesTheClosedFormToFirstOrderIfContactsAreResolvedBetter) {
     const auto resolved = [](SimulationOptions& options) {
         options.penalty.substeps = static_cast<std::uint32_t>(std::lround(0.0725 / options.time_step));
         options.penalty.contact_steps = 2.0 * options.penalty.substeps;
@@ -367,8 +369,8 @@ TEST(FourResponses, PenaltyAgreesWithTheClosedFormInTheFirstOrderOfTheStepWhereC
     EXPECT_NEAR(errors_of(ResponseKind::penalty, 1.2, resolved).slope(), 1.0, 0.2);
 }
 
-// With a fixed number of sub-steps a contact restitution keeps its error, and so does the end.
-TEST(FourResponses, PenaltyGetsNoNearerThanItsSubstepsAContactAllow) {
+// With a fixed number of substeps per contact, the error of the restitution remains, and so does the error at the end.
+TEST(FourResponses, PenaltyKeepsAnErrorWithFixedSubstepsPerContact) {
     const Errors plain = errors_of(ResponseKind::penalty, 1.11);
     const auto tail = plain.errors.end() - 12;
     EXPECT_GT(*std::max_element(tail, plain.errors.end()), 0.02);
@@ -381,7 +383,7 @@ TEST(FourResponses, PenaltyGetsNoNearerThanItsSubstepsAContactAllow) {
               0.3 * *std::max_element(tail, plain.errors.end()));
 }
 
-/// A response, and whether the system goes back as a whole.
+/// Response, with a flag for the rollback of the whole system.
 struct Answer {
     ResponseKind kind;
     bool global = false;
@@ -396,7 +398,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryAnswer,
                              return std::string(name_of(of.param.kind)) + (of.param.global ? "_global" : "");
                          });
 
-/// Marbles that fall onto a ring, a ball and a floor, with losses and friction.
+/// Returns marbles that fall onto a ring, a ball and a floor, with losses and friction.
 SimulationSetup marbles(const Answer& of) {
     SimulationSetup setup;
     setup.options.response = of.kind;
@@ -446,15 +448,15 @@ TEST_P(EveryAnswer, IsTheSameInAllBitsForAnyNumberOfThreadsAndWithoutCulling) {
     }
 }
 
-/// One that stays, born before, between and after others that go.
-TEST_P(EveryResponse, LeavesAParticleAsItIsWhenOthersAreRetired) {
+/// One particle stays. It is born before, between and after others that are removed.
+TEST_P(EveryResponse, LeavesAParticleUnchangedWhenOthersAreRemoved) {
     const auto end = [&](int others) {
         SimulationSetup setup = marbles({GetParam()});
         setup.emitters.clear();
         setup.options.duration = 0.8;
         for (int i = 0; i < others; ++i) {
             setup.particles.emplace_back();
-            setup.particles.back().position = {0.9, 0, 0.05 * (i % 7)};  // inside the ring: on its other side
+            setup.particles.back().position = {0.9, 0, 0.05 * (i % 7)};  // inside the ring, on its other side
             setup.particles.back().lifetime = 0.2 + 0.02 * i;            // while the other one bounces on the ring
         }
         setup.particles.emplace_back();

@@ -1,4 +1,5 @@
-// Gravity and charges in whole runs: orbits against closed forms, momentum and energy with walls and without, order.
+// Tests gravity and charges in whole runs: orbits against closed forms, momentum and energy with and without walls, and
+// orders of convergence.
 #include "ricochet/dynamics/particles_force.h"
 
 #include <gtest/gtest.h>
@@ -32,9 +33,11 @@ using test::two_bodies;
 using test::unit_coulomb;
 using testing::setup_of;
 
-// Two bodies.
+// ---- two bodies
+// ------------------------------------------------------------------------------------------------------
 
-/// Where the second is as seen from the first on an orbit of semi-axis 1 with G (m1 + m2) = 1, a time after pericentre.
+/// Returns the position of the second body relative to the first, at a time after pericentre. The orbit has semi-axis 1
+/// and G (m1 + m2) = 1.
 Vec3 kepler_position(double time) {
     double anomaly = time;
     for (int k = 0; k < 50; ++k) {
@@ -53,7 +56,7 @@ TEST(MutualGravity, MovesTwoBodiesOnKeplersOrbit) {
     EXPECT_LT(kepler_error({IntegratorKind::rk4}, 0.002, 10.0), 1e-10);
 }
 
-TEST(MutualGravity, IsFollowedInTheOrderOfTheMethod) {
+TEST(MutualGravity, ConvergesWithTheOrderOfTheMethod) {
     struct Case {
         IntegratorKind kind;
         double order;
@@ -67,7 +70,8 @@ TEST(MutualGravity, IsFollowedInTheOrderOfTheMethod) {
     }
 }
 
-// Momentum and energy.
+// ---- momentum and energy
+// ---------------------------------------------------------------------------------------------
 
 SimulationSetup cluster(std::size_t count, double time_step, double duration, SumMethod method) {
     SimulationSetup setup = setup_of(time_step, duration);
@@ -80,7 +84,7 @@ SimulationSetup cluster(std::size_t count, double time_step, double duration, Su
     return setup;
 }
 
-TEST(MutualGravity, KeepsMomentumOverAThousandSteps) {
+TEST(MutualGravity, ConservesMomentumOverAThousandSteps) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::rk4, IntegratorKind::symplectic_euler}) {
         SimulationSetup setup = cluster(60, 0.01, 10.0, SumMethod::direct);
@@ -95,7 +99,7 @@ TEST(MutualGravity, KeepsMomentumOverAThousandSteps) {
     }
 }
 
-TEST(MutualGravity, KeepsEnergyByVelocityVerlet) {
+TEST(MutualGravity, ConservesEnergyWithVelocityVerlet) {
     for (const SumMethod method : {SumMethod::direct, SumMethod::tree}) {
         const double before = energy(Simulation(cluster(400, 0.01, 4.0, method)));
         const double after = energy(finished(cluster(400, 0.01, 4.0, method), {IntegratorKind::velocity_verlet}));
@@ -103,7 +107,8 @@ TEST(MutualGravity, KeepsEnergyByVelocityVerlet) {
     }
 }
 
-// Walls.
+// ---- walls
+// -----------------------------------------------------------------------------------------------------------
 
 struct EndState {
     std::vector<Vec3> positions;
@@ -146,15 +151,15 @@ double measured_order(IntegratorKind kind) {
     return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-TEST(CoulombForce, KeepsOrderTwoWithBouncesAndThreeByRk4) {
+TEST(CoulombForce, KeepsOrderTwoWithBouncesAndThreeWithRk4) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4, IntegratorKind::ballistic}) {
         EXPECT_GT(measured_order(kind), kind == IntegratorKind::rk4 ? 2.7 : 1.85) << name_of(kind);
     }
 }
 
-// A charge falls from rest towards one that is held behind a wall, bounces and comes back to where it started.
-TEST(CoulombForce, BringsAChargeBackFromAWallInTheTimeOfTheClosedForm) {
+// A charge falls from rest towards a fixed charge behind a wall, bounces and returns to its start.
+TEST(CoulombForce, ReturnsAChargeFromAWallAtTheTimeOfTheClosedForm) {
     constexpr double kStart = 1.0;
     constexpr double kWall = 0.3;
     // t = sqrt(r0^3 / 2) (sqrt(q (1 - q)) + acos(sqrt(q))), q = r / r0, for the attraction 1 / r^2.
@@ -178,7 +183,7 @@ TEST(CoulombForce, BringsAChargeBackFromAWallInTheTimeOfTheClosedForm) {
 }
 
 // A floor without friction takes no momentum along it.
-TEST(CoulombForce, KeepsMomentumAlongAFloor) {
+TEST(CoulombForce, ConservesMomentumAlongAFloor) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4,
           IntegratorKind::dormand_prince, IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {
@@ -196,7 +201,7 @@ TEST(CoulombForce, KeepsMomentumAlongAFloor) {
     }
 }
 
-TEST(CoulombForce, KeepsEnergyInABoxByVelocityVerlet) {
+TEST(CoulombForce, ConservesEnergyInABoxWithVelocityVerlet) {
     SimulationSetup setup = charged_gas(60, 2e-3, 20.0);
     add_box(setup, 1.0);
     setup.options.integrator = IntegratorKind::velocity_verlet;

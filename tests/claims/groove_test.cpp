@@ -1,10 +1,13 @@
-// Does a sphere in a groove roll and slip as the closed form says, whatever the walls, the slope and the time step?
+// A sphere in a groove rolls and slips as in the closed form, for any walls, slope and time step.
 //
-// The groove runs down along d. Its walls, inclined by A and B across it, hold with N1 = c sin B / sin(A + B) and
-// N2 = c sin A / sin(A + B), c the part of gravity that presses into the groove. Friction t_i along d changes the speed
-// and the slips u_i by
-//     v' = s + t1 + t2,    u_i' = v' + 5/2 (t_i + cos(A + B) t_j),    s: gravity along the groove,
-// |t_i| <= mu N_i, against the slip; t_i holds u_i at zero where it can. Between changes everything is a parabola.
+// The groove runs down along d. Its walls have inclinations A and B across it. Their normal forces are N1 = c sin B /
+// sin(A + B) and N2 = c sin A / sin(A + B), where c is the component of gravity into the groove. Friction t_i along d
+// changes the speed and the slips u_i by
+//
+//     v' = s + t1 + t2,    u_i' = v' + 5/2 (t_i + cos(A + B) t_j),
+//
+// with s: gravity along the groove, and |t_i| <= mu N_i, against the slip. t_i keeps u_i at zero if it can. Between
+// changes every motion is a parabola.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +26,7 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
 
-/// Walls to the horizontal across the groove, the groove to the horizontal along it, in radians.
+/// Inclinations of the walls across the groove and of the groove along its direction, in radians.
 struct Groove {
     double a, b, slope;
     [[nodiscard]] double along() const { return kG * std::sin(slope); }
@@ -31,7 +34,7 @@ struct Groove {
         const double c = kG * std::cos(slope) / std::sin(a + b);
         return {c * std::sin(b), c * std::sin(a)};
     }
-    /// The least friction at which both walls make it roll from rest.
+    /// Returns the smallest friction at which both walls make the sphere roll from rest.
     [[nodiscard]] double rolling_limit() const {
         const double half = std::cos(0.5 * (a + b));
         const double share = 0.4 / (half * half);
@@ -40,7 +43,7 @@ struct Groove {
     }
 };
 
-/// The closed form: speed and slips, from change to change.
+/// Closed form of the speed and the slips between changes.
 class GrooveReference {
 public:
     GrooveReference(const Groove& groove, double friction, double speed, const std::array<double, 2>& slip)
@@ -48,7 +51,7 @@ public:
         const auto normal = groove.normal_forces();
         for (std::size_t i = 0; i < 2; ++i) bound_[i] = friction * normal[i];
     }
-    /// How far it goes in `time` seconds.
+    /// Returns the distance travelled in `time` seconds.
     double distance_after(double time) {
         double distance = 0.0;
         for (int change = 0; time > 0.0 && change < 10; ++change) {
@@ -71,7 +74,7 @@ private:
     static void advance(double& slip, double rate, double h) {
         const double before = slip;
         slip += h * rate;
-        // The slip that ended the interval is zero to rounding, others are not near it.
+        // The slip that ended the interval is zero to rounding. Other slips are not close to zero.
         if (std::fabs(slip) < 1e-12 * std::max(std::fabs(before), std::fabs(h * rate))) slip = 0.0;
     }
     [[nodiscard]] std::array<double, 2> slip_rates(const std::array<double, 2>& t) const {
@@ -79,11 +82,11 @@ private:
         const double rate = groove_.along() + t[0] + t[1];
         std::array<double, 2> rates{rate + 2.5 * (t[0] + c * t[1]), rate + 2.5 * (t[1] + c * t[0])};
         for (double& r : rates) {
-            if (std::fabs(r) < 1e-13 * kG) r = 0.0;  // the rounding of a slip that friction holds
+            if (std::fabs(r) < 1e-13 * kG) r = 0.0;  // the rounding of a slip that friction keeps at zero
         }
         return rates;
     }
-    /// Projected Gauss-Seidel on two numbers, of a positive definite problem: it converges to rounding.
+    /// Solves by projected Gauss-Seidel for two numbers. The problem is positive definite, so it converges to rounding.
     [[nodiscard]] std::array<double, 2> friction() const {
         std::array<double, 2> t{};
         for (int sweep = 0; sweep < 200'000; ++sweep) {
@@ -108,8 +111,8 @@ private:
     std::array<double, 2> slip_;
 };
 
-/// The groove in space: down along d, up along u, across it s, and turned about the vertical, so that nothing is
-/// aligned with the axes.
+/// Frame of the groove in space: down along d, up along u, across along s. It is rotated about the vertical, so that
+/// nothing is aligned with the axes.
 struct GrooveFrame {
     explicit GrooveFrame(double slope) {
         const double yaw = 0.3;
@@ -121,7 +124,7 @@ struct GrooveFrame {
     Vec3 d, u, s;
 };
 
-/// Normals of the walls, out of the groove.
+/// Returns the normals of the walls, pointing out of the groove.
 std::array<Vec3, 2> wall_normals(const Groove& g, const GrooveFrame& frame) {
     return {std::sin(g.a) * frame.s + std::cos(g.a) * frame.u, -std::sin(g.b) * frame.s + std::cos(g.b) * frame.u};
 }
@@ -131,7 +134,8 @@ std::vector<ColliderDescription> walls_of_planes(const Groove& g, const GrooveFr
     return {plane_collider({}, n[0]), plane_collider({}, n[1])};
 }
 
-/// Both walls as one mesh of strips along the groove, 3 m wide (a sphere of 0.1 m touches within 1.2 m of the bottom).
+/// Returns both walls as one mesh of strips along the groove, 3 m wide. A sphere of 0.1 m touches them within 1.2 m of
+/// the bottom.
 std::vector<ColliderDescription> walls_of_triangles(const Groove& g, const GrooveFrame& frame) {
     constexpr int kCells = 12;
     const auto n = wall_normals(g, frame);
@@ -152,7 +156,7 @@ std::vector<ColliderDescription> walls_of_triangles(const Groove& g, const Groov
 
 using MakeWalls = std::vector<ColliderDescription> (*)(const Groove&, const GrooveFrame&);
 
-/// A sphere in a groove, its centre where it touches both walls, up to rounding.
+/// Returns a sphere in a groove with its centre at the position that touches both walls, up to rounding.
 ContactScene in_groove(const Groove& g, const GrooveFrame& frame, std::vector<ColliderDescription> walls,
                        double friction, double time_step) {
     const double half = 0.5 * (g.a + g.b);
@@ -182,7 +186,7 @@ void for_every_groove(Visit&& visit) {
     }
 }
 
-/// Bound of the contract, relative to the distance: parabolas, so any time step gives rounding only.
+/// Required bound, relative to the distance. The motion is parabolic, so any time step has only rounding errors.
 constexpr double kBound = 1e-9;
 
 void expect_closed_form_from_rest(const Groove& g, MakeWalls make_walls, double friction) {
@@ -202,7 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Of, GrooveGrid,
                                            std::pair<const char*, MakeWalls>{"Triangles", walls_of_triangles}),
                          [](const auto& walls) { return walls.param.first; });
 
-TEST_P(GrooveGrid, LetsSpheresRollFromRestWhereBothWallsGrip) {
+TEST_P(GrooveGrid, LetsSpheresRollFromRestIfBothWallsStick) {
     for_every_groove([&](const Groove& g) {
         for (const double factor : {1.05, 2.0}) {
             expect_closed_form_from_rest(g, GetParam().second, factor * g.rolling_limit());
@@ -210,7 +214,7 @@ TEST_P(GrooveGrid, LetsSpheresRollFromRestWhereBothWallsGrip) {
     });
 }
 
-TEST_P(GrooveGrid, LetsSpheresSlipFromRestWhereAWallDoesNotGrip) {
+TEST_P(GrooveGrid, LetsSpheresSlipFromRestIfAWallDoesNotStick) {
     for_every_groove([&](const Groove& g) {
         for (const double factor : {0.0, 0.2, 0.5, 0.95}) {
             expect_closed_form_from_rest(g, GetParam().second, factor * g.rolling_limit());
@@ -218,7 +222,8 @@ TEST_P(GrooveGrid, LetsSpheresSlipFromRestWhereAWallDoesNotGrip) {
     });
 }
 
-// Thrown along the groove without spin, or with the spin of one that rolls the other way: each wall grips in its time.
+// The sphere is thrown along the groove without spin, or with the spin of rolling in the opposite direction. The walls
+// start to stick one after the other.
 TEST_P(GrooveGrid, SlowsSpheresUntilTheyRoll) {
     for_every_groove([&](const Groove& g) {
         const GrooveFrame frame(g.slope);
@@ -243,7 +248,7 @@ TEST_P(GrooveGrid, SlowsSpheresUntilTheyRoll) {
     });
 }
 
-TEST_P(GrooveGrid, LetsSpheresThatRollOnTheLevelRollOn) {
+TEST_P(GrooveGrid, KeepsSpheresRollingOnLevelGround) {
     for (const double degrees : {5.0, 45.0, 85.0}) {
         const Groove g{radians(degrees), radians(degrees), 0.0};
         const GrooveFrame frame(0.0);
@@ -258,14 +263,15 @@ TEST_P(GrooveGrid, LetsSpheresThatRollOnTheLevelRollOn) {
     }
 }
 
-// The contract's own words for equal walls, so that the reference above is itself held to them.
+// Compares the reference itself with the known formula for equal walls.
 TEST(GrooveReference, IsTheKnownClosedFormBetweenEqualWalls) {
     for (const double degrees : {5.0, 45.0, 85.0}) {
         const Groove g{radians(degrees), radians(degrees), radians(20.0)};
         const double cosine = std::cos(g.a);
         const double rolling = kG * std::sin(g.slope) / (1.0 + 0.4 / (cosine * cosine));
         const double slipping = kG * std::sin(g.slope) - 0.5 * g.rolling_limit() * kG * std::cos(g.slope) / cosine;
-        // Bounds: the rounding of a few operations on some 4 m, and the end of the sweeps over both frictions.
+        // Bounds: the rounding of a few operations on about 4 m, and the convergence limit of the sweeps for both
+        // frictions.
         EXPECT_NEAR(GrooveReference(g, 2.0 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * rolling, 1e-12);
         EXPECT_NEAR(GrooveReference(g, 0.5 * g.rolling_limit(), 0.0, {}).distance_after(1.0), 0.5 * slipping, 1e-12);
     }

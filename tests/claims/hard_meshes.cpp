@@ -16,10 +16,10 @@ TriangleMesh placed(TriangleMesh mesh, const Placement& placement) {
     return mesh;
 }
 
-/// Turned so that nothing is aligned with the axes.
+/// Returns the mesh rotated, so that nothing is aligned with the axes.
 TriangleMesh turned(TriangleMesh mesh) { return placed(std::move(mesh), {{}, {1, 2, 3}, 40.0, {1, 1, 1}}); }
 
-/// A star-shaped body with deep, sharp valleys.
+/// Returns a star-shaped body with deep, sharp valleys.
 TriangleMesh star_mesh() {
     TriangleMesh mesh = sphere_mesh({}, 1.0, 3);
     RandomSequence random(1, 0, 0);
@@ -27,7 +27,7 @@ TriangleMesh star_mesh() {
     return mesh;
 }
 
-/// A prism over the triangle (0, 0), (1, 0), (1, 0.01).
+/// Returns a prism over the triangle (0, 0), (1, 0), (1, 0.01).
 TriangleMesh wedge_mesh() {
     return {{{0, 0, 0}, {1, 0, 0}, {1, 0.01, 0}, {0, 0, 0.5}, {1, 0, 0.5}, {1, 0.01, 0.5}},
             {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};

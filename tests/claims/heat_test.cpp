@@ -1,5 +1,5 @@
-// What surfaces take of a particle's motion heats it, to the last joule: impacts one by one, friction in contact, belts
-// and walls that move; and what cools meanwhile.
+// The energy that surfaces take from a particle heats it, to the last joule. Tests cover single impacts, friction in
+// contact, moving belts and walls, and simultaneous cooling.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ using testing::plane_collider;
 using testing::setup_of;
 
 constexpr double kG = 9.81;
-constexpr double kHeatCapacity = 450.0;  // J/(kg K)
-constexpr double kStart = 300.0;         // K
+constexpr double kHeatCapacity = 450.0;  // in J/(kg K)
+constexpr double kStart = 300.0;         // in K
 
 HeatSettings all_of_it() {
     HeatSettings heat;
@@ -34,7 +34,7 @@ HeatSettings all_of_it() {
     return heat;
 }
 
-/// On a floor, with heat from surfaces alone.
+/// Returns a setup with a floor and heat from surfaces alone.
 SimulationSetup on_a_floor(double time_step, double duration, const Material& material) {
     SimulationSetup setup = setup_of(time_step, duration, material, {0, 0, -kG});
     setup.colliders.push_back(plane_collider({0, 0, 0}, {0, 0, 1}));
@@ -47,7 +47,7 @@ double temperature(const Simulation& simulation, std::size_t i = 0) {
     return simulation.particles().attributes.value(0, i).x;
 }
 
-/// J, gained by particle i since the start.
+/// Returns the heat gained by particle i since the start, in J.
 double heat_of(const Simulation& simulation, std::size_t i = 0) {
     return simulation.particles().mass[i] * kHeatCapacity * (temperature(simulation, i) - kStart);
 }
@@ -57,7 +57,7 @@ double mechanical(const Simulation& simulation) {
 }
 
 // After bounce n the ball has lost m g h (1 - e^(2 n)).
-TEST(HeatOfImpacts, IsWhatRestitutionLosesBounceByBounceAtAnyTimeStep) {
+TEST(HeatOfImpacts, EqualsTheLossOfRestitutionInEachBounceAtAnyTimeStep) {
     const double e = 0.8;
     for (const double time_step : {1e-3, 1.0 / 60.0, 0.25}) {
         SCOPED_TRACE(time_step);
@@ -78,7 +78,8 @@ TEST(HeatOfImpacts, IsWhatRestitutionLosesBounceByBounceAtAnyTimeStep) {
 }
 
 TEST(HeatOfImpacts, IsSharedBetweenRestitutionAndFrictionByTheirFractions) {
-    // A point at (2, 0, -3) m/s: the normal part loses 9 (1 - e^2) / 2, friction all of the sliding or mu (1 + e) 3.
+    // A point hits at (2, 0, -3) m/s. The normal part loses 9 (1 - e^2) / 2. Friction takes the whole slip or mu (1 +
+    // e) 3.
     const double e = 0.5;
     const double mu = 0.2;
     const double slip = 2.0 - mu * (1.0 + e) * 3.0;
@@ -96,8 +97,9 @@ TEST(HeatOfImpacts, IsSharedBetweenRestitutionAndFrictionByTheirFractions) {
     }
 }
 
-// mu m g s with s = v^2 / (2 mu g): all of the kinetic energy, however long the steps; half of it half way.
-TEST(HeatOfFriction, IsTheWorkOfAParticleThatSlidesToRest) {
+// The work is mu m g s with s = v^2 / (2 mu g). It is all of the kinetic energy for any step, and half of it after half
+// the distance.
+TEST(HeatOfFriction, IsTheKineticEnergyOfAParticleThatSlidesToRest) {
     const double mu = 0.3;
     const double v = 2.0;
     const double stop = v / (mu * kG);
@@ -115,8 +117,8 @@ TEST(HeatOfFriction, IsTheWorkOfAParticleThatSlidesToRest) {
     }
 }
 
-TEST(HeatOfFriction, OfASlidingBallIsWhatItLosesUntilItRolls) {
-    // It rolls at 5/7 v, with 5/7 of the energy.
+TEST(HeatOfFriction, OfASlidingBallEqualsItsLossUntilItRolls) {
+    // The ball rolls at 5/7 v, with 5/7 of the energy.
     SimulationSetup setup = on_a_floor(0.01, 1.5, {"floor", 0.5, 0.2});
     setup.particles.push_back(particle_of({0, 0, 0.1}, {2, 0, 0}, 0.1));
     Simulation simulation(std::move(setup));
@@ -125,7 +127,7 @@ TEST(HeatOfFriction, OfASlidingBallIsWhatItLosesUntilItRolls) {
     EXPECT_NEAR(heat_of(simulation), 2.0 * 2.0 / 7.0, 1e-6);
 }
 
-// The belt does m u^2 of work, half of which is the particle's motion then.
+// The belt does m u^2 of work, half of which becomes the particle's kinetic energy.
 TEST(HeatOfFriction, OnABeltIsHalfOfItsWork) {
     Material belt{"belt", 0.5, 0.4};
     belt.motion.velocity = {1.5, 0, 0};
@@ -138,7 +140,7 @@ TEST(HeatOfFriction, OnABeltIsHalfOfItsWork) {
     EXPECT_NEAR(simulation.collider_totals()[0].work, -1.5 * 1.5, 1e-6);
 }
 
-/// Balls of several radii and spins that are thrown into a box whose walls lose energy.
+/// Returns balls of several radii and spins thrown into a box whose walls dissipate energy.
 SimulationSetup thrown_balls(double duration) {
     SimulationSetup setup = on_a_floor(0.005, duration, {"wall", 0.6, 0.25});
     setup.colliders.push_back(plane_collider({-1, 0, 0}, {1, 0, 0}));
@@ -157,7 +159,7 @@ SimulationSetup thrown_balls(double duration) {
     return setup;
 }
 
-TEST(Heat, AndMechanicalEnergyTogetherStayWhatTheyAre) {
+TEST(Heat, AndMechanicalEnergyHaveAConstantSum) {
     Simulation simulation(thrown_balls(3.0));
     const double start = mechanical(simulation);
     double last = start;
@@ -189,7 +191,7 @@ SimulationSetup cooling_balls() {
     return setup;
 }
 
-TEST(Heat, HasTheSameBitsForAnyNumberOfThreadsWhateverIsSwitchedOffAndWhoWatches) {
+TEST(Heat, HasTheSameBitsForAnyThreadsAccelerationsAndRecords) {
     const auto run = [](int threads, const AccelerationSwitches& switches, bool verify) {
         const ThreadLimit limit(threads);
         SimulationSetup setup = cooling_balls();
@@ -208,7 +210,7 @@ TEST(Heat, HasTheSameBitsForAnyNumberOfThreadsWhateverIsSwitchedOffAndWhoWatches
     EXPECT_EQ(run(1, none, false), expected);
 }
 
-TEST(Heat, ChangesNoPathWhereNoForceLooksAtIt) {
+TEST(Heat, ChangesNoPathIfNoForceDependsOnIt) {
     SimulationSetup without = cooling_balls();
     without.heat.reset();
     Simulation plain(std::move(without));
@@ -220,7 +222,7 @@ TEST(Heat, ChangesNoPathWhereNoForceLooksAtIt) {
     EXPECT_NE(temperature(heated), kStart);
 }
 
-// A spark falls freely, and cools by both as the closed form at one speed and the integral say.
+// A ball at rest in a wind cools by convection with a constant coefficient.
 TEST(Heat, OfABallAtRestInAWindFollowsNewtonsLaw) {
     SimulationSetup setup = setup_of(0.1, 2.0);
     setup.attributes.push_back({"temperature", 1, {900.0, 0, 0}});
@@ -240,7 +242,7 @@ TEST(Heat, OfABallAtRestInAWindFollowsNewtonsLaw) {
     EXPECT_NEAR(temperature(simulation), 280.0 + 620.0 * std::exp(-2.0 * rate), 1e-9);
 }
 
-TEST(Heat, OfABallOnATurntableIsWhatTheTableDoesLessItsMotion) {
+TEST(Heat, OfABallOnATurntableIsTheTablesWorkMinusItsKineticEnergy) {
     FrameDescription table;
     table.name = "table";
     table.motions.push_back(Spin{{0, 0, 1}, 120.0});

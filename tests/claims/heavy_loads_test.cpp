@@ -1,5 +1,5 @@
-// A ball on a body that yields to it, from much lighter to much heavier than that: it comes to rest where both are in
-// balance, no energy comes in meanwhile, and steps are cut into few parts, whatever the resting speed.
+// A ball on a dynamic body, from much lighter to much heavier than the body. It comes to rest in equilibrium, no energy
+// is created, and steps are split into few substeps, for any resting speed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
-/// A body of 1 kg, and what rides on it.
+/// Body of 1 kg with its load.
 struct Pushed {
     BodyDescription body;
     Particle ball;
@@ -57,7 +57,7 @@ Particle ball_of(double mass, const Vec3& position, const Vec3& velocity = {}) {
     return ball;
 }
 
-/// J, of the ball and the body, with its spring.
+/// Returns the energy of the ball and the body with its spring, in J.
 double energy_of(const Simulation& simulation, const Pushed& pushed) {
     const Particles& all = simulation.particles();
     const BodyState body = simulation.bodies()[0];
@@ -68,10 +68,10 @@ double energy_of(const Simulation& simulation, const Pushed& pushed) {
 }
 
 struct Course {
-    double gained = 0.0;  // J, the largest rise above an energy before
+    double gained = 0.0;  // largest rise above an earlier energy, in J
     double coordinate = 0.0;
-    double parts = 0.0;  // a step
-    double lost = 0.0;   // s, not simulated
+    double parts = 0.0;  // per step
+    double lost = 0.0;   // unsimulated time, in s
 };
 
 Course run(const Pushed& pushed) {
@@ -126,7 +126,7 @@ TEST(ATrayOnASpring, ComesToRestUnderABallOfAnyMass) {
 // The ball sticks by friction, 0.5 m from the axis.
 TEST(APlateOnAHinge, ComesToRestUnderABallOfAnyMass) {
     for_all_balls([](double ratio, double resting_speed, double restitution) {
-        if (ratio > 10.0 && resting_speed == 0.0 && restitution > 0.0) return;  // takes long; the tray shows it
+        if (ratio > 10.0 && resting_speed == 0.0 && restitution > 0.0) return;  // takes long; the tray covers this case
         Pushed pushed;
         pushed.body = body_of(JointKind::hinge, {0, -1, 0});
         constexpr double kArm = 0.5;
@@ -159,9 +159,9 @@ Pushed door_and_ball(double mass, double restitution) {
     return pushed;
 }
 
-// What slides along a light door towards its hinge, where that yields ever less, opens it within a single step: what
-// comes back of the energy that it has lost before is of the method's order.
-TEST(ALightDoor, IsPushedOpenByAHeavyBallWithoutAGainOfEnergy) {
+// A particle slides along a light door towards its hinge, where the effective mass of the door grows. It opens the door
+// within a single step. A gain of energy that was lost before is limited to the order of the method.
+TEST(ALightDoor, IsPushedOpenByAHeavyBallWithoutEnergyGain) {
     for (const auto& [mass, bound] : {std::pair{1.0, 5e-3}, {10.0, 2e-3}, {100.0, 5e-5}}) {
         for (const double restitution : {0.0, 0.5}) {
             SCOPED_TRACE(std::to_string(mass) + " kg, restitution " + std::to_string(restitution));
@@ -173,9 +173,8 @@ TEST(ALightDoor, IsPushedOpenByAHeavyBallWithoutAGainOfEnergy) {
     }
 }
 
-// Two bodies that meet on one line: each leaves with its velocity of before, and that of the common centre of mass
-// twice.
-TEST(AFreePlate, IsStruckByAMuchHeavierBallAsInClosedForm) {
+// In a central impact of two bodies, each leaves with twice the velocity of the centre of mass minus its own velocity.
+TEST(AFreePlate, IsHitByAMuchHeavierBallAsInClosedForm) {
     for (const double mass : {100.0, 1e4}) {
         for (const double restitution : {1.0, 0.5, 0.0}) {
             SCOPED_TRACE(std::to_string(mass) + " kg, restitution " + std::to_string(restitution));
@@ -196,8 +195,8 @@ TEST(AFreePlate, IsStruckByAMuchHeavierBallAsInClosedForm) {
     }
 }
 
-// Without losses they keep all they have, but for what a part of a step lasts after each hit.
-TEST(ALightDoor, KeepsTheEnergyOfAnElasticHeavyBall) {
+// Without losses the energy is conserved, up to the effect of the substep after each hit.
+TEST(ALightDoor, ConservesTheEnergyOfAnElasticHeavyBall) {
     for (const double mass : {1.0, 10.0, 100.0}) {
         SCOPED_TRACE(std::to_string(mass) + " kg");
         const Pushed pushed = door_and_ball(mass, 1.0);

@@ -1,5 +1,5 @@
-// Does a particle that slides or rolls on one surface, and hits another, rebound with the restitution of the one that
-// it hits: however the scene is turned, shifted, scaled and mirrored, and whatever the time step?
+// A particle that slides or rolls on one surface and hits another rebounds with the restitution of the surface it hits.
+// The rotation, position, scale and mirroring of the scene and the time step must not matter.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// A copy of a scene: turned, mirrored or not, scaled and shifted.
+/// Transformation of a scene: rotated, possibly mirrored, scaled and shifted.
 struct Copy {
     Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     double scale = 1.0;
@@ -47,18 +47,19 @@ enum class Kind : std::uint8_t { slope, box, groove, pipe, seams, moving, thresh
 constexpr std::array kKinds{Kind::slope, Kind::box,    Kind::groove,   Kind::pipe,
                             Kind::seams, Kind::moving, Kind::threshold};
 
-/// Something that slides or rolls along x on what is below, pulled down a slope into a wall. Collider 0 is the wall.
+/// Particle that slides or rolls along x on its support and is pulled down a slope into a wall. Collider 0 is the wall.
 struct Course {
     Kind kind = Kind::slope;
     double restitution = 0.7;  ///< of the wall
     double of_support = 0.3;   ///< of all others
     double friction = 0.1;
     double radius = 0.05;
-    double slope = 0.3;    ///< rad
-    double lean = 0.0;     ///< rad, of the wall: above 0 it looks up
-    double speed = 1.0;    ///< m/s, at the start
-    double opening = 0.8;  ///< rad, of the groove to both sides, and of the pipe's start beside its bottom
-    Vec3 carried;          ///< m/s, of wall and floor where they move
+    double slope = 0.3;  ///< in rad
+    double lean = 0.0;   ///< inclination of the wall in rad; above 0 it faces up
+    double speed = 1.0;  ///< initial speed, in m/s
+    /// inclination of both sides of the groove, and the start angle in the pipe from its bottom, in rad
+    double opening = 0.8;
+    Vec3 carried;  ///< velocity of wall and floor if they move, in m/s
     double time_step = 0.01;
 };
 
@@ -81,7 +82,7 @@ Course random_course(Kind kind, RandomSequence& random) {
 
 Vec3 wall_normal(const Course& course) { return {-std::cos(course.lean), 0.0, std::sin(course.lean)}; }
 
-/// What holds the particle, and where it starts.
+/// Returns the support of the particle and its start position.
 std::pair<std::vector<ColliderDescription>, Vec3> support_of(const Course& course, const Copy& copy) {
     const Vec3 up = copy.direction({0, 0, 1});
     const double r = course.radius;
@@ -106,7 +107,7 @@ std::pair<std::vector<ColliderDescription>, Vec3> support_of(const Course& cours
     if (course.kind == Kind::seams) {
         return {
             {mesh_collider(copy.mesh(floor_mesh(4.0, 5)), {}, "floor"), plane_collider(copy.point({}), up, "below")},
-            // Not on the plane: rounding would put a point between both.
+            // The start is slightly off the plane, because rounding could put a point between both surfaces.
             {0, 0.13, r + 1e-9}};
     }
     return {{plane_collider(copy.point({}), up, "floor")}, {0, 0, r}};
@@ -142,7 +143,7 @@ SimulationSetup setup_on(const Course& course, const Copy& copy, double time_ste
     return setup;
 }
 
-/// The first impact on the wall, with all that surfaces do at its time.
+/// First impact on the wall, with all surface contacts at its time.
 struct WallImpact {
     double time = 0.0;
     Vec3 before;
@@ -183,14 +184,14 @@ void expect_rebound_of_wall(const Course& course, const Copy& copy) {
         EXPECT_NEAR(dot(impact->after - carried, n), course.restitution * approach, 1e-9 * speed);
         found[part == 1.0 ? 0 : 1] = impact;
     }
-    // Contact on planes is exact; along a pipe it is of fourth order, here with steps up to a sixteenth of a swing.
+    // Contact on planes is exact. Along a pipe it is of fourth order, here with steps up to a sixteenth of a swing.
     const double agree = course.kind == Kind::pipe ? 1e-3 : 1e-8;
     EXPECT_NEAR(found[0]->time, found[1]->time, agree);
     EXPECT_LT(length(found[0]->after - found[1]->after), agree * (length(found[0]->before) + length(carried)));
     EXPECT_EQ(found[0]->rows, found[1]->rows);
 }
 
-TEST(AnImpactInContact, ReboundsWithTheRestitutionOfTheWallThatIsHit) {
+TEST(AnImpactInContact, ReboundsWithTheRestitutionOfTheHitWall) {
     const int count = test::is_long_run() ? 1000 : test::scaled(84);
     RandomSequence random(20, 1, 0);
     for (int k = 0; k < count; ++k) {
@@ -201,7 +202,8 @@ TEST(AnImpactInContact, ReboundsWithTheRestitutionOfTheWallThatIsHit) {
     }
 }
 
-/// The velocity after a run of a sphere, radius 1/8 m, from 1/8 m above the origin, among planes of these restitutions.
+/// Returns the final velocity of a sphere of radius 1/8 m that starts 1/8 m above the origin, among planes with these
+/// restitutions.
 Vec3 velocity_after(const Vec3& velocity, std::vector<ColliderDescription> colliders,
                     const std::vector<double>& restitutions, double duration, double gravity) {
     ContactScene scene;
@@ -213,7 +215,7 @@ Vec3 velocity_after(const Vec3& velocity, std::vector<ColliderDescription> colli
     return end_of(scene).velocity;
 }
 
-TEST(AnImpactInContact, ReboundsAlsoWhereTheWallIsApproachedByABillionthOfTheSpeed) {
+TEST(AnImpactInContact, ReboundsEvenIfTheApproachIsABillionthOfTheSpeed) {
     const auto floor = plane_collider({}, {0, 0, 1}, "floor");
     const auto side = plane_collider({0, -0.125 - 5e-10, 0}, {0, 1, 0}, "side");
     const Vec3 slid = velocity_after({1, -1e-9, 0}, {floor, side}, {0.3, 0.5}, 1.0, kStandardGravity);
@@ -224,7 +226,7 @@ TEST(AnImpactInContact, ReboundsAlsoWhereTheWallIsApproachedByABillionthOfTheSpe
     EXPECT_NEAR(flown.z, 0.5e-9, 1e-15);
 }
 
-// Three faces: what lies on the floor along a side wall meets the end wall.
+// Three faces: a sphere on the floor beside a side wall hits the end wall.
 TEST(AnImpactInContact, HasTheRestitutionOfTheThirdFaceOfACorner) {
     for (const double press : {0.0, 2.0}) {
         ContactScene scene;
@@ -239,7 +241,7 @@ TEST(AnImpactInContact, HasTheRestitutionOfTheThirdFaceOfACorner) {
     }
 }
 
-// Two surfaces that free flight reaches at once are both approached: the smaller restitution counts, as ever.
+// Free flight reaches two surfaces at once and approaches both, so the smaller restitution counts.
 TEST(AnImpactOutOfFreeFlight, OnTwoSurfacesHasTheSmallerRestitution) {
     const auto floor = plane_collider({0, 0, -1}, {0, 0, 1}, "floor");
     const auto wall = plane_collider({1.125, 0, 0}, {-1, 0, 0}, "wall");

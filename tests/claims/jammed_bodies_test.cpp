@@ -1,5 +1,5 @@
-// Bodies much lighter than the spheres that close on them from several sides: no load of a plan fits there, and no
-// energy comes in.
+// Bodies much lighter than the spheres that close on them from several sides. No planned load is consistent there, and
+// no energy is created.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ BodyDescription light_body(JointKind joint, RandomSequence& random) {
     return body;
 }
 
-/// Two to four spheres of 100 kg that fly to about the middle of the box.
+/// Returns two to four spheres of 100 kg that fly towards the middle of the box.
 Simulation closing_in(JointKind joint, std::uint64_t seed) {
     RandomSequence random(seed, 0, 0);
     FrameDescription frame = frame_of("body", {});
@@ -56,7 +56,7 @@ double kinetic_energy(const Simulation& simulation) {
     return energy;
 }
 
-TEST(ALightBodyAmongHeavySpheres, TakesNoEnergyFromNowhere) {
+TEST(ALightBodyAmongHeavySpheres, GainsNoEnergy) {
     for (const JointKind joint : {JointKind::hinge, JointKind::slider, JointKind::free}) {
         for (std::uint64_t seed = 1; seed <= 8U * static_cast<std::uint64_t>(test::case_factor(5)); ++seed) {
             SCOPED_TRACE("joint " + std::to_string(static_cast<int>(joint)) + ", seed " + std::to_string(seed));
@@ -71,7 +71,7 @@ TEST(ALightBodyAmongHeavySpheres, TakesNoEnergyFromNowhere) {
                 least = std::min(least, energy);
             }
             EXPECT_LT(gained, 0.01 * begin);
-            // Spheres that jam a body may stand in it a little; none goes through it.
+            // Spheres that jam a body may overlap it slightly, but none passes through it.
             for (const Violation& violation : simulation.violations()) {
                 EXPECT_EQ(violation.kind, ViolationKind::overlap);
             }
@@ -79,8 +79,8 @@ TEST(ALightBodyAmongHeavySpheres, TakesNoEnergyFromNowhere) {
     }
 }
 
-// Of these the load that was planned to lie on the body grew a hundredfold from part to part, to 1e12 N.
-TEST(ALightBodyAmongHeavySpheres, TakesNoEnergyFromALoadThatIsPlannedToLast) {
+// With these seeds, the planned load on the body grew a hundredfold from substep to substep, to 1e12 N.
+TEST(ALightBodyAmongHeavySpheres, GainsNoEnergyFromAPlannedLoad) {
     for (const std::uint64_t seed : {12U, 24U, 38U}) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Simulation simulation = closing_in(JointKind::free, seed);

@@ -1,4 +1,4 @@
-// Contact with surfaces of several frames that jam a particle again and again in one step: what that costs is bounded.
+// Contact with surfaces of several frames that jam a particle repeatedly in one step. The cost of that is bounded.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,8 +13,8 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// A particle on a floor, under a roof that comes down aslant and may turn, beside a wall that moves, with much
-/// friction.
+/// Returns a particle on a floor beside a moving wall, with high friction. A slanted roof, which may turn, comes down
+/// on it.
 SimulationSetup closing_corner(std::uint64_t seed) {
     RandomSequence random(seed, 0, 0);
     const auto between = [&](double least, double most) { return least + (most - least) * random.uniform(); };
@@ -39,8 +39,8 @@ SimulationSetup closing_corner(std::uint64_t seed) {
     return setup;
 }
 
-// Without an end of that, these take up to some 130 impacts in one step.
-TEST(JammedContact, EndsForTheStepAfter64TurnsAndTheRestCountsAsNotSimulated) {
+// Without a limit, these cases take up to about 130 impacts in one step.
+TEST(JammedContact, EndsAfter64ImpactsInAStepAndTheRestCountsAsUnsimulated) {
     constexpr std::uint32_t kMostTurns = 64;
     constexpr std::uint32_t kFewMore = 2;  // impacts in flight between
     std::uint64_t jammed = 0;

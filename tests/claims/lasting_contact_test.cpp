@@ -1,4 +1,4 @@
-// Sliding, rolling and rest that last: over seams, in bowls, in grooves, against turning friction.
+// Persistent sliding, rolling and rest: over seams, in bowls, in grooves, and with friction that changes its direction.
 #include <gtest/gtest.h>
 #include <algorithm>
 #include <utility>
@@ -25,7 +25,7 @@ MovingParticle particle_at(const Vec3& position, const Vec3& velocity, double ra
     return {{position, velocity, 1.0, radius, 0.0}, {}, 0, 0};
 }
 
-TEST(SlidingOverSeams, CostsAFewContactsASeamAndNoSpeed) {
+TEST(SlidingOverSeams, CostsAFewContactsPerSeamAndNoSpeed) {
     Course course({mesh_collider(floor_mesh(50.0, 197))}, {"", 0.5, 0.0}, {0, 0, -kG});
     MovingParticle point = particle_at({-45, 0.1, 1e-14}, {30, 3.7, 0});
     std::uint64_t bounces = 0;
@@ -36,10 +36,11 @@ TEST(SlidingOverSeams, CostsAFewContactsASeamAndNoSpeed) {
     }
     EXPECT_NEAR(point.state.velocity.x, 30.0, 1e-12);
     EXPECT_NEAR(point.state.position.x, 30.0, 1e-10);
-    EXPECT_LT(bounces, 1500U);  // it crosses some 330 seams
+    EXPECT_LT(bounces, 1500U);  // it crosses about 330 seams
 }
 
-/// Half a period of a swing that starts at rest beside the lowest point of a bowl, by the sign of the velocity.
+/// Returns half a period of a swing that starts at rest beside the lowest point of a bowl, from the sign of the
+/// velocity.
 double half_period(Course& course, MovingParticle particle) {
     constexpr double kStep = 1.0 / 1024;
     for (int k = 1; k < 4096; ++k) {
@@ -49,8 +50,8 @@ double half_period(Course& course, MovingParticle particle) {
     return 0.0;
 }
 
-// Pendulums: a sliding point swings with 2 pi sqrt(R / g), a rolling solid sphere with 2 pi sqrt(7/5 (R - r) / g).
-TEST(ABallFromInside, IsABowlInWhichPointsSwingAndMarblesRollAsPendulumsDo) {
+// Pendulums: a sliding point has the period 2 pi sqrt(R / g), a rolling solid sphere 2 pi sqrt(7/5 (R - r) / g).
+TEST(ABallFromInside, IsABowlInWhichPointsAndMarblesSwingLikePendulums) {
     const double angle = 0.05;
     const auto beside = [&](double r) { return (1.0 - r) * Vec3{std::sin(angle), 0, -std::cos(angle)}; };
     Course slippery({{"ball", BallShape{1.0, {}}, 0}}, {"", 0.0, 0.0}, {0, 0, -kG});
@@ -60,7 +61,7 @@ TEST(ABallFromInside, IsABowlInWhichPointsSwingAndMarblesRollAsPendulumsDo) {
                 0.01);
 }
 
-TEST(ABallFromInside, KeepsTheSpeedOfWhatSlidesAroundItWithoutForces) {
+TEST(ABallFromInside, KeepsTheSpeedOfForceFreeSlidingAroundIt) {
     Course course({{"ball", BallShape{1.0, {}}, 0}}, {"", 0.0, 0.0}, {});
     MovingParticle point = particle_at({0, 0, -0.5}, {1, 0.2, -0.4});
     (void)course.move(point, 1.5);
@@ -72,8 +73,9 @@ TEST(ABallFromInside, KeepsTheSpeedOfWhatSlidesAroundItWithoutForces) {
     EXPECT_NEAR(length(point.state.velocity), speed, 1e-3);
 }
 
-// Sliding without friction or loss: a hundred swings from an angle, steps of 0.02 s, energy relative to the swing's.
-TEST(ABallFromInside, KeepsTheEnergyOfAHundredSwings) {
+// Sliding without friction or loss: a hundred swings from an angle, steps of 0.02 s, energy relative to the energy of
+// the swing.
+TEST(ABallFromInside, ConservesTheEnergyOfAHundredSwings) {
     for (const auto& [angle, bound] : {std::pair{1.0, 1e-10}, std::pair{0.1, 5e-10}}) {
         Course course({{"ball", BallShape{1.0, {}}, 0}}, {"", 0.0, 0.0}, {0, 0, -kG});
         MovingParticle point = particle_at((1.0 - 1e-13) * Vec3{std::sin(angle), 0, -std::cos(angle)}, {});
@@ -87,8 +89,9 @@ TEST(ABallFromInside, KeepsTheEnergyOfAHundredSwings) {
     }
 }
 
-// Walls at A to the horizontal, the groove running down at 20 degrees: a sphere rolls with g sin / (1 + 0.4 / cos^2 A).
-TEST(AGroove, LetsASphereRollDownAsTheClosedFormSays) {
+// The walls have an inclination of A, and the groove descends at 20 degrees. A sphere rolls with g sin / (1 + 0.4 /
+// cos^2 A).
+TEST(AGroove, LetsASphereRollDownAsInClosedForm) {
     const double slope = 20.0 * kPi / 180.0;
     const auto tilted = [&](const Vec3& n) {
         return Vec3{n.x * std::cos(slope) + n.z * std::sin(slope), n.y, n.z * std::cos(slope) - n.x * std::sin(slope)};
@@ -110,13 +113,13 @@ TEST(AGroove, LetsASphereRollDownAsTheClosedFormSays) {
     }
 }
 
-TEST(AMarbleOnALargeBall, LosesNoTimeWhereverItRolls) {
+TEST(AMarbleOnALargeBall, LosesNoTimeOnAnyPath) {
     Course course({{"ball", BallShape{10.0, {}}, 0}}, {"", 0.3, 0.4}, {0, 0, -kG});
     MovingParticle marble = particle_at(10.0010001 * normalized(Vec3{0.05, 0.02, 1.0}), {0.1, 0, 0}, 1e-3);
     for (int k = 0; k < 60; ++k) ASSERT_EQ(course.move(marble, 1.0 / 60.0).unsimulated_time, 0.0) << k;
 }
 
-// Both flanks of the groove hold: 2 * 10 / (2 cos 45) * 0.2 of friction.
+// Both sides of the groove press: friction is 2 * 10 / (2 cos 45) * 0.2.
 TEST(AGroove, BrakesByTheSumOfItsNormalForces) {
     const std::vector<ColliderDescription> groove{plane_collider({0, 0, 0}, {1, 0, 1}),
                                                   plane_collider({0, 0, 0}, {-1, 0, 1})};
@@ -126,7 +129,7 @@ TEST(AGroove, BrakesByTheSumOfItsNormalForces) {
     EXPECT_NEAR(point.state.velocity.y, 1.0 + 5.0 - 0.2 * 10.0 * std::sqrt(2.0), 1e-6);
 }
 
-TEST(ACorner, IsHeldByEachSurfaceInItsOwnDirection) {
+TEST(ACorner, IsSupportedByEachSurfaceInItsOwnDirection) {
     const std::vector<ColliderDescription> corner{plane_collider({0, 0, 0}, {0, 0, 1}),
                                                   plane_collider({1, 0, 0}, {-1, 0, 0})};
     Course course(corner, {"", 0.0, 0.0}, {3, 0, -10});
@@ -140,7 +143,7 @@ TEST(ACorner, IsHeldByEachSurfaceInItsOwnDirection) {
     EXPECT_LT(length(given[1] - Vec3{15, 0, 0}), 1e-6);
 }
 
-// Friction turns with the motion, whatever the time step.
+// Friction turns with the motion, for any time step.
 TEST(TurningFriction, StopsASlideAtTheSamePositionForAnyTimeStep) {
     const auto end = [](double time_step) {
         Course course({plane_collider({0, 0, 0}, {0, 0, 1})}, {"", 0.0, 0.3}, {2, 0, -10});
@@ -165,8 +168,8 @@ TEST(RollingResistance, BrakesNoHarderThanFrictionAllows) {
     EXPECT_NEAR(sphere.state.velocity.x, 1.0 - 0.1, 1e-6);
 }
 
-// Whatever makes slow bounces die out lets them end in rest: no budget is spent on them.
-TEST(SlowBounces, EndInRestAlsoWhereOnlyTheThresholdOrThePartlyMirroringWallTakesTheirEnergy) {
+// Slow bounces must end in rest, by any mechanism of energy loss, and exhaust no budget.
+TEST(SlowBounces, EndInRestEvenIfOnlyTheThresholdOrPartialAbsorptionTakesEnergy) {
     Material fading{"fading", 1.0, 0.0};
     fading.restitution_threshold = 1.0;
     Material absorbing{"absorbing", 0.5, 0.0};
@@ -187,7 +190,7 @@ TEST(SlowBounces, EndInRestAlsoWhereOnlyTheThresholdOrThePartlyMirroringWallTake
     }
 }
 
-TEST(ASphereBornWithItsCentreOnASurface, GetsOffTowardsTheNormal) {
+TEST(ASphereBornWithItsCentreOnASurface, LeavesAlongTheNormal) {
     for (const ColliderDescription& floor : {plane_collider({0, 0, 0}, {0, 0, 1}), mesh_collider(floor_mesh(2.0, 2))}) {
         Course course({floor}, {"", 0.5, 0.2}, {});
         MovingParticle sphere = particle_at({0.3, 0.1, 0}, {0.1, 0, 1}, 0.1);

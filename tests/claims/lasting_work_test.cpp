@@ -1,5 +1,4 @@
-// What contact that lasts does to colliders that move and to belts: its work and its moment, to second order in the
-// time step.
+// Work and moment of persistent contact on moving colliders and belts, to second order in the time step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +13,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
-/// What the first collider has been given at the end, and how the particle spins.
+/// Totals of the first collider at the end, and the spin of the particle.
 struct End {
     ColliderTotals totals;
     Vec3 spin;
@@ -26,7 +25,7 @@ End end_of(SimulationSetup setup) {
     return {simulation.collider_totals()[0], simulation.particles().spin[0]};
 }
 
-/// The error of a step of 5 ms is below `most`, and a quarter of that of 10 ms, where that is more than rounding.
+/// Expects that the error of a step of 5 ms is below `most`, and a quarter of the error of 10 ms unless it is rounding.
 template <class ErrorOf>
 void expect_second_order(const ErrorOf& error_of, double most) {
     const double coarse = std::fabs(error_of(0.01));
@@ -35,7 +34,8 @@ void expect_second_order(const ErrorOf& error_of, double most) {
     EXPECT_LT(fine, 0.3 * coarse + 1e-9 * most);
 }
 
-// From rest to rest, 1 m up and 0.3 m aside: the work is that against the weight, whatever happens on the way.
+// The particle moves from rest to rest, 1 m up and 0.3 m aside. The work is done against the weight, whatever happens
+// in between.
 TEST(WorkOfContactThatLasts, LiftsAPointAndABall) {
     for (const double radius : {0.0, 0.1}) {
         SCOPED_TRACE("radius " + std::to_string(radius));
@@ -54,11 +54,11 @@ TEST(WorkOfContactThatLasts, LiftsAPointAndABall) {
     }
 }
 
-// A ball on the bottom of a drum that begins to turn it, by a belt on its wall or by turning itself: it slips, is
-// carried up, rolls, and swings to and fro. What the drum has given it is a moment about its axis, and 3 rad/s times
-// that in work.
-TEST(WorkOfContactThatLasts, IsThatOfTheMomentInADrum) {
-    constexpr double kTurning = 3.0;  // rad/s
+// A ball lies on the bottom of a drum that starts to turn it, by a belt on its wall or by its own rotation. The ball
+// slips, is carried up, rolls, and swings. The drum gives it a moment about its axis, and 3 rad/s times that moment as
+// work.
+TEST(WorkOfContactThatLasts, EqualsTheMomentTimesTheRateInADrum) {
+    constexpr double kTurning = 3.0;  // in rad/s
     for (const bool by_belt : {true, false}) {
         SCOPED_TRACE(by_belt ? "belt" : "drum");
         const auto end_at = [&](double step) {
@@ -81,7 +81,8 @@ TEST(WorkOfContactThatLasts, IsThatOfTheMomentInADrum) {
                 return totals.work / (-kTurning * totals.moment.y) - 1.0;
             },
             1e-4);
-        // Friction alone turns the ball, with the lever of its radius; the drum is given as much with that of its own.
+        // Friction alone turns the ball, with the lever arm of its radius. The drum receives as much with the lever arm
+        // of its own radius.
         expect_second_order(
             [&](double step) {
                 const End end = end_at(step);
@@ -91,10 +92,10 @@ TEST(WorkOfContactThatLasts, IsThatOfTheMomentInADrum) {
     }
 }
 
-// A resistance is a moment, which works on how a belt turns: nothing slides under a sphere that spins on the axis of a
-// table. It drives the sphere with mu m g for all the time but the microsecond of its fall, and the table's 5 rad/s
-// with that.
-TEST(WorkOfContactThatLasts, IsThatOfResistancesToSpinningAndRollingToo) {
+// A resistance is a moment that works on the rotation of a belt. A sphere that spins on the axis of a table does not
+// slide. The resistance drives the sphere with mu m g at the table's 5 rad/s, except during the microsecond of its
+// fall.
+TEST(WorkOfContactThatLasts, IncludesResistancesToSpinningAndRolling) {
     for (const bool by_belt : {true, false}) {
         SCOPED_TRACE(by_belt ? "belt" : "frame");
         SimulationSetup setup = setup_of({frame_of("table", {Spin{{0, 0, 1}, 5.0 * 180.0 / std::numbers::pi}})},

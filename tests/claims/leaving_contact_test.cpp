@@ -1,5 +1,5 @@
-// Where do spheres and points leave a ball, a table's edge and the top of a loop? By the energy, the normal force and
-// the equation of slip.
+// Spheres and points leave a ball, a table's edge and the top of a loop at the position given by energy, normal force
+// and the equation of slip.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Motion on a circle of radius rho about the highest point, by angle, speed and spin times radius: rolling or
+/// Motion on a circle of radius rho about the highest point, by angle, speed and spin times radius, rolling or
 /// slipping.
 using Descent = std::array<double, 3>;
 
@@ -28,7 +28,8 @@ Descent descent_rates(const Descent& y, double rho, double friction, bool slips)
     return {y[1] / rho, pull - brake, 2.5 * brake};
 }
 
-/// The state when the normal force ends; slip begins when rolling takes more than friction gives. With a time: then.
+/// Returns the state when the normal force ends, or at the given time. Slip begins when rolling needs more than the
+/// available friction.
 Descent reference_descent(double angle, double speed, double rho, double friction, bool rolls,
                           std::optional<double> time = {}) {
     Descent y{angle, speed, rolls ? speed : 0.0};
@@ -48,12 +49,12 @@ Descent reference_descent(double angle, double speed, double rho, double frictio
     return y;
 }
 
-/// How a flight began on the circle about `center`: the angle to the vertical at which its parabola has exactly the
-/// circle's curvature, |v|^2 + (x - center) . g = 0, where a motion on the circle leaves it.
+/// Returns the angle from the vertical at which the parabola of a flight has exactly the curvature of the circle about
+/// `center`: |v|^2 + (x - center) . g = 0. A motion on the circle leaves it there.
 double angle_of_leaving(const Particle& flying, const Vec3& center) {
     const Vec3 g{0, 0, -kG};
     const Vec3 x = flying.position - center;
-    // The function is g . g t^2 / 2 * 3 + 3 v . g t + ...: the root next to t = 0 by Newton's method.
+    // The function is 3/2 g . g t^2 + 3 v . g t + ... Newton's method finds the root next to t = 0.
     double t = 0.0;
     for (int k = 0; k < 50; ++k) {
         const Vec3 v = flying.velocity + t * g;
@@ -64,7 +65,7 @@ double angle_of_leaving(const Particle& flying, const Vec3& center) {
     return std::acos(r.z / length(r));
 }
 
-/// The first state in free flight, at least `gap` off the circle of radius rho about `center`.
+/// Returns the first state in free flight, at least `gap` off the circle of radius rho about `center`.
 Particle first_in_flight(const ContactScene& scene, const Vec3& center, double rho) {
     Particle found = scene.particle;
     bool flies = false;
@@ -79,7 +80,7 @@ Particle first_in_flight(const ContactScene& scene, const Vec3& center, double r
 
 struct Off {
     const char* name;
-    double radius, friction, angle;  ///< of the particle; where it starts
+    double radius, friction, angle;  ///< of the particle; its start angle
 };
 
 ContactScene off_a_ball(const Off& off, double time_step) {
@@ -123,11 +124,11 @@ TEST_P(OffABall, LeavesAtTheAngleOfTheClosedForm) {
 TEST_P(OffABall, LeavesAtThatAngleToSecondOrderInTheStep) {
     const double expected = expected_angle(GetParam());
     const double coarse = std::fabs(leaving_angle(0.02) - expected);
-    // A sixteenth at a quarter of the step, or of what the reference and the angle are found to.
+    // At a quarter of the step the error is a sixteenth, or at the accuracy of the reference and the angle.
     EXPECT_LT(std::fabs(leaving_angle(0.005) - expected), std::max(coarse / 16.0 * 1.5, 2e-5));
 }
 
-// The support ends in the step in which the closed form leaves: not before, and not after.
+// The support ends in the step in which the closed form leaves, neither before nor after.
 TEST_P(OffABall, IsSupportedUntilItLeaves) {
     const ContactScene scene = off_a_ball(GetParam(), 1e-3);
     Simulation simulation = simulation_of(scene);
@@ -148,7 +149,7 @@ TEST_P(OffABall, IsSupportedUntilItLeaves) {
     EXPECT_GE(angle_now(), expected - 1e-4);
 }
 
-/// A sphere of 0.1 m that touches the edge x = 0, z = 0 of a table that fills x < 0, z < 0.
+/// Returns a sphere of 0.1 m that touches the edge x = 0, z = 0 of a table that fills x < 0, z < 0.
 ContactScene on_the_edge(bool as_mesh, double angle, double time_step) {
     ContactScene scene;
     ColliderDescription box{"table", CuboidShape{{2, 2, 1}, {{-1, 0, -0.5}}}, 0};
@@ -165,7 +166,7 @@ class TableEdge : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Of, TableEdge, ::testing::Values(false, true),
                          [](const auto& test) { return std::string(test.param ? "Mesh" : "Box"); });
 
-/// The angle that a sphere has turned about the edge after `time`.
+/// Returns the angle by which a sphere has turned about the edge after `time`.
 double pivoted(bool as_mesh, double angle, double time_step, double time) {
     ContactScene scene = on_the_edge(as_mesh, angle, time_step);
     scene.duration = time;
@@ -174,28 +175,29 @@ double pivoted(bool as_mesh, double angle, double time_step, double time) {
     return std::atan2(end.position.x, end.position.z);
 }
 
-// It turns about the edge with 7/5 r theta'' = g sin theta: 0.32 s from 0.05 rad bring it to some 0.4 rad.
-TEST_P(TableEdge, LetsASpherePivotAsItsEquationSaysToSecondOrder) {
+// The sphere turns about the edge with 7/5 r theta'' = g sin theta. In 0.32 s it turns from 0.05 rad to about 0.4 rad.
+TEST_P(TableEdge, LetsASpherePivotAsItsEquationPredictsToSecondOrder) {
     const double time = 0.32;
     const double expected = reference_descent(0.05, 0.0, 0.1, 1000.0, true, time)[0];
     ASSERT_GT(expected, 0.2);
     ASSERT_LT(expected, 0.8);
     EXPECT_NEAR(pivoted(GetParam(), 0.05, 1e-3, time), expected, 1e-4);
-    // An arc lasts no longer than 0.02 s here.
+    // An arc lasts at most 0.02 s here.
     const double coarse = std::fabs(pivoted(GetParam(), 0.05, 0.02, time) - expected);
-    // A quarter at half the step, or of what the reference is integrated to.
+    // At half the step the error is a quarter, or at the accuracy of the reference.
     EXPECT_LT(std::fabs(pivoted(GetParam(), 0.05, 0.01, time) - expected), std::max(coarse / 4.0 * 1.2, 1e-9));
 }
 
-TEST_P(TableEdge, LetsItGoAtTenSeventeenths) {
+TEST_P(TableEdge, ReleasesItAtTenSeventeenths) {
     const ContactScene scene = on_the_edge(GetParam(), 0.05, 1e-3);
     const Vec3 edge{0, 0.03, 0};
     const double angle = angle_of_leaving(first_in_flight(scene, edge, 0.1), edge);
     EXPECT_NEAR(angle, std::acos(10.0 / 17.0 * std::cos(0.05)), 1e-4);
 }
 
-// It comes rolling over the table; the edge's cylinder goes on where the table's plane ends, and nothing is lost.
-TEST_P(TableEdge, TakesOverWhatRollsOverTheTable) {
+// The sphere rolls over the table. The cylinder around the edge continues at the end of the table's plane, without any
+// loss.
+TEST_P(TableEdge, SupportsASphereThatRollsOverTheTable) {
     for (const double speed : {0.05, 0.3}) {
         ContactScene scene = on_the_edge(GetParam(), 0.0, 1e-3);
         scene.particle.position = {-0.021, 0.03, 0.1};
@@ -207,8 +209,8 @@ TEST_P(TableEdge, TakesOverWhatRollsOverTheTable) {
     }
 }
 
-/// A particle at the lowest point of a cylinder of 1 m that lies along y, started with a factor on the height of its
-/// speed that just carries it round.
+/// Returns a particle at the lowest point of a horizontal cylinder of 1 m along y. Its start speed has a factor on the
+/// kinetic energy that just carries it around.
 ContactScene loop(double radius, double friction, double factor) {
     const double rho = 1.0 - radius;
     const double speed = std::sqrt(factor * (radius > 0.0 ? 27.0 / 7.0 : 5.0) * kG * rho);
@@ -222,7 +224,7 @@ ContactScene loop(double radius, double friction, double factor) {
     return scene;
 }
 
-/// How far it comes off the wall before it is back at the lowest point, m.
+/// Returns the largest distance from the wall before the particle is back at the lowest point, in m.
 double farthest_off(const ContactScene& scene) {
     double farthest = 0.0;
     double height = 0.0;
@@ -243,11 +245,11 @@ class LoopInACylinder : public ::testing::TestWithParam<Loop> {};
 INSTANTIATE_TEST_SUITE_P(Of, LoopInACylinder, ::testing::Values(Loop{"Sliding", 0.0, 0.0}, Loop{"Rolling", 0.1, 10.0}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST_P(LoopInACylinder, IsPassedATenthOfAPercentAboveTheLimitAndFallenOffBelow) {
+TEST_P(LoopInACylinder, IsCompletedATenthOfAPercentAboveTheLimitAndNotBelow) {
     const auto [name, radius, friction] = GetParam();
-    // In contact all the way round: to the rounding of positions of 1 m.
+    // The particle is in contact all around, to the rounding of positions of 1 m.
     EXPECT_LT(farthest_off(loop(radius, friction, 1.001)), 1e-12);
-    // Below the limit the parabola near the top is straighter than the loop by 0.5 % and comes off by some 1e-4 m.
+    // Below the limit the parabola near the top is straighter than the loop by 0.5 % and separates by about 1e-4 m.
     EXPECT_GT(farthest_off(loop(radius, friction, 0.999)), 1e-5);
 }
 

@@ -1,4 +1,4 @@
-// Contact that lasts on bodies that are lighter than what rides on them: what is kept is kept, whatever the masses.
+// Persistent contact on bodies lighter than their load. Conserved quantities stay constant for any masses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-// A tray of 1 kg on a spring, with balls on it: it starts where the spring is slack, and swings about where it carries
-// them all, as one mass with them.
-TEST(ATrayOnASpring, SwingsWithWhatLiesOnItAsOneMass) {
+// A tray of 1 kg on a spring carries balls. It starts at the slack length of the spring, and swings about its
+// equilibrium with the balls, as one mass with them.
+TEST(ATrayOnASpring, SwingsWithItsLoadAsOneMass) {
     for (const auto& [count, load] : {std::pair{10, 0.3}, {10, 1.0}, {10, 3.0}, {10, 10.0}, {1, 10.0}}) {
         for (const double step : {0.01, 0.002}) {
             SCOPED_TRACE(std::to_string(load) + " kg, step " + std::to_string(step));

@@ -1,5 +1,5 @@
-// Particles that certainly hit nothing are not queried, and those that are queried are moved in spatial
-// order: no bit of any result may tell.
+// Particles that certainly hit nothing are not queried, and queried ones are moved in spatial order. Neither may change
+// a bit of any result.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,10 +21,10 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Long flights between small things: most steps of most particles hit nothing. Everything follows from the number.
+/// Long flights between small objects: most steps of most particles hit nothing. The case depends on its number only.
 class SparseCase {
 public:
-    /// Everything may stand elsewhere than about the origin, m.
+    /// shift: offset of the whole scene from the origin, in m.
     explicit SparseCase(std::uint64_t seed, const Vec3& shift = {}) : random_(seed, 31, 0), shift_(shift) {}
 
     SimulationSetup setup() {
@@ -71,7 +71,7 @@ private:
         return particle;
     }
 
-    /// A rough ball around everything, or triangles here and there, slivers among them.
+    /// Returns a rough ball around everything, or scattered triangles with slivers among them.
     std::shared_ptr<const TriangleMesh> mesh() {
         auto result = std::make_shared<TriangleMesh>();
         const std::size_t kind = pick(3);
@@ -119,7 +119,7 @@ void expect_same_statistics(const Simulation& a, const Simulation& b) {
     EXPECT_EQ(a.kinetic_energy(), b.kinetic_energy());
 }
 
-/// Returns how many impacts there were.
+/// Returns the number of impacts.
 std::uint64_t expect_the_same_with_look_ahead(const Vec3& shift) {
     std::uint64_t impacts = 0;
     for (int i = 0; i < test::scaled(150); ++i) {
@@ -148,13 +148,13 @@ TEST(LookAheadRuns, ChangesNoImpactAndNoBitOfTheStateInRandomScenes) {
     EXPECT_GT(expect_the_same_with_look_ahead({}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
 }
 
-TEST(LookAheadRuns, ChangesNothingFarFromTheOriginEither) {
+TEST(LookAheadRuns, ChangesNothingFarFromTheOrigin) {
     EXPECT_GT(expect_the_same_with_look_ahead({3e6, -5e6, 1e6}), static_cast<std::uint64_t>(test::scaled(150)) * 20);
 }
 
-/// A sphere born with its centre on a face that lies there twice, wound both ways: it has no side to leave to, and
+/// A sphere is born with its centre on a face that occurs twice, with both windings. It cannot leave to any side, and
 /// stays.
-TEST(LookAheadRuns, DoesNotFreeASphereThatCannotLeaveTheSurfaceItWasPutOn) {
+TEST(LookAheadRuns, DoesNotFreeASphereThatCannotLeaveItsSurface) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
         setup.options.time_step = 1.0 / 60.0;
@@ -176,16 +176,16 @@ TEST(LookAheadRuns, DoesNotFreeASphereThatCannotLeaveTheSurfaceItWasPutOn) {
     EXPECT_EQ(run(true), run(false));
 }
 
-/// State, violations and contacts of a whole run.
+/// Returns the state, violations and contacts of a whole run.
 std::tuple<std::uint64_t, std::uint64_t, std::uint64_t> outcome_of(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     simulation.advance(simulation.step_count());
     return {simulation.state_hash(), simulation.statistics().violations, simulation.statistics().contacts};
 }
 
-/// Far from the origin, and so slowly that every step is rounded by more than the sphere gets away from the wall: its
-/// exact path leads away, the stored positions lead through.
-TEST(LookAheadRuns, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
+/// Far from the origin the sphere is so slow that the rounding of every step exceeds its distance from the wall. Its
+/// exact path leads away from the wall, but the stored positions lead through.
+TEST(LookAheadRuns, KeepsAWallToWhichRoundedStepsLeadBack) {
     constexpr double kFar = 5e6;
     constexpr double kUlp = 0x1p-30;
     const auto run = [](bool look_ahead) {
@@ -211,7 +211,7 @@ TEST(LookAheadRuns, DoesNotForgetAWallThatRoundedStepsLeadBackTo) {
     EXPECT_EQ(std::get<1>(run(true)), 0U);
 }
 
-// Heights over it err by more than the particle is away.
+// The error of heights above the plane exceeds the distance of the particle.
 TEST(LookAheadRuns, DoesNotTakeParticlesThroughAPlaneWhosePointIsFarAlongIt) {
     const auto run = [](bool look_ahead) {
         SimulationSetup setup;
@@ -242,8 +242,8 @@ void add_fountain(SimulationSetup& setup) {
     setup.emitters.push_back(std::move(fountain));
 }
 
-// Runs of one step, of a few and of more than are deferred at most, some cut short.
-TEST(Advance, LeadsToTheBitsOfSingleSteps) {
+// Tests runs of one step, of several, and of more than the largest number of deferred steps. Some are cut short.
+TEST(Advance, GivesTheBitsOfSingleSteps) {
     int stretches = 0;
     for (int i = 0; i < test::scaled(150); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -277,7 +277,7 @@ TEST(Advance, LeadsToTheBitsOfSingleSteps) {
     EXPECT_GT(stretches, 2 * test::scaled(150));
 }
 
-TEST(Advance, IsAtTheLastStepWhenItsCallerThrows) {
+TEST(Advance, KeepsTheLastStepIfItsCallerThrows) {
     Simulation simulation(SparseCase(4).setup());
     Simulation reference(SparseCase(4).setup());
     EXPECT_THROW(simulation.advance(100,
@@ -295,7 +295,7 @@ TEST(Advance, IsAtTheLastStepWhenItsCallerThrows) {
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
-TEST(Advance, MayBeCalledByItsOwnCaller) {
+TEST(Advance, MayBeCalledRecursively) {
     Simulation simulation(SparseCase(4).setup());
     Simulation reference(SparseCase(4).setup());
     simulation.advance(20, [&] {
@@ -307,8 +307,8 @@ TEST(Advance, MayBeCalledByItsOwnCaller) {
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
-/// Enough triangles for an order of their own, and so many particles that a tenth of them, which hit in a step, are
-/// enough too.
+/// The scene has enough triangles for a spatial order. It has so many particles that the tenth of them with impacts in
+/// a step suffices too.
 SimulationSetup crowd() {
     SimulationSetup setup;
     setup.options.time_step = 0.05;

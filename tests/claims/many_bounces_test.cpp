@@ -1,8 +1,8 @@
-// Nothing leaks in very many bounces: random placements of meshes, points and spheres, all integrators, materials with
-// and without losses, flows along both kinds of walls, checked step by step by the independent verifier.
+// Nothing leaks in very many bounces. The independent verifier checks every step with random placements of meshes,
+// points and spheres, all integrators, materials with and without losses, and flows along both kinds of walls.
 //
-// A long run: some 10^8 bounces in all. More, and over several runs: RICOCHET_BOUNCES bounces a mesh, counted in the
-// file RICOCHET_BOUNCE_LOG, from which a later run goes on. One case by hand: RICOCHET_SEED=... in the environment.
+// A long run has about 10^8 bounces in all. RICOCHET_BOUNCES sets another number per mesh. RICOCHET_BOUNCE_LOG names a
+// file of counts from which a later run continues. RICOCHET_SEED=... selects a single case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,18 +33,19 @@ namespace RICOCHET_FILE {
 
 constexpr int kParticles = 100;
 constexpr int kSteps = 300;
-constexpr double kFast = 1e4;  // m/s: beyond the speed of light a run ends
+constexpr double kFast = 1e4;  // in m/s; beyond the speed of light a run ends
 
-/// What was tried of a mesh.
+/// Tested cases of a mesh.
 struct Count {
     std::uint64_t next_seed = 0;
     std::uint64_t bounces = 0;
     double seconds = 0.0;
 };
 
-const char* setting(const char* name) { return std::getenv(name); }  // NOLINT(concurrency-mt-unsafe): nothing sets it
+const char* setting(const char* name) { return std::getenv(name); }  // NOLINT(concurrency-mt-unsafe): no code sets it
 
-/// Lines of a file: mesh, next seed, bounces in all, seconds in all. The last one of a mesh counts.
+/// Reads the log. Each line has a mesh, the next seed, and the totals of bounces and seconds. The last line of a mesh
+/// counts.
 Count count_from_log(const std::string& mesh) {
     Count count;
     if (setting("RICOCHET_BOUNCE_LOG") == nullptr) return count;
@@ -64,13 +65,13 @@ void write_to_log(const std::string& mesh, const Count& count) {
     file << mesh << ' ' << count.next_seed << ' ' << count.bounces << ' ' << count.seconds << '\n';
 }
 
-/// 13 meshes share the hundred millions.
+/// 13 meshes share the hundred million bounces.
 std::uint64_t bounces_wanted() {
     if (const char* wanted = setting("RICOCHET_BOUNCES")) return std::stoull(wanted);
     return static_cast<std::uint64_t>(test::scaled(2'000)) * static_cast<std::uint64_t>(test::case_factor(4'000));
 }
 
-/// Random choices from which a case is made.
+/// Random choices that define a case.
 class Case {
 public:
     Case(const NamedMesh& mesh, std::uint64_t seed) : random_(seed, 41, 0), mesh_(mesh) {
@@ -91,7 +92,7 @@ public:
             {mesh_.name, MeshShape{std::make_shared<const TriangleMesh>(mesh_.mesh), placement_, "", {}}, 0});
         const double restitution = std::array{1.0, 1.0, 0.95, 0.6}[pick(4)];
         const bool has_gravity = chance(0.5);
-        // What rattles for ever in a crease, with friction, under gravity, costs a thousand bounces a step.
+        // Endless bouncing in a crease, with friction and gravity, costs a thousand bounces per step.
         const bool rattles = has_gravity && restitution == 1.0;
         setup.materials = {{"", restitution, rattles || chance(0.5) ? 0.0 : 0.4 * random_.uniform()}};
         const double stride = (0.05 + 0.3 * random_.uniform()) * size_;
@@ -135,7 +136,7 @@ private:
         if (has_gravity) setup.forces.push_back(make_gravity(gravity));
     }
 
-    /// Inside, and off the surface.
+    /// Adds particles inside the mesh and off its surface.
     void add_particles(SimulationSetup& setup, double speed) {
         const CollisionQueries queries(setup.colliders);
         const AffineMap map = world_from_local(placement_);
@@ -161,10 +162,10 @@ private:
     RandomSequence random_;
     const NamedMesh& mesh_;
     Placement placement_;
-    double size_ = 0.0;  // m, of the mesh in the world
+    double size_ = 0.0;  // of the mesh in the world, in m
 };
 
-/// How many bounces there were.
+/// Returns the number of bounces.
 std::uint64_t run_case(const NamedMesh& mesh, std::uint64_t seed) {
     SCOPED_TRACE(mesh.name + ", RICOCHET_SEED=" + std::to_string(seed));
     Simulation simulation(Case(mesh, seed).setup());
@@ -173,7 +174,7 @@ std::uint64_t run_case(const NamedMesh& mesh, std::uint64_t seed) {
     EXPECT_EQ(statistics.violations, 0U);
     for (const Violation& violation : simulation.violations()) {
         const bool is_of_impacts = violation.kind == ViolationKind::energy;
-        if (is_of_impacts) continue;  // other tests' concern
+        if (is_of_impacts) continue;  // other tests check it
         ADD_FAILURE() << "kind " << static_cast<int>(violation.kind) << " of particle " << violation.particle << " at "
                       << violation.time << " s, triangle " << violation.triangle.value_or(0);
         break;
@@ -185,7 +186,7 @@ std::uint64_t run_case(const NamedMesh& mesh, std::uint64_t seed) {
 
 class ManyBounces : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(ManyBounces, LeaveEveryParticleWhereItBelongs) {
+TEST_P(ManyBounces, LeaveEveryParticleOnItsSide) {
     const auto mesh = mesh_by_name(GetParam());
     if (!mesh) GTEST_SKIP() << missing_mesh_sentence(GetParam());
     if (const char* one = setting("RICOCHET_SEED")) {
@@ -201,9 +202,9 @@ TEST_P(ManyBounces, LeaveEveryParticleWhereItBelongs) {
     }
 }
 
-// Points that gather where friction holds them in a gap of a third of a degree, or beside a vertex at the origin, where
-// coordinates have no end: each of these took minutes.
-TEST(ManyBouncesOfOneCase, EndWherePointsGather) {
+// Points accumulate in a gap of a third of a degree, where friction stops them, or beside a vertex at the origin, where
+// coordinates have no smallest size. Each of these cases once took minutes.
+TEST(ManyBouncesOfOneCase, EndIfPointsAccumulate) {
     if (test::kSanitized) GTEST_SKIP() << "some minutes in such a build";
     const std::array<std::pair<const char*, std::uint64_t>, 3> cases{
         {{"flat", 2'000'029}, {"wedge", 11'000'000}, {"box", 498}}};

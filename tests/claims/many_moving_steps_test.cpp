@@ -1,10 +1,10 @@
-// Nothing leaks in very many steps: closed meshes that spin, tumble and are shaken, and meshes that deform, each with
-// many points, whose sides are counted by the parity oracle, or by their height, and by the verifier in some steps.
+// Nothing leaks in very many steps. Closed meshes spin, tumble and shake, and other meshes deform, each with many
+// points. The parity reference or the height determines their sides, and the verifier checks some of the steps.
 //
-// A long run is a thousand steps of a thousand particles each. The whole counts, 10^5 steps of 10^4 particles (10^4 of
-// 10^5 where meshes deform), take many runs: RICOCHET_MOVING_STEPS=whole sets them, and RICOCHET_MOVING_LOG names a
-// folder in which each case leaves its state and its counts, so that a later run goes on from there;
-// RICOCHET_MOVING_SECONDS says after how many seconds a case leaves off.
+// A long run has a thousand steps of a thousand particles each. RICOCHET_MOVING_STEPS=whole sets the full numbers, 10^5
+// steps of 10^4 particles (10^4 of 10^5 for deforming meshes), which take many runs. RICOCHET_MOVING_LOG names a folder
+// in which each case saves its state and its counts, so that a later run continues. RICOCHET_MOVING_SECONDS limits the
+// time of a case.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,11 +37,11 @@ namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
 constexpr double kTurn = 2.0 * 3.14159265358979323846;
-constexpr double kStep = 0.01;  // s
+constexpr double kStep = 0.01;  // in s
 
-const char* setting(const char* name) { return std::getenv(name); }  // NOLINT(concurrency-mt-unsafe): nothing sets it
+const char* setting(const char* name) { return std::getenv(name); }  // NOLINT(concurrency-mt-unsafe): no code sets it
 
-/// How much of a case is to be done.
+/// Amount of work for a case.
 struct Amount {
     std::uint64_t steps;
     std::uint64_t particles;
@@ -57,7 +57,7 @@ Amount amount_wanted(bool deforms) {
     return {60, static_cast<std::uint64_t>(std::max(20, test::scaled(100))), 20};
 }
 
-/// Points in a closed mesh, or on a sheet.
+/// Returns an emitter of points in a closed mesh, or on a sheet.
 EmitterDescription points_in(EmitterShape shape, double size, std::uint64_t count) {
     EmitterDescription emitter;
     emitter.shape = std::move(shape);
@@ -66,7 +66,7 @@ EmitterDescription points_in(EmitterShape shape, double size, std::uint64_t coun
     return emitter;
 }
 
-/// One case: what moves, and which side of it particles have to be on.
+/// Case with its moving collider and the side on which particles must stay.
 class Case {
 public:
     explicit Case(std::string name) : name_(std::move(name)) {
@@ -97,7 +97,7 @@ public:
         return setup;
     }
 
-    /// How many are on the wrong side, by what knows nothing of sweeps and certificates.
+    /// Returns the number of particles on the wrong side, computed independently of sweeps and certificates.
     [[nodiscard]] std::uint64_t count_outside(const Simulation& simulation) const {
         const TriangleMesh mesh = *simulation.collider_mesh(0);
         const std::span<const Vec3> positions = simulation.particles().position;
@@ -136,10 +136,10 @@ private:
     }
 
     std::string name_;
-    std::shared_ptr<const TriangleMesh> mesh_;  // of a case that does not deform
+    std::shared_ptr<const TriangleMesh> mesh_;  // for cases without deformation
 };
 
-/// What is left of a case between two runs: NAME.state, and NAME.log with a line for each count.
+/// Files of a case between two runs: NAME.state, and NAME.log with a line for each count.
 class Ledger {
 public:
     explicit Ledger(const std::string& name) {
@@ -150,7 +150,7 @@ public:
         log_ = folder / (name + ".log");
     }
 
-    /// The state that was left; empty at the begin.
+    /// Returns the saved state, or an empty list at the start.
     [[nodiscard]] std::vector<char> state() const {
         std::ifstream file(state_, std::ios::binary);
         return {std::istreambuf_iterator<char>(file), {}};
@@ -190,13 +190,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Steps up to the next count, from a state to another; the verifier looks at one such stretch in ten.
+/// Steps up to the next count, from one state to another. The verifier checks one stretch in ten.
 class Stretch {
 public:
     Stretch(const Case& that, const Amount& amount, const Ledger& ledger)
         : that_(that), amount_(amount), ledger_(ledger) {}
 
-    /// Returns how many steps there have been in all.
+    /// Returns the total number of steps.
     std::uint64_t go(std::vector<char>& state, std::uint64_t number) {
         const auto start = std::chrono::steady_clock::now();
         SimulationSetup setup = that_.setup(amount_);
@@ -241,7 +241,7 @@ TEST_P(ManyMovingSteps, LeaveEveryParticleOnItsSide) {
     const auto start = std::chrono::steady_clock::now();
     std::vector<char> state = ledger.state();
     Stretch stretch(that, amount, ledger);
-    // In what order the stretches are verified depends on where a run has begun; all that is claimed does not.
+    // The order of verified stretches depends on the start of a run. The claims do not depend on it.
     std::uint64_t steps = 0;
     for (std::uint64_t number = 0; steps < amount.steps && seconds_since(start) < most && !HasFailure(); ++number) {
         steps = stretch.go(state, number);

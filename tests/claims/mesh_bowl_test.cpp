@@ -1,5 +1,5 @@
-// Does a bowl of triangles tend to the smooth one as it is refined? A facet's edge takes what it takes of the speed
-// (by the angle that it turns, h / R, squared), so the paths differ by the edge length's first order at most.
+// A bowl of triangles converges to the smooth bowl as it is refined. The edge of a facet reduces the speed by the
+// square of its angle h / R. The paths therefore differ by at most first order in the edge length.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
-constexpr double kAngle = 0.5;  // where it starts, beside the lowest point
+constexpr double kAngle = 0.5;  // start angle from the lowest point
 
-/// The position on the way from the centre along `direction` where the surface is `radius` away.
+/// Returns the position from the centre along `direction` at which the surface is `radius` away.
 Vec3 touching(const std::vector<ColliderDescription>& colliders, const Vec3& direction, double radius) {
     const CollisionQueries queries(colliders);
     double low = 0.0;
@@ -39,8 +39,8 @@ ContactScene swing(ColliderDescription bowl, const Vec3& direction, double radiu
     return scene;
 }
 
-/// The largest distance between the paths in an icosphere of 8 * 4^levels triangles and in the ball, m, the mean over
-/// five directions of start.
+/// Returns the largest distance between the paths in an icosphere of 8 * 4^levels triangles and in the ball, in m. It
+/// is the mean over five start directions.
 double distance_from_smooth(int levels, double radius, double friction) {
     double sum = 0.0;
     for (const double azimuth : {0.1, 0.4, 0.8, 1.3, 1.9}) {
@@ -71,17 +71,18 @@ INSTANTIATE_TEST_SUITE_P(Of, MeshBowl,
                                     (test.param.second > 0.0 ? "WithFriction" : "WithoutFriction");
                          });
 
-TEST_P(MeshBowl, TendsToTheSmoothOneAtFirstOrder) {
+TEST_P(MeshBowl, ConvergesToTheSmoothBowlAtFirstOrder) {
     const auto [radius, friction] = GetParam();
     const double coarse = distance_from_smooth(3, radius, friction);
     double last = coarse;
     for (const int factor : {2, 4, 8}) {
         const double error = distance_from_smooth(factor == 2 ? 4 : factor == 4 ? 5 : 6, radius, friction);
-        // First order or better; half as much again for the few edges that a path happens to meet.
+        // The convergence is of first order or better. The factor 1.5 allows for the small number of edges that a path
+        // crosses.
         EXPECT_LT(error, 1.5 * coarse / factor) << "refined " << factor << " times, before " << last;
         last = error;
     }
-    EXPECT_LT(coarse, 0.3);  // m: it is the same swing
+    EXPECT_LT(coarse, 0.3);  // in m: it is the same swing
 }
 
 }  // namespace RICOCHET_FILE

@@ -1,4 +1,4 @@
-// Do particles hit colliders that move at the right time, with the right speed, and does none get through?
+// Particles hit moving colliders at the right time and with the right speed, and none passes through.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,8 @@ constexpr double kG = 9.81;
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
 
-// Between a wall at rest at 0 and one that comes from 1 m at 0.1 m/s: t of each impact from the one before.
+// A ball flies between a wall at rest at 0 and one that comes from 1 m at 0.1 m/s. The time of each impact follows from
+// the previous one.
 TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
     for (const double radius : {0.0, 0.01}) {
         auto setup = setup_of(
@@ -52,7 +53,8 @@ TEST(ABallBetweenClosingWalls, GainsTwiceTheSpeedOfTheWallAtEachImpactOnIt) {
     }
 }
 
-// A cloud in a cube that turns about a skew axis: nothing comes out, and the verifier, with its own arithmetic, agrees.
+// A cloud is in a cube that turns about a skew axis. No particle leaves it, and the verifier confirms that with its own
+// arithmetic.
 TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
     for (const double radius : {0.0, 0.02}) {
         auto setup = setup_of({frame_of("spin", {Spin{{1, 2, 3}, 400.0}})},
@@ -74,8 +76,8 @@ TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
     }
 }
 
-// The same cloud, as it is seen from a frame that moves steadily: the same impacts.
-TEST(Impacts, AreTheSameSeenFromAFrameThatMovesSteadily) {
+// The same cloud, described in a uniformly moving frame, has the same impacts.
+TEST(Impacts, AreTheSameInAUniformlyMovingFrame) {
     const Vec3 drift{1.5, -0.7, 0.4};
     for (const double radius : {0.0, 0.05}) {
         std::vector<std::vector<ContactRecord>> contacts;
@@ -110,8 +112,8 @@ TEST(Impacts, AreTheSameSeenFromAFrameThatMovesSteadily) {
     }
 }
 
-// Turning about its own axis shows nowhere, without friction.
-TEST(ABallAndACylinder, ThatTurnAboutTheirOwnAxisAreNoOthersThanAtRest) {
+// Rotation about a body's own axis has no effect without friction.
+TEST(ABallAndACylinder, TurningAboutTheirOwnAxisActAsAtRest) {
     for (const double radius : {0.0, 0.05}) {
         std::vector<std::vector<ContactRecord>> contacts;
         for (const bool turns : {false, true}) {
@@ -132,7 +134,8 @@ TEST(ABallAndACylinder, ThatTurnAboutTheirOwnAxisAreNoOthersThanAtRest) {
             contacts.push_back(all_contacts(simulation));
         }
         EXPECT_GT(contacts[0].size(), 100U);
-        // Chaos lets rounding grow with every impact on the convex walls: the first ten of each particle.
+        // Chaos amplifies rounding at every impact on the convex walls, so only the first impacts of each particle are
+        // compared.
         std::vector<int> seen(40, 0);
         std::size_t other = 0;
         for (const ContactRecord& a : contacts[0]) {
@@ -149,9 +152,9 @@ TEST(ABallAndACylinder, ThatTurnAboutTheirOwnAxisAreNoOthersThanAtRest) {
     }
 }
 
-// Seen from the frame that turns there are Coriolis and centrifugal forces, and walls at rest.
-TEST(Walls, ThatTurnAreWallsAtRestWithTheForcesOfTheirFrame) {
-    const Vec3 turning{0.3, -0.5, 1.2};  // rad/s
+// In the rotating frame the walls are at rest, and Coriolis and centrifugal forces act.
+TEST(Walls, ThatTurnActAsWallsAtRestWithTheForcesOfTheirFrame) {
+    const Vec3 turning{0.3, -0.5, 1.2};  // in rad/s
     const double rate = length(turning);
     for (const double radius : {0.0, 0.04}) {
         std::vector<std::vector<ContactRecord>> contacts;
@@ -169,7 +172,7 @@ TEST(Walls, ThatTurnAreWallsAtRestWithTheForcesOfTheirFrame) {
             for (int k = 0; k < 10; ++k) {
                 const Vec3 p{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
                 const Vec3 v{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5};
-                // At 0 s both frames are the same.
+                // At 0 s both frames coincide.
                 setup.particles.push_back(
                     particle_of(0.6 * p, 3.0 * v - (turns ? Vec3{} : cross(turning, 0.6 * p)), radius));
             }
@@ -193,8 +196,8 @@ TEST(Walls, ThatTurnAreWallsAtRestWithTheForcesOfTheirFrame) {
     }
 }
 
-/// The first time at which a point on a straight way leaves a cube that turns about an axis through the origin: the
-/// true motion, looked at in small steps and bracketed, in long double.
+/// Returns the first time at which a point on a straight path leaves a cube that turns about an axis through the
+/// origin. It samples the exact motion in small steps and brackets the root, in long double.
 long double first_exit(const Vec3& from, const Vec3& velocity, const Vec3& axis, long double rate, double half) {
     using Long = long double;
     const auto outside = [&](Long t) {
@@ -219,9 +222,9 @@ long double first_exit(const Vec3& from, const Vec3& velocity, const Vec3& axis,
     return high;
 }
 
-TEST(APoint, HitsATurningCubeWhenItTrulyComesToIt) {
+TEST(APoint, HitsATurningCubeAtTheExactTime) {
     const Vec3 axis{2, -1, 0.5};
-    const double rate = 500.0;  // degrees/s
+    const double rate = 500.0;  // in degrees/s
     auto setup =
         setup_of({frame_of("spin", {Spin{axis, rate}})}, {{"box", CuboidShape{{1, 1, 1}, {}}, 0, "spin"}}, 0.05, 0.5);
     RandomSequence random(5, 1, 0);
@@ -243,9 +246,9 @@ TEST(APoint, HitsATurningCubeWhenItTrulyComesToIt) {
     EXPECT_GT(std::count(hit.begin(), hit.end(), true), 250);
 }
 
-// On a table that turns at w a sphere that rolls goes round in a circle at 2/7 of that (J. A. Burns, "Ball rolling on a
+// A sphere that rolls on a table turning at w moves in a circle at 2/7 of w (J. A. Burns, "Ball rolling on a
 // turntable", American Journal of Physics 49, 1981).
-TEST(ASphereOnATurntable, GoesRoundAtTwoSeventhsOfItsRate) {
+TEST(ASphereOnATurntable, OrbitsAtTwoSeventhsOfItsRate) {
     const double w = 3.0;
     const double radius = 0.05;
     const Vec3 at{0.4, 0.1, radius};
@@ -272,7 +275,7 @@ TEST(ASphereOnATurntable, GoesRoundAtTwoSeventhsOfItsRate) {
     EXPECT_LT(error(0.001), 1e-6);
 }
 
-TEST(ASphere, RestsOnABodyThatMovesUniformlyAndStaysWhereItIsOnItToTheLastBit) {
+TEST(ASphere, KeepsItsPositionOnAUniformlyMovingBodyToTheLastBit) {
     for (const Vec3& axis : {Vec3{0, 0, 1}}) {
         auto setup = setup_of({frame_of("truck", {steady({2, 0.5, 0}), Spin{axis, 30.0}})},
                               {{"floor", CuboidShape{{3, 3, 0.2}, {{0, 0, -0.1}}}, 0, "truck"}}, 0.01, 4.0);
@@ -301,7 +304,7 @@ TEST(ASphere, RestsOnABodyThatMovesUniformlyAndStaysWhereItIsOnItToTheLastBit) {
     }
 }
 
-/// The first time after `from` at which a ball that flies freely comes to the table A sin(omega t); bracketed.
+/// Returns the first time after `from` at which a freely flying ball reaches the table A sin(omega t), by bracketing.
 double next_landing(double from, double height, double speed, double amplitude, double omega) {
     const auto gap = [&](double t) {
         const double s = t - from;
@@ -317,8 +320,8 @@ double next_landing(double from, double height, double speed, double amplitude, 
     return low;
 }
 
-// Chaos would not let two runs agree for long: each landing is found from the impact before it.
-TEST(ABallOnAnOscillatingTable, LandsWhenItTrulyComesToItEachTime) {
+// Chaos separates any two runs soon. Each landing is therefore predicted from the previous impact.
+TEST(ABallOnAnOscillatingTable, LandsAtTheExactTimeEachTime) {
     const double frequency = 10.0;
     const double omega = 2.0 * kPi * frequency;
     const double amplitude = 1.2 * kG / (omega * omega);
@@ -340,7 +343,7 @@ TEST(ABallOnAnOscillatingTable, LandsWhenItTrulyComesToItEachTime) {
             if (from_table < -1e-9) {
                 EXPECT_NEAR(after, -0.5 * from_table, 1e-12);
             }
-            if (after < 2e-3) continue;  // contact that lasts
+            if (after < 2e-3) continue;  // persistent contact
             const double height = amplitude * std::sin(omega * before.time) + 1e-13;
             EXPECT_NEAR(contacts[k].time, next_landing(before.time, height, before.velocity_after.z, amplitude, omega),
                         1e-10)
@@ -351,9 +354,9 @@ TEST(ABallOnAnOscillatingTable, LandsWhenItTrulyComesToItEachTime) {
     }
 }
 
-// It lies on the table until that falls away faster than it can: at sin(omega t) = g / (A omega^2), with the speed of
-// the table, whatever the time step.
-TEST(APointOnATable, TakesOffWhereTheTableFallsAwayWithG) {
+// A point lies on the table until the table falls away faster than gravity. That happens at sin(omega t) = g / (A
+// omega^2), with the speed of the table, for any time step.
+TEST(APointOnATable, TakesOffWhenTheTableAcceleratesDownwardsAtG) {
     const double frequency = 5.0;
     const double omega = 2.0 * kPi * frequency;
     const double gamma = 1.7;
@@ -375,10 +378,10 @@ TEST(APointOnATable, TakesOffWhereTheTableFallsAwayWithG) {
     }
 }
 
-// On a ramp that turns slowly it slips where the slope exceeds the angle of friction, to the time at which it does.
-TEST(APointOnATurningRamp, SlipsWhereTheSlopeExceedsTheAngleOfFriction) {
+// On a slowly turning ramp the point starts to slip when the slope exceeds the angle of friction.
+TEST(APointOnATurningRamp, SlipsWhenTheSlopeExceedsTheAngleOfFriction) {
     const double friction = 0.3;
-    const double rate = 0.01;  // degrees/s: what the turning itself adds is below 1e-9
+    const double rate = 0.01;  // in degrees/s; the rotation itself adds less than 1e-9
     auto setup = setup_of({frame_of("ramp", {Spin{{0, 1, 0}, rate}})},
                           {{"ramp", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "ramp"}}, 0.5, 1800.0);
     setup.options.verify = false;
@@ -398,7 +401,8 @@ TEST(APointOnATurningRamp, SlipsWhereTheSlopeExceedsTheAngleOfFriction) {
     EXPECT_LE(simulation.time() - 0.5, slips_at + 0.5 + 1e-3);
 }
 
-// Pushed along a floor with friction it goes with the blade, which feels the friction and its own push's start.
+// The blade pushes a particle along a floor with friction. The particle moves with the blade, and the blade receives
+// the friction and the impulse of the start.
 TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     const double u = 0.5;
     const double friction = 0.4;
@@ -419,8 +423,8 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
         EXPECT_NEAR(p.position[0].x, u * 3.0 + radius, 1e-12);
         EXPECT_NEAR(p.velocity[0].x, u, 1e-12);
         EXPECT_NEAR(p.position[0].z, radius, 1e-13);
-        // A point slides: the blade makes up for friction. A sphere rolls, and the blade, without friction, does
-        // nothing.
+        // For a sliding point, the blade balances the friction. A sphere rolls, and the frictionless blade does no
+        // work.
         const double push = radius > 0.0 ? 0.0 : friction * kG * (3.0 - start);
         EXPECT_NEAR(before - simulation.triangle_totals(1).impulse[0].x, push, 1e-9);
         EXPECT_EQ(simulation.statistics().violations, 0U);
@@ -429,7 +433,8 @@ TEST(APointBeforeABlade, IsPushedAlongTheFloorWithTheBladesSpeed) {
     }
 }
 
-// A plane that turns about the origin pushes it along a wall one metre away: it stays at x = tan(omega t).
+// A plane that turns about the origin pushes the point along a wall one metre away. The point stays at x = tan(omega
+// t).
 TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
     for (const double step : {0.01, 0.04}) {
         for (const double rate : {0.5, 1.0}) {
@@ -450,7 +455,8 @@ TEST(APointBeforeATurningArm, IsPushedAlongAWallAndNotThroughTheArm) {
     }
 }
 
-// A blade sweeps it over the inside of a ball, where no frame has both at rest: it spirals outward along the blade.
+// The blade sweeps a point over the inside of a ball. No frame has both surfaces at rest. The point spirals outward
+// along the blade.
 TEST(APointBeforeATurningBlade, IsSweptThroughABowl) {
     std::vector<Vec3> ends;
     for (const double step : {0.01, 0.005}) {
@@ -470,8 +476,8 @@ TEST(APointBeforeATurningBlade, IsSweptThroughABowl) {
     EXPECT_GT(length(ends[0]), 0.5);
 }
 
-// An open cup full of spheres, carried, tipped and shaken in steps up to a tenth of a second.
-TEST(ACup, LosesNothingThroughItsWalls) {
+// An open cup full of spheres is carried, tipped and shaken in steps of up to a tenth of a second.
+TEST(ACup, LosesNoSphereThroughItsWalls) {
     for (const double step : {0.01, 0.1}) {
         std::vector<FrameMotion> motions{KeyedTranslation{KeyedCurve<Vec3>(
                                              {{0.0, {0, 0, 0}}, {1.0, {1, 0, 0.5}}, {2.0, {1, 1, 1}}, {3.0, {0, 0, 0}}},
@@ -496,13 +502,13 @@ TEST(ACup, LosesNothingThroughItsWalls) {
     }
 }
 
-/// A frame that rises at 1 m/s until 0.47 s, in a direction, and then stands still.
+/// Returns a frame that moves with the given velocity until 0.47 s and then stops.
 FrameDescription stopping(const Vec3& velocity) {
     return frame_of("table", {KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.47, 0.47 * velocity}})}});
 }
 
-// Where a body's velocity jumps, what lies on it goes on with its own.
-TEST(APointOnATable, IsThrownOffOrSlidesOnWhereTheTableStopsAtOnce) {
+// When the velocity of a body jumps, a particle on it keeps its own velocity.
+TEST(APointOnATable, IsThrownOffOrSlidesOnIfTheTableStopsSuddenly) {
     for (const double step : {0.01, 0.03}) {
         for (const Vec3& velocity : {Vec3{0, 0, 1}, Vec3{1, 0, 0}}) {
             auto setup =
@@ -522,8 +528,9 @@ TEST(APointOnATable, IsThrownOffOrSlidesOnWhereTheTableStopsAtOnce) {
     }
 }
 
-// Its frame's coordinates are near zero there, and the world's are not: what is kept off must be more than they round.
-TEST(APointAtTheOriginOfItsFrame, IsCarriedAndNotLostByRounding) {
+// The frame's coordinates are near zero there, but the world's are not. The contact offset must exceed the rounding of
+// the world's coordinates.
+TEST(APointAtTheOriginOfItsFrame, IsCarriedDespiteRounding) {
     for (const double direction : {1.0, -0.1}) {
         for (const bool is_box : {false, true}) {
             ColliderShape shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
@@ -540,7 +547,7 @@ TEST(APointAtTheOriginOfItsFrame, IsCarriedAndNotLostByRounding) {
     }
 }
 
-// A centre exactly on a surface has no side: it begins on the one that the normal points to.
+// A centre exactly on a surface has no side. The particle starts on the side of the normal.
 TEST(AParticleThatIsBornOnAMovingSurface, LeavesIt) {
     for (const double radius : {0.0, 0.01}) {
         auto setup = setup_of({frame_of("floor", {steady({0.5, 0, 0.1})})},
@@ -554,8 +561,8 @@ TEST(AParticleThatIsBornOnAMovingSurface, LeavesIt) {
     }
 }
 
-// In a frame that stands still nothing is other than in the world, by every integrator.
-TEST(LastingContact, InAFrameThatStandsStillIsThatOfTheWorldByEveryIntegrator) {
+// In a frame at rest every result equals that in the world, with every integrator.
+TEST(LastingContact, InAFrameAtRestIsThatOfTheWorldWithEveryIntegrator) {
     for (const IntegratorKind kind :
          {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler, IntegratorKind::implicit_euler,
           IntegratorKind::ballistic, IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4,
@@ -571,7 +578,7 @@ TEST(LastingContact, InAFrameThatStandsStillIsThatOfTheWorldByEveryIntegrator) {
             static_cast<void>(all_contacts(simulation));
             const auto what = static_cast<int>(kind);
             EXPECT_NEAR(simulation.particles().position[0].x, 1.6, 1e-12) << what;
-            // Straight flights with forward Euler's kicks at their ends hop by some g h^2.
+            // Straight flights with forward Euler, whose velocity changes act at their ends, bounce by about g h^2.
             const double hop = kind == IntegratorKind::forward_euler ? 2e-3 : 1e-12;
             EXPECT_NEAR(simulation.particles().position[0].z, radius, hop) << what;
             EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0) << what;
@@ -579,8 +586,8 @@ TEST(LastingContact, InAFrameThatStandsStillIsThatOfTheWorldByEveryIntegrator) {
     }
 }
 
-/// m, between where the upper end of a spring is that lands, without friction, on a plane at rest, and on one that
-/// moves along itself.
+/// Returns the distance, in m, between the upper ends of two springs that land without friction. One lands on a plane
+/// at rest, and one on a plane that moves along itself.
 double apart_on_a_plane_that_moves(double step) {
     std::vector<Vec3> upper;
     for (const bool moves : {false, true}) {
@@ -600,17 +607,17 @@ double apart_on_a_plane_that_moves(double step) {
     return length(upper[0] - upper[1]);
 }
 
-// What a plane at rest gives is a part of the plan, what one that moves gives is not, and is made good at the step's
-// end: the same to second order.
-TEST(ASpring, LandsOnAPlaneThatMovesAlongItselfAsOnOneAtRestToSecondOrder) {
+// The impulse of a plane at rest is part of the plan. The impulse of a moving plane is not, and a correction at the end
+// of the step adds it. Both results agree to second order.
+TEST(ASpring, LandsEquallyOnAPlaneAtRestAndMovingAlongItselfToSecondOrder) {
     const double coarse = apart_on_a_plane_that_moves(0.002);
     const double fine = apart_on_a_plane_that_moves(0.001);
     EXPECT_LT(coarse, 1e-4);
     EXPECT_LT(fine, coarse / 3.8);
 }
 
-// Numbers of threads, the order of colliders, and a restart in the middle change no bit.
-TEST(AScene, WithMovingCollidersHasTheSameBitsHoweverItIsRun) {
+// The number of threads, the order of colliders, and a restart in the middle change no bit.
+TEST(AScene, WithMovingCollidersHasTheSameBitsInAnyKindOfRun) {
     const auto make = [](bool shuffled) {
         auto setup = setup_of({frame_of("rotor", {Spin{{0, 0, 1}, 200.0}}), frame_of("lift", {steady({0, 0, 0.1})})},
                               {{"pan", CylinderShape{1.0, 2.0, {{0, 0, 1}}}, 0},

@@ -1,5 +1,5 @@
-// What colliders that move give to particles, as it is recorded: each impulse, and the sums of momentum, angular
-// momentum and energy over all particles, step by step.
+// Recorded impulses of moving colliders on particles: each impulse, and in each step the sums of momentum, angular
+// momentum and energy over all particles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A paddle that spins and is shaken, and a ball that swings about a pole beside it, in a room at rest.
+/// Returns a room at rest with a paddle that spins and shakes, and beside it a ball that swings about a pole.
 SimulationSetup stirred_room(Material material, double radius, int particles, std::uint64_t seed) {
     auto setup = setup_of({frame_of("paddle", {Oscillation{{0.1, 0.2, 0.05}, 1.3, 40.0}, Spin{{1, 2, 3}, 300.0}}),
                            frame_of("pole", {Swing{{0, 0, 1}, 80.0, 0.9, 0.0}}, {0, 0, 1.2})},
@@ -43,7 +43,7 @@ struct Sums {
     Vec3 momentum;
     Vec3 angular_momentum;  ///< about the origin, with spin
     double energy = 0.0;    ///< kinetic
-    double scale = 0.0;     ///< of momentum: without cancellation
+    double scale = 0.0;     ///< sum of momenta without cancellation
 };
 
 Sums sums_of(const Particles& particles) {
@@ -64,13 +64,13 @@ Sums sums_of(const Particles& particles) {
 Vec3 impulse_of(const ContactRecord& record) { return record.mass * (record.velocity_after - record.velocity_before); }
 Vec3 foot_of(const ContactRecord& record) { return record.position - record.radius * record.normal; }
 
-/// Of the point of its collider that was touched: from the frame's pose at the time of the impact.
+/// Returns the velocity of the collider at the touched point, from the frame's pose at the time of the impact.
 Vec3 wall_velocity(const Simulation& simulation, const ContactRecord& record) {
     const MovingPose pose = simulation.collider_pose(simulation.surface_name(record.surface).collider, record.time);
     return pose.velocity + cross(pose.angular_velocity, foot_of(record) - pose.world_from_frame.translation);
 }
 
-TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusEOfItsApproach) {
+TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusETimesItsApproach) {
     for (const double e : {1.0, 0.6}) {
         for (const double radius : {0.0, 0.05}) {
             Simulation simulation(stirred_room({"", e, 0.0}, radius, test::scaled(400), 21));
@@ -89,7 +89,8 @@ TEST(EveryImpulseOfASmoothWallThatMoves, IsOnePlusEOfItsApproach) {
     }
 }
 
-/// Runs it step by step: what all particles have gained is what impacts have given them, with arms to the contacts.
+/// Steps the simulation and checks the balances. All gains of the particles must equal the impulses of the impacts,
+/// with lever arms to the contacts.
 void expect_closed(Simulation& simulation, bool has_energy) {
     std::size_t contacts = 0;
     Vec3 totals;
@@ -121,7 +122,7 @@ void expect_closed(Simulation& simulation, bool has_energy) {
             ASSERT_NEAR(after.energy - before.energy, work, 1e-12 * (before.energy + after.energy))
                 << simulation.time();
         }
-        // The totals of all surfaces have the same.
+        // The totals of all surfaces must agree.
         const Vec3 given = total_impulse();
         ASSERT_LT(length(given - totals + impulse), 1e-12 * (scale + length(given))) << simulation.time();
         totals = given;
@@ -130,25 +131,25 @@ void expect_closed(Simulation& simulation, bool has_energy) {
     EXPECT_GT(contacts, simulation.particles().size());
 }
 
-// Elastic and smooth: the work of the walls, J . w, is all the energy that is given.
-TEST(MomentumAndEnergy, GivenByCollidersThatMoveAreTheirRecordedImpulses) {
+// Elastic and smooth: the work of the walls, J . w, is the whole energy gain.
+TEST(MomentumAndEnergy, GivenByMovingCollidersEqualTheirRecordedImpulses) {
     for (const double radius : {0.0, 0.05}) {
         Simulation simulation(stirred_room({"", 1.0, 0.0}, radius, test::scaled(400), 22));
         expect_closed(simulation, true);
     }
 }
 
-// With friction spheres take spin: their angular momentum closes with it.
-TEST(MomentumAndAngularMomentum, AreClosedWithFrictionAndSpinToo) {
+// With friction, spheres gain spin, which is part of the balance of angular momentum.
+TEST(MomentumAndAngularMomentum, AreBalancedWithFrictionAndSpin) {
     for (const double radius : {0.0, 0.05}) {
         Simulation simulation(stirred_room({"", 0.7, 0.4}, radius, test::scaled(400), 23));
         expect_closed(simulation, false);
     }
 }
 
-// Points and spheres that slide, roll and rest on trays that swing, turn and are shaken: what the trays are recorded to
-// have been given is what particles have lost, also where contact lasts.
-TEST(MomentumOfContactThatLasts, IsClosedWithWhatCollidersAreGiven) {
+// Points and spheres slide, roll and rest on trays that swing, turn and shake. The recorded momentum of the trays must
+// equal the loss of the particles, also in persistent contact.
+TEST(MomentumOfContactThatLasts, IsBalancedWithTheMomentumOfColliders) {
     for (const double radius : {0.0, 0.05}) {
         const Vec3 gravity{0, 0, -9.81};
         SimulationSetup setup = setup_of(
@@ -165,7 +166,7 @@ TEST(MomentumOfContactThatLasts, IsClosedWithWhatCollidersAreGiven) {
             setup.particles.push_back(particle_of(place, 0.3 * random.unit_vector(), radius));
         }
         Simulation simulation(std::move(setup));
-        const double mass = static_cast<double>(simulation.particles().size());  // kg
+        const double mass = static_cast<double>(simulation.particles().size());  // in kg
         Vec3 given;
         while (!simulation.finished()) {
             const Sums before = sums_of(simulation.particles());
@@ -185,11 +186,15 @@ TEST(MomentumOfContactThatLasts, IsClosedWithWhatCollidersAreGiven) {
     }
 }
 
-// A plate that turns in a cold beam along -z of speed u. At the lever s the beam comes with u cos(angle) + w s along
-// its normal, and as many particles a second as that says; each gives twice its momentum. Integrated over the plate and
-// over the angle, from -a to a:  impulse along z  2 rho d / w  int cos (2 h u^2 cos^2 + 2/3 h^3 w^2),  angular impulse
-// 2 rho d / w  int 4/3 h^3 u w cos,  h: half its width, d: its depth.
-TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature) {
+// A plate turns in a cold beam of speed u along -z. At the lever arm s the beam arrives with u cos(angle) + w s along
+// the plate's normal. The rate of particles is proportional to that, and each transfers twice its momentum. The
+// integrals over the plate and over the angle, from -a to a, are
+//
+//     impulse along z:  2 rho d / w  int cos (2 h u^2 cos^2 + 2/3 h^3 w^2),
+//     angular impulse:  2 rho d / w  int 4/3 h^3 u w cos,
+//
+// with h: half the width, and d: the depth of the plate.
+TEST(APlateThatTurnsInAColdBeam, ReceivesTheImpulseAndAngularImpulseOfTheQuadrature) {
     const double u = 10.0;
     const double w = 4.0;
     const double h = 0.5;
@@ -197,7 +202,7 @@ TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature
     const double angle = 0.4;
     const double duration = 2.0 * angle / w;
     const int count = test::scaled(40000);
-    // Turned by -angle at first, so that it faces the beam in the middle.
+    // The plate starts at -angle, so that it faces the beam in the middle of the run.
     auto setup = setup_of({frame_of("rotor", {KeyedRotation{{0, 1, 0},
                                                             KeyedCurve<double>({{0.0, -angle * 180.0 / kPi},
                                                                                 {1.0, (w - angle) * 180.0 / kPi}})}})},
@@ -210,7 +215,7 @@ TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature
     for (int k = 0; k < count; ++k) {
         Vec3 p;
         for (int axis = 0; axis < 3; ++axis) p[axis] = lower[axis] + random.uniform() * (upper[axis] - lower[axis]);
-        // Only what comes from the plate's front side.
+        // Only particles from the plate's front side are used.
         if (p.x * std::sin(-angle) + p.z * std::cos(angle) < 1e-3) continue;
         Particle particle = particle_of(p, {0, 0, -u});
         particle.mass = 1.0 / count;
@@ -221,7 +226,7 @@ TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature
     Vec3 torque;
     double hits = 0.0;
     for (const ContactRecord& record : all_contacts(simulation)) {
-        if (record.velocity_before != Vec3{0, 0, -u}) continue;  // its second one
+        if (record.velocity_before != Vec3{0, 0, -u}) continue;  // its second impact
         impulse -= impulse_of(record);
         torque -= cross(record.position, impulse_of(record));
         ++hits;
@@ -236,7 +241,7 @@ TEST(APlateThatTurnsInAColdBeam, TakesTheImpulseAndAngularImpulseOfItsQuadrature
     EXPECT_NEAR(impulse.z, -down, noise * down);
     EXPECT_NEAR(std::fabs(torque.y), turning, noise * down * h);
     EXPECT_NEAR(impulse.x, 0.0, noise * down);
-    EXPECT_LT(torque.y * w, 0.0);  // against its turning
+    EXPECT_LT(torque.y * w, 0.0);  // against its rotation
 }
 
 }  // namespace RICOCHET_FILE

@@ -1,7 +1,7 @@
-// Nothing leaks out of meshes that tumble: points and spheres that begin inside, with gravity, friction and contact
-// that lasts, stay inside in the mesh's own frame; the verifier checks every link with its own arithmetic.
+// Nothing leaks out of tumbling meshes. Points and spheres that start inside, with gravity, friction and persistent
+// contact, stay inside in the mesh's own frame. The verifier checks every segment with its own arithmetic.
 //
-// A long run: three hundred particles, and four hundred steps more.
+// A long run has three hundred particles and four hundred more steps.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -22,7 +22,7 @@ namespace RICOCHET_FILE {
 
 class TumblingMesh : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(TumblingMesh, LosesNothingThatBeginsInside) {
+TEST_P(TumblingMesh, LosesNoParticleThatStartsInside) {
     const auto mesh = mesh_by_name(GetParam());
     if (!mesh) GTEST_SKIP() << missing_mesh_sentence(GetParam());
     const Box3 box = bounds(mesh->mesh);

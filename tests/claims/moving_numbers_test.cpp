@@ -1,5 +1,5 @@
-// Closed forms and references for colliders that move and bodies that are pushed, each at its bound over long times: a
-// turntable for ten turns, a mesh that tumbles, a thousand hits on a body.
+// Closed forms and references for moving colliders and driven bodies over long times: a turntable for ten turns, a
+// tumbling mesh, a thousand hits on a body.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,14 +24,14 @@ namespace RICOCHET_FILE {
 constexpr double kPi = 3.14159265358979323846;
 constexpr long double kPiLong = 3.14159265358979323846L;
 
-/// By how much the radius of the orbit, and the angle gone through, over themselves, are off.
+/// Relative errors of the radius of the orbit and of the angle travelled.
 struct OrbitError {
     double radius;
     double angle;
 };
 
 OrbitError orbit_error(double step) {
-    const double w = 3.0;  // rad/s
+    const double w = 3.0;  // in rad/s
     const double radius = 0.05;
     const double turns = 10.0;
     const Vec3 at{0.4, 0.1, radius};
@@ -73,7 +73,7 @@ TEST(ASphereOnATurntable, KeepsTheRadiusAndTheRateOfItsOrbitForTenTurns) {
 using Long = long double;
 using LongVec = std::array<Long, 3>;
 
-/// Where a point of the world is in a body that turns about an axis and is shaken, in long double.
+/// Returns the coordinates of a point of the world in a body that turns about an axis and is shaken, in long double.
 LongVec seen_by_tumbler(const LongVec& x, const Vec3& axis, Long degrees_per_s, const Vec3& shake, Long frequency,
                         Long t) {
     const Long sine = std::sin(2.0L * kPiLong * frequency * t);
@@ -89,7 +89,7 @@ LongVec seen_by_tumbler(const LongVec& x, const Vec3& axis, Long degrees_per_s, 
             c * d[2] + s * (u[0] * d[1] - u[1] * d[0]) + (1 - c) * along * u[2]};
 }
 
-/// The largest height above the plane of a face: that a point has left a convex mesh is that it is above 0.
+/// Returns the largest height above the plane of a face. A point is outside a convex mesh if it is above 0.
 Long height_above(const TriangleMesh& mesh, const LongVec& y) {
     Long most = -1e30L;
     for (const Triangle& t : mesh.triangles) {
@@ -104,10 +104,10 @@ Long height_above(const TriangleMesh& mesh, const LongVec& y) {
     return most;
 }
 
-TEST(APoint, HitsATumblingMeshWhenItTrulyComesToIt) {
+TEST(APoint, HitsATumblingMeshAtTheExactTime) {
     const TriangleMesh mesh = sphere_mesh({}, 1.0, 1);  // convex
     const Vec3 axis{2, -1, 0.5};
-    const double rate = 300.0;  // degrees/s
+    const double rate = 300.0;  // in degrees/s
     const Vec3 shake{0.1, -0.05, 0.2};
     const double frequency = 1.5;
     auto setup = setup_of({frame_of("tumbler", {Oscillation{shake, frequency}, Spin{axis, rate}})},
@@ -163,7 +163,7 @@ Budget budget_of(const Simulation& simulation) {
     return sum;
 }
 
-/// A hollow box, free in space, with elastic points in it that are as heavy as it over `ratio`.
+/// Returns a hollow box, free in space, with elastic points in it. Their mass is that of the box divided by `ratio`.
 Simulation rattle(double ratio, std::uint64_t seed, double step, const SymmetricMatrix& shape) {
     FrameDescription frame = frame_of("box", {});
     frame.is_driven = true;
@@ -183,14 +183,14 @@ Simulation rattle(double ratio, std::uint64_t seed, double step, const Symmetric
     return Simulation(std::move(setup));
 }
 
-// An elastic hit is a part of the step of its own, which ends a billionth of the time to the next hit later, though it
-// lasts a millionth of the step at least: so much of the energy of a hit can come in or be lost.
-TEST(AThousandElasticHits, OnAFreeCubeKeepEnergyMomentumAndAngularMomentum) {
+// An elastic hit is a substep that ends a billionth of the time to the next hit later, but lasts at least a millionth
+// of the step. This limits the energy error of a hit.
+TEST(AThousandElasticHits, OnAFreeCubeConserveEnergyMomentumAndAngularMomentum) {
     for (const auto& [ratio, seed] : {std::pair(1.0, 12), {1.0, 4}, {0.3, 2}, {10.0, 12}, {1000.0, 12}}) {
         SCOPED_TRACE(std::to_string(ratio) + " " + std::to_string(seed));
         Simulation simulation = rattle(ratio, static_cast<std::uint64_t>(seed), 0.02, {0.2, 0.2, 0.2, 0.0, 0.0, 0.0});
         const Budget first = budget_of(simulation);
-        const double scale = 20.0 * 0.1 * 8.0;  // kg m/s
+        const double scale = 20.0 * 0.1 * 8.0;  // in kg m/s
         Budget before = first;
         double most = 0.0;
         while (!simulation.finished()) {
@@ -208,7 +208,7 @@ TEST(AThousandElasticHits, OnAFreeCubeKeepEnergyMomentumAndAngularMomentum) {
     }
 }
 
-/// A door on a spring, pelted by elastic points: the energy of all, with the spring's, over that at first.
+/// Returns a door on a spring, hit by elastic points.
 Simulation pelted_door(double step) {
     FrameDescription frame = frame_of("door", {});
     frame.is_driven = true;
@@ -235,9 +235,9 @@ Simulation pelted_door(double step) {
     return Simulation(std::move(setup));
 }
 
-// The spring is followed in closed form, wherever hits cut the step. What is left: a hit is answered with the body's
-// velocity at its time, and the body takes it where the part of the step ends.
-TEST(ADoorOnASpring, KeepsTheEnergyOfAllThatPeltsIt) {
+// The spring follows its closed form for any substeps. One error remains: the impact uses the body's velocity at its
+// time, but the body receives it at the end of the substep.
+TEST(ADoorOnASpring, ConservesTheEnergyTogetherWithTheParticlesThatHitIt) {
     for (const double step : {0.002, 0.02}) {
         SCOPED_TRACE(step);
         Simulation simulation = pelted_door(step);

@@ -1,5 +1,4 @@
-/// \file
-/// Scenes with colliders that move, run through the library's interface: what their tests share.
+/// \file Scenes with moving colliders, run through the library's interface. Shared by their tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +27,7 @@ namespace ricochet::testing {
     return {KeyedCurve<Vec3>({{0.0, {}}, {until, until * velocity}})};
 }
 
-/// A frame that spins about a skew axis, swings, and is shaken, by a mesh's size, m.
+/// Returns a frame that spins about a skew axis, swings, and shakes, in proportion to a mesh's size in m.
 [[nodiscard]] inline FrameDescription tumbling(double size, double spin) {
     FrameDescription frame;
     frame.name = "tumbling";
@@ -40,7 +39,7 @@ namespace ricochet::testing {
     return frame;
 }
 
-/// A verified run that records its contacts.
+/// Returns a verified run that records its contacts.
 [[nodiscard]] inline SimulationSetup setup_of(std::vector<FrameDescription> frames,
                                               std::vector<ColliderDescription> colliders, double time_step,
                                               double duration) {
@@ -52,7 +51,7 @@ namespace ricochet::testing {
     return setup;
 }
 
-/// Runs to the end; nothing is violated.
+/// Runs to the end and expects no violation. Returns all contact records.
 [[nodiscard]] inline std::vector<ContactRecord> all_contacts(Simulation& simulation) {
     std::vector<ContactRecord> all;
     while (!simulation.finished()) {

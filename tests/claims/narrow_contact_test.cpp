@@ -1,4 +1,4 @@
-// What becomes of a sphere where a curved surface is narrower than it, and of the load of one that lies in a groove?
+// Tests spheres in curved surfaces that are narrower than the sphere, and the loads of spheres in a groove.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = kStandardGravity;
 
-/// Half-axes, m, of the ellipsoid; its ends have a radius of curvature of 0.21^2 / 1.4 = 0.0315.
+/// Half axes of the ellipsoid, in m. Its ends have a radius of curvature of 0.21^2 / 1.4 = 0.0315.
 constexpr Vec3 kEgg{0.7, 0.21, 1.4};
 
 Simulation in_egg(double radius, double restitution, double friction, IntegratorKind integrator) {
@@ -31,8 +31,8 @@ Simulation in_egg(double radius, double restitution, double friction, Integrator
     return Simulation(std::move(setup));
 }
 
-// It touches both flanks where z^2 = (c^2 - b^2)(1 - r^2 / b^2) above the middle, and is off that plane by its steps.
-TEST(ASphereWiderThanTheTipOfAnEllipsoid, JamsBetweenItsFlanksWithoutAGainOfEnergy) {
+// The sphere touches both sides at z^2 = (c^2 - b^2)(1 - r^2 / b^2) above the middle. Its steps move it off that plane.
+TEST(ASphereWiderThanTheTipOfAnEllipsoid, JamsBetweenItsSidesWithoutEnergyGain) {
     for (const IntegratorKind integrator :
          {IntegratorKind::ballistic, IntegratorKind::rk4, IntegratorKind::symplectic_euler}) {
         for (const double restitution : {0.0, 0.3, 0.5}) {
@@ -62,7 +62,7 @@ TEST(ASphereNarrowerThanTheTipOfAnEllipsoid, RollsThroughIt) {
     EXPECT_GT(simulation.kinetic_energy(), 0.0);
 }
 
-/// Impulses on two walls at 60 degrees, N s, in the second in which a sphere lies between them.
+/// Returns the impulses on two walls at 60 degrees, in N s, while a sphere lies between them for one second.
 std::array<Vec3, 2> loads_of_groove(double time_step) {
     SimulationSetup setup;
     setup.options.time_step = time_step;
@@ -77,8 +77,9 @@ std::array<Vec3, 2> loads_of_groove(double time_step) {
     return {simulation.triangle_totals(0).impulse[0], simulation.triangle_totals(1).impulse[0]};
 }
 
-// With friction the load of a groove can be shared in many ways; one is chosen, for what rests, wakes and sleeps alike.
-TEST(ASphereThatLiesInAGroove, PushesItsWallsByTheSameForcesWhateverTheStep) {
+// With friction the load of a groove can be distributed in many ways. The same distribution must be used for resting,
+// waking and sleeping spheres.
+TEST(ASphereThatLiesInAGroove, LoadsItsWallsWithTheSameForcesForAnyStep) {
     const auto [first, other] = loads_of_groove(0.5);
     EXPECT_LT(first.y, -0.1);
     EXPECT_NEAR(first.z + other.z, -kG, 1e-9);

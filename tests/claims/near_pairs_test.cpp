@@ -1,4 +1,4 @@
-// Forces of near pairs in whole runs: energy and momentum, with walls and without.
+// Tests forces of near pairs in whole runs: energy and momentum, with and without walls.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using test::momentum;
 using test::momentum_scale;
 using testing::setup_of;
 
-/// Molecules on a grid with 1.15 diameters between them, with heat.
+/// Returns molecules on a grid with 1.15 diameters between them and thermal velocities.
 SimulationSetup molecules(int side, double time_step, double duration) {
     SimulationSetup setup = setup_of(time_step, duration);
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -34,7 +34,7 @@ SimulationSetup molecules(int side, double time_step, double duration) {
     return setup;
 }
 
-/// The largest change of the energy in a run, J, in which molecules bounce off a box or fly free.
+/// Returns the largest change of the energy in a run, in J. The molecules bounce off a box or fly freely.
 double energy_wander(bool in_box, double time_step) {
     SimulationSetup setup = molecules(5, time_step, 4.0);
     if (in_box) add_box(setup, 2.6);
@@ -49,7 +49,7 @@ double energy_wander(bool in_box, double time_step) {
     return largest;
 }
 
-TEST(LennardJones, KeepsEnergyInTheOrderOfTheMethodWithWallsAndWithout) {
+TEST(LennardJones, ConservesEnergyToTheOrderOfTheMethodWithAndWithoutWalls) {
     for (const bool in_box : {false, true}) {
         const double coarse = energy_wander(in_box, 0.008);
         const double fine = energy_wander(in_box, 0.002);
@@ -58,7 +58,7 @@ TEST(LennardJones, KeepsEnergyInTheOrderOfTheMethodWithWallsAndWithout) {
     }
 }
 
-TEST(LennardJones, KeepsMomentumOverAThousandSteps) {
+TEST(LennardJones, ConservesMomentumOverAThousandSteps) {
     SimulationSetup setup = molecules(5, 0.004, 4.0);
     Vec3 before;
     for (const Particle& p : setup.particles) before += p.mass * p.velocity;
@@ -67,9 +67,9 @@ TEST(LennardJones, KeepsMomentumOverAThousandSteps) {
     EXPECT_LT(length(momentum(run.particles()) - before), 1e-13 * momentum_scale(run.particles()));
 }
 
-// Two spheres that stick, thrown against a wall: damping along the line ends their oscillation, and the centre of mass
-// moves as that of one body.
-TEST(Cohesion, HoldsSpheresTogetherAfterABounce) {
+// Two cohesive spheres are thrown against a wall. Damping along their connecting line ends their oscillation, and their
+// centre of mass moves as that of one body.
+TEST(Cohesion, KeepsSpheresTogetherAfterABounce) {
     SimulationSetup setup = setup_of(0.001, 2.0);
     setup.particles = {body({0, 0, 1}, {0, 0, -1}, 1.0), body({0.2, 0, 1}, {0, 0, -1}, 1.0)};
     for (Particle& p : setup.particles) p.radius = 0.1;

@@ -1,5 +1,4 @@
-/// \file
-/// What tests of forces between particles begin with and ask.
+/// \file Shared scenes and functions for tests of forces between particles.
 #pragma once
 
 #include <cmath>
@@ -67,10 +66,10 @@ inline ChargeSettings unit_coulomb() {
     return settings;
 }
 
-/// Of the orbit of two_bodies().
+/// Eccentricity of the orbit of two_bodies().
 inline constexpr double kEccentricity = 0.3;
 
-/// Of masses 3 and 1 with G (m1 + m2) = 1, on an ellipse of semi-axis 1, at pericentre.
+/// Returns masses 3 and 1 with G (m1 + m2) = 1 on an ellipse of semi-axis 1, at pericentre.
 inline SimulationSetup two_bodies(double time_step, double duration) {
     SimulationSetup setup = testing::setup_of(time_step, duration);
     const double distance = 1.0 - kEccentricity;
@@ -81,7 +80,7 @@ inline SimulationSetup two_bodies(double time_step, double duration) {
     return setup;
 }
 
-/// Like charges in a ball.
+/// Returns like charges in a ball.
 inline SimulationSetup charged_gas(std::size_t count, double time_step, double duration) {
     SimulationSetup setup = testing::setup_of(time_step, duration);
     setup.attributes = {{"charge", 1, {}}};

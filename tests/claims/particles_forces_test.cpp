@@ -1,4 +1,5 @@
-// Forces between particles in whole runs: who takes part, births and deaths, bits, and what is refused.
+// Tests forces between particles in whole runs: participating particles, births and deaths, reproducible bits, and
+// refused settings.
 #include "ricochet/dynamics/particles_force.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ using test::gravity_of;
 using test::two_bodies;
 using testing::setup_of;
 
-TEST(ParticlesForces, ActBetweenThoseThatAreNamed) {
+TEST(ParticlesForces, ActBetweenTheNamedEmittersOnly) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.particles = {body({0, 0, 0}, {}, 1.0), body({1, 0, 0}, {}, 1.0), body({0, 1, 0}, {}, 1.0),
                        body({1, 1, 0}, {}, 1.0)};
@@ -51,7 +52,7 @@ EmitterDescription source(const std::string& name, const Vec3& at, double lifeti
     return emitter;
 }
 
-TEST(ParticlesForces, ActOnWhatIsBornOfAnEmitterFromItsNextStepOnUntilItDies) {
+TEST(ParticlesForces, ActOnEmittedParticlesFromTheirNextStepUntilTheyDie) {
     SimulationSetup setup = setup_of(0.01, 2.0);
     setup.emitters = {source("one", {-1, 0, 0}, 0.5), source("other", {1, 0, 0}, 0.5)};
     setup.particles_forces.push_back({make_mutual_gravity(gravity_of(0.02, 0.1)), {}, {1}});
@@ -76,7 +77,8 @@ TEST(ParticlesForces, ActOnWhatIsBornOfAnEmitterFromItsNextStepOnUntilItDies) {
     EXPECT_EQ(moved, pulled);
 }
 
-// Bits.
+// ---- reproducible bits
+// -----------------------------------------------------------------------------------------------
 
 SimulationSetup busy_scene() {
     SimulationSetup setup = charged_gas(40, 0.01, 0.4);
@@ -103,7 +105,7 @@ TEST(ParticlesForces, GiveTheSameBitsForAnyThreadCount) {
     }
 }
 
-TEST(ParticlesForces, GoOnFromASavedStateToTheSameBits) {
+TEST(ParticlesForces, ResumeFromASavedStateToTheSameBits) {
     Simulation whole(busy_scene());
     whole.advance(17);
     std::vector<std::byte> bytes;
@@ -128,9 +130,10 @@ TEST(ParticlesForces, NeverLeak) {
     EXPECT_EQ(run.statistics().energy_violations, 0U);
 }
 
-// A force of the user's own.
+// ---- a user-defined force
+// --------------------------------------------------------------------------------------------
 
-/// Drags all towards their mean velocity.
+/// Drags all particles towards their mean velocity.
 class Alignment final : public ParticlesForce {
 public:
     void add_accelerations(const ParticlesView& particles, std::span<Vec3> result) const override {
@@ -141,7 +144,7 @@ public:
     [[nodiscard]] std::optional<double> potential_energy(const ParticlesView&) const override { return 0.0; }
 };
 
-TEST(ParticlesForces, CanBeTheUsersOwn) {
+TEST(ParticlesForces, CanBeUserDefined) {
     SimulationSetup setup = setup_of(0.01, 2.0);
     setup.particles = {body({0, 0, 0}, {1, 0, 0}, 1.0), body({5, 0, 0}, {-2, 3, 0}, 1.0)};
     setup.particles_forces.push_back({std::make_shared<Alignment>()});
@@ -151,9 +154,10 @@ TEST(ParticlesForces, CanBeTheUsersOwn) {
     EXPECT_NEAR(difference.y, -3.0 * std::exp(-2.0), 1e-9);
 }
 
-// What cannot be.
+// ---- refused settings
+// ------------------------------------------------------------------------------------------------
 
-TEST(ParticlesForces, AreRefusedWithOneLineWhereTheyCannotAct) {
+TEST(ParticlesForces, AreRefusedWithOneLineIfTheyCannotAct) {
     const auto expect_refused = [](const char* words, const std::function<void(SimulationSetup&)>& change) {
         SimulationSetup setup = two_bodies(0.01, 1.0);
         change(setup);
@@ -177,9 +181,9 @@ TEST(ParticlesForces, AreRefusedWithOneLineWhereTheyCannotAct) {
     });
 }
 
-// Points at one place have no direction between them; a hair apart without softening the force is beyond all bounds,
-// and the run says so.
-TEST(ParticlesForces, OfParticlesAtOnePlaceDoNothingAndAHairApartEndTheRun) {
+// Coincident points have no direction between them. At a tiny distance without softening, the force exceeds all bounds
+// and the run reports it.
+TEST(ParticlesForces, AreZeroForCoincidentParticlesAndEndTheRunForNearlyCoincidentOnes) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.particles = {body({1, 2, 3}, {}, 1.0), body({1, 2, 3}, {}, 1.0)};
     setup.particles_forces.push_back({make_mutual_gravity(gravity_of(1.0))});

@@ -1,5 +1,5 @@
-// Statistics of straight paths in closed bodies: mean free paths, angles of incidence, hit rates and pressure, against
-// the values of integral geometry and kinetic theory.
+// Statistics of straight paths in closed bodies: mean free paths, angles of incidence, hit rates and pressure, compared
+// with integral geometry and kinetic theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,13 +29,13 @@ using testing::Sample;
 constexpr double kPi = 3.14159265358979323846;
 const Material kMirror{"mirror", 1.0, 0.0};
 
-/// A body full of molecules.
+/// Body full of molecules.
 struct Body {
     std::string name;
     std::vector<ColliderDescription> colliders;
     double volume;
     double surface;
-    double size;  // half an edge of a cube that holds it
+    double size;  // half the edge of an enclosing cube
     std::function<bool(const Vec3&)> is_inside;
 };
 
@@ -65,7 +65,7 @@ Vec3 random_place(const Body& body, RandomSequence& random) {
     return p;
 }
 
-/// What one molecule hit on its path, and how long that was.
+/// Hits of one molecule on its path, and the length of the path.
 struct Flown {
     std::vector<ContactRecord> hits;
     double way;
@@ -88,7 +88,7 @@ class GasIn : public ::testing::TestWithParam<Body (*)()> {};
 INSTANTIATE_TEST_SUITE_P(Bodies, GasIn, ::testing::Values(cube, ball, cylinder),
                          [](const auto& body) { return body.param().name; });
 
-// Cauchy: an isotropic, uniform ensemble hits the walls S / (4 V) times a length.
+// Cauchy: an isotropic, uniform ensemble hits the walls S / (4 V) times per unit length.
 TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
     const Body body = GetParam()();
     const double expected = body.surface / (4.0 * body.volume);
@@ -99,7 +99,8 @@ TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
     EXPECT_LT(rate.error(), 0.1 * expected);
 }
 
-// Flux through a wall weights by the cosine: its mean is 2/3, and sin^2 30 degrees of the hits come within 30 degrees.
+// Flux through a wall has a cosine weight. The mean cosine is 2/3, and the share sin^2 30 degrees of the hits is within
+// 30 degrees.
 TEST_P(GasIn, HitsTheWallsByTheCosineLaw) {
     RatioSample cosine(2.0 / 3.0);
     RatioSample within_thirty(0.25);
@@ -119,7 +120,7 @@ TEST_P(GasIn, HitsTheWallsByTheCosineLaw) {
 }
 
 // Per molecule of unit mass and speed: hits n v / 4 per area and time, pressure n m <v^2> / 3, n = 1 / V.
-TEST_P(GasIn, PressesOnTheWallsAsKineticTheorySays) {
+TEST_P(GasIn, HasThePressureOfKineticTheoryOnTheWalls) {
     const Body body = GetParam()();
     Sample pressure;
     fly_gas(body, test::scaled(4000), 50.0, [&](const Flown& flown) {
@@ -152,10 +153,10 @@ TEST(GasInABunny, FliesFourVolumesOverTheSurfaceBetweenHits) {
     EXPECT_NEAR(rate.mean(), expected, 4.0 * rate.error());
 }
 
-// The unit square with a disk in its middle; mirrors at the square's sides unfold into the lattice of disks.
-// N. Chernov, "Entropy, Lyapunov exponents, and mean free path for billiards", J. Stat. Phys. 88, 1997: (1 - pi r^2) /
-// (2 r).
-TEST(LatticeOfDisks, IsHitAtItsMeanFreePath) {
+// The unit square has a disk in its middle. Mirrors at the square's sides unfold it into the lattice of disks.
+// Source of the mean free path (1 - pi r^2) / (2 r): N. Chernov, "Entropy, Lyapunov exponents, and mean free path for
+// billiards", J. Stat. Phys. 88, 1997.
+TEST(LatticeOfDisks, IsHitOncePerMeanFreePath) {
     const double r = 0.25;
     const double expected = 2.0 * r / (1.0 - kPi * r * r);
     const std::vector<ColliderDescription> colliders{testing::plane_collider({0.5, 0, 0}, {-1, 0, 0}),

@@ -1,6 +1,6 @@
-// Every function of the public headers is tried with arguments that make no sense: each is refused with one line, or
-// has an answer that is documented; none crashes, hangs or says nothing. What a simulation is made of and asked is
-// tried in tests/simulation/senseless_arguments_test.cpp.
+// Calls every function of the public headers with invalid arguments. Each call is refused with one line, or has a
+// documented result. None may crash, hang or ignore the error.
+// The setup and queries of a simulation are tested in tests/simulation/senseless_arguments_test.cpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +24,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::array kNotFinite{kNan, kInfinity, -kInfinity};
 constexpr std::array kNoLength{0.0, -1.0, kNan, kInfinity};
 
-/// One line that is not empty.
+/// Expects an error with one line that is not empty.
 template <class Error = InputError>
 void expect_refused(const char* what, const std::function<void()>& call) {
     SCOPED_TRACE(what);
@@ -70,7 +70,7 @@ Particles two_particles() {
     return particles;
 }
 
-TEST(PublicFunctions, OfTheCoreRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidArgumentsOfTheCore) {
     expect_refused("threads", [] { const ThreadLimit limit(-1); });
     const auto nothing = [](std::size_t, std::size_t, std::size_t) {};
     expect_refused("block size", [&] { parallel_for_blocks(5, 0, nothing); });
@@ -91,7 +91,7 @@ TEST(PublicFunctions, OfTheCoreRefuseThem) {
     (void)morton_code({0, 0, 0}, Box3{});
 }
 
-TEST(PublicFunctions, OfMeshesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidMeshes) {
     expect_refused("corner", [] { (void)bounds(broken_mesh()); });
     expect_refused("corner", [] { (void)surface_area(broken_mesh()); });
     expect_refused("corner", [] { (void)signed_volume(broken_mesh()); });
@@ -111,7 +111,7 @@ TEST(PublicFunctions, OfMeshesRefuseThem) {
     EXPECT_FALSE(mesh_format_of("").has_value());
 }
 
-TEST(PublicFunctions, OfParticlesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidParticles) {
     expect_refused("name", [] { (void)AttributeTable({column("")}); });
     expect_refused("components", [] { (void)AttributeTable({column("a", 2)}); });
     expect_refused("twice", [] { (void)AttributeTable({column("a"), column("a")}); });
@@ -133,7 +133,7 @@ TEST(PublicFunctions, OfParticlesRefuseThem) {
     EXPECT_EQ(particles.size(), 2U);
 }
 
-TEST(PublicFunctions, OfForcesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidForces) {
     const ForceInput input{{0, 0, 0}, {1, 0, 0}, 1.0, 0.1, 0.0};
     expect_refused("null", [] {
         std::vector<std::unique_ptr<Force>> forces;
@@ -180,7 +180,7 @@ TEST(PublicFunctions, OfForcesRefuseThem) {
     EXPECT_GT(schiller_naumann_coefficient(1.0), 24.0);
 }
 
-TEST(PublicFunctions, OfForcesBetweenParticlesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidForcesBetweenParticles) {
     GravitySettings gravity;
     ChargeSettings charge;
     for (const double bad : kNotFinite) {
@@ -223,7 +223,7 @@ TEST(PublicFunctions, OfForcesBetweenParticlesRefuseThem) {
     expect_refused("function", [] { (void)make_pair_force({.cutoff = 1.0, .force = {}}); });
 }
 
-TEST(PublicFunctions, OfFlowsRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidFlows) {
     expect_refused("empty", [] { (void)make_flow({}); });
     expect_refused("null", [] { (void)make_flow_sum({nullptr}); });
     expect_refused("null", [] { (void)make_scaled_flow(nullptr, 1.0); });
@@ -280,7 +280,7 @@ TEST(PublicFunctions, OfFlowsRefuseThem) {
     for (const double bad : kNotFinite) (void)eddies->velocity({bad, 0, 1e300}, bad);
 }
 
-TEST(PublicFunctions, OfFramesAndCurvesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidFramesAndCurves) {
     expect_all_refused("constant", kNotFinite, [](double x) { (void)KeyedCurve<double>(x); });
     expect_all_refused("key", kNotFinite, [](double x) { (void)KeyedCurve<double>({{x, 1.0}}); });
     expect_refused("no keys", [] { (void)KeyedCurve<Vec3>(std::vector<CurveKey<Vec3>>{}); });
@@ -305,7 +305,7 @@ TEST(PublicFunctions, OfFramesAndCurvesRefuseThem) {
     EXPECT_FALSE(frames.find("b").has_value());
 }
 
-TEST(PublicFunctions, OfSpringsRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidSprings) {
     expect_refused("itself", [] { (void)SpringNetwork({{0, 0, 1.0, 1.0}}); });
     expect_all_refused("length", std::array{-1.0, kNan, kInfinity}, [](double x) {
         (void)SpringNetwork({{0, 1, x, 1.0}});
@@ -340,7 +340,7 @@ TEST(PublicFunctions, OfSpringsRefuseThem) {
     EXPECT_FALSE(response_from_name("").has_value());
 }
 
-TEST(PublicFunctions, OfParticleSystemsRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidParticleSystems) {
     const Particles particles = two_particles();
     SpringNetwork springs({{0, 1, 1.0, 1.0}});
     springs.bind(particles.id);
@@ -375,7 +375,7 @@ TEST(PublicFunctions, OfParticleSystemsRefuseThem) {
     expect_refused("spring", [&] { (void)system.spring_of({7, 0, 1}); });
 }
 
-TEST(PublicFunctions, OfEmitterShapesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidEmitterShapes) {
     const auto broken = std::make_shared<const TriangleMesh>(broken_mesh());
     std::vector<EmitterShape> shapes{MeshSurfaceShape{},      MeshVolumeShape{}, MeshSurfaceShape{broken},
                                      MeshVolumeShape{broken}, DiskShape{{}, {}}, ConeShape{{}, {}},
@@ -416,7 +416,7 @@ TEST(PublicFunctions, OfEmitterShapesRefuseThem) {
     expect_refused("inside", [&] { (void)screen_area(SphereShape{}, {{0, 0, 0.5}, {0, 0, 1}}); });
 }
 
-TEST(PublicFunctions, OfEmittersRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidEmitters) {
     const auto expect_emitter_refused = [](const char* what, const std::function<void(EmitterDescription&)>& spoil) {
         EmitterDescription description;
         spoil(description);
@@ -447,7 +447,7 @@ TEST(PublicFunctions, OfEmittersRefuseThem) {
     EXPECT_EQ(shown_value({}, "a", {1, 2, 3}, kNan, kNan), (Vec3{1, 2, 3}));
 }
 
-TEST(PublicFunctions, OfTheVerifierRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidArgumentsOfTheVerifier) {
     expect_refused("corner", [] { (void)Verifier({broken_mesh()}); });
     TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     for (const double bad : kNotFinite) {
@@ -474,7 +474,7 @@ TEST(PublicFunctions, OfTheVerifierRefuseThem) {
     EXPECT_FALSE(violations.empty());
 }
 
-TEST(PublicFunctions, OfFramesOfVtkRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidVtkFrames) {
     const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "senseless.vtp";
     Particles particles = two_particles();
     const AttributeTable attributes({column("a")});
@@ -511,7 +511,7 @@ TEST(PublicFunctions, OfFramesOfVtkRefuseThem) {
     EXPECT_TRUE(scalar_values({}).empty());
 }
 
-TEST(PublicFunctions, OfScenesRefuseThem) {
+TEST(PublicFunctions, RefuseInvalidScenes) {
     expect_refused("no file", [] { (void)read_scene("there/is/no.json"); });
     expect_refused("nothing", [] { (void)parse_scene("", "a.json"); });
     expect_refused("no object", [] { (void)parse_scene("[]", "a.json"); });
@@ -522,10 +522,10 @@ TEST(PublicFunctions, OfScenesRefuseThem) {
     expect_refused("null", [&] { (void)uniform_acceleration(setup); });
 }
 
-TEST(PublicFunctions, OfASimulationThatHasMovedAwayRefuse) {
+TEST(PublicFunctions, RefuseCallsOnAMovedFromSimulation) {
     Simulation from{SimulationSetup{}};
     Simulation to(std::move(from));
-    // NOLINTBEGIN(bugprone-use-after-move,hicpp-invalid-access-moved): what is tested
+    // NOLINTBEGIN(bugprone-use-after-move,hicpp-invalid-access-moved): the test uses moved objects on purpose
     expect_refused<RunError>("step", [&] { from.step(); });
     expect_refused<RunError>("advance", [&] { from.advance(1); });
     expect_refused<RunError>("finished", [&] { (void)from.finished(); });

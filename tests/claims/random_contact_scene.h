@@ -1,6 +1,5 @@
-/// \file
-/// Random scenes for contact that lasts: a closed room of any kind, bodies in it, spheres and points of mixed sizes,
-/// uniform gravity.
+/// \file Random scenes for persistent contact: a closed room of any kind with bodies in it, spheres and points of mixed
+/// sizes, and uniform gravity.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +8,11 @@
 
 namespace ricochet::testing {
 
-/// The scene of a seed: the same on every system. Nothing overlaps at its start; some particles touch.
+/// Returns the scene of a seed, which is the same on every system. Nothing overlaps at its start, and some particles
+/// touch.
 [[nodiscard]] SimulationSetup random_contact_scene(std::uint64_t seed);
 
-/// Its uniform acceleration, m/s^2.
+/// Returns the uniform acceleration of the scene, in m/s^2.
 [[nodiscard]] Vec3 random_contact_gravity(std::uint64_t seed);
 
 }  // namespace ricochet::testing

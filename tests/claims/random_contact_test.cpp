@@ -1,8 +1,8 @@
-// Whatever it touches, does a particle gain no energy, lose no time, and stay where it belongs? Random scenes of meshes
-// and shapes from inside and outside, with any restitution, friction and rolling friction, by every integrator, checked
-// by independent code; and the same bits with sleeping on and off.
+// Particles in contact gain no energy, lose no time, and stay on their side. The random scenes have meshes and shapes
+// from inside and outside, any restitution, friction and rolling friction, and every integrator. Independent code
+// checks them. The bits are the same with sleeping on and off.
 //
-// A long run: a thousand scenes. One scene by hand: RICOCHET_SEED=... in the environment.
+// A long run has a thousand scenes. RICOCHET_SEED=... in the environment selects a single scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Seeds seeds() {
     return {0, static_cast<std::uint64_t>(test::scaled(40 * test::case_factor(25)))};
 }
 
-/// True for the integrators that follow uniform gravity exactly; Euler's methods gain and lose energy in flight.
+/// Returns true for integrators that follow uniform gravity exactly. Euler methods gain and lose energy in flight.
 bool is_exact_for_gravity(const Integrator& integrator) {
     return integrator.kind != IntegratorKind::forward_euler && !kicks_first(integrator.kind);
 }
@@ -41,14 +41,14 @@ double energy_of(const Particle& p, const Vec3& gravity) {
            dot(gravity, p.position);
 }
 
-/// Energies per mass, step by step.
+/// Energies per mass, recorded in each step.
 class EnergyWatch {
 public:
     EnergyWatch(const Simulation& simulation, const Vec3& gravity) : gravity_(gravity) {
         last_ = by_id(simulation);
         for (const Particle& p : last_) largest_ = std::max(largest_, largest_term(p));
     }
-    /// Fails for every particle that has gained more than rounding in the step.
+    /// Fails for every particle that gained more than rounding in the step.
     void expect_no_gain(const Simulation& simulation) {
         const std::vector<Particle> now = by_id(simulation);
         for (std::size_t i = 0; i < now.size(); ++i) {
@@ -63,11 +63,12 @@ public:
     [[nodiscard]] double worst() const { return worst_; }
 
 private:
-    /// Of a step. It holds some hundreds of intervals and impacts, each with the rounding of its largest term, 4e-16,
-    /// and positions 1e-15 off the surface.
+    /// Rounding of a step. It has some hundred intervals and impacts, each with 4e-16 of its largest term, and
+    /// positions 1e-15 off the surface.
     static constexpr double kRounding = 1e-13;
 
-    /// Of an impact: the particle is parked 16 units in the last place off the surface, or 64 where that is not free.
+    /// Rounding of an impact. The particle is placed 16 units in the last place off the surface, or 64 if that position
+    /// is not free.
     static constexpr double kRoundingOfImpact = 64 * 0x1p-52;
 
     static double impacts_of(const Simulation& simulation, std::uint64_t particle) {
@@ -124,7 +125,7 @@ void expect_nothing_wrong(const Simulation& simulation) {
     }
 }
 
-TEST(RandomContact, GainsNoEnergyLosesNoTimeAndLeaksNowhere) {
+TEST(RandomContact, GainsNoEnergyLosesNoTimeAndHasNoLeaks) {
     const Seeds range = seeds();
     std::uint64_t contacts = 0;
     for (std::uint64_t seed = range.first; seed < range.first + range.count; ++seed) {
@@ -144,8 +145,8 @@ TEST(RandomContact, GainsNoEnergyLosesNoTimeAndLeaksNowhere) {
     EXPECT_GT(contacts, range.count);
 }
 
-// Drag and wind do work that depends on the way: checked in every interval against the forces at its ends.
-TEST(RandomContact, GainsNoMoreEnergyThanAWindGives) {
+// Drag and wind do work that depends on the path. Every interval is checked against the forces at its ends.
+TEST(RandomContact, GainsNoMoreEnergyThanTheWorkOfAWind) {
     Seeds range = seeds();
     if (range.count > 1) range.count = range.count * 3 / 5;
     for (std::uint64_t seed = range.first; seed < range.first + range.count; ++seed) {

@@ -1,5 +1,5 @@
-// Walls that reflect by the cosine law: transmission of tubes, chords in a sphere, stays in a vessel, gas under
-// gravity.
+// Walls that reflect by the cosine law: transmission of tubes, chords in a sphere, residence times in a vessel, and gas
+// under gravity.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ struct Vessel {
     ExactResponse response;
 };
 
-/// Flies until is_out(position); returns the particle there, and adds up the path length inside where `way` is given.
+/// Flies until is_out(position). Returns the particle at that time, and adds the path length inside to `way` if given.
 template <class IsOut>
 MovingParticle fly_out(const Vessel& vessel, MovingParticle particle, double stride, const IsOut& is_out) {
     MoveScratch scratch;
@@ -56,7 +56,7 @@ MovingParticle fly_out(const Vessel& vessel, MovingParticle particle, double str
     return particle;
 }
 
-/// The side of a prism of n faces along z, open at both ends.
+/// Returns the sides of a prism of n faces along z, open at both ends.
 TriangleMesh open_tube(int n, double radius, double tube_length) {
     TriangleMesh mesh;
     for (int k = 0; k < n; ++k) {
@@ -75,7 +75,7 @@ TriangleMesh open_tube(int n, double radius, double tube_length) {
     return mesh;
 }
 
-/// Uniform in a regular polygon, which has a corner on the x axis.
+/// Returns a uniform point in a regular polygon with a corner on the x axis.
 Vec3 place_in_polygon(int n, double radius, RandomSequence& random) {
     for (;;) {
         const Vec3 p = radius * random.in_unit_disk();
@@ -86,9 +86,9 @@ Vec3 place_in_polygon(int n, double radius, RandomSequence& random) {
     }
 }
 
-/// Fraction of molecules that pass a tube of L / R = ratio.
+/// Returns the fraction of molecules that pass a tube of L / R = ratio.
 Sample transmission(double ratio, int sides, int molecules) {
-    // The prism has the cross section of the circle.
+    // The prism has the cross-sectional area of the circle.
     const double sector = 2.0 * kPi / sides;
     const double radius = std::sqrt(sector / std::sin(sector));
     const Vessel vessel({testing::mesh_collider(open_tube(sides, radius, ratio))}, lambert());
@@ -114,7 +114,7 @@ struct TubeRow {
 };
 
 class ClausingTube : public ::testing::TestWithParam<TubeRow> {};
-// P. Clausing, Ann. Phys. 12, 1932; the digits are those of the integral equation, solved numerically.
+// P. Clausing, Ann. Phys. 12, 1932. The digits come from a numerical solution of the integral equation.
 INSTANTIATE_TEST_SUITE_P(Ratios, ClausingTube,
                          ::testing::Values(TubeRow{0.5, 0.801271}, TubeRow{1, 0.671984}, TubeRow{2, 0.514231},
                                            TubeRow{5, 0.310525}, TubeRow{10, 0.190942}, TubeRow{20, 0.109321}),
@@ -122,8 +122,8 @@ INSTANTIATE_TEST_SUITE_P(Ratios, ClausingTube,
                              return "LOverR" + std::to_string(static_cast<int>(10.0 * row.param.ratio)) + "Tenths";
                          });
 
-// A prism of n sides with the circle's cross section differs from the tube by the order of (pi / n)^2: its perimeter is
-// longer by (pi / n)^2 / 3, and a longer tube's transmission falls in proportion to at most that.
+// A prism of n sides with the area of the circle differs from the tube by the order of (pi / n)^2. Its perimeter is
+// longer by (pi / n)^2 / 3. The transmission of a longer tube falls at most in proportion to that.
 TEST_P(ClausingTube, PassesTheFractionOfTheIntegralEquation) {
     constexpr int kSides = 256;
     const int molecules = test::is_long_run() ? 1000000 : test::scaled(8000);
@@ -132,8 +132,8 @@ TEST_P(ClausingTube, PassesTheFractionOfTheIntegralEquation) {
     EXPECT_NEAR(sample.mean(), GetParam().transmission, 3.0 * sample.error() + faceting);
 }
 
-// Every hit in a sphere with cosine-law walls is uniform over the sphere and independent of the last: the squared chord
-// is uniform in [0, 4 R^2].
+// Every hit in a sphere with cosine-law walls is uniform over the sphere and independent of the previous one. The
+// squared chord is uniform in [0, 4 R^2].
 TEST(LambertSphere, HitsUniformlyAndIndependentlyOfTheLastHit) {
     const Vessel vessel({{"ball", BallShape{1.0, {}}, 0}}, lambert());
     Sample chord;
@@ -168,7 +168,7 @@ TEST(LambertSphere, HitsUniformlyAndIndependentlyOfTheLastHit) {
     EXPECT_LT(chi_squared, 50.8);  // 19 degrees of freedom, exceeded once in 10^4
 }
 
-/// The unit cube [0, 1]^3 without the square |x - 1/2|, |y - 1/2| < half of its bottom.
+/// Returns the unit cube [0, 1]^3 without the square |x - 1/2|, |y - 1/2| < half of its bottom.
 TriangleMesh cube_with_a_hole(double half) {
     TriangleMesh mesh = {
         {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
@@ -184,8 +184,8 @@ TriangleMesh cube_with_a_hole(double half) {
     return mesh;
 }
 
-// What enters a vessel by the cosine law through an opening of area A travels 4 V / A inside on average, whatever the
-// walls do (the mean chord theorem with reflections): the time constant 4 V / (A v) of effusion.
+// A molecule that enters a vessel by the cosine law through an opening of area A travels 4 V / A inside on average, for
+// any walls (the mean chord theorem with reflections). The time constant of effusion is 4 V / (A v).
 TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
     const double half = 0.25;
     const double area = 4.0 * half * half;
@@ -201,15 +201,15 @@ TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
                 {place, cosine_direction({0, 0, 1}, random), 1.0, 0.0, 0.0}, {}, static_cast<std::uint64_t>(i), 0};
             const auto is_out = [](const Vec3& p) { return p.z < 0.0; };
             const MovingParticle out = fly_out(vessel, start, 0.5, is_out);
-            // It flies on straight once it is out.
+            // It flies on in a straight line once it is out.
             way.add(out.state.time + out.state.position.z / std::fabs(out.state.velocity.z));
         }
         EXPECT_NEAR(way.mean(), 4.0 / area, 4.0 * way.error());
     }
 }
 
-// Molecules over a floor that reflects diffusely at temperature T: heights are exponential with mean k T / (m g).
-TEST(GasUnderGravity, TakesTheBarometricProfileOverADiffuseFloor) {
+// The floor reflects molecules diffusely at temperature T. Their heights are exponential with mean k T / (m g).
+TEST(GasUnderGravity, HasTheBarometricProfileOverADiffuseFloor) {
     constexpr double kBoltzmann = 1.380649e-23;
     constexpr double kTemperature = 300.0;
     constexpr double kMass = kBoltzmann * kTemperature;  // so that k T / m = 1 m^2/s^2
@@ -228,7 +228,7 @@ TEST(GasUnderGravity, TakesTheBarometricProfileOverADiffuseFloor) {
     for (int i = 0; i < test::scaled(4000); ++i) {
         RandomSequence random(6, 0, static_cast<std::uint64_t>(i));
         MovingParticle molecule{{{0, 0, 1e-12}, {0, 0, 1}, kMass, 0.0, 0.0}, {}, static_cast<std::uint64_t>(i), 0};
-        (void)response.move(molecule, 20.0, scratch);  // forget the start
+        (void)response.move(molecule, 20.0, scratch);  // makes the state independent of the start
         double sum = 0.0;
         double above = 0.0;
         for (int k = 0; k < 30; ++k) {

@@ -1,5 +1,5 @@
-// Does a sphere that rolls along a ridge, and for a while over onto one of its faces, stay out of that face, also where
-// something stops it there?
+// A sphere that rolls along a ridge, and for a while over onto one of its faces, does not overlap that face, even if an
+// obstacle stops it there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,10 +15,10 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-constexpr double kSlope = 20.0;  // degrees, of both faces
+constexpr double kSlope = 20.0;  // in degrees, of both faces
 constexpr double kRadius = 1.0;
 
-/// Two faces that fall off to both sides of the ridge y = z = 0.
+/// Returns two faces that fall off to both sides of the ridge y = z = 0.
 ColliderDescription ridge() {
     const double drop = -20.0 * std::tan(radians(kSlope));
     TriangleMesh mesh;
@@ -27,8 +27,8 @@ ColliderDescription ridge() {
     return mesh_collider(mesh);
 }
 
-/// A sphere on the ridge, all but as far over as the ridge reaches, on its way over the face with y > 0; gravity pulls
-/// it back with 1.3 m/s^2, so that it is over the face until 2 `speed` / 1.3 s.
+/// Returns a sphere on the ridge, close to the limit of support by the edge, that moves over the face with y > 0.
+/// Gravity pulls it back at 1.3 m/s^2, so it is over the face until 2 `speed` / 1.3 s.
 ContactScene over_and_back(double speed) {
     const double s = std::sin(radians(kSlope) - 1e-4);
     const double c = std::cos(radians(kSlope) - 1e-4);
@@ -41,7 +41,7 @@ ContactScene over_and_back(double speed) {
     return scene;
 }
 
-/// The scene at its end: its sphere is no deeper in the ridge than rounding.
+/// Expects that at the end of the scene the sphere overlaps the ridge by no more than rounding.
 void expect_free_at_end(const ContactScene& scene) {
     const Particle end = end_of(scene);
     const auto nearest = CollisionQueries({ridge()}).closest_point(end.position, 2.0 * kRadius);
@@ -50,7 +50,7 @@ void expect_free_at_end(const ContactScene& scene) {
     EXPECT_LE(nearest->distance, kRadius * (1.0 + 1e-9)) << "at " << end.position.x;
 }
 
-TEST(ARidge, IsLeftForAFaceAndComeBackToWithoutOverlap) {
+TEST(ARidge, IsNotOverlappedByASphereThatLeavesForAFaceAndReturns) {
     for (const double speed : {0.0, 0.03, 0.1, 0.3}) {
         for (const double time : {0.001, 0.01, 0.03, 0.06, 0.1, 0.15, 0.2}) {
             ContactScene scene = over_and_back(speed);
@@ -61,15 +61,15 @@ TEST(ARidge, IsLeftForAFaceAndComeBackToWithoutOverlap) {
     }
 }
 
-TEST(ARidge, IsNotOverlappedWhereAWallStopsASphereOnItsWayOverAFace) {
+TEST(ARidge, IsNotOverlappedIfAWallStopsASphereOverAFace) {
     for (const double speed : {0.03, 0.1, 0.2, 0.3}) {
         for (const double part : {0.1, 0.3, 0.5, 0.7, 0.9}) {
             ContactScene scene = over_and_back(speed);
-            const double wall = part * 2.0 * speed / 1.3;  // s, until it is there
+            const double wall = part * 2.0 * speed / 1.3;  // time of impact on the wall, in s
             scene.colliders.push_back(plane_collider({2.0 * wall + kRadius, 0, 0}, {-1, 0, 0}));
             scene.materials.push_back(scene.materials[0]);
             scene.time_step = scene.duration = 4.0 * speed / 1.3;
-            // The step before its end, too: the way along the wall begins where the wall is met.
+            // The step before the end is checked too, because the path along the wall starts at the impact.
             for (const double until : {1.001 * wall, scene.duration}) {
                 scene.duration = until;
                 SCOPED_TRACE(::testing::Message() << speed << " m/s, wall at " << part << ", until " << until << " s");
@@ -79,8 +79,8 @@ TEST(ARidge, IsNotOverlappedWhereAWallStopsASphereOnItsWayOverAFace) {
     }
 }
 
-/// A sphere on a ridge of two slopes of its own, pushed along it and over, with a wall somewhere before it. Half of
-/// them begin all but over a face.
+/// Returns a sphere on a ridge with two different slopes, pushed along it and over it, with a wall ahead. Half of the
+/// spheres start almost over a face.
 SimulationSetup random_ridge(std::uint64_t seed) {
     RandomSequence random(77, 1, seed);
     const auto around = [&](double half) { return random.uniform_around(0, half); };

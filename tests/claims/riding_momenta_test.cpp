@@ -1,5 +1,5 @@
-// Momentum and angular momentum of contact that lasts, on bodies and on colliders that move as they are told: what they
-// are given is what the particles lose, in every step.
+// Momentum and angular momentum in persistent contact with bodies and with colliders of prescribed motion. In every
+// step their gain equals the loss of the particles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Of all particles, as solid spheres, and bodies.
+/// Momenta of all particles, as solid spheres, and bodies.
 struct Momenta {
     Vec3 linear;
     Vec3 angular;        ///< about the origin, with spin
-    double scale = 0.0;  ///< kg m/s, of what was added up
+    double scale = 0.0;  ///< sum of magnitudes, in kg m/s
 };
 
 Momenta momenta_of(const Simulation& simulation) {
@@ -50,7 +50,7 @@ BodyDescription body_in(const std::string& frame, double mass, double inertia, J
     return body;
 }
 
-/// A particle of its own velocity in a frame that turns, somewhere in a box.
+/// Returns a particle at a random position in a box, with its own velocity in a rotating frame.
 Particle somewhere(RandomSequence& random, const Vec3& half, double radius) {
     Vec3 place;
     for (int axis = 0; axis < 3; ++axis) place[axis] = (2.0 * random.uniform() - 1.0) * half[axis];
@@ -59,8 +59,8 @@ Particle somewhere(RandomSequence& random, const Vec3& half, double radius) {
     return particle;
 }
 
-// A box that tumbles in free space, with particles that lie on its walls, slide and roll along them.
-TEST(WhatRidesInATumblingBody, KeepsMomentumAndAngularMomentumWithItInEveryStep) {
+// A box tumbles in free space, with particles that rest, slide and roll on its walls.
+TEST(WhatRidesInATumblingBody, ConservesTheTotalMomentumAndAngularMomentumInEveryStep) {
     for (const double friction : {0.0, 0.4}) {
         for (const double radius : {0.0, 0.05}) {
             SCOPED_TRACE(std::to_string(friction) + " " + std::to_string(radius));
@@ -95,8 +95,8 @@ TEST(WhatRidesInATumblingBody, KeepsMomentumAndAngularMomentumWithItInEveryStep)
     }
 }
 
-// Gravity along the axis has no moment about it: a table on a hinge is turned by what slides over it.
-TEST(WhatSlidesOverATurntable, GivesItsAngularMomentumToIt) {
+// Gravity along the axis has no moment about it. Only the particles that slide over a hinged table turn it.
+TEST(WhatSlidesOverATurntable, TransfersItsAngularMomentumToIt) {
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);
         FrameDescription frame = frame_of("table", {});
@@ -128,8 +128,8 @@ TEST(WhatSlidesOverATurntable, GivesItsAngularMomentumToIt) {
     }
 }
 
-// The same on a table that turns as it is told: its recorded moment about the axis is what the particles lose.
-TEST(TheMomentOfContactThatLasts, IsRecordedAboutTheAxisOfATableThatTurns) {
+// On a table with prescribed rotation, the recorded moment about the axis must equal the loss of the particles.
+TEST(TheMomentOfContactThatLasts, IsRecordedAboutTheAxisOfATurningTable) {
     for (const double radius : {0.0, 0.05}) {
         SCOPED_TRACE(radius);
         SimulationSetup setup = setup_of({frame_of("table", {Spin{{0, 0, 1}, 70.0}})},

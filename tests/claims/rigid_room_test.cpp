@@ -1,5 +1,5 @@
-// A closed collider that moves rigidly leaves the particles in it room at all times: none is left outside, and no clock
-// stands still, also between walls that are nearer to each other than the world's coordinates are rounded.
+// A closed collider in rigid motion always has space for the particles in it. None ends up outside, and none is
+// stalled. This also holds if its walls are closer together than the rounding of the world's coordinates.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// A tetrahedron with a tip far from its base.
+/// Returns a tetrahedron with a tip far from its base.
 TriangleMesh needle(double height) {
     return {{{-0.3, -0.2, -0.25}, {0.3, -0.2, -0.25}, {0, 0.35, -0.25}, {0.02 * height, 0.015 * height, height}},
             {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
@@ -27,7 +27,8 @@ TriangleMesh needle(double height) {
 
 MeshShape shape_of(const TriangleMesh& mesh) { return {std::make_shared<const TriangleMesh>(mesh), {}, "", {}}; }
 
-/// Runs to the end. All particles are inside the first collider, a mesh, after each step, and their clocks go on.
+/// Runs to the end. Expects after each step that all particles are inside the first collider, a mesh, and that none is
+/// stalled.
 void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
     while (!simulation.finished()) {
         simulation.step();
@@ -42,7 +43,7 @@ void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
     EXPECT_EQ(simulation.statistics().frozen, 0U);
 }
 
-/// Rests while particles run into its tip, and is then carried far away and turned.
+/// Returns a needle at rest while particles run into its tip. It is then carried far away and rotated.
 SimulationSetup flung_needle(const TriangleMesh& mesh, double far, double restitution, double time_step) {
     auto setup = setup_of({frame_of("needle", motions_through({{0.0, {}, {0, 0, 1}, 0.0},
                                                                {0.4, {}, {0, 0, 1}, 0.0},
@@ -53,7 +54,7 @@ SimulationSetup flung_needle(const TriangleMesh& mesh, double far, double restit
     return setup;
 }
 
-TEST(ParticlesInTheTipOfANeedle, StayInItWhereverItIsCarried) {
+TEST(ParticlesInTheTipOfANeedle, StayInItOnAnyDisplacement) {
     const TriangleMesh mesh = needle(20.0);
     for (const double far : {10.0, 1e3, 1e5}) {
         for (const double restitution : {0.0, 0.1, 0.2, 0.7, 1.0}) {
@@ -74,8 +75,8 @@ TEST(ParticlesInTheTipOfANeedle, StayInItWhereverItIsCarried) {
     }
 }
 
-// Needles of random shape, on random ways.
-TEST(ParticlesInANeedle, StayInItOnAnyWay) {
+// Needles of random shape on random paths.
+TEST(ParticlesInANeedle, StayInItOnAnyPath) {
     for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(40)); ++seed) {
         SCOPED_TRACE(seed);
         RandomSequence random(seed, 11, 0);
@@ -102,7 +103,7 @@ TEST(ParticlesInANeedle, StayInItOnAnyWay) {
     }
 }
 
-/// A needle of 10 kg, points and a sphere of 0.1 kg that fly into its tip with 20 m/s, and push it.
+/// Returns a needle of 10 kg. Points and a sphere of 0.1 kg fly into its tip at 20 m/s and push it.
 SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double far, double restitution) {
     FrameDescription frame = frame_of("body", {}, {far, -far, 0.5 * far});
     frame.is_driven = true;
@@ -129,8 +130,8 @@ SimulationSetup pushed_needle(const TriangleMesh& mesh, JointKind joint, double 
     return setup;
 }
 
-// A step with a body that yields is planned in parts. A particle goes along with the body until its part ends: beyond
-// that, the path of the body is not known yet.
+// A step with a dynamic body is planned in substeps. A particle follows the body until the end of its substep, because
+// the later path of the body is not known yet.
 TEST(ParticlesInABody, StayInIt) {
     const TriangleMesh mesh = needle(6.0);
     for (const JointKind joint : {JointKind::free, JointKind::hinge, JointKind::slider}) {

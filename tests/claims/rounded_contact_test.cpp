@@ -1,4 +1,5 @@
-// Contact whose velocities are rounding beside others: on floors that move steadily, and at edges reached at once.
+// Contact whose velocities are rounding errors of larger ones: on uniformly moving floors, and at edges reached by both
+// walls at once.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +36,7 @@ TEST(AFloorThatMovesSteadily, CarriesAParticleAfterOneImpactInEveryOrientation) 
     }
 }
 
-TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundThatSlidesIntoIt) {
+TEST(AnEdgeOfTwoWalls, ReversesAParticleThatSlidesIntoIt) {
     const Vec3 velocity{1.412990398168904, 1.8622771070860458, 0.0};
     for (int k = 0; k < 60; ++k) {
         SCOPED_TRACE(k);
@@ -54,8 +55,8 @@ TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundThatSlidesIntoIt) {
     }
 }
 
-// The same in a body that yields, but is so heavy that it stays where it is.
-TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundInABodyThatYields) {
+// The same edge belongs to a dynamic body that is so heavy that it practically stays at rest.
+TEST(AnEdgeOfTwoWalls, ReversesAParticleInADynamicBody) {
     const Vec3 velocity{1.412990398168904, 1.8622771070860458, 0.0};
     for (int k = 0; k < 60; ++k) {
         SCOPED_TRACE(k);
@@ -83,8 +84,8 @@ TEST(AnEdgeOfTwoWalls, TurnsAParticleAroundInABodyThatYields) {
     }
 }
 
-// Slow rebounds off one wall of a narrow wedge, beside impacts on the other: a wall that the particle leaves does not
-// hold it, and each wall gives the rebound of its material.
+// Slow rebounds occur off one wall of a narrow wedge, beside impacts on the other. A wall that the particle leaves must
+// not support it, and each wall gives the rebound of its material.
 TEST(ANarrowWedge, GivesEachImpactTheReboundOfItsMaterial) {
     for (int seed = 0; seed < test::scaled(40); ++seed) {
         SCOPED_TRACE(seed);

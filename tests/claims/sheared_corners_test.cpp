@@ -1,7 +1,6 @@
-// Particles that slide in the edges and corners of a mesh that is sheared lose no time there.
+// Particles that slide in the edges and corners of a sheared mesh lose no simulated time.
 //
-// The faces of an edge meet at an angle that changes. A path that is lifted off one of them must not lead into the
-// other.
+// The faces of an edge meet at a changing angle. A path that is lifted off one of them must not lead into the other.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -20,9 +19,9 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-constexpr double kDuration = 0.44;  // s
+constexpr double kDuration = 0.44;  // in s
 
-/// Returns the vertices under a random linear map near to the identity: all faces stay plane.
+/// Returns the vertices under a random linear map close to the identity, which keeps all faces plane.
 std::vector<Vec3> sheared(const std::vector<Vec3>& vertices, RandomSequence& random) {
     const Vec3 x = Vec3{1, 0, 0} + 0.3 * random.in_unit_ball();
     const Vec3 y = Vec3{0, 1, 0} + 0.3 * random.in_unit_ball();
@@ -53,7 +52,7 @@ SimulationSetup sheared_box(std::uint64_t seed, const Material& material) {
     return setup;
 }
 
-TEST(ABoxThatIsSheared, LeavesWhatSlidesInItsEdgesAllOfItsTime) {
+TEST(ABoxThatIsSheared, LosesNoTimeOfParticlesSlidingInItsEdges) {
     for (const Material& material : {Material{"", 0.0, 0.0}, Material{"", 0.3, 0.2}}) {
         const auto seeds = static_cast<std::uint64_t>(test::scaled(12) * test::case_factor(12));
         for (std::uint64_t seed = 0; seed < seeds; ++seed) {

@@ -1,4 +1,4 @@
-// A solid sphere with Coulomb friction: it sticks or slips in the impact as the closed form says, and rolls afterwards.
+// A solid sphere with Coulomb friction sticks or slips in an impact as in the closed form, and rolls afterwards.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,8 @@ INSTANTIATE_TEST_SUITE_P(Materials, ObliqueImpact, ::testing::Values(Pair{0.5, 0
                                     std::to_string(static_cast<int>(std::lround(10.0 * pair.param.friction)));
                          });
 
-/// A sphere that hits a meshed floor with unit speed, `degrees` from the normal, without spin.
+/// Returns a sphere without spin after its impact on a meshed floor. It arrives at unit speed, at `degrees` from the
+/// normal.
 MovingParticle after_impact(const Pair& pair, double degrees) {
     Course course({testing::mesh_collider(testing::floor_mesh(4.0, 8))}, {"", pair.restitution, pair.friction}, {});
     const double angle = degrees * kPi / 180.0;
@@ -38,7 +39,7 @@ MovingParticle after_impact(const Pair& pair, double degrees) {
     return sphere;
 }
 
-// Solid sphere: it sticks while tan(theta) < 7/2 mu (1 + e), leaving 5/7 of the tangential speed and rolling.
+// A solid sphere sticks while tan(theta) < 7/2 mu (1 + e). It then rolls at 5/7 of the tangential speed.
 TEST_P(ObliqueImpact, SticksBelowTheLimitAngle) {
     const Pair& pair = GetParam();
     const double limit = std::atan(3.5 * pair.friction * (1.0 + pair.restitution)) * 180.0 / kPi;
@@ -79,7 +80,7 @@ TEST(ThrownSphere, RollsAtFiveSeventhsOfItsSpeedAfterTheTimeOfSlip) {
     EXPECT_NEAR(kRadius * sphere.spin.y, 10.0 / 7.0, 1e-9);
 }
 
-// Down a slope a solid sphere rolls with 5/7 g sin(theta) as long as tan(theta) < 7/2 mu.
+// A solid sphere rolls down a slope with 5/7 g sin(theta) if tan(theta) < 7/2 mu.
 TEST(RollingSphere, RunsDownASlopeWithFiveSeventhsOfGravity) {
     const double angle = 0.5;
     const Vec3 normal{std::sin(angle), 0, std::cos(angle)};

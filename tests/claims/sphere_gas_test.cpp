@@ -1,4 +1,4 @@
-// Elastic spheres of three sizes, and points, in closed bodies: the independent verifier finds nothing wrong.
+// Elastic spheres of three sizes, and points, in closed bodies. The independent verifier must find no violation.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,8 @@ double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     return std::sqrt(nearest);
 }
 
-/// Positions inside the body and more than their radius away from its surface, which the three radii take in turn.
+/// Returns particles inside the body and more than their radius away from its surface. The particles use the three
+/// radii in turn.
 std::vector<Particle> gas_in(const TriangleMesh& mesh, const std::vector<double>& radii, int count, double speed) {
     const testing::ParityOracle oracle(mesh);
     const Box3 box = bounds(mesh);
@@ -67,7 +68,7 @@ void expect_no_violation(SimulationSetup setup) {
     for (const Violation& violation : simulation.violations()) {
         ADD_FAILURE() << "particle " << violation.particle << " at " << violation.time << " s, kind "
                       << static_cast<int>(violation.kind);
-        break;  // the first tells enough
+        break;  // the first violation is enough
     }
 }
 
@@ -104,8 +105,9 @@ TEST(SphereGasInACrumpledBall, NeitherLeaksNorOverlaps) {
     expect_no_violation(gas_setup(std::move(mesh), {0.0, 0.01, 0.05, 0.15}));
 }
 
-// A tetrahedron with an inner radius little above that of the largest sphere: corners are much tighter than it.
-TEST(SphereGasInATetrahedron, KeepsOutOfCornersTighterThanASphere) {
+// In a tetrahedron with an inner radius slightly above that of the largest sphere, the corners are much narrower than
+// the sphere.
+TEST(SphereGasInATetrahedron, StaysOutOfCornersNarrowerThanASphere) {
     const TriangleMesh mesh{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
                             {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
     const double inner = 1.0 / std::sqrt(3.0);
@@ -113,7 +115,7 @@ TEST(SphereGasInATetrahedron, KeepsOutOfCornersTighterThanASphere) {
     expect_no_violation(gas_setup(mesh, {0.1 * inner / size, 0.6 * inner / size, 0.97 * inner / size}));
 }
 
-// Between plates one nanometre wider than the sphere, in a box: every bounce is a double one.
+// A sphere is in a box between plates with a gap one nanometre wider than it. Every bounce is a double one.
 TEST(SphereBetweenPlates, WithANanometreOfClearanceNeitherLeaksNorOverlaps) {
     constexpr double kRadius = 0.05;
     SimulationSetup setup;

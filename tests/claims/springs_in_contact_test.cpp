@@ -1,5 +1,5 @@
-// Springs between particles that slide, rest and roll: what one end of a spring gains the other loses, in every step,
-// whether it flies or a surface holds it; where closed forms exist they come out.
+// Springs between particles that slide, rest and roll. In every step the momentum gain of one end equals the loss of
+// the other, in flight and in contact. Known closed forms are reproduced.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ std::vector<IntegratorKind> explicit_methods() {
             IntegratorKind::ballistic};
 }
 
-/// Methods of second order and more.
+/// Returns the methods of at least second order.
 std::vector<IntegratorKind> higher_methods() {
     return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4,
             IntegratorKind::dormand_prince, IntegratorKind::ballistic};
@@ -28,14 +28,14 @@ std::vector<IntegratorKind> higher_methods() {
 
 struct Answer {
     ResponseKind kind;
-    bool global = false;  ///< rollback takes the whole system back
+    bool global = false;  ///< rollback restores the whole system
 };
 constexpr Answer kExact{ResponseKind::exact};
 constexpr Answer kAnswers[] = {
     kExact, {ResponseKind::rollback}, {ResponseKind::rollback, true}, {ResponseKind::project}, {ResponseKind::penalty}};
 
-/// The penalty response has sub-steps of its own, and the global rollback steps all together: they refuse a method that
-/// chooses its steps.
+/// Returns false for a method of variable steps with the penalty response or the global rollback. The penalty response
+/// has its own substeps and the global rollback steps all particles together, so both refuse such methods.
 bool go_together(IntegratorKind kind, const Answer& answer) {
     return kind != IntegratorKind::dormand_prince || !(answer.kind == ResponseKind::penalty || answer.global);
 }
@@ -53,7 +53,7 @@ Particle point(const Vec3& position, const Vec3& velocity, double mass) {
     return particle;
 }
 
-/// A plane z = 0 on which nothing rebounds, and gravity.
+/// Returns a plane z = 0 without rebound, and gravity.
 SimulationSetup floor_with(double friction) {
     SimulationSetup setup;
     setup.forces.push_back(make_gravity({0, 0, -kGravity}));
@@ -64,7 +64,7 @@ SimulationSetup floor_with(double friction) {
     return setup;
 }
 
-/// Six points in a row that slides along itself. moved: m, by which every other one is off its place.
+/// Returns six points in a row that slides along itself. moved: displacement of every other point, in m.
 SimulationSetup sliding_row(double stiffness, double damping, double moved) {
     SimulationSetup setup = floor_with(0.3);
     for (std::uint64_t i = 0; i < 6; ++i) {
@@ -75,7 +75,8 @@ SimulationSetup sliding_row(double stiffness, double damping, double moved) {
     return setup;
 }
 
-/// Two masses over each other, the lower one on the floor, the spring as long as it is under the weight of the upper.
+/// Returns two masses above each other, the lower one on the floor. The spring has its length under the weight of the
+/// upper mass.
 SimulationSetup column(double stiffness, double damping) {
     SimulationSetup setup = floor_with(0.5);
     setup.particles = {point({}, {}, 1.0), point({0, 0, 0.3}, {}, 1.0)};
@@ -92,7 +93,7 @@ Simulation made(SimulationSetup setup, IntegratorKind kind, const Answer& answer
     return Simulation(std::move(setup));
 }
 
-/// N s, that the floor was given.
+/// Returns the impulse on the floor, in N s.
 Vec3 given_to_floor(const Simulation& run) { return run.triangle_totals(0).impulse[0]; }
 
 Vec3 momentum(const Simulation& run) {
@@ -103,7 +104,7 @@ Vec3 momentum(const Simulation& run) {
     return sum;
 }
 
-/// The largest momentum, N s, that a step of the run makes out of nothing. The weight is kg.
+/// Returns the largest violation of momentum conservation in a step of the run, in N s. The weight is in kg.
 double largest_gap(Simulation run, double weight, double step) {
     double largest = 0.0;
     Vec3 before = momentum(run) + given_to_floor(run);
@@ -116,7 +117,7 @@ double largest_gap(Simulation run, double weight, double step) {
     return largest;
 }
 
-TEST(SpringsInContact, KeepMomentumInEveryStepOfASlidingRow) {
+TEST(SpringsInContact, ConserveMomentumInEveryStepOfASlidingRow) {
     for (const IntegratorKind kind : explicit_methods()) {
         for (const Answer& answer : kAnswers) {
             for (const double damping : {0.0, 1.0}) {
@@ -128,8 +129,8 @@ TEST(SpringsInContact, KeepMomentumInEveryStepOfASlidingRow) {
     }
 }
 
-// The smallest case: one slides, the other flies, and only the one that slides has a weight.
-TEST(SpringsInContact, KeepMomentumBetweenASliderAndAFlyer) {
+// In the smallest case one particle slides, the other flies, and only the sliding one has weight.
+TEST(SpringsInContact, ConserveMomentumBetweenASlidingAndAFlyingParticle) {
     for (const IntegratorKind kind : explicit_methods()) {
         for (const Answer& answer : kAnswers) {
             for (const double damping : {0.0, 20.0}) {
@@ -146,9 +147,9 @@ TEST(SpringsInContact, KeepMomentumBetweenASliderAndAFlyer) {
     }
 }
 
-// Landing, sliding, rolling and lifting off, of spheres on a net. Friction turns while a slip ends, and what is left of
-// the slip when its speed is next to nothing is friction's too.
-TEST(SpringsInContact, KeepMomentumOfANetThatFallsOnTheFloor) {
+// The spheres of a net land, slide, roll and lift off. Friction changes its direction as a slip ends. The remaining
+// slip near zero speed also belongs to friction.
+TEST(SpringsInContact, ConserveMomentumOfANetThatFallsOnTheFloor) {
     for (const IntegratorKind kind : explicit_methods()) {
         for (const double damping : {0.0, 0.05}) {
             SimulationSetup setup = floor_with(0.4);
@@ -167,11 +168,11 @@ TEST(SpringsInContact, KeepMomentumOfANetThatFallsOnTheFloor) {
     }
 }
 
-// v^2 / (2 mu g): friction takes from each the same, and springs at rest have nothing to do.
-TEST(SpringsInContact, LetARowSlideAsFarAsWithoutThem) {
+// The distance is v^2 / (2 mu g). Friction decelerates all particles equally, so springs at rest length have no effect.
+TEST(SpringsInContact, DoNotChangeTheSlidingDistanceOfARow) {
     const double closed = 9.0 / (2.0 * 0.3 * kGravity);
     for (const IntegratorKind kind : higher_methods()) {
-        // An adaptive method may be wrong by its tolerance, 1e-6 m, in each of the sub-steps that end the slide.
+        // The error of an adaptive method can be its tolerance, 1e-6 m, in each of the substeps that end the slide.
         const double error = kind == IntegratorKind::dormand_prince ? 1e-5 : 1e-6;
         for (const double step : {1e-3, 4e-3}) {
             Simulation run = made(sliding_row(1000.0, 1.0, 0.0), kind, kExact, step, 1.5);
@@ -184,7 +185,7 @@ TEST(SpringsInContact, LetARowSlideAsFarAsWithoutThem) {
     }
 }
 
-TEST(SpringsInContact, LetAStiffRowSlideAsFarAsWithoutThem) {
+TEST(SpringsInContact, DoNotChangeTheSlidingDistanceOfAStiffRow) {
     const double closed = 9.0 / (2.0 * 0.3 * kGravity);
     Simulation run = made(sliding_row(1e5, 5.0, 0.0), IntegratorKind::velocity_verlet, kExact, 1e-3, 1.5);
     while (!run.finished()) run.step();
@@ -193,8 +194,8 @@ TEST(SpringsInContact, LetAStiffRowSlideAsFarAsWithoutThem) {
     EXPECT_NEAR(sum - 0.5, closed, 1e-6);
 }
 
-// 2 m g on the floor and m g / k in the spring, once it has come to rest.
-TEST(SpringsInContact, HoldAColumnAtRest) {
+// At rest the floor carries 2 m g, and the spring is compressed by m g / k.
+TEST(SpringsInContact, SupportAColumnAtRest) {
     struct Case {
         double stiffness;
         double damping;
@@ -219,8 +220,8 @@ TEST(SpringsInContact, HoldAColumnAtRest) {
     }
 }
 
-// Forward Euler sets out without its forces: n steps of h from rest lead down by g h^2 n (n - 1) / 2. What gravity
-// gives in the first of them is no sign of a motion that diverges.
+// Forward Euler starts without its forces: n steps of h from rest lead down by g h^2 n (n - 1) / 2. The velocity gain
+// from gravity in the first step is not a sign of divergence.
 TEST(SpringsThatFall, MayFallFromRestByForwardEuler) {
     SimulationSetup setup;
     setup.forces.push_back(make_gravity({0, 0, -kGravity}));

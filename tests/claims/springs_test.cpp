@@ -1,4 +1,5 @@
-// Springs in whole simulations: closed forms, collisions, what explodes stops, the same bits for any thread count.
+// Springs in whole simulations: closed forms, collisions, detection of divergence, and the same bits for any number of
+// threads.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +26,8 @@ Particle particle_at(const Vec3& x, double mass = 1.0, const Vec3& v = {}) {
     return particle;
 }
 
-/// A hanging chain of `nodes` particles with both ends pinned `span` apart, total length and mass given.
+/// Returns a hanging chain of `nodes` particles with both ends pinned `span` apart, with the given total length and
+/// mass.
 SimulationSetup hanging_chain(int nodes, double span, double chain_length, double mass) {
     SimulationSetup setup;
     const int links = nodes - 1;
@@ -43,7 +45,8 @@ SimulationSetup hanging_chain(int nodes, double span, double chain_length, doubl
     return setup;
 }
 
-/// Catenary of length s between two points of the same height, d apart: parameter a with 2 a sinh(d / 2a) = s.
+/// Returns the parameter a of the catenary of length s between two points of the same height, d apart: 2 a sinh(d / 2a)
+/// = s.
 double catenary_parameter(double d, double s) {
     double low = 1e-3 * d;
     double high = 1e3 * d;
@@ -54,7 +57,7 @@ double catenary_parameter(double d, double s) {
     return low;
 }
 
-TEST(Springs, AHangingChainTakesTheCatenary) {
+TEST(Springs, AHangingChainIsACatenary) {
     const double d = 2.0;
     const double s = 3.0;
     SimulationSetup setup = hanging_chain(61, d, s, 1.2);
@@ -77,7 +80,7 @@ TEST(Springs, AHangingChainTakesTheCatenary) {
     EXPECT_EQ(simulation.statistics().unsolved_steps, 0U);
 }
 
-TEST(Springs, AnExplodingRunStopsAndSaysWhenAndWhoAndHowFast) {
+TEST(Springs, ADivergingRunStopsAndReportsTimeParticleAndSpeed) {
     for (const IntegratorKind kind : {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
                                       IntegratorKind::ballistic, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         SimulationSetup setup = hanging_chain(11, 2.0, 3.0, 1.0);
@@ -100,7 +103,7 @@ TEST(Springs, AnExplodingRunStopsAndSaysWhenAndWhoAndHowFast) {
     }
 }
 
-TEST(Springs, AForceThatOutrunsLightStopsTheRun) {
+TEST(Springs, ASpeedBeyondLightStopsTheRun) {
     for (const bool together : {false, true}) {
         SimulationSetup setup;
         setup.options.response = together ? ResponseKind::rollback : ResponseKind::exact;
@@ -131,7 +134,7 @@ TEST(Springs, StableRunsAreNotStopped) {
     }
 }
 
-/// A dumb-bell thrown at a floor: two spheres on a spring.
+/// Returns a dumb-bell, two spheres on a spring, thrown at a floor.
 SimulationSetup dumbbells(IntegratorKind kind) {
     SimulationSetup setup;
     setup.options.integrator = kind;
@@ -169,7 +172,7 @@ TEST(Springs, BallsOnSpringsBounceAndNeverPassTheFloor) {
     }
 }
 
-TEST(Springs, TheSameBitsForAnyThreadCount) {
+TEST(Springs, GiveTheSameBitsForAnyThreadCount) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::implicit_euler, IntegratorKind::dormand_prince}) {
         std::uint64_t first = 0;
@@ -183,7 +186,7 @@ TEST(Springs, TheSameBitsForAnyThreadCount) {
     }
 }
 
-/// A vertical pair bouncing once.
+/// Returns the height of a vertical pair after one bounce.
 double height_after_bounce(IntegratorKind kind, int steps) {
     SimulationSetup setup;
     setup.options.integrator = kind;
@@ -199,11 +202,12 @@ double height_after_bounce(IntegratorKind kind, int steps) {
     return simulation.particles().position[0].z;
 }
 
-TEST(Springs, ABounceIsOfFirstOrderAtLeast) {
+TEST(Springs, ABounceHasAtLeastFirstOrder) {
     const double reference = height_after_bounce(IntegratorKind::rk4, 400000);
     for (const IntegratorKind kind : {IntegratorKind::symplectic_euler, IntegratorKind::velocity_verlet,
                                       IntegratorKind::midpoint, IntegratorKind::rk4, IntegratorKind::implicit_euler}) {
-        // Where in its step the bounce falls makes the error uneven: the mean of several numbers of steps counts.
+        // The error depends on the time of the bounce within its step, so the mean over several numbers of steps is
+        // compared.
         const auto error = [&](int steps) {
             double sum = 0.0;
             for (int k = 0; k < 8; ++k) sum += std::fabs(height_after_bounce(kind, steps + 7 * k) - reference);
@@ -213,7 +217,7 @@ TEST(Springs, ABounceIsOfFirstOrderAtLeast) {
     }
 }
 
-TEST(Springs, BreakBeyondTheirStretchForGood) {
+TEST(Springs, BreakPermanentlyBeyondTheirStretch) {
     SimulationSetup setup;
     setup.particles = {particle_at({0, 0, 0}, 1.0, {-3, 0, 0}), particle_at({1, 0, 0}, 1.0, {3, 0, 0})};
     Spring spring{0, 1, 1.0, 10.0, 0.0};
@@ -230,7 +234,7 @@ TEST(Springs, BreakBeyondTheirStretchForGood) {
     EXPECT_EQ(simulation.particles().velocity[0] + simulation.particles().velocity[1], Vec3{});
 }
 
-TEST(Springs, AreLostWithAParticleAtTheirEnd) {
+TEST(Springs, AreRemovedWithAParticleAtTheirEnd) {
     SimulationSetup setup;
     setup.particles = {particle_at({0, 0, 0}), particle_at({1, 0, 0}), particle_at({2, 0, 0}, 1.0, {5, 0, 0})};
     setup.springs = {{0, 1, 1.0, 10.0, 0.0}, {1, 2, 1.0, 1.0, 0.0}};
@@ -243,7 +247,7 @@ TEST(Springs, AreLostWithAParticleAtTheirEnd) {
     EXPECT_TRUE(simulation.springs().is_intact(0));
 }
 
-TEST(Springs, EnergyOfAnUndampedRopeIsKeptBySymplecticMethods) {
+TEST(Springs, EnergyOfAnUndampedRopeIsConservedBySymplecticMethods) {
     SimulationSetup setup;
     for (int i = 0; i < 12; ++i) {
         Particle particle = particle_at({0.1 * i, 0.0, 0.0}, 0.1);
@@ -271,7 +275,7 @@ TEST(Springs, EnergyOfAnUndampedRopeIsKeptBySymplecticMethods) {
     EXPECT_LT(worst, 0.01 * largest);
 }
 
-/// Any solver through the classical interface: here an explicit midpoint method written in a few lines.
+/// User-defined solver with the classical interface: an explicit midpoint method in a few lines.
 void own_midpoint(ParticleSystem& system, double duration) {
     std::vector<double> y(system.dimension());
     std::vector<double> k(system.dimension());
@@ -296,7 +300,7 @@ TEST(OwnSolver, StepsTheWholeSystemAndCollidesExactly) {
     EXPECT_EQ(with_own.statistics().violations, 0U);
 }
 
-TEST(OwnSolver, OfTheSameFormulaGivesTheSameFlight) {
+TEST(OwnSolver, WithTheSameFormulaGivesTheSameFlight) {
     const auto end_of = [](bool own) {
         SimulationSetup setup = hanging_chain(11, 2.0, 3.0, 1.0);
         setup.options.integrator = IntegratorKind::midpoint;

@@ -1,6 +1,6 @@
-// Meshes whose scale changes in time are met where they are, and nothing gets through them.
+// Particles hit meshes with changing scale at their exact positions, and never pass through.
 //
-// A long run: many more particles and steps.
+// A long run has many more particles and steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// A mesh in the last of some frames, each of which stands on the one before, until a time.
+/// Returns a mesh in the last of a chain of frames, each attached to the previous one, until a time.
 MeshShape stretching(const TriangleMesh& mesh, std::vector<FrameDescription> chain, double end) {
     for (std::size_t k = 0; k < chain.size(); ++k) {
         chain[k].name = std::to_string(k);
@@ -65,8 +65,7 @@ void expect_sound(const Simulation& simulation) {
     EXPECT_EQ(statistics.unsimulated_time, 0.0);
 }
 
-/// Along one axis between walls at -(1 + u t) and 1 + u t, which the ball of a radius meets with its sides,
-/// elastically.
+/// Ball of a radius that moves along one axis between walls at -(1 + u t) and 1 + u t, and hits them elastically.
 struct Bouncer {
     double position;
     double velocity;
@@ -75,7 +74,7 @@ struct Bouncer {
     double time = 0.0;
     std::vector<double> hits{};
 
-    /// To the next hit, or to an end.
+    /// Advances to the next hit, or to an end.
     void advance(double end) {
         while (time < end) {
             const double side = velocity > 0.0 ? 1.0 : -1.0;
@@ -95,8 +94,8 @@ struct Bouncer {
     }
 };
 
-// Perfectly elastic walls that move change one component at a time: closed forms, three at once.
-TEST(AMeshBoxWhoseScaleChanges, ReflectsWhatIsInsideAsItsWallsMove) {
+// Elastic moving walls change one velocity component at a time, so three closed forms apply at once.
+TEST(AMeshBoxWhoseScaleChanges, ReflectsParticlesAccordingToTheMotionOfItsWalls) {
     const Vec3 start{0.2, -0.1, 0.3};
     const Vec3 velocity{2.3, 1.7, -2.9};
     const double end = 3.0;
@@ -142,11 +141,11 @@ TEST(AMeshBoxWhoseScaleChanges, ReflectsWhatIsInsideAsItsWallsMove) {
     }
 }
 
-/// What falls on the upper side of a box in a frame that is turned by a quarter, in one that grows as rates say, from
-/// (0, 0, 1) on.
+/// Particle that falls on the upper side of a box. The box is in a frame rotated by a quarter turn, inside a frame that
+/// grows at the given rates from (0, 0, 1).
 struct Growing {
     Vec3 rates{0.3, -0.2, 0.4};
-    Vec3 place{0.5, 0.25, 0.7};  // of the box, in what grows
+    Vec3 place{0.5, 0.25, 0.7};  // position of the box in the growing frame
     double half = 0.5;
 
     [[nodiscard]] SimulationSetup setup(const Material& material, double radius) const {
@@ -166,14 +165,14 @@ struct Growing {
         setup.particles = {particle};
         return setup;
     }
-    /// When what falls touches it, s.
+    /// Returns the time of impact, in s.
     [[nodiscard]] double time(double radius) const {
         const double top = place.z + half;
         return (3.0 - radius - 1.0 - top) / (2.0 + rates.z * top);
     }
 };
 
-TEST(ABoxInAChainOfScaledFrames, IsHitWhereItsSideIsAndThrowsOffWithTwiceItsSpeed) {
+TEST(ABoxInAChainOfScaledFrames, IsHitAtItsExactSideAndReflectsWithTwiceItsSpeed) {
     const Growing growing;
     for (const double radius : {0.0, 0.1}) {
         Simulation simulation(growing.setup({"", 1.0, 0.0}, radius));
@@ -185,15 +184,15 @@ TEST(ABoxInAChainOfScaledFrames, IsHitWhereItsSideIsAndThrowsOffWithTwiceItsSpee
         }
         ASSERT_EQ(records.size(), 1U);
         EXPECT_NEAR(records[0].time, growing.time(radius), 1e-14);
-        const double speed = growing.rates.z * 1.2;  // of the side, whose height in what grows is 1.2 m
+        const double speed = growing.rates.z * 1.2;  // speed of the side, whose height in the growing frame is 1.2 m
         EXPECT_LT(length(records[0].velocity_after - Vec3{0, 0, 2.0 * speed + 2.0}), 1e-13);
         expect_sound(simulation);
     }
 }
 
-// Where nothing rebounds and all friction holds, it has the velocity of the point that it hit: the rate of the scale
-// times where that is in what grows.
-TEST(ABoxInAChainOfScaledFrames, GivesWhatSticksTheVelocityOfTheVeryPoint) {
+// Without rebound and with full friction, the particle gets the velocity of the point of impact. That is the rate of
+// the scale times the position of the point in the growing frame.
+TEST(ABoxInAChainOfScaledFrames, GivesAStickingParticleTheVelocityOfThePointOfImpact) {
     const Growing growing;
     Simulation simulation(growing.setup({"", 0.0, 1e3}, 0.0));
     std::vector<ContactRecord> records;
@@ -206,7 +205,7 @@ TEST(ABoxInAChainOfScaledFrames, GivesWhatSticksTheVelocityOfTheVeryPoint) {
     const Vec3 rates = growing.rates;
     const Vec3 expected{rates.x * 0.8 / (1.0 + rates.x * time), rates.y * 0.1 / (1.0 + rates.y * time), rates.z * 1.2};
     EXPECT_LT(length(records[0].velocity_after - expected), 1e-13);
-    // It goes on with that point.
+    // The particle continues with that point.
     while (!simulation.finished()) simulation.step();
     const Vec3 start{0.8 / (1.0 + rates.x * time), 0.1 / (1.0 + rates.y * time), 1.2};
     const Vec3 end = Vec3{0, 0, 1} + start + Vec3{rates.x * start.x, rates.y * start.y, rates.z * start.z};
@@ -214,7 +213,7 @@ TEST(ABoxInAChainOfScaledFrames, GivesWhatSticksTheVelocityOfTheVeryPoint) {
     expect_sound(simulation);
 }
 
-/// Spheres in a mesh that grows and turns, in one frame or in two.
+/// Returns spheres in a mesh that grows and rotates, in one frame or in two.
 SimulationSetup turning_gas(bool in_two) {
     SimulationSetup setup = setup_of(0.01, 1.0, {"", 0.8, 0.2});
     const KeyedScale growth{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {2.0, {1.4, 1.4, 1.4}}})};
@@ -230,7 +229,7 @@ SimulationSetup turning_gas(bool in_two) {
     return setup;
 }
 
-/// The first impact of each particle.
+/// Returns the first impact of each particle.
 std::vector<ContactRecord> first_impacts(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     std::vector<ContactRecord> first(40);
@@ -245,8 +244,8 @@ std::vector<ContactRecord> first_impacts(SimulationSetup setup) {
     return first;
 }
 
-// A scale by one factor and a turn about the same axis go together in any order.
-TEST(AMeshInAChainOfScaledFrames, IsHitAsInOneFrameThatMovesAsBothTogether) {
+// A uniform scale and a rotation about the same axis commute.
+TEST(AMeshInAChainOfScaledFrames, IsHitAsInOneFrameWithTheCombinedMotion) {
     const std::vector<ContactRecord> chained = first_impacts(turning_gas(true));
     const std::vector<ContactRecord> single = first_impacts(turning_gas(false));
     int hits = 0;
@@ -268,8 +267,8 @@ std::string refusal(const Call& call) {
     return "";
 }
 
-// What deforms is said by stretched_motion(), and what is born keeps its size.
-TEST(WhatStandsInAScaledFrame, IsNoColliderAndNoEmitter) {
+// Deformation requires stretched_motion(), and emitted particles keep their size.
+TEST(WhatStandsInAScaledFrame, CannotBeAColliderOrAnEmitter) {
     FrameDescription frame = frame_with({KeyedScale{KeyedCurve<Vec3>({{0.0, {1, 1, 1}}, {1.0, {2, 2, 2}}})}});
     frame.name = "lung";
     const auto frames = std::make_shared<const FrameTree>(std::vector{frame});
@@ -291,7 +290,7 @@ TEST(WhatStandsInAScaledFrame, IsNoColliderAndNoEmitter) {
         std::string::npos);
 }
 
-/// Squash and stretch, while it tumbles and is carried to and fro, in a frame that breathes.
+/// Returns a gas in a mesh that squashes and stretches while it tumbles and oscillates, in a frame that breathes.
 SimulationSetup squashed_gas(double duration, int count, double radius) {
     SimulationSetup setup = setup_of(0.01, duration, {"", 0.9, 0.3});
     setup.options.record_contacts = false;
@@ -317,7 +316,7 @@ SimulationSetup squashed_gas(double duration, int count, double radius) {
     return setup;
 }
 
-TEST(AMeshWhoseScaleChanges, KeepsWhatIsInsideWhileItTumbles) {
+TEST(AMeshWhoseScaleChanges, KeepsParticlesInsideWhileItTumbles) {
     const bool is_long = test::is_long_run();
     for (const double radius : {0.0, 0.03}) {
         Simulation simulation(
@@ -334,7 +333,7 @@ TEST(AMeshWhoseScaleChanges, KeepsWhatIsInsideWhileItTumbles) {
     }
 }
 
-/// Points and spheres in a box that is shaken, turns to and fro, and stretches.
+/// Returns points and spheres in a box that is shaken, rotates back and forth, and stretches.
 SimulationSetup shaken_box(std::uint64_t seed, const Material& material) {
     RandomSequence random(seed, 5, 0);
     SimulationSetup setup = setup_of(1.0 / 60.0, 0.7, material);
@@ -352,8 +351,8 @@ SimulationSetup shaken_box(std::uint64_t seed, const Material& material) {
     return setup;
 }
 
-// The faces that hold a particle in a corner turn while an interval of contact lasts.
-TEST(AMeshWhoseScaleChanges, LeavesWhatSlidesInItsCornersAllOfItsTime) {
+// The faces that support a particle in a corner turn during a contact interval.
+TEST(AMeshWhoseScaleChanges, LosesNoTimeOfParticlesSlidingInItsCorners) {
     for (const Material& material : {Material{"", 0.0, 0.0}, Material{"", 0.0, 0.3}, Material{"", 0.3, 0.2}}) {
         for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(3)); ++seed) {
             SCOPED_TRACE(std::to_string(material.restitution) + " " + std::to_string(material.friction) + " " +
@@ -371,7 +370,8 @@ std::uint64_t hash_of(Simulation simulation) {
     return simulation.state_hash();
 }
 
-/// A mesh that deforms, a box that grows, one at rest and one that spins, in an order; a gas and some rain on them.
+/// Returns a deforming mesh, a growing box, a box at rest and a spinning one, in the given order, with a gas and some
+/// rain on them.
 SimulationSetup mixed_setup(const std::vector<std::size_t>& order) {
     SimulationSetup setup = squashed_gas(0.4, 150, 0.03);
     setup.forces.push_back(make_gravity({0, 0, -9.81}));
@@ -398,7 +398,7 @@ SimulationSetup mixed_setup(const std::vector<std::size_t>& order) {
     return setup;
 }
 
-TEST(MeshesThatDeformAndStretch, EndInTheSameBitsWhateverTheOrderOfCollidersAndTheThreads) {
+TEST(MeshesThatDeformAndStretch, EndInTheSameBitsForAnyOrderOfCollidersAndAnyThreads) {
     const std::vector<std::size_t> order{0, 1, 2, 3};
     const std::uint64_t expected = hash_of(Simulation(mixed_setup(order)));
     for (const int threads : {1, 2, 7}) {
@@ -410,7 +410,7 @@ TEST(MeshesThatDeformAndStretch, EndInTheSameBitsWhateverTheOrderOfCollidersAndT
     }
 }
 
-TEST(MeshesThatDeformAndStretch, GoOnToTheSameBitsFromASavedState) {
+TEST(MeshesThatDeformAndStretch, ResumeToTheSameBitsFromASavedState) {
     Simulation whole(mixed_setup({0, 1, 2, 3}));
     std::vector<std::byte> bytes;
     while (whole.step_index() < 17) whole.step();

@@ -1,4 +1,4 @@
-// Do belts, turntables and drums carry what touches them as the closed forms say, while their geometry stands still?
+// Belts, turntables and drums carry particles as in the closed forms, while their geometry is at rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr std::array kAllMethods{IntegratorKind::forward_euler,   IntegratorKind
                                  IntegratorKind::velocity_verlet, IntegratorKind::rk4,
                                  IntegratorKind::dormand_prince,  IntegratorKind::ballistic};
 
-/// A plane z = 0 whose material moves with velocity u.
+/// Returns a plane z = 0 whose material moves with velocity u.
 ContactScene belt(const Vec3& u, double restitution, double friction, double rolling_friction = 0.0) {
     ContactScene scene;
     scene.colliders = {plane_collider({}, {0, 0, 1})};
@@ -34,14 +34,14 @@ ContactScene belt(const Vec3& u, double restitution, double friction, double rol
     return scene;
 }
 
-/// What moves, as it is seen from something that moves with velocity u.
+/// Returns a particle as seen from an observer with velocity u.
 Particle seen_from(Particle particle, const Vec3& u) {
     particle.velocity -= u;
     return particle;
 }
 
-// Friction knows the slip alone: the impact on a belt is the impact on a plane at rest, seen from the belt.
-TEST(ABelt, ReflectsAsAPlaneAtRestDoesSeenFromTheBelt) {
+// Friction depends on the slip only. An impact on a belt is an impact on a plane at rest, seen from the belt.
+TEST(ABelt, ReflectsLikeAPlaneAtRestSeenFromTheBelt) {
     const Vec3 u{1.5, -0.5, 0};
     for (const double radius : {0.0, 0.1}) {
         for (const double friction : {0.05, 0.3, 2.0}) {
@@ -62,7 +62,7 @@ TEST(ABelt, ReflectsAsAPlaneAtRestDoesSeenFromTheBelt) {
     }
 }
 
-// Slip ends after |u| / (mu g); from then on it is carried.
+// Slip ends after |u| / (mu g). Afterwards the belt carries the point.
 TEST(ABelt, AcceleratesAPointByFrictionUntilItIsCarried) {
     for (const IntegratorKind kind : kAllMethods) {
         SCOPED_TRACE(static_cast<int>(kind));
@@ -75,7 +75,7 @@ TEST(ABelt, AcceleratesAPointByFrictionUntilItIsCarried) {
         const double stop = speed / (0.4 * kG);
         const Particle end = end_of(scene);
         EXPECT_EQ(end.velocity, (Vec3{2, 1, 0})) << "it does not slip at all";
-        // The methods of first order hold friction over a step.
+        // First-order methods keep the friction constant over a step.
         const bool is_first_order = kind == IntegratorKind::forward_euler || kind == IntegratorKind::symplectic_euler ||
                                     kind == IntegratorKind::implicit_euler;
         const double way = speed * scene.duration - 0.5 * speed * stop;
@@ -83,7 +83,7 @@ TEST(ABelt, AcceleratesAPointByFrictionUntilItIsCarried) {
     }
 }
 
-// A sphere without spin slips until 2/7 of the belt's speed is its own; it rolls then, and goes on doing so.
+// A sphere without spin slips until it has 2/7 of the belt's speed. Then it rolls, and continues to roll.
 TEST(ABelt, MakesASphereRollAtTwoSeventhsOfItsSpeed) {
     ContactScene scene = belt({3, 0, 0}, 0.0, 0.5);
     scene.particle = particle_of({0, 0, 0.2}, {}, 0.2);
@@ -93,7 +93,7 @@ TEST(ABelt, MakesASphereRollAtTwoSeventhsOfItsSpeed) {
     EXPECT_NEAR(end.spin.y * 0.2, 6.0 / 7.0 - 3.0, 1e-12);
 }
 
-// With resistance to rolling it comes to rest on the belt, which carries it.
+// With rolling resistance the sphere comes to rest on the belt, which carries it.
 TEST(ABelt, CarriesASphereThatRollingFrictionStops) {
     ContactScene scene = belt({1, 0, 0}, 0.0, 0.5, 0.1);
     scene.particle = particle_of({0, 0, 0.1}, {}, 0.1);
@@ -103,8 +103,8 @@ TEST(ABelt, CarriesASphereThatRollingFrictionStops) {
     EXPECT_EQ(end.spin, Vec3{});
 }
 
-// On a slope of 20 degrees a belt that moves uphill carries a point when mu > tan 20, and slips under it otherwise.
-TEST(ABelt, CarriesUphillWhatFrictionHolds) {
+// On a slope of 20 degrees a belt that moves uphill carries a point if mu > tan 20. Otherwise it slips under the point.
+TEST(ABelt, CarriesAPointUphillIfFrictionSuffices) {
     const double slope = radians(20.0);
     const Vec3 uphill{std::cos(slope), 0, std::sin(slope)};
     for (const double friction : {0.99, 1.01}) {
@@ -118,8 +118,8 @@ TEST(ABelt, CarriesUphillWhatFrictionHolds) {
     }
 }
 
-// A point held against a wall by a belt that slips under it: it stays, and the belt's friction loads the wall.
-TEST(ABelt, SlipsUnderWhatAWallStops) {
+// A belt slips under a point at a wall. The point stays, and the belt's friction loads the wall.
+TEST(ABelt, SlipsUnderAPointThatAWallStops) {
     ContactScene scene = belt({1, 0, 0}, 0.0, 0.3);
     scene.colliders.push_back(plane_collider({1, 0, 0}, {-1, 0, 0}));
     scene.materials.push_back({"wall", 0.0, 0.0});
@@ -130,7 +130,7 @@ TEST(ABelt, SlipsUnderWhatAWallStops) {
     EXPECT_NEAR(end.position.x, 1.0, 1e-12);
 }
 
-// A point and a sphere that fall onto a belt: the point is carried in the end, the sphere rolls.
+// A point and a sphere fall onto a belt. In the end the belt carries the point, and the sphere rolls.
 TEST(ABelt, CarriesInAllFourResponses) {
     using enum ResponseKind;
     for (const ResponseKind response : {exact, rollback, project, penalty}) {
@@ -152,25 +152,26 @@ TEST(ABelt, CarriesInAllFourResponses) {
         EXPECT_LT(length(point.velocity - Vec3{2, 1, 0}), 1e-12);
         EXPECT_LT(length(sphere.velocity - 2.0 / 7.0 * Vec3{2, 1, 0}), 1e-12);
         EXPECT_LT(length(sphere.velocity - cross(sphere.spin, Vec3{0, 0, 0.1}) - Vec3{2, 1, 0}), 1e-12);
-        // From the impact on, at 0.2 s, friction has an impulse of mu (1 + e) m v, and mu m g then.
+        // From the impact at 0.2 s, friction has an impulse of mu (1 + e) m v, and then a force of mu m g.
         EXPECT_NEAR(point.position.x, 3.3586, 2e-3);
     }
 }
 
-/// The plane z = 0 turning about z.
+/// Returns the plane z = 0 turning about z.
 ContactScene turntable(double rate, double friction) {
     ContactScene scene = belt({}, 0.0, friction);
     scene.materials[0].motion.angular_velocity = {0, 0, rate};
     return scene;
 }
 
-// A sphere that rolls on a turntable goes round a circle at 2/7 of its angular velocity, whatever the radius. Source:
-// K. Weltner, "Central drift of freely moving balls on rotating disks", American Journal of Physics 55 (1987).
+// Returns the error of the orbit of a sphere that rolls on a turntable. The sphere moves in a circle at 2/7 of the
+// angular velocity, for any radius.
+// Source: K. Weltner, "Central drift of freely moving balls on rotating disks", American Journal of Physics 55 (1987).
 double error_of_orbit(double time_step) {
     const double rate = 2.0;
     const double radius = 0.05;
     ContactScene scene = turntable(rate, 1.0);
-    // Rolls: v = (2/7) rate z x (p - c) about a center c, with the spin that v - w x r n = rate z x p asks for.
+    // Rolling: v = (2/7) rate z x (p - c) about a center c, with the spin required by v - w x r n = rate z x p.
     const Vec3 center{0.3, -0.2, 0};
     const Vec3 from{1, 0, radius};
     const double turn = 2.0 / 7.0 * rate;
@@ -191,16 +192,16 @@ double error_of_orbit(double time_step) {
     return error;
 }
 
-TEST(ATurntable, LeadsARollingSphereRoundACircleAtTwoSeventhsOfItsRate) {
+TEST(ATurntable, MovesARollingSphereInACircleAtTwoSeventhsOfItsRate) {
     EXPECT_LT(error_of_orbit(1e-3), 1e-6);
-    // Longer steps are cut where the table turns by more than an arc may.
+    // Longer steps are split if the table turns by more than the largest angle of an arc.
     const double coarse = error_of_orbit(0.05);
     const double fine = error_of_orbit(0.0125);
     EXPECT_LT(fine, coarse / 14.0) << "of second order at least";
 }
 
-// A point on a turntable is carried while mu g > rate^2 r.
-TEST(ATurntable, CarriesAPointWhereFrictionHoldsItOnItsCircle) {
+// A turntable carries a point while mu g > rate^2 r.
+TEST(ATurntable, CarriesAPointIfFrictionKeepsItOnItsCircle) {
     const double rate = 1.5;
     for (const double r : {0.5, 1.0}) {
         ContactScene scene = turntable(rate, 0.2);
@@ -218,7 +219,7 @@ TEST(ATurntable, CarriesAPointWhereFrictionHoldsItOnItsCircle) {
     }
 }
 
-// Resistance to spinning and rolling is relative to the table's own turning: a sphere on its axis turns with it.
+// Spinning and rolling resistance act relative to the table's rotation, so a sphere on its axis turns with it.
 TEST(ATurntable, SpinsUpASphereOnItsAxisByItsResistanceToSpinning) {
     ContactScene scene = turntable(3.0, 0.5);
     scene.materials[0].spinning_friction = 0.01;
@@ -231,11 +232,11 @@ TEST(ATurntable, SpinsUpASphereOnItsAxisByItsResistanceToSpinning) {
         error = std::max(error, std::fabs(p.spin.z - std::min(3.0, rate * time)));
         return true;
     });
-    // It begins a contact offset above the table, and falls for 1e-8 s.
+    // The sphere starts one contact offset above the table and falls for 1e-8 s.
     EXPECT_LT(error, 1e-6);
 }
 
-/// A cylinder about y, as a drum of radius 1 whose wall turns; a point inside.
+/// Returns a cylinder about y as a drum of radius 1 with a turning wall, and a point inside.
 ContactScene drum(double rate, double friction, double angle) {
     ContactScene scene;
     scene.colliders = {{"drum", CylinderShape{1.0, 4.0, {{}, {1, 0, 0}, 90.0}}, 0}};
@@ -247,10 +248,10 @@ ContactScene drum(double rate, double friction, double angle) {
     return scene;
 }
 
-// In a drum that turns slowly a point ends where the slope is that of friction: it slips there, at rest.
-TEST(ADrum, HoldsAPointWhereTheSlopeIsThatOfFriction) {
+// In a slowly turning drum a point ends at the slope given by the friction. It is at rest there and slips.
+TEST(ADrum, KeepsAPointAtTheSlopeOfFriction) {
     for (const double friction : {0.1, 0.3, 0.8}) {
-        // About +y the lowest wall moves towards -x.
+        // For rotation about +y, the lowest part of the wall moves towards -x.
         ContactScene scene = drum(0.5, friction, -std::atan(friction));
         scene.duration = 5.0;
         scene.time_step = 1e-3;
@@ -260,7 +261,7 @@ TEST(ADrum, HoldsAPointWhereTheSlopeIsThatOfFriction) {
     }
 }
 
-// It is carried up from the bottom to that slope, where it begins to slip.
+// The drum carries the point up from the bottom to that slope, at which it starts to slip.
 TEST(ADrum, CarriesAPointUpToTheSlopeOfFriction) {
     const double rate = 0.2;
     const double friction = 0.4;
@@ -273,13 +274,13 @@ TEST(ADrum, CarriesAPointUpToTheSlopeOfFriction) {
         if (std::fabs(length(p.velocity) - rate) < 1e-12) carried = std::max(carried, angle);
         return true;
     });
-    // Held until tan(angle) = mu (1 + rate^2 r / (g cos(angle))): a little beyond atan mu.
+    // The point is carried until tan(angle) = mu (1 + rate^2 r / (g cos(angle))), slightly beyond atan mu.
     const double most = std::atan(friction) + friction * rate * rate / kG;
     EXPECT_NEAR(carried, most, 2.0 * rate * scene.time_step);
 }
 
-// The material of a ball or a cylinder that turns about its own axis, without friction, does nothing.
-TEST(ADrum, WithoutFrictionIsAsOneAtRest) {
+// The rotation of the material of a ball or a cylinder about its own axis has no effect without friction.
+TEST(ADrum, WithoutFrictionActsAsAtRest) {
     for (const double radius : {0.0, 0.1}) {
         std::array<Particle, 2> ends;
         for (const double rate : {0.0, 30.0}) {
@@ -304,7 +305,7 @@ Material random_material(RandomSequence& random) {
     return material;
 }
 
-/// Points and spheres that fall in a box with a ball or a cylinder in it, all of which drive.
+/// Returns points and spheres that fall in a box with a ball or a cylinder in it. All surfaces have moving material.
 SimulationSetup random_scene(std::uint64_t seed) {
     RandomSequence random(seed, 51, 0);
     SimulationSetup setup;
@@ -326,8 +327,9 @@ SimulationSetup random_scene(std::uint64_t seed) {
     return setup;
 }
 
-// With friction below 1: where walls that move draw something into a corner with more, rigid bodies have no answer.
-TEST(SurfacesThatMove, LeakNothingAndLoseNoTimeInRandomScenes) {
+// Friction is below 1. If moving walls with higher friction draw a particle into a corner, rigid bodies have no
+// solution.
+TEST(SurfacesThatMove, HaveNoLeaksAndLoseNoTimeInRandomScenes) {
     const int scenes = test::scaled(60) * test::case_factor(20);
     for (int seed = 0; seed < scenes; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -344,9 +346,9 @@ TEST(SurfacesThatMove, LeakNothingAndLoseNoTimeInRandomScenes) {
     }
 }
 
-// Maxwell's diffuse walls: molecules between plates, one of which moves, take half of its velocity on average where
-// they leave both plates alike (free molecular Couette flow).
-TEST(ADiffuseWall, GivesWhatLeavesItItsOwnVelocity) {
+// Maxwell's diffuse walls: molecules fly between two plates, one of which moves. They have half of its velocity on
+// average if both plates emit equally (free molecular Couette flow).
+TEST(ADiffuseWall, GivesReflectedMoleculesItsOwnVelocity) {
     SimulationSetup setup;
     setup.options.time_step = 1.0;
     setup.options.duration = 60.0;
@@ -362,7 +364,7 @@ TEST(ADiffuseWall, GivesWhatLeavesItItsOwnVelocity) {
     constexpr int kCount = 4000;
     for (int k = 0; k < kCount; ++k) {
         Particle particle = particle_of({0, 0, (k + 0.5) / kCount}, {0, 0, k % 2 == 0 ? 1.0 : -1.0});
-        particle.mass = 1.380649e-23 * 300.0;  // kg: the thermal speed is 1 m/s
+        particle.mass = 1.380649e-23 * 300.0;  // in kg: the thermal speed is 1 m/s
         setup.particles.push_back(particle);
     }
     Simulation simulation(std::move(setup));
@@ -374,7 +376,7 @@ TEST(ADiffuseWall, GivesWhatLeavesItItsOwnVelocity) {
         ++steps;
         for (const Vec3& v : simulation.particles().velocity) sum += v.x;
     }
-    // The mean over 40 s is that of some 40 crossings a particle: 1e5 independent ones of spread 1.1 m/s.
+    // The mean over 40 s covers about 40 crossings per particle, or 1e5 independent ones with a spread of 1.1 m/s.
     EXPECT_NEAR(sum / kCount / steps, 0.5, 5.0 * 1.1 / std::sqrt(1e5));
 }
 

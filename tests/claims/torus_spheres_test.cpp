@@ -1,7 +1,7 @@
-// Do spheres that tumble in a torus of triangles keep their time, whatever the friction, the restitution and their
-// size, and do they cost about what points cost? No clock: impacts are counted.
+// Spheres that tumble in a torus of triangles lose no simulated time, for any friction, restitution and size. Their
+// cost, measured by the number of impacts, is close to that of points.
 //
-// A long run: three thousand of them for three seconds.
+// A long run has three thousand of them for three seconds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,10 +15,10 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-constexpr double kMajor = 1.0;  // m, of the circle in the tube's middle
+constexpr double kMajor = 1.0;  // radius of the tube's centre line, in m
 constexpr double kMinor = 0.25;
 
-/// A closed torus about z, 96 x 32 cells of two triangles, wound outward.
+/// Returns a closed torus about z, 96 x 32 cells of two triangles, wound outward.
 TriangleMesh torus_mesh() {
     constexpr std::uint32_t kAround = 96;
     constexpr std::uint32_t kAcross = 32;
@@ -44,7 +44,7 @@ struct Filling {
     double duration = 1.5;
     double friction = 0.0;
     double restitution = 0.7;
-    double largest = 0.0;  ///< radius, m; the smallest is a third of it; 0: points
+    double largest = 0.0;  ///< largest radius, in m; the smallest is a third of it; 0: points
 };
 
 SimulationStatistics run(const Filling& filling) {
@@ -52,7 +52,7 @@ SimulationStatistics run(const Filling& filling) {
     setup.options.time_step = 1.0 / 60.0;
     setup.options.duration = filling.duration;
     setup.options.triangle_totals = false;
-    setup.options.verify = filling.particles < 1000;  // it takes ten times as long
+    setup.options.verify = filling.particles < 1000;  // verification takes ten times as long
     setup.forces.push_back(make_gravity({0, -kStandardGravity, 0}));
     setup.materials = {{"", filling.restitution, filling.friction}};
     setup.colliders = {mesh_collider(torus_mesh())};
@@ -78,7 +78,7 @@ Filling filling_of(double friction, double restitution, double largest) {
     return filling;
 }
 
-TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesWhatPointsCost) {
+TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesAsMuchAsPoints) {
     for (const double restitution : {0.0, 0.3, 0.7, 0.95}) {
         const SimulationStatistics points = run(filling_of(0.0, restitution, 0.0));
         EXPECT_EQ(points.unsimulated_time, 0.0) << "points, restitution " << restitution;
@@ -89,7 +89,7 @@ TEST(SpheresInATorus, LoseNoTimeAndCostAtMostThreeTimesWhatPointsCost) {
                 const SimulationStatistics spheres = run(filling_of(friction, restitution, largest));
                 EXPECT_EQ(spheres.unsimulated_time, 0.0);
                 EXPECT_EQ(spheres.budget_exhausted, 0U);
-                // The contract's bound.
+                // Required bound.
                 EXPECT_LE(spheres.contacts, 3 * points.contacts) << "of points";
                 RecordProperty("contacts", std::to_string(spheres.contacts));
             }

@@ -1,4 +1,4 @@
-// Nothing is too fast: a bullet never gets through a thin plate, whatever the time step.
+// A bullet of any speed never passes through a thin plate, for any time step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 struct Shot {
     IntegratorKind integrator;
     double time_step;
-    bool is_sheet;  ///< a single layer of triangles, else a plate of a tenth of a millimetre
+    bool is_sheet;  ///< a single layer of triangles, otherwise a plate of a tenth of a millimetre
 };
 
 class Tunnelling : public ::testing::TestWithParam<Shot> {};

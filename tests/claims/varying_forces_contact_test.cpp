@@ -1,5 +1,5 @@
-// Does lasting contact follow forces that vary - drag, springs, the pull of a centre - to the order of the integrator,
-// and keep the energy that they have a potential for?
+// Persistent contact follows varying forces (drag, springs, central attraction) to the order of the integrator. It
+// conserves the energy of forces with a potential.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ Particle end_with(const ContactScene& scene, std::vector<std::unique_ptr<Force>>
     return simulation.particles().at(0);
 }
 
-/// A point or a sphere, that rolls where there is friction, on the plane z = 0.
+/// Returns a point or a sphere on the plane z = 0. With friction it rolls.
 ContactScene on_a_plane(double radius, double friction, const Vec3& place, const Vec3& velocity) {
     ContactScene scene;
     scene.colliders = {{"floor", PlaneShape{{}, {0, 0, 1}}, 0}};
@@ -62,7 +62,7 @@ std::vector<IntegratorKind> methods_of_second_order() {
     return {IntegratorKind::midpoint, IntegratorKind::velocity_verlet, IntegratorKind::rk4};
 }
 
-/// Expects an error in x as of the midpoint rule, that falls at least by 3.8 with half the step.
+/// Expects an error in x like that of the midpoint rule, which falls by at least 3.8 at half the step.
 void expect_second_order(ContactScene scene, const MakeForces& forces, double expected) {
     for (const IntegratorKind kind : methods_of_second_order()) {
         scene.integrator = kind;
@@ -72,19 +72,19 @@ void expect_second_order(ContactScene scene, const MakeForces& forces, double ex
         };
         const double coarse = error(0.1);
         const double fine = error(0.05);
-        EXPECT_LT(coarse, 4e-3) << name_of(kind);  // (c dt)^2 / 6 of the way
+        EXPECT_LT(coarse, 4e-3) << name_of(kind);  // (c dt)^2 / 6 of the path
         EXPECT_LT(fine, coarse / 3.8 + 1e-12) << name_of(kind);
     }
 }
 
-TEST(LinearDrag, BrakesWhatSlidesAndWhatRollsToSecondOrder) {
+TEST(LinearDrag, BrakesSlidingAndRollingParticlesToSecondOrder) {
     const MakeForces forces = [] { return list_of(make_gravity({0, 0, -kStandardGravity}), make_linear_drag(1.0)); };
-    // m v' = -c v; what rolls has the inertia of 7/5 of its mass.
+    // m v' = -c v; a rolling particle has an inertia of 7/5 of its mass.
     expect_second_order(on_a_plane(0.0, 0.0, {}, {3, 0, 0}), forces, 3.0 * (1.0 - std::exp(-1.0)));
     expect_second_order(on_a_plane(0.1, 100.0, {}, {3, 0, 0}), forces, 4.2 * (1.0 - std::exp(-1.0 / 1.4)));
 }
 
-TEST(ASpringAlongAPlane, SwingsWhatSlidesAndWhatRollsToSecondOrder) {
+TEST(ASpringAlongAPlane, SwingsSlidingAndRollingParticlesToSecondOrder) {
     for (const auto& [radius, friction, inertia] : {std::tuple{0.0, 0.0, 1.0}, std::tuple{0.1, 100.0, 1.4}}) {
         const double height = radius;
         const MakeForces forces = [height] {
@@ -97,7 +97,7 @@ TEST(ASpringAlongAPlane, SwingsWhatSlidesAndWhatRollsToSecondOrder) {
     }
 }
 
-TEST(LinearDrag, BrakesWhatSlidesWithinTheToleranceOfDormandAndPrince) {
+TEST(LinearDrag, BrakesSlidingParticlesWithinTheToleranceOfDormandPrince) {
     ContactScene scene = on_a_plane(0.0, 0.0, {}, {3, 0, 0});
     scene.time_step = 0.5;
     scene.integrator = Integrator(IntegratorKind::dormand_prince, ErrorTolerance{1e-8, 1e-8});
@@ -105,13 +105,13 @@ TEST(LinearDrag, BrakesWhatSlidesWithinTheToleranceOfDormandAndPrince) {
     EXPECT_NEAR(end.position.x, 3.0 / 20.0 * (1.0 - std::exp(-20.0)), 1e-7);
 }
 
-// v = v0 + b t - s t^2 / 2 with b = 4 m/s^2 less friction. At the start the force outdoes friction, in the middle of
-// the step it has turned; the point stops in between and sticks. Intervals end within a quarter of the time they were
-// planned for, where the force is wrong by an eighth of its change at most: a tenth of the way.
-TEST(AForceThatTurnsWithinAStep, StopsAPointWhereItsIntegralDoes) {
-    constexpr double kForce = 4.0;    // m/s^2
-    constexpr double kSlope = 100.0;  // m/s^3
-    constexpr double kStart = 0.01;   // m/s
+// v = v0 + b t - s t^2 / 2 with b = 4 m/s^2 minus friction. At the start the force exceeds friction, and in the middle
+// of the step it has reversed. The point stops in between and sticks. Intervals end within a quarter of their planned
+// time. The force error there is at most an eighth of its change, which is a tenth of the path.
+TEST(AForceThatTurnsWithinAStep, StopsAPointAtTheTimeOfItsIntegral) {
+    constexpr double kForce = 4.0;    // in m/s^2
+    constexpr double kSlope = 100.0;  // in m/s^3
+    constexpr double kStart = 0.01;   // in m/s
     const double b = kForce - 0.3 * kStandardGravity;
     const double stops = (b + std::sqrt(b * b + 2.0 * kSlope * kStart)) / kSlope;
     const double expected = stops * (kStart + stops * (b / 2.0 - kSlope * stops / 6.0));
@@ -131,9 +131,9 @@ TEST(AForceThatTurnsWithinAStep, StopsAPointWhereItsIntegralDoes) {
 struct RopeCase {
     IntegratorKind integrator;
     std::size_t nodes;
-    double stiffness;  // N/m
+    double stiffness;  // in N/m
     double friction;
-    double time_step;  // s
+    double time_step;  // in s
 };
 
 Simulation rope_over_a_box(const RopeCase& c) {
@@ -160,10 +160,10 @@ Simulation rope_over_a_box(const RopeCase& c) {
     return Simulation(std::move(setup));
 }
 
-// It swings more than once in a step, and its nodes slip, roll and stick in turn. Forces at both ends of an interval of
-// contact say nothing about what they do in between, and an interval that was planned with those of a middle that it
-// does not reach got energy from nothing.
-TEST(ARopeOverABox, GetsNoEnergyFromIt) {
+// The rope oscillates more than once per step, and its nodes slip, roll and stick in turn. Forces at both ends of a
+// contact interval do not determine the forces in between. An interval planned with forces of a midpoint that it does
+// not reach could gain energy.
+TEST(ARopeOverABox, GainsNoEnergyFromIt) {
     for (const RopeCase& c :
          {RopeCase{IntegratorKind::rk4, 12, 500.0, 0.5, 0.01}, RopeCase{IntegratorKind::rk4, 5, 2000.0, 0.3, 0.005},
           RopeCase{IntegratorKind::rk4, 12, 2000.0, 1.0, 0.005},
@@ -178,7 +178,7 @@ TEST(ARopeOverABox, GetsNoEnergyFromIt) {
     }
 }
 
-/// The largest change of kinetic and potential energy, relative to the kinetic energy that there ever is.
+/// Returns the largest change of kinetic plus potential energy, relative to the largest kinetic energy.
 double worst_change(const ContactScene& scene, std::vector<std::unique_ptr<Force>> forces) {
     Simulation simulation = simulation_with(scene, std::move(forces));
     const auto energy = [&] { return simulation.kinetic_energy() + simulation.potential_energy().value(); };
@@ -194,8 +194,8 @@ double worst_change(const ContactScene& scene, std::vector<std::unique_ptr<Force
     return worst / moving;
 }
 
-// A hundred swings; rounding of a potential of some 1e-16 in each of 30 000 arcs.
-TEST(ForcesWithAPotential, LoseNoEnergyToWhatSlidesOrRolls) {
+// A hundred swings, with a rounding error of the potential of about 1e-16 in each of 30 000 arcs.
+TEST(ForcesWithAPotential, ConserveTheEnergyOfSlidingAndRollingParticles) {
     for (const auto& [radius, friction] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.1, 100.0}}) {
         ContactScene scene = on_a_plane(radius, friction, {1, 0, 0}, {0, 0.5, 0});
         scene.integrator = IntegratorKind::velocity_verlet;
@@ -209,7 +209,7 @@ TEST(ForcesWithAPotential, LoseNoEnergyToWhatSlidesOrRolls) {
     }
 }
 
-TEST(ForcesWithAPotential, LoseNoEnergyToAMarbleThatACentreHoldsOnABall) {
+TEST(ForcesWithAPotential, ConserveTheEnergyOfAMarbleAttractedToABall) {
     ContactScene scene;
     scene.colliders = {{"ball", BallShape{1.0, {}}, 0}};
     scene.materials = {{"", 0.0, 100.0}};
@@ -217,7 +217,7 @@ TEST(ForcesWithAPotential, LoseNoEnergyToAMarbleThatACentreHoldsOnABall) {
     scene.integrator = IntegratorKind::rk4;
     scene.time_step = 0.02;
     scene.duration = 100.0;
-    // Off the centre, so that the marble is pulled along its way.
+    // The attraction is off the centre, so that it pulls the marble along its path.
     EXPECT_LT(worst_change(scene, list_of(make_point_gravity({{{0.2, 0, 0.1}, 9.81, 0.0}}), make_gravity({}))), 1e-11);
 }
 

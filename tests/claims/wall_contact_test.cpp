@@ -1,5 +1,5 @@
-// Does a sphere that rolls on a floor along a wall move as it should: past one without friction as if it were not
-// there, past one with friction as an integration of the equations says?
+// A sphere rolls on a floor along a wall. A wall without friction has no effect. A wall with friction acts as in an
+// integration of the equations of motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,8 @@ namespace RICOCHET_FILE {
 constexpr double kG = kStandardGravity;
 constexpr double kSphereRadius = 0.1;
 
-/// A sphere on the floor z = 0, touching the wall y = 0, which gravity presses it onto with `press` m/s^2.
+/// Returns a sphere on the floor z = 0 that touches the wall y = 0. Gravity presses it onto the wall with `press`
+/// m/s^2.
 ContactScene along_the_wall(double floor_friction, double wall_friction, double press, double time_step) {
     ContactScene scene;
     scene.colliders = {plane_collider({}, {0, 0, 1}), plane_collider({}, {0, 1, 0})};
@@ -34,7 +35,7 @@ TEST(AWallWithoutFriction, DoesNotBrakeASphereThatRollsAlongIt) {
         for (const double friction : {0.0, 0.3, 2.0}) {
             for (const double step : {0.001, 0.02, 0.1}) {
                 const Particle end = end_of(along_the_wall(friction, 0.0, press, step));
-                // The contract's bound: nothing acts along the wall, so it is rounding.
+                // Required bound. No force acts along the wall, so the error is rounding.
                 EXPECT_NEAR(end.position.x, 2.0, 2e-9) << press << ", " << friction << ", " << step;
                 EXPECT_NEAR(end.velocity.x, 1.0, 1e-9) << press << ", " << friction << ", " << step;
             }
@@ -42,8 +43,8 @@ TEST(AWallWithoutFriction, DoesNotBrakeASphereThatRollsAlongIt) {
     }
 }
 
-/// The sphere between both surfaces: its way, its speed and its spin times the radius. The slips are (v - w_y, w_x) on
-/// the floor and (v + w_z, -w_x) on the wall, along (x, y) and (x, z).
+/// State of the sphere between both surfaces: its path length, its speed, and its spin times the radius.
+/// The slips along (x, y) and (x, z) are (v - w_y, w_x) on the floor and (v + w_z, -w_x) on the wall.
 using State = std::array<double, 5>;
 using Slip = std::array<double, 2>;
 
@@ -51,17 +52,17 @@ Slip floor_slip(const State& y) { return {y[1] - y[3], y[2]}; }
 Slip wall_slip(const State& y) { return {y[1] + y[4], -y[2]}; }
 double size(const Slip& slip) { return std::hypot(slip[0], slip[1]); }
 
-/// Slips below this have ended, m/s. The friction of what is left of them moves the sphere by less than 1e-10 m.
+/// Speed in m/s below which a slip has ended. The friction of the remaining slip moves the sphere by less than 1e-10 m.
 constexpr double kEnded = 1e-11;
 
-/// The equations of motion, forces per mass. What has stopped to slip sticks: the other's friction, 1 to 3.5, is below
-/// what it could hold in the cases here.
+/// Equations of motion, with forces per mass. A surface sticks once its slip has ended. In the cases here, the friction
+/// of the other surface, divided by 3.5, is below the friction limit.
 class Walls {
 public:
     Walls(double floor_friction, double wall_friction, double press)
         : floor_(floor_friction), wall_(wall_friction), press_(press) {}
 
-    /// The state after `time` s.
+    /// Returns the state after `time` s.
     State after(State y, double time) {
         while (time > 0.0) {
             stop_slips(y);
@@ -69,7 +70,7 @@ public:
             const State rate = rates(y);
             for (const auto& slip : {floor_slip, wall_slip}) {
                 const double change = std::hypot(slip(rate)[0], slip(rate)[1]);
-                // Slips end at a finite rate: steps shrink with them.
+                // Slips end at a finite rate, so the steps shrink with them.
                 if (size(slip(y)) > kEnded && change > 0.0) h = std::min(h, 0.05 * size(slip(y)) / change);
             }
             y = runge_kutta_step(y, h, [&](const State& z) { return rates(z); });
@@ -86,7 +87,7 @@ private:
         if (!floor_slips_) y[3] = y[1];
         if (!wall_slips_) y[4] = -y[1];
     }
-    /// N_floor = g - W_z and N_wall = press - F_y, F and W the frictions, each along its slip.
+    /// N_floor = g - W_z and N_wall = press - F_y. F and W are the frictions, each along its slip.
     [[nodiscard]] State rates(const State& y) const {
         const Slip f = floor_slips_ ? along(floor_slip(y), floor_) : Slip{};
         const Slip w = wall_slips_ ? along(wall_slip(y), wall_) : Slip{};
@@ -95,7 +96,7 @@ private:
         const double n_w = (press_ - kG * f[1]) / determinant;
         Slip force_f{n_f * f[0], n_f * f[1]};
         Slip force_w{n_w * w[0], n_w * w[1]};
-        // What sticks follows the other.
+        // The friction of a sticking surface follows the other friction.
         if (!floor_slips_) force_f = {-force_w[0] / 3.5, force_w[1]};
         if (!wall_slips_) force_w = {-force_f[0] / 3.5, force_f[1]};
         return {y[1], force_f[0] + force_w[0], 2.5 * (force_f[1] - force_w[1]), -2.5 * force_f[0], 2.5 * force_w[0]};
@@ -115,7 +116,7 @@ struct Case {
     Vec3 spin;  ///< times the radius
 };
 
-TEST(AWallWithFriction, BrakesASphereThatRollsAlongItAsTheEquationsSay) {
+TEST(AWallWithFriction, BrakesARollingSphereAsTheEquationsPredict) {
     for (const Case& c :
          {Case{0.3, 0.3, 0.01, {0, 1, 0}}, Case{0.3, 0.2, 1.0, {0, 1, 0}}, Case{0.5, 0.5, 8.0, {0, 1, 0}},
           Case{0.1, 0.6, 3.0, {0, 0.5, 2}}, Case{0.2, 0.1, 3.0, {0.7, -0.4, 0.3}}, Case{0.1, 0.6, 3.0, {-1, 0.5, 2}},
@@ -129,7 +130,7 @@ TEST(AWallWithFriction, BrakesASphereThatRollsAlongItAsTheEquationsSay) {
                 scene.time_step = step;
                 scene.duration = time;
                 const Particle end = end_of(scene);
-                // The contract's bound.
+                // Required bound.
                 EXPECT_NEAR(end.position.x, expected[0], 1e-6) << c.press << ", " << time << ", " << step;
                 EXPECT_NEAR(end.velocity.x, expected[1], 1e-6) << c.press << ", " << time << ", " << step;
             }

@@ -1,5 +1,4 @@
-/// \file
-/// On which side of a closed mesh is a point? By the solid angles of its triangles, with code of the tests' own.
+/// \file Side of a closed mesh on which a point lies, by the solid angles of the triangles. Independent of the library.
 #pragma once
 
 #include <cmath>
@@ -9,8 +8,9 @@
 
 namespace ricochet::testing {
 
-/// Solid angle of a triangle over 2 pi. Source: A. van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle",
-/// IEEE Transactions on Biomedical Engineering 30, 1983.
+/// Returns the solid angle of a triangle over 2 pi.
+/// Source: A. van Oosterom, J. Strackee, "The Solid Angle of a Plane Triangle", IEEE Transactions on Biomedical
+/// Engineering 30, 1983.
 [[nodiscard]] inline long double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
     struct Arm {
         long double x, y, z, length;
@@ -32,7 +32,7 @@ namespace ricochet::testing {
     return std::atan2(volume, base) / 3.14159265358979323846L;
 }
 
-/// How often a closed mesh goes round a point: 1 inside one that is wound outward, 0 outside.
+/// Returns the winding number of a closed mesh about a point: 1 inside a mesh wound outward, 0 outside.
 [[nodiscard]] inline long winding_number(const TriangleMesh& mesh, const Vec3& p) {
     long double sum = 0.0L;
     for (const Triangle& t : mesh.triangles) {

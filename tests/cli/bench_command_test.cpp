@@ -58,7 +58,7 @@ TEST(BenchCommand, RefusesWrongArgumentsInOneLineBeforeAnythingRuns) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("new.json")));
 }
 
-TEST(BenchCommand, TellsAtOnceWhenItsFileCannotBeWritten) {
+TEST(BenchCommand, RefusesAnUnwritableFileBeforeItMeasures) {
     const test::TemporaryFolder folder;
     const ProgramResult result = run_ricochet({"bench", "--json", folder.path("missing/bench.json").string()});
     EXPECT_EQ(result.exit_code, 1);

@@ -14,7 +14,7 @@
 namespace ricochet::cli {
 namespace RICOCHET_FILE {
 
-// Two cases with one and with two threads, the second without most ratios.
+// Returns rows of two cases with one and with two threads. The second case lacks most ratios.
 std::vector<bench::Row> rows() {
     std::vector<bench::Row> rows(4);
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -46,7 +46,7 @@ std::string script_of(const std::string& suite) {
     return suite == bench::kLoadSuite ? plot_script(load_rows()) : plot_script(suite, rows());
 }
 
-TEST(BenchPlots, OfEverySuiteAreDrawnWithoutAWordFromGnuplot) {
+TEST(BenchPlots, AreDrawnForEverySuiteWithoutOutputFromGnuplot) {
     for (const std::string& suite : bench::suite_names()) {
         const test::TemporaryFolder folder;
         (void)folder.write("plot.gp", script_of(suite));
@@ -58,8 +58,8 @@ TEST(BenchPlots, OfEverySuiteAreDrawnWithoutAWordFromGnuplot) {
     }
 }
 
-// A gnuplot that breaks off and says that all is well.
-TEST(BenchPlots, ThatAreNotWholeGetNoName) {
+// The imitated gnuplot writes an incomplete picture and returns success.
+TEST(BenchPlots, GetNoFinalNameIfIncomplete) {
     const test::TemporaryFolder folder;
     (void)folder.write("gnuplot", "#!/bin/sh\nending=${2#*\\'}\nprintf PNG > \"plot.png${ending%\\'}\"\n");
     std::filesystem::permissions(folder.path("gnuplot"), std::filesystem::perms::owner_all);
@@ -77,13 +77,13 @@ TEST(BenchPlots, TakeTheRowsWithTheMostThreads) {
     EXPECT_EQ(text.find("\"ply\" 0.002 0.002\n"), std::string::npos) << text;
 }
 
-TEST(BenchPlots, LeaveOutWhatHasNoNumber) {
+TEST(BenchPlots, OmitMissingValues) {
     const std::string text = plot_script("radius", rows());
     EXPECT_NE(text.find("\"first_case\" 1.5\n"), std::string::npos) << text;
     EXPECT_NE(text.find("\"second\" nan\n"), std::string::npos) << text;
 }
 
-TEST(BenchPlots, OfThreadsHaveACurveForEveryCaseAndItsBareRays) {
+TEST(BenchPlots, HaveACurveForEveryThreadCaseAndItsBareRays) {
     const std::string text = plot_script("threads", rows());
     for (const char* part :
          {"1 1 1\n2 2 2\n", "title 'first_case'", "title 'first_case, bare rays'", "title 'second'"}) {

@@ -1,4 +1,7 @@
-"""Imports a run into Blender through the add-on's operator and renders a frame: blender -b -P THIS -- ADDON RUN PICTURE."""
+"""Imports a run into Blender with the operator of the add-on and renders a frame.
+
+Usage: blender -b -P THIS -- ADDON RUN PICTURE
+"""
 
 import importlib.util
 import os

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# blender_import_test.sh RICOCHET PROJECT FOLDER BLENDER: makes a run with colliders that move and opens it in Blender; 77
-# where that is not installed.
+# Usage: blender_import_test.sh RICOCHET PROJECT FOLDER BLENDER
+# Makes a run with moving colliders and opens it in Blender. Exit code 77 if Blender is not installed.
 set -euo pipefail
 ricochet="$1" project="$2" folder="$3" blender="$4"
 if [[ ! -x "$blender" ]]; then

@@ -16,7 +16,7 @@ using test::SampleFolder;
 
 std::ptrdiff_t lines_of(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
-TEST(CheckCommand, SaysInALineWhatAGoodSceneHolds) {
+TEST(CheckCommand, SummarizesAValidSceneInOneLine) {
     const SampleFolder folder;
     const std::string scene = folder.write("s.json", test::kSampleScene).string();
     const ProgramResult result = run_ricochet({"check", scene});
@@ -27,7 +27,7 @@ TEST(CheckCommand, SaysInALineWhatAGoodSceneHolds) {
     EXPECT_EQ(result.errors, "");
 }
 
-TEST(CheckCommand, PrintsEveryErrorOnALineOfItsOwnAndEndsWithTwo) {
+TEST(CheckCommand, PrintsEachErrorOnItsOwnLineAndEndsWithTwo) {
     const SampleFolder folder;
     const std::string scene =
         folder.write("s.json", R"({"ricochet": 1, "forcs": [], "simulation": {"seed": -1}, "output": {"every": 0}})")
@@ -69,7 +69,7 @@ TEST(CheckCommand, TakesOverridesBeforeAndAfterTheScene) {
                                 "(s)\n");
 }
 
-TEST(CheckCommand, FindsWhatOnlyTheSimulationSees) {
+TEST(CheckCommand, FindsErrorsThatOnlyTheSimulationDetects) {
     const SampleFolder folder;
     const std::string scene = folder.write("s.json", test::kSampleScene).string();
     const ProgramResult result = run_ricochet({"check", scene, "--set", "colliders[1].position=[9e74, 9e74, 9e74]",

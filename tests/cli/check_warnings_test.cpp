@@ -1,4 +1,4 @@
-// What `ricochet check` warns of in scenes that can be run: each warning where it belongs, and not where it does not.
+// Tests of the warnings of `ricochet check` for valid scenes. Each warning must appear if it applies, and only then.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::string obj_of(const TriangleMesh& mesh) {
     return out.str();
 }
 
-/// An open cone about z, from a ring of the upper radius at z = 1 to one of the lower radius at z = 0.
+/// Returns an open cone about z, from a ring of the upper radius at z = 1 to a ring of the lower radius at z = 0.
 TriangleMesh funnel_mesh(double upper, double lower) {
     constexpr std::uint32_t kSides = 24;
     TriangleMesh mesh;
@@ -39,8 +39,8 @@ TriangleMesh funnel_mesh(double upper, double lower) {
     return mesh;
 }
 
-/// A scene with meshes beside it: `hull.obj`, a sphere of radius 1, `leaky.obj`, the same with a small hole, and
-/// `funnel.obj`, 2 m wide above and 0.2 m below.
+/// Scene with meshes in its folder: `hull.obj`, a sphere of radius 1; `leaky.obj`, the same with a small hole; and
+/// `funnel.obj`, 2 m wide at the top and 0.2 m at the bottom.
 class CheckWarnings : public ::testing::Test {
 protected:
     CheckWarnings() {
@@ -52,7 +52,7 @@ protected:
         (void)folder_.write("funnel.obj", obj_of(funnel_mesh(1.0, 0.1)));
     }
 
-    /// What a quiet run of ten steps prints there.
+    /// Returns the output of a quiet run of ten steps on standard error.
     std::string warnings_of_run(const std::string& parts) {
         const std::string simulation = R"("simulation": {"time_step": 0.01, "duration": 0.1},)";
         const std::string scene = folder_.write("r.json", R"({"ricochet": 1, )" + simulation + parts + "}").string();
@@ -62,7 +62,7 @@ protected:
         return result.errors;
     }
 
-    /// What check prints to standard error for a scene of these parts; it must end with 0.
+    /// Returns the output of check on standard error for a scene of these parts. The exit code must be 0.
     std::string warnings(const std::string& parts) {
         const std::string scene =
             folder_
@@ -96,7 +96,7 @@ private:
     SampleFolder folder_;
 };
 
-TEST_F(CheckWarnings, TellsOfALeakOnlyToWhatBeginsInside) {
+TEST_F(CheckWarnings, WarnsOfALeakOnlyForParticlesThatStartInside) {
     const std::string inside = emitter(R"("type": "sphere", "center": [0, 0, 0], "radius": 0.5)");
     const std::string outside = emitter(R"("type": "sphere", "center": [0, 0, 3], "radius": 0.5)");
     const std::string text = warnings(mesh("leaky.obj") + inside);
@@ -110,7 +110,7 @@ TEST_F(CheckWarnings, TellsOfALeakOnlyToWhatBeginsInside) {
     EXPECT_EQ(warnings(mesh("funnel.obj") + inside), "");
 }
 
-TEST_F(CheckWarnings, TellsOfShellsThatOverlapInOneMesh) {
+TEST_F(CheckWarnings, WarnsOfOverlappingShellsInOneMesh) {
     const TriangleMesh cube = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     const auto write = [&](const char* name, const TriangleMesh& other) {
         (void)folder().write(name, obj_of(testing::merged(cube, other)));
@@ -129,7 +129,7 @@ TEST_F(CheckWarnings, TellsOfShellsThatOverlapInOneMesh) {
     EXPECT_EQ(warnings(volume("touch.obj")), "");
 }
 
-TEST_F(CheckWarnings, TellsOfStartsOnBothSidesOfAClosedCollider) {
+TEST_F(CheckWarnings, WarnsOfStartsOnBothSidesOfAClosedCollider) {
     const std::string across = emitter(R"("type": "box", "center": [1, 0, 0], "size": [1, 1, 1])");
     const std::string within = emitter(R"("type": "box", "center": [0, 0, 0], "size": [1, 1, 1])");
     for (const std::string& solid : {mesh("hull.obj"), collider(R"("type": "sphere", "radius": 1)"),
@@ -145,8 +145,8 @@ TEST_F(CheckWarnings, TellsOfStartsOnBothSidesOfAClosedCollider) {
     EXPECT_EQ(warnings(mesh("hull.obj") + R"(, "particles": [{"position": [0, 0, 3]}])"), "");
 }
 
-// Where it is when particles are born: 3 m off the origin at first.
-TEST_F(CheckWarnings, SeesCollidersThatMoveWhereTheyAreWhenParticlesBegin) {
+// Tests colliders at the time at which particles are born. The collider is 3 m off the origin at first.
+TEST_F(CheckWarnings, TestsMovingCollidersAtTheStartTimeOfParticles) {
     const std::string away = R"(, "motion": [{"time": 0, "position": [3, 0, 0], "rotation": {"axis": [0, 1, 0],
         "degrees": 180}}, {"time": 0.05, "position": [0, 0, 0]}])";
     const std::string both = R"(, "particles": [{"position": [0, 0, 0]}, {"position": [3, 0, 0]}])";
@@ -159,20 +159,20 @@ TEST_F(CheckWarnings, SeesCollidersThatMoveWhereTheyAreWhenParticlesBegin) {
     const std::string leaky = collider(R"("type": "mesh", "file": "leaky.obj")" + away);
     EXPECT_EQ(warnings(leaky + inside).rfind("particles: 1 of 1 begin inside colliders[0] 'c', which is open", 0), 0U);
     EXPECT_EQ(warnings(leaky + R"(, "particles": [{"position": [0, 0, 0]}])"), "");
-    // Born when it is there.
+    // The particles are born when the collider has arrived.
     const std::string late = emitter(R"("type": "point", "center": [0, 0, 0], "start": 0.05)");
     EXPECT_EQ(warnings(leaky + late).rfind("emitters[0] 'e': 64 of 64 begin inside", 0), 0U);
-    // A funnel that stands on its head above what rises from below is entered as one that stands upright.
+    // A funnel upside down, with particles rising from below, is entered like an upright one.
     const std::string wide = R"(, "particles": [{"position": [3, 0, 4], "radius": 0.2}])";
     const std::string funnel = collider(R"("type": "mesh", "file": "funnel.obj")" + away);
     EXPECT_NE(warnings(funnel + gravity() + wide).find("do not fit through the narrowest opening"), std::string::npos);
-    // Nothing finds room between two bodies.
+    // No position between the two bodies is free.
     const std::string large = emitter(R"("type": "point", "center": [3, 0, 0.5], "particle_radius": 0.7)");
     EXPECT_NE(warnings(collider(R"("type": "sphere", "radius": 1)" + away) + large).find("256 of 256 positions"),
               std::string::npos);
 }
 
-TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
+TEST_F(CheckWarnings, WarnsOfOverlapsWithTheirNumberFirstAndDepth) {
     const auto particles = [](double z) {
         return R"(, "particles": [{"position": [0, 0, 5], "radius": 0.5}, {"position": [3, 0, )" + std::to_string(z) +
                R"(], "radius": 0.5}])";
@@ -185,7 +185,7 @@ TEST_F(CheckWarnings, TellsOfOverlapsByNumberFirstAndDepth) {
     EXPECT_EQ(warnings(floor + particles(0.5)), "");
 }
 
-TEST_F(CheckWarnings, TellsOfSpheresThatStandInOthersWhereTheyMeet) {
+TEST_F(CheckWarnings, WarnsOfSpheresThatOverlapIfTheyCollide) {
     const std::string contacts = R"("particle_contacts": {"restitution": 0.5},)";
     const auto particles = [](const std::string& x) {
         return R"("particles": [{"position": [9, 0, 5], "radius": 0.5}, {"position": [0, 0, 5], "radius": 0.5}, )"
@@ -200,7 +200,7 @@ TEST_F(CheckWarnings, TellsOfSpheresThatStandInOthersWhereTheyMeet) {
     EXPECT_EQ(warnings(particles("0.5")), "");
 }
 
-TEST_F(CheckWarnings, TellsOfAnEmitterWithoutFreePositions) {
+TEST_F(CheckWarnings, WarnsOfAnEmitterWithoutFreePositions) {
     const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
     const auto point = [](const std::string& z) {
         return emitter(R"("type": "point", "particle_radius": 0.5, "center": [0, 0, )" + z + "]");
@@ -215,7 +215,7 @@ TEST_F(CheckWarnings, TellsOfAnEmitterWithoutFreePositions) {
         "");
 }
 
-TEST_F(CheckWarnings, TellsOfSpheresThatDoNotFitThroughAnOutlet) {
+TEST_F(CheckWarnings, WarnsOfSpheresThatDoNotFitThroughAnOutlet) {
     const auto pour = [](const std::string& x, const std::string& radius) {
         return gravity() + emitter(R"("type": "sphere", "radius": 0.2, "center": [)" + x +
                                    R"(, 0, 3], "particle_radius": )" + radius);
@@ -227,11 +227,11 @@ TEST_F(CheckWarnings, TellsOfSpheresThatDoNotFitThroughAnOutlet) {
               0U)
         << text;
     EXPECT_EQ(warnings(mesh("funnel.obj") + pour("0", "0.09")), "");
-    EXPECT_EQ(warnings(mesh("funnel.obj") + pour("5", "0.11")), "");  // falls beside it
-    EXPECT_EQ(warnings(mesh("leaky.obj") + pour("0", "0.11")), "");   // a hole, no outlet
+    EXPECT_EQ(warnings(mesh("funnel.obj") + pour("5", "0.11")), "");  // falls beside the funnel
+    EXPECT_EQ(warnings(mesh("leaky.obj") + pour("0", "0.11")), "");   // a hole is not an outlet
 }
 
-TEST_F(CheckWarnings, TellsOfRadiiThatCoordinatesHardlyResolve) {
+TEST_F(CheckWarnings, WarnsOfRadiiThatCoordinatesHardlyResolve) {
     const std::string floor = collider(R"("type": "plane", "normal": [0, 0, 1])");
     const auto far = [](const std::string& x) {
         return emitter(R"("type": "point", "particle_radius": 0.001, "center": [)" + x + R"(, 0, 3])");
@@ -243,7 +243,7 @@ TEST_F(CheckWarnings, TellsOfRadiiThatCoordinatesHardlyResolve) {
     EXPECT_EQ(warnings(floor + far("1e6")), "");
 }
 
-TEST_F(CheckWarnings, TellsOfMeshesThatCoordinatesHardlyResolve) {
+TEST_F(CheckWarnings, WarnsOfMeshesThatCoordinatesHardlyResolve) {
     const auto far = [](const std::string& x) {
         return collider(R"("type": "mesh", "file": "hull.obj", "scale": 1e-6, "position": [)" + x + ", 0, 0]") +
                emitter(R"("type": "point", "center": [0, 0, 3])");
@@ -258,15 +258,15 @@ TEST_F(CheckWarnings, TellsOfMeshesThatCoordinatesHardlyResolve) {
     EXPECT_EQ(warnings(far("100")), "");
 }
 
-TEST_F(CheckWarnings, TellsOfMeshesWithoutArea) {
+TEST_F(CheckWarnings, WarnsOfMeshesWithoutArea) {
     const std::string points = emitter(R"("type": "point", "center": [0, 0, 3])");
     EXPECT_EQ(warnings(mesh("line.obj") + points),
               "colliders[0] 'c': none of its triangles (2) has an area, so that nothing hits it: look at the file\n");
     EXPECT_EQ(warnings(mesh("hull.obj") + points), "");
 }
 
-// In 0.01 s what falls from rest falls 0.49 mm.
-TEST_F(CheckWarnings, TellsOfStepsInWhichAllFallsThroughTheWholeScene) {
+// A particle at rest falls 0.49 mm in 0.01 s.
+TEST_F(CheckWarnings, WarnsOfStepsInWhichParticlesFallThroughTheWholeScene) {
     const auto drop = [](const std::string& height) {
         return collider(R"("type": "plane", "normal": [0, 0, 1])") +
                emitter(R"("type": "point", "center": [0, 0, )" + height + "]");
@@ -278,7 +278,7 @@ TEST_F(CheckWarnings, TellsOfStepsInWhichAllFallsThroughTheWholeScene) {
     EXPECT_EQ(warnings(drop("0.00048")), "");
 }
 
-TEST_F(CheckWarnings, TellsOfNothingToHitWhereImpactsAreAskedFor) {
+TEST_F(CheckWarnings, WarnsOfAMissingColliderIfImpactsAreRequested) {
     const std::string sparks = R"("emitters": [{"name": "e", "type": "point", "burst": 10},
         {"name": "sparks", "type": "child", "parent": "e", "on": "impact", "count": 3}])";
     EXPECT_EQ(warnings(sparks),
@@ -290,7 +290,7 @@ TEST_F(CheckWarnings, TellsOfNothingToHitWhereImpactsAreAskedFor) {
     EXPECT_NE(warnings(plain + R"(, "output": {"contacts": true})").find("output.contacts: "), std::string::npos);
 }
 
-TEST_F(CheckWarnings, TellsOfStepsBeyondAStabilityBound) {
+TEST_F(CheckWarnings, WarnsOfStepsBeyondAStabilityBound) {
     const auto stiff = [](const std::string& stiffness) {
         return R"("particles": [{"position": [0, 0, 1]}, {"position": [0, 0, 2]}], "springs": [{"type": "list", "springs": [
             {"first": 0, "second": 1, "stiffness": )" +
@@ -300,7 +300,7 @@ TEST_F(CheckWarnings, TellsOfStepsBeyondAStabilityBound) {
     EXPECT_EQ(warnings(stiff("10")), "");
 }
 
-TEST_F(CheckWarnings, MethodsThatCannotDoWhatASceneAsksOfSpheresAreNamed) {
+TEST_F(CheckWarnings, NamesMethodsThatDoNotSupportTheSpheresOfAScene) {
     const auto of_pairs = [&](const std::string& contacts, bool falls) {
         const std::string gravity = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],)";
         return warnings((falls ? gravity : "") + R"("particle_contacts": {)" + contacts + R"(},
@@ -318,7 +318,7 @@ TEST_F(CheckWarnings, MethodsThatCannotDoWhatASceneAsksOfSpheresAreNamed) {
     EXPECT_FALSE(names(R"("method": "contacts", "restitution": 0.5)", true));
 }
 
-TEST_F(CheckWarnings, ARunNamesThemToo) {
+TEST_F(CheckWarnings, ARunNamesUnsupportedMethodsToo) {
     const auto told = [&](const std::string& method) {
         const std::string gravity = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],)";
         const std::string contacts = R"("particle_contacts": {"restitution": 0.5, "method": ")" + method + R"("},)";
@@ -328,7 +328,7 @@ TEST_F(CheckWarnings, ARunNamesThemToo) {
     EXPECT_EQ(told("auto"), "");
 }
 
-TEST_F(CheckWarnings, TellsWithEveryRunOfBoundsThatExcludeAnEmitter) {
+TEST_F(CheckWarnings, WarnsInEveryRunOfBoundsThatExcludeAnEmitter) {
     const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
     const std::string advice =
         ": particles outside are removed at the end of a step; make `bounds` larger or move the emitter inside\n";
@@ -347,21 +347,21 @@ TEST_F(CheckWarnings, TellsWithEveryRunOfBoundsThatExcludeAnEmitter) {
     EXPECT_NE(text.find(" m along x" + advice), std::string::npos) << text;
 }
 
-TEST_F(CheckWarnings, TellsOfBoundsThatExcludeAnEmitterInAFrame) {
+TEST_F(CheckWarnings, WarnsOfBoundsThatExcludeAnEmitterInAFrame) {
     const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
     const std::string frame = R"(, "frames": {"f": {"translation": [0, 0, 5]}})";
     const std::string in_frame = emitter(R"("type": "point", "center": [0, 0, 0.5], "frame": "f")");
     EXPECT_NE(warnings(plane() + frame + in_frame + bounds).find("256 of 256"), std::string::npos);
 }
 
-TEST_F(CheckWarnings, SaysNothingOfBoundsThatHoldAllThatBegins) {
+TEST_F(CheckWarnings, AcceptsBoundsThatContainAllStartPositions) {
     const std::string bounds = R"(, "bounds": {"lower": [-1, -1, -1], "upper": [1, 1, 1]})";
     for (const char* shape : {R"("type": "point", "center": [0, 0, 1])",
                               R"("type": "disk", "center": [0, 0, 1], "normal": [0, 0, 1], "radius": 1)",
                               R"("type": "sphere", "center": [0, 0, 0.5], "radius": 0.5)"}) {
         EXPECT_EQ(warnings(plane() + emitter(shape) + bounds), "") << shape;
     }
-    // Children begin where their parents are.
+    // Children start at the positions of their parents.
     const std::string child =
         R"(, {"name": "c", "type": "child", "parent": "e", "on": "impact", "count": 2, "lifetime": 1}])";
     std::string parent = emitter(R"("type": "point", "center": [0, 0, 0.5])");
@@ -369,7 +369,7 @@ TEST_F(CheckWarnings, SaysNothingOfBoundsThatHoldAllThatBegins) {
     EXPECT_EQ(warnings(plane() + parent + child + bounds), "");
 }
 
-TEST_F(CheckWarnings, DoubtsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
+TEST_F(CheckWarnings, QuestionsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
     TriangleMesh hopper = funnel_mesh(205.0, 20.0);
     for (Vec3& vertex : hopper.vertices) vertex.z *= 300.0;
     (void)folder().write("millimetres.obj", obj_of(hopper));
@@ -387,7 +387,7 @@ TEST_F(CheckWarnings, DoubtsTheSizeOfAMeshInMillimetresUntilAScaleIsStated) {
     EXPECT_EQ(with_scale(R"(, "scale": 0.001)", "0.9"), "");
 }
 
-TEST_F(CheckWarnings, DoubtsStartsThatOnlyAWrongUnitPutsSoFarFromTheColliders) {
+TEST_F(CheckWarnings, QuestionsStartsFarFromTheCollidersAsAWrongUnit) {
     const std::string funnel = collider(R"("type": "mesh", "file": "funnel.obj")");  // 3 m along its diagonal
     const std::string wide =
         warnings(funnel + emitter(R"("type": "disk", "center": [0, 0, 380], "normal": [0, 0, -1], "radius": 120)"));

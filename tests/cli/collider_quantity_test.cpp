@@ -12,7 +12,7 @@ namespace RICOCHET_FILE {
 using test::run_ricochet;
 using test::TemporaryFolder;
 
-TEST(ColliderQuantity, ItsTextSaysWhatItIsOver) {
+TEST(ColliderQuantity, ItsTextDefinesItsUnit) {
     const auto unit = [](const char* text) { return collider_quantity_from(text)->unit(); };
     EXPECT_EQ(unit("hits"), "");
     EXPECT_EQ(unit("hits/area"), "1/m2");
@@ -24,8 +24,8 @@ TEST(ColliderQuantity, ItsTextSaysWhatItIsOver) {
     }
 }
 
-// A point of 2 kg falls on a box of 2 m x 2 m with 3 m/s and leaves with half of that.
-TEST(ColliderQuantity, EnergyIsWhatTheImpactTookFromTheParticle) {
+// A point of 2 kg hits a box of 2 m x 2 m at 3 m/s and leaves at half that speed.
+TEST(ColliderQuantity, EnergyIsTheLossOfTheParticleInTheImpact) {
     const TemporaryFolder folder;
     const auto scene = folder.write("s.json", R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
         "materials": {"m": {"restitution": 0.5}},
@@ -46,12 +46,12 @@ TEST(ColliderQuantity, EnergyIsWhatTheImpactTookFromTheParticle) {
         return total;
     };
     EXPECT_NEAR(sum("energy"), 0.5 * 2.0 * (9.0 - 2.25), 1e-12);
-    EXPECT_NEAR(sum("energy/area/time"), 6.75 / 2.0 / 1.0, 1e-9);  // its triangle has half of the face
+    EXPECT_NEAR(sum("energy/area/time"), 6.75 / 2.0 / 1.0, 1e-9);  // its triangle has half the area of the face
     EXPECT_NEAR(sum("impulse"), 2.0 * 4.5, 1e-6);
     EXPECT_EQ(sum("hits"), 1.0);
 }
 
-TEST(ColliderQuantity, TheUpperEndOfTheRangeLeavesOutAHundredthOfTheArea) {
+TEST(ColliderQuantity, TheUpperEndOfTheRangeExcludesAHundredthOfTheArea) {
     EXPECT_EQ(upper_value({}), 1.0);
     EXPECT_EQ(upper_value({{0.0, 5.0}}), 1.0);
     EXPECT_EQ(upper_value({{3.0, 1.0}, {1e9, 1e-4}, {2.0, 1.0}, {0.0, 100.0}}), 3.0);

@@ -34,7 +34,7 @@ struct ComparedScene {
         more.insert(more.begin(), {"compare", scene, "--output", folder.path(output).string(), "--repeats", "1"});
         return run_ricochet(more);
     }
-    // compare.json without the numbers that are times.
+    // Returns compare.json without the run times.
     [[nodiscard]] nlohmann::json numbers(const std::string& output) const {
         nlohmann::json json = nlohmann::json::parse(folder.read(output + "/compare.json"));
         for (nlohmann::json& row : json["rows"]) {
@@ -46,7 +46,7 @@ struct ComparedScene {
     }
 };
 
-// PATH for the programs that are started, for as long as it lives.
+// Sets PATH for child programs during its lifetime.
 class PathWithout {
 public:
     PathWithout() { ::setenv("PATH", "/nowhere", 1); }  // NOLINT(concurrency-mt-unsafe): one thread
@@ -73,7 +73,7 @@ TEST(CompareCommand, WritesNumbersScriptAndReport) {
     EXPECT_NE(result.output.find("report.html"), std::string::npos);
     const std::string page = files.folder.read("out/report.html");
     EXPECT_NE(page.find("</html>"), std::string::npos);
-    EXPECT_EQ(page.find("http"), std::string::npos);  // nothing from elsewhere
+    EXPECT_EQ(page.find("http"), std::string::npos);  // no resources from other sites
 }
 
 TEST(CompareCommand, TwoRunsIntoOneFolderGiveTheSameNumbers) {
@@ -88,7 +88,7 @@ TEST(CompareCommand, TwoRunsIntoOneFolderGiveTheSameNumbers) {
     EXPECT_EQ(first["reference"], second["reference"]);
 }
 
-TEST(CompareCommand, WithoutGnuplotTheScriptStays) {
+TEST(CompareCommand, WithoutGnuplotTheScriptRemains) {
     const ComparedScene files;
     const PathWithout gnuplot;
     const ProgramResult result = files.compare("out", {"--responses", "project"});
@@ -101,7 +101,7 @@ TEST(CompareCommand, WithoutGnuplotTheScriptStays) {
     EXPECT_EQ(files.folder.read("out/report.html").find("<img"), std::string::npos);
 }
 
-TEST(CompareCommand, BadRequestsAreOneLineAndTwoAndLeaveAnEarlierReportAlone) {
+TEST(CompareCommand, BadRequestsEndWithOneLineAndTwoAndKeepAnEarlierReport) {
     const ComparedScene files;
     EXPECT_EQ(files.compare("out", {"--responses", "exact", "--quiet"}).output, "");
     for (const std::vector<std::string>& wrong :
@@ -124,11 +124,11 @@ TEST(CompareCommand, BadRequestsAreOneLineAndTwoAndLeaveAnEarlierReportAlone) {
     }
 }
 
-// What one row refuses is said before the others are run: here they would take hours.
+// A row that is refused is reported before the other rows run. Here they would take hours.
 TEST(CompareCommand, RefusesRowsThatCannotRunBeforeAnyOtherDoes) {
     struct Refusal {
         std::string setting;
-        std::string responses;  // empty: those by default
+        std::string responses;  // empty for the default
         std::string reason;
         std::string left;
     };
@@ -157,7 +157,7 @@ TEST(CompareCommand, RefusesRowsThatCannotRunBeforeAnyOtherDoes) {
     }
 }
 
-TEST(CompareCommand, DrawsAllPicturesOrSaysWhyNot) {
+TEST(CompareCommand, DrawsAllPicturesOrReportsWhyNot) {
     const ComparedScene files;
     const ProgramResult result = files.compare("out", {"--responses", "exact,penalty", "--time-steps", "0.02"});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -170,7 +170,7 @@ TEST(CompareCommand, DrawsAllPicturesOrSaysWhyNot) {
     EXPECT_EQ(pictures, explained ? 0U : 6U) << result.output;
 }
 
-TEST(CompareCommand, RefusesAFolderOfSomebodyElse) {
+TEST(CompareCommand, RefusesAForeignFolder) {
     const ComparedScene files;
     (void)files.folder.write("mine.txt", "x");
     const ProgramResult result = files.compare("", {"--responses", "exact"});

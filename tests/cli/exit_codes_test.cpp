@@ -1,5 +1,5 @@
-// Does the program end with the exit codes of the table in docs/output-files.md? What signals do to runs is in
-// interrupts_test.cpp, what full disks do in failing_output_test.sh, ratios that fell in bench_command_long_test.cpp.
+// Tests the exit codes in the table of docs/output-files.md. Other files test signals during runs
+// (interrupts_test.cpp), full disks (failing_output_test.sh) and fallen ratios (bench_command_long_test.cpp).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A bullet that is past a plate of 2 cm within one step: `project` does not see it.
+/// Returns a scene with a bullet that passes a plate of 2 cm within one step. The response `project` does not detect
+/// that.
 std::string bullet(const std::string& response) {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 0.02, "response": ")" + response + R"("},
       "colliders": [{"type": "box", "size": [1, 1, 0.02]}],
@@ -33,7 +34,7 @@ struct ExitCodes : testing::Test {
     }
 };
 
-TEST_F(ExitCodes, AreZeroWhereAllWentWellWarningsOrNot) {
+TEST_F(ExitCodes, AreZeroForSuccessWithOrWithoutWarnings) {
     const std::string idle = scene(R"({"ricochet": 1, "simulation": {"duration": 0.1}})");
     const auto checked = test::run_ricochet({"check", idle});
     EXPECT_EQ(checked.exit_code, 0);
@@ -42,7 +43,7 @@ TEST_F(ExitCodes, AreZeroWhereAllWentWellWarningsOrNot) {
     EXPECT_EQ(code_of({"--help"}), 0);
 }
 
-TEST_F(ExitCodes, AreTwoWhereWhatWasGivenIsWrong) {
+TEST_F(ExitCodes, AreTwoForWrongInput) {
     EXPECT_EQ(code_of({"check", folder.path("none.json").string()}), 2);
     EXPECT_EQ(code_of({"check", scene(R"({"ricochet": 1, "simulation": {"duration": -1}})")}), 2);
     EXPECT_EQ(code_of({"info", folder.write("t.obj", "v 1 2\n").string()}), 2);
@@ -51,7 +52,7 @@ TEST_F(ExitCodes, AreTwoWhereWhatWasGivenIsWrong) {
     EXPECT_FALSE(std::filesystem::exists(output));
 }
 
-TEST_F(ExitCodes, AreOneWhereVerifyHasFoundAViolation) {
+TEST_F(ExitCodes, AreOneIfVerifyFindsAViolation) {
     EXPECT_EQ(code_of({"run", scene(bullet("exact")), "--output", output, "--verify"}), 0);
     const auto leak = test::run_ricochet({"run", scene(bullet("project")), "--output", output, "--verify"});
     EXPECT_EQ(leak.exit_code, 1);
@@ -60,14 +61,14 @@ TEST_F(ExitCodes, AreOneWhereVerifyHasFoundAViolation) {
     EXPECT_EQ(code_of({"run", scene(bullet("project")), "--output", output}), 0);
 }
 
-TEST_F(ExitCodes, AreOneWhereARunDiverges) {
+TEST_F(ExitCodes, AreOneIfARunDiverges) {
     const std::string falling = scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 10},
       "forces": [{"type": "gravity", "acceleration": [0, 0, -1e9]}], "particles": [{"position": [0, 0, 1]}]})");
     EXPECT_EQ(code_of({"run", falling, "--output", output}), 1);
     EXPECT_EQ(code_of({"view", falling, "--output", output + ".html", "--run-output", output}), 1);
 }
 
-TEST_F(ExitCodes, AreOneWhereNothingCanBeWritten) {
+TEST_F(ExitCodes, AreOneIfOutputCannotBeWritten) {
     EXPECT_EQ(code_of({"new", folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string(), "--output",
                        folder.path("none/scene.json").string()}),
               1);
@@ -77,9 +78,9 @@ TEST_F(ExitCodes, AreOneWhereNothingCanBeWritten) {
     EXPECT_EQ(test::run_ricochet({"schema"}, start).exit_code, 1);
 }
 
-// A pipe that is read no further ends the program by the signal, as it ends any other.
-TEST_F(ExitCodes, AreASignalsWhereThePipeIsClosed) {
-    // Whoever started the tests may have ignored the signal.
+// A closed pipe ends the program by SIGPIPE, like any other program.
+TEST_F(ExitCodes, ReportSigpipeForAClosedPipe) {
+    // The parent of the tests may ignore the signal, so it is reset.
     const std::string pipe = R"(env --default-signal=PIPE "$0" "$@" | head -c 1 >/dev/null; exit "${PIPESTATUS[0]}")";
     EXPECT_EQ(code_of({"schema"}, {"bash", "-c", pipe}), 128 + SIGPIPE);
 }

@@ -1,4 +1,4 @@
-// Runs that are handed to other programs: what comes back when it is read again?
+// Tests that exported runs can be read back.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ using test::TemporaryFolder;
 
 constexpr const char* kSimulation = R"("ricochet": 1, "simulation": {"time_step": 0.125, "duration": 1})";
 
-// A box that turns and rises above a floor, and two spheres that are there from the beginning.
+// Returns a scene with a box that turns and rises above a floor, and two spheres that exist from the start.
 std::string turning_scene() {
     return std::string("{") + kSimulation + R"(, "colliders": [
         {"name": "floor", "type": "plane", "normal": [0, 0, 1], "looks": {"color": [0.5, 0.25, 0.125], "roughness": 0.5}},
@@ -52,7 +52,7 @@ ProgramResult export_of(const TemporaryFolder& folder, const std::string& run, c
     return run_ricochet(words);
 }
 
-// The scene whose only collider is a mesh with that deformation.
+// Returns a scene whose only collider is a mesh with the given deformation.
 std::string deforming_scene(const std::string& mesh, const std::string& deformation) {
     return std::string("{") + kSimulation + R"(, "colliders": [{"name": "again", "type": "mesh", "file": ")" + mesh +
            R"(", "deformation": )" + deformation + R"(}], "particles": [{"position": [0, 0, 9]}]})";
@@ -70,7 +70,7 @@ void expect_same_motion(const RunFolder& expected, std::uint32_t collider, const
     }
 }
 
-TEST(ExportCommand, PointCachesPlayAgainAsTheyWere) {
+TEST(ExportCommand, PointCachesReproduceTheMotion) {
     const TemporaryFolder folder;
     const RunFolder run = run_of(folder, "run", turning_scene());
     const ProgramResult result = export_of(folder, "run", "pc2", "cache");
@@ -80,7 +80,7 @@ TEST(ExportCommand, PointCachesPlayAgainAsTheyWere) {
         folder, "again",
         deforming_scene("cache/pad_dle.obj", R"({"type": "cache", "file": "cache/pad_dle.pc2", "frame_rate": 8})"));
     expect_same_motion(run, 1, again, 4.0 * 6e-8);  // coordinates below 4, rounded to floats
-    // The particles are the same all the time: they have a cache too.
+    // The set of particles never changes, so they have a cache too.
     const PointCache cache = read_point_cache("particles.pc2", folder.read("cache/particles.pc2"));
     ASSERT_EQ(cache.positions.size(), run.frames.size());
     for (std::size_t k = 0; k < cache.positions.size(); ++k) {
@@ -92,7 +92,7 @@ TEST(ExportCommand, PointCachesPlayAgainAsTheyWere) {
     }
 }
 
-TEST(ExportCommand, PlySeriesPlayAgainToTheLastBit) {
+TEST(ExportCommand, PlySeriesReproduceTheMotionToTheLastBit) {
     const TemporaryFolder folder;
     const RunFolder run = run_of(folder, "run", turning_scene());
     const ProgramResult result = export_of(folder, "run", "ply", "ply", {"--consecutive"});
@@ -123,14 +123,14 @@ TEST(ExportCommand, PlyFilesAreNumberedByStepAndReplacedTogether) {
     EXPECT_EQ(names, (std::vector<std::string>{".ricochet-export", "particles_000000.ply", "particles_000004.ply",
                                                "particles_000008.ply"}));
     EXPECT_NE(folder.read("ply/particles_000000.ply").find("element vertex 0\n"), std::string::npos);
-    // Particles that are born do not fit a point cache, and nothing else moves.
+    // A point cache cannot contain particles that are born later, and nothing else moves.
     const ProgramResult cache = export_of(folder, "run", "pc2", "cache");
     EXPECT_EQ(cache.exit_code, 2);
     EXPECT_NE(cache.errors.find("nothing of this run fits a point cache"), std::string::npos) << cache.errors;
     EXPECT_FALSE(std::filesystem::exists(folder.path("cache")));
 }
 
-TEST(ExportCommand, StillsAreReadBackWhereTheRunStood) {
+TEST(ExportCommand, StillsAreReadBackAtTheStateOfTheRun) {
     const TemporaryFolder folder;
     const RunFolder run = run_of(folder, "run", turning_scene());
     const ProgramResult result = export_of(folder, "run", "gltf", "still.glb", {"--frame", "4"});
@@ -149,7 +149,7 @@ TEST(ExportCommand, StillsAreReadBackWhereTheRunStood) {
     EXPECT_NE(text.find(R"("name":"pad/dle")"), std::string::npos);
 }
 
-TEST(ExportCommand, LeavesOutOfCachesWhatIsNotEvenlySpaced) {
+TEST(ExportCommand, ExcludesUnevenlySpacedFramesFromCaches) {
     const TemporaryFolder folder;
     std::string scene = turning_scene();
     scene.replace(scene.find(R"("duration": 1)"), 13, R"("duration": 0.9)");
@@ -160,7 +160,7 @@ TEST(ExportCommand, LeavesOutOfCachesWhatIsNotEvenlySpaced) {
     EXPECT_EQ(read_point_cache("p", folder.read("cache/pad_dle.pc2")).positions.size(), 8U);
 }
 
-TEST(ExportCommand, RefusesWhatItCannotExportWithOneLine) {
+TEST(ExportCommand, RefusesImpossibleExportsWithOneLine) {
     const TemporaryFolder folder;
     (void)run_of(folder, "run", turning_scene());
     std::filesystem::create_directory(folder.path("empty"));

@@ -1,4 +1,4 @@
-// Runs as tables: what does another program read in them?
+// Tests runs exported as tables, read as another program would.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -23,7 +23,7 @@ using test::ProgramResult;
 using test::run_ricochet;
 using test::TemporaryFolder;
 
-/// A table as text, read by a reader of its own: RFC 4180 without line ends inside of fields.
+/// Table read by an independent parser of RFC 4180, without line breaks inside fields.
 struct Table {
     std::vector<std::string> header;
     std::vector<std::map<std::string, std::string>> rows;
@@ -88,7 +88,8 @@ ProgramResult export_of(const TemporaryFolder& folder) {
         {"export", folder.path("run").string(), "--format", "csv", "--output", folder.path("tables").string()});
 }
 
-/// Spheres fall onto a plate of two groups and a ball, bounce off each other and come to rest on a floor.
+/// Returns a scene with spheres that fall onto a plate of two groups and onto a ball. They bounce off each other and
+/// come to rest on a floor.
 std::string busy_scene(const TemporaryFolder& folder) {
     (void)folder.write("plate.obj",
                        "v -2 -2 1\nv 0 -2 1.1\nv 0 2 1.3\nv -2 2 1\ng left, half\nusemtl \"a\"\nf 1 2 3\n"
@@ -106,8 +107,8 @@ std::string busy_scene(const TemporaryFolder& folder) {
         "output": {"every": 50, "contacts": true}})";
 }
 
-// A run that is killed leaves the collider files of its begin.
-TEST(ExportCsv, TotalsOlderThanTheLastFrameAreTold) {
+// A killed run leaves the collider files from its start.
+TEST(ExportCsv, ReportsTotalsOlderThanTheLastFrame) {
     const TemporaryFolder folder;
     const RunFolder run = run_of(folder, busy_scene(folder));
     EXPECT_EQ(export_of(folder).output.find("interrupted"), std::string::npos);
@@ -171,7 +172,8 @@ TEST(ExportCsv, ParticlesReadBackToTheLastBit) {
             expect_same_bits(table.number(i, "z [m]"), frame.points[i].z);
             expect_same_bits(table.vector(i, "velocity", " [m/s]"), velocities[i]);
             expect_same_bits(table.number(i, "charge"), charges[i]);
-            EXPECT_EQ(table.rows[i].at("wind x_y"), "2.0");  // with a point: not taken for a whole number
+            // with a decimal point, so that it is not read as an integer
+            EXPECT_EQ(table.rows[i].at("wind x_y"), "2.0");
         }
     }
 }
@@ -215,7 +217,7 @@ TEST(ExportCsv, TrianglesHaveTheirTotalsGroupsAndMaterials) {
                   "collider", "collider_name", "triangle", "group", "group_name", "material", "material_name", "x [m]",
                   "y [m]", "z [m]", "area [m2]", "hits [impacts]", "impulse_x [N s]", "impulse_y [N s]",
                   "impulse_z [N s]", "lasting_impulse_x [N s]", "lasting_impulse_y [N s]", "lasting_impulse_z [N s]"}));
-    ASSERT_EQ(table.rows.size(), 4U);  // two triangles, and one row each of the floor and the ball
+    ASSERT_EQ(table.rows.size(), 4U);  // two triangles, and one row each for the floor and the ball
     EXPECT_EQ(table.rows[0].at("collider_name"), "plate, \"tilted\"");
     EXPECT_EQ(table.rows[0].at("group_name"), "left, half/\"a\"");
     EXPECT_EQ(table.rows[1].at("group"), "1");
@@ -233,13 +235,14 @@ TEST(ExportCsv, TrianglesHaveTheirTotalsGroupsAndMaterials) {
         expect_same_bits(table.vector(t, "impulse", " [N s]"), impulses[t]);
         EXPECT_EQ(table.rows[t].at("hits [impacts]"), std::to_string(hits[t]));
     }
-    // Spheres that lie on the floor press on it without a hit: the report says what hits leave out.
+    // Spheres at rest press on the floor without impacts. The report says that the columns of impacts exclude this
+    // load.
     EXPECT_LT(table.number(2, "lasting_impulse_z [N s]"), 0.0);
     EXPECT_NE(result.output.find("hold impacts only"), std::string::npos) << result.output;
 }
 
-// Neither a table that is begun nor an earlier one that is half replaced has its name.
-TEST(ExportCsv, AFullDiskLeavesNoHalfTable) {
+// Neither an incomplete new table nor a partly replaced old one may have the final name.
+TEST(ExportCsv, AFullDiskLeavesNoPartialTable) {
     const TemporaryFolder folder;
     (void)run_of(folder, busy_scene(folder));
     test::ProgramStart start;
@@ -248,14 +251,14 @@ TEST(ExportCsv, AFullDiskLeavesNoHalfTable) {
         {"export", folder.path("run").string(), "--format", "csv", "--output", folder.path("tables").string()}, start);
     EXPECT_EQ(result.exit_code, 1) << result.output;
     EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
-    const Table first(folder.read("tables/particles_000000.csv"));  // of no particles
+    const Table first(folder.read("tables/particles_000000.csv"));  // without particles
     EXPECT_TRUE(first.rows.empty());
     EXPECT_FALSE(std::filesystem::exists(folder.path("tables/particles_000050.csv")));
     EXPECT_FALSE(std::filesystem::exists(folder.path("tables/contacts.csv")));
     for (const auto& entry : std::filesystem::directory_iterator(folder.path("tables"))) {
         EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
     }
-    ASSERT_EQ(export_of(folder).exit_code, 0);  // the folder is still an export's
+    ASSERT_EQ(export_of(folder).exit_code, 0);  // the folder is still marked as an export
     EXPECT_FALSE(Table(folder.read("tables/particles_000050.csv")).rows.empty());
 }
 

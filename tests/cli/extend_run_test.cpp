@@ -1,4 +1,4 @@
-// Finished runs that go on to a later time, by `ricochet run --resume --extend T`.
+// Tests of finished runs that are extended with `ricochet run --resume --extend T`.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ constexpr const char* kRain = R"("forces": [{"type": "gravity", "acceleration": 
                {"type": "child", "parent": "cloud", "on": "impact", "share": false, "count": 2, "speed": 1,
                 "lifetime": 0.1}])";
 
-/// Spheres that pile up, and fall asleep, on a table that moves.
+/// Spheres that pile up and fall asleep on a moving table.
 constexpr const char* kPile = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
   "particle_contacts": {"restitution": 0.3, "friction": 0.5},
   "materials": {"m": {"restitution": 0.3, "friction": 0.5}},
@@ -38,7 +38,7 @@ constexpr const char* kPile = R"("forces": [{"type": "gravity", "acceleration": 
   "colliders": [{"name": "table", "type": "box", "size": [1, 1, 0.1], "frame": "table", "material": "m"}],
   "emitters": [{"type": "box", "center": [0, 0, 0.2], "size": [0.1, 0.1, 0.2], "burst": 40, "particle_radius": 0.01}])";
 
-/// A rope by an implicit method.
+/// A rope with an implicit method.
 constexpr const char* kRope = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
   "springs": [{"type": "rope", "from": [0, 0, 1], "to": [1, 0, 1], "nodes": 9, "length": 1.2, "axial_stiffness": 50,
                "damping": 1, "mass": 1, "radius": 0.01, "pinned": "from"}])";
@@ -50,7 +50,7 @@ std::string scene_of(double time_step, double duration, const std::string& parts
         time_step, duration, parts, every);
 }
 
-/// Files of a run and their bytes, but for seconds, memory and the state to go on from.
+/// Returns the files of a run with their bytes, without run times, memory use and the state for resuming.
 std::map<std::string, std::string> files_of(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -92,7 +92,7 @@ TEST_F(ExtendedRun, HasTheFilesOfARunOfThatDurationToTheByte) {
     struct Times {
         double step, first, second;
     };
-    // Whole steps, a last step that is rounded (3 * 0.1 is not 0.3), one that is cut.
+    // The times cover whole steps, a last step with rounding (3 * 0.1 is not 0.3), and a last step that is cut short.
     for (const Times& times : {Times{0.0078125, 0.5, 1.0}, Times{0.01, 0.3, 0.7}, Times{0.01, 0.333, 0.6789}}) {
         for (const char* parts : {kRain, kPile, kRope}) {
             for (const int every : {1, 7, 1000}) {
@@ -103,7 +103,7 @@ TEST_F(ExtendedRun, HasTheFilesOfARunOfThatDurationToTheByte) {
                 ASSERT_EQ(run(scene, "a").exit_code, 0);
                 ASSERT_EQ(run(scene, "b", {"--set", "simulation.duration=" + end}).exit_code, 0);
                 const ProgramResult extended = run(scene, "a", {"--resume", "--extend", end});
-                if (every == 1000) {  // it has no frame, besides the first, to go on from
+                if (every == 1000) {  // only the first frame exists before the extension
                     EXPECT_EQ(extended.exit_code, 2);
                     EXPECT_NE(extended.errors.find("no checkpoint to resume from"), std::string::npos);
                     continue;
@@ -126,7 +126,7 @@ TEST_F(ExtendedRun, CanBeExtendedAgainAndInterruptedInBetween) {
     expect_same("a", "b");
 }
 
-TEST_F(ExtendedRun, TellsWhereItIsAtItsEndAlready) {
+TEST_F(ExtendedRun, ReportsThatItHasReachedItsEnd) {
     const std::string scene = scene_of(0.01, 0.3, kRain, 7);
     ASSERT_EQ(run(scene, "a").exit_code, 0);
     const auto before = files_of(folder_.path("a"));
@@ -148,7 +148,7 @@ TEST_F(ExtendedRun, TellsWhereItIsAtItsEndAlready) {
     refused({"--resume", "--extend", "0.5", "--set", "simulation.seed=4"}, "is not the one that was interrupted");
 }
 
-TEST_F(ExtendedRun, TellsWhereItsContactLogEnds) {
+TEST_F(ExtendedRun, ReportsTheEndOfItsContactLog) {
     const std::string scene = scene_of(0.01, 0.3, kRain, 7);
     ASSERT_EQ(run(scene, "a").exit_code, 0);
     const ProgramResult result = run(scene, "a", {"--resume", "--extend", "0.5", "--set", "output.contacts=false"});
@@ -157,7 +157,7 @@ TEST_F(ExtendedRun, TellsWhereItsContactLogEnds) {
         << result.errors;
 }
 
-TEST_F(ExtendedRun, BeginsAnewWithoutResume) {
+TEST_F(ExtendedRun, StartsAnewWithoutResume) {
     const std::string scene = scene_of(0.01, 0.3, kRain, 7);
     ASSERT_EQ(run(scene, "a").exit_code, 0);
     ASSERT_TRUE(std::filesystem::exists(folder_.path("a/extension.bin")));

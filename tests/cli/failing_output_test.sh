@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A run whose frames cannot be written ends with one line and exit code 1, and leaves only complete files.
-# failing_output_test.sh RICOCHET FOLDER
+# Usage: failing_output_test.sh RICOCHET FOLDER
 set -euo pipefail
 ricochet="$1"
 folder="$2"
@@ -30,8 +30,8 @@ cat >"$folder/scene.json" <<'SCENE'
 }
 SCENE
 
-# The frames after the burst are larger than any file may be: a full disk, as the program sees it. The signal that comes
-# with this limit does not end it.
+# The frames after the burst exceed the limit of file sizes. To the program this looks like a full disk. The signal of
+# this limit must not end the program.
 code=0
 (
     ulimit -f 64
@@ -45,7 +45,7 @@ grep -q 'particles_000010.vtp' "$folder/full/particles.pvd" || fail "the last go
 [[ ! -e "$folder/full/summary.json" ]] || fail "a run that failed has a summary"
 if compgen -G "$folder/full/*.partial" >/dev/null; then fail "half-written files are left"; fi
 
-# The folder goes away under a run that would go on for hours.
+# The folder is removed during a run that would take hours.
 "$ricochet" run "$folder/scene.json" --output "$folder/moved" --quiet >"$folder/moved.out" 2>"$folder/moved.err" &
 run=$!
 until [[ -f "$folder/moved/particles_000015.vtp" ]]; do

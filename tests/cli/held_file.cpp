@@ -18,7 +18,7 @@ sigset_t lease_signal() {
 }  // namespace RICOCHET_FILE
 
 HeldFile::HeldFile(const std::filesystem::path& file) : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
-    // The signal that somebody waits is waited for.
+    // wait_for_reader() waits for this signal, which reports that a reader is waiting.
     const sigset_t signals = lease_signal();
     (void)::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     is_held_ = ::fcntl(descriptor_, F_SETLEASE, F_WRLCK) == 0;

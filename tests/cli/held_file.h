@@ -1,13 +1,12 @@
-/// \file
-/// A file that a program waits for, to be found reading.
+/// \file File that blocks its readers, so that tests can interrupt a program while it reads.
 #pragma once
 
 #include <filesystem>
 
 namespace ricochet::test {
 
-/// A file that nobody else can open while it lives: who tries waits (a lease, fcntl(2), which the kernel takes away
-/// after 45 seconds).
+/// File that no other process can open during its lifetime. Readers wait for a lease (fcntl(2)), which the kernel
+/// breaks after 45 seconds.
 class HeldFile {
 public:
     explicit HeldFile(const std::filesystem::path& file);
@@ -15,9 +14,9 @@ public:
     HeldFile(const HeldFile&) = delete;
     HeldFile& operator=(const HeldFile&) = delete;
 
-    /// False where the file system has no leases.
+    /// Returns false if the file system does not support leases.
     [[nodiscard]] bool is_held() const { return is_held_; }
-    /// Waits until somebody waits for the file.
+    /// Waits until a process waits for the file.
     void wait_for_reader() const;
 
 private:

@@ -46,7 +46,7 @@ TEST(InfoCommand, PrintsOneJsonObjectWithEveryFieldOfTheContract) {
     EXPECT_EQ(info.at("warnings"), Json::array());
 }
 
-TEST(InfoCommand, SaysOfAGltfFileWhichWayIsUpAndWhatWasLeftOut) {
+TEST(InfoCommand, ReportsTheUpAxisAndOmissionsOfAGltfFile) {
     const test::TemporaryFolder folder;
     test::GltfFile cube = test::gltf_cube();
     cube.document["animations"] = Json::array({Json::object()});
@@ -60,7 +60,7 @@ TEST(InfoCommand, SaysOfAGltfFileWhichWayIsUpAndWhatWasLeftOut) {
     const std::string text = test::run_ricochet({"info", path}).output;
     EXPECT_NE(text.find("\nup                    y, as glTF says"), std::string::npos) << text;
     EXPECT_NE(text.find("\nnote: animations"), std::string::npos) << text;
-    // A scene that is made for it, and its check, say the same.
+    // A scene made for the file, and its check, report the same.
     const std::string scene = folder.path("s.json").string();
     const auto made = test::run_ricochet({"new", path, "--output", scene});
     EXPECT_NE(made.output.find(", y up\n"), std::string::npos) << made.output << made.errors;
@@ -70,7 +70,7 @@ TEST(InfoCommand, SaysOfAGltfFileWhichWayIsUpAndWhatWasLeftOut) {
     EXPECT_NE(checked.output.find("cube.glb has y up, as glTF says"), std::string::npos) << checked.output;
 }
 
-/// Of names by kind, as "material steel 12".
+/// Returns the names by kind, as "material steel 12".
 std::vector<std::string> names_in(const Json& info) {
     std::vector<std::string> names;
     for (const Json& entry : info.at("names")) {
@@ -80,8 +80,8 @@ std::vector<std::string> names_in(const Json& info) {
     return names;
 }
 
-// A square is two triangles; the first face has no name, "left" is a word of two lines, "lid" of none.
-TEST(InfoCommand, ListsNamesOfFacesWithTheTrianglesThatHaveThem) {
+// A square is two triangles. The first face has no name, the word "left" occurs in two lines, and "lid" in none.
+TEST(InfoCommand, ListsNamesOfFacesWithTheirTriangleCounts) {
     const test::TemporaryFolder folder;
     const std::string path =
         folder
@@ -94,7 +94,7 @@ TEST(InfoCommand, ListsNamesOfFacesWithTheTrianglesThatHaveThem) {
               (std::vector<std::string>{"material rubber \"part\" 2", "material \xc3\xa4\x1b[31m 1",
                                         "group left side left 2", "group left 3", "group side 2", "object crate 5"}));
     const std::string text = test::run_ricochet({"info", path}).output;
-    // As a scene writes them, and a terminal shows them.
+    // Names are printed as in a scene file, with escapes for the terminal.
     EXPECT_NE(text.find("\nmaterial names        2\n"
                         "                      \"rubber \\\"part\\\"\": 2 triangles\n"
                         "                      \"\xc3\xa4\\u001b[31m\": 1 triangle\n"
@@ -104,7 +104,7 @@ TEST(InfoCommand, ListsNamesOfFacesWithTheTrianglesThatHaveThem) {
         << text;
 }
 
-TEST(InfoCommand, SaysWhichNamesNoSceneCanWrite) {
+TEST(InfoCommand, ReportsNamesThatNoSceneCanContain) {
     const test::TemporaryFolder folder;
     const std::string path = folder
                                  .write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl gr\xfcn\nf 1 2 3\no " +
@@ -128,7 +128,7 @@ TEST(InfoCommand, ListsNamesOfAGltfFile) {
                                         "object crate 12"}));
 }
 
-TEST(InfoCommand, ListsTheFirstNamesOfManyAndHowManyMoreThereAre) {
+TEST(InfoCommand, ListsTheFirstNamesOfManyAndCountsTheRest) {
     const test::TemporaryFolder folder;
     std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (int i = 0; i < 33; ++i) mesh += "o part" + std::to_string(i) + "\nf 1 2 3\n";
@@ -144,7 +144,7 @@ TEST(InfoCommand, ListsTheFirstNamesOfManyAndHowManyMoreThereAre) {
 
 const std::string kInsideOut = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n";
 
-TEST(InfoCommand, SaysOfAMeshThatIsWoundInsideOutThatAnEmitterOnItLaunchesInward) {
+TEST(InfoCommand, WarnsThatAnEmitterOnAnInsideOutMeshLaunchesInward) {
     const test::TemporaryFolder folder;
     const std::string path = folder.write("t.obj", kInsideOut).string();
     const Json info = Json::parse(test::run_ricochet({"info", path, "--json"}).output);
@@ -159,7 +159,7 @@ TEST(InfoCommand, SaysOfAMeshThatIsWoundInsideOutThatAnEmitterOnItLaunchesInward
         << text;
 }
 
-TEST(InfoCommand, IsRightThatAMeshEmitterGivesBirthOnTheInsideOfSuchAMesh) {
+TEST(InfoCommand, AMeshEmitterOnAnInsideOutMeshSpawnsInside) {
     const test::TemporaryFolder folder;
     (void)folder.write("t.obj", kInsideOut);
     SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 1e-9, "duration": 1e-9},
@@ -186,7 +186,7 @@ TEST(InfoCommand, GivesNoVolumeOfAnOpenSurface) {
     EXPECT_EQ(info.at("warnings").size(), 2U);
 }
 
-TEST(InfoCommand, DoubtsSizesThatAreImplausibleInMetres) {
+TEST(InfoCommand, QuestionsSizesThatAreImplausibleInMetres) {
     const test::TemporaryFolder folder;
     const auto doubts = [&](double size, const std::string& name) {
         std::string mesh = fmt::format("v 0 0 0\nv {0} 0 0\nv 0 {0} 0\nv 0 0 {0}\n", size);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A measurement that is interrupted ends with 128 + signal and leaves no file, half-written or whole.
-# interrupted_bench_test.sh RICOCHET FOLDER
+# An interrupted measurement ends with 128 + signal and leaves no file, neither partial nor complete.
+# Usage: interrupted_bench_test.sh RICOCHET FOLDER
 set -euo pipefail
 ricochet="$1"
 folder="$2"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A comparison that is interrupted ends with 128 + signal and leaves no report, half-written or whole.
-# interrupted_comparison_test.sh RICOCHET FOLDER
+# An interrupted comparison ends with 128 + signal and leaves no report, neither partial nor complete.
+# Usage: interrupted_comparison_test.sh RICOCHET FOLDER
 set -euo pipefail
 ricochet="$1"
 folder="$2"

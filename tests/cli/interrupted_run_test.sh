@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A run that is interrupted, and one that is killed, leave a folder that VTK's own readers open.
-# interrupted_run_test.sh RICOCHET FOLDER [PYTHON READER_TEST]
+# Interrupted and killed runs leave a folder that VTK's own readers can open.
+# Usage: interrupted_run_test.sh RICOCHET FOLDER [PYTHON READER_TEST]
 set -euo pipefail
 ricochet="$1"
 folder="$2"
@@ -11,7 +11,7 @@ fail() {
     exit 1
 }
 
-# Starts a run that would go on for hours, waits for its third frame, sends the signal, sets `code`.
+# Starts a run that would take hours, waits for its third frame, sends the signal and sets `code`.
 run_and_signal() {
     "$ricochet" run "$folder/scene.json" --output "$folder/$1" >"$folder/$1.out" 2>"$folder/$1.err" &
     local run=$!
@@ -56,7 +56,7 @@ steps="$(sed -nE 's/^ *"steps": ([0-9]+),$/\1/p' "$folder/interrupted/summary.js
 [[ -f "$folder/interrupted/particles_$(printf '%06d' "$steps").vtp" ]] || fail "the final state is no frame"
 open_with_vtk interrupted
 
-# A run that was interrupted twice and killed once ends as one that never stopped, to the bit.
+# A run that was interrupted twice and killed once ends in the same bits as an uninterrupted run.
 cat >"$folder/resumed.json" <<'SCENE'
 {
   "ricochet": 1,

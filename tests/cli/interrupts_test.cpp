@@ -1,4 +1,4 @@
-// Signals that come in while the program is busy: reading, building, or inside a step.
+// Tests of signals that arrive while the program is busy: reading, building, or inside a step.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -23,8 +23,8 @@ constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 constexpr const char* kMeshScene = R"({"ricochet": 1, "simulation": {"duration": 0.1},
     "colliders": [{"type": "mesh", "file": "held.obj"}], "particles": [{"position": [0, 0, 1]}]})";
 
-/// A scene with a step that takes hours and no memory: of thousands of millions of spheres none finds room in a box.
-/// start: s, of a step of 0.01 s.
+/// Returns a scene with a step that takes hours but little memory: billions of spheres find no free position in a box.
+/// start: time in s, in steps of 0.01 s.
 std::string slow_scene(const std::string& start) {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1, "most_particles": 10},
     "colliders": [{"type": "box", "size": [9, 9, 9]}],
@@ -40,7 +40,7 @@ std::vector<std::string> unfinished_files_in(const std::filesystem::path& folder
     return names;
 }
 
-/// The program ends by each of the signals while the file is being opened, and only then can it be opened.
+/// Expects that each signal ends the program while it waits to open the file. Only afterwards can the file be opened.
 void expect_ended_while_it_reads(const std::filesystem::path& held, const std::vector<std::string>& arguments) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         SCOPED_TRACE(arguments.front() + ", signal " + std::to_string(signal));
@@ -53,7 +53,7 @@ void expect_ended_while_it_reads(const std::filesystem::path& held, const std::v
     }
 }
 
-TEST(Interrupts, EndACommandThatReadsAMeshAtOnce) {
+TEST(Interrupts, EndACommandAtOnceWhileItReadsAMesh) {
     const TemporaryFolder folder;
     const auto held = folder.write("held.obj", kTriangle);
     const std::string scene = folder.write("s.json", kMeshScene).string();
@@ -64,7 +64,7 @@ TEST(Interrupts, EndACommandThatReadsAMeshAtOnce) {
     EXPECT_FALSE(std::filesystem::exists(output)) << "nothing was begun";
 }
 
-// Twenty thousand triangles through one another: two hundred million pairs, some of which cross.
+// Twenty thousand mutually overlapping triangles have two hundred million pairs, some of which intersect.
 TEST(Interrupts, EndTheReportOnAMeshAtOnce) {
     const TemporaryFolder folder;
     std::mt19937 random(1);
@@ -86,7 +86,7 @@ TEST(Interrupts, EndTheReportOnAMeshAtOnce) {
     }
 }
 
-TEST(Interrupts, EndAPictureThatReadsItsFramesAtOnce) {
+TEST(Interrupts, EndAPictureAtOnceWhileItReadsItsFrames) {
     const TemporaryFolder folder;
     (void)folder.write("held.obj", kTriangle);
     const std::string scene = folder.write("s.json", kMeshScene).string();
@@ -101,7 +101,7 @@ TEST(Interrupts, EndAPictureThatReadsItsFramesAtOnce) {
     EXPECT_TRUE(unfinished_files_in(folder.path("")).empty());
 }
 
-TEST(Interrupts, EndABenchmarkThatReadsEarlierRatiosAtOnce) {
+TEST(Interrupts, EndABenchmarkAtOnceWhileItReadsEarlierRatios) {
     const TemporaryFolder folder;
     const auto held = folder.write("ratios.json", "{}");
     expect_ended_while_it_reads(held, {"bench", "--compare", held.string()});
@@ -122,7 +122,7 @@ TEST(Interrupts, EndTheFirstStepAtOnceAndLeaveNothingUnfinished) {
     }
 }
 
-TEST(Interrupts, InALaterStepASignalEndsARunWithTheStateBeforeThatStep) {
+TEST(Interrupts, ASignalInALaterStepEndsARunWithTheStateBeforeThatStep) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
         SCOPED_TRACE(signal);
         const TemporaryFolder folder;
@@ -139,7 +139,7 @@ TEST(Interrupts, InALaterStepASignalEndsARunWithTheStateBeforeThatStep) {
     }
 }
 
-TEST(Interrupts, InALaterStepTheSecondSignalEndsARunWhateverItsKind) {
+TEST(Interrupts, ASecondSignalOfAnyKindInALaterStepEndsARun) {
     for (const auto& [first, second] : {std::pair(SIGTERM, SIGTERM), {SIGINT, SIGHUP}, {SIGHUP, SIGINT}}) {
         SCOPED_TRACE(std::to_string(first) + ", then " + std::to_string(second));
         const TemporaryFolder folder;
@@ -155,7 +155,7 @@ TEST(Interrupts, InALaterStepTheSecondSignalEndsARunWhateverItsKind) {
     }
 }
 
-TEST(Interrupts, ARunThatATerminalLeavesEndsWithItsStepAndACheckpoint) {
+TEST(Interrupts, HangUpEndsARunAfterItsStepWithACheckpoint) {
     const TemporaryFolder folder;
     const std::string scene =
         folder
@@ -170,7 +170,7 @@ TEST(Interrupts, ARunThatATerminalLeavesEndsWithItsStepAndACheckpoint) {
     EXPECT_NE(folder.read("out/summary.json").find("\"interrupted\": true"), std::string::npos);
 }
 
-TEST(Interrupts, WhoIgnoresTheEndOfTheTerminalGoesOnIgnoringIt) {
+TEST(Interrupts, HangUpStaysIgnoredIfTheParentIgnoresIt) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("s.json", slow_scene("0")).string();
     (void)std::signal(SIGHUP, SIG_IGN);  // as nohup does

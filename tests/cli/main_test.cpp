@@ -36,7 +36,7 @@ TEST(CommandLine, EndsWithTwoAndOneLineForWrongArguments) {
     }
 }
 
-TEST(CommandLine, NamesTheCommandThatMayBeMeant) {
+TEST(CommandLine, SuggestsTheMostSimilarCommand) {
     EXPECT_EQ(test::run_ricochet({"rnu", "scene.json"}).errors,
               "ricochet: unknown command \"rnu\"; did you mean \"run\"?\n");
     const std::string errors = test::run_ricochet({"juggle"}).errors;
@@ -44,7 +44,7 @@ TEST(CommandLine, NamesTheCommandThatMayBeMeant) {
     EXPECT_NE(errors.find("\"view\""), std::string::npos) << errors;
 }
 
-TEST(CommandLine, NamesTheOptionThatMayBeMeantInEveryCommandEvenWhereARequiredOneIsMissing) {
+TEST(CommandLine, SuggestsASimilarOptionInEveryCommandEvenIfARequiredOneIsMissing) {
     const std::vector<std::vector<std::string>> cases = {{"run", "s.json", "--ouput", "o", "--output"},
                                                          {"run", "s.json", "--otuput=o", "--output"},
                                                          {"run", "--output", "o", "--resum", "--resume"},
@@ -70,18 +70,18 @@ TEST(CommandLine, NamesTheOptionThatMayBeMeantInEveryCommandEvenWhereARequiredOn
     }
 }
 
-TEST(CommandLine, NamesTheOptionsThatASingleLetterMayStandFor) {
+TEST(CommandLine, SuggestsOptionsForASingleLetter) {
     const std::string errors = test::run_ricochet({"run", "s.json", "-o", "folder"}).errors;
     EXPECT_NE(errors.find("not expected: -o; did you mean \"--output\" or \"--output-state\"?"), std::string::npos)
         << errors;
 }
 
-TEST(CommandLine, StillNamesWhatIsMissingWhereEveryOptionIsKnown) {
+TEST(CommandLine, NamesMissingOptionsIfAllGivenOptionsAreKnown) {
     const std::string errors = test::run_ricochet({"run", "s.json", "--quiet"}).errors;
     EXPECT_NE(errors.find("--output is required"), std::string::npos) << errors;
 }
 
-TEST(CommandLine, HelpOfACommandIsThatOfItsOption) {
+TEST(CommandLine, HelpOfACommandEqualsItsHelpOption) {
     for (const std::string command : {"bench", "check", "compare", "export", "info", "new", "render", "run", "view"}) {
         const test::ProgramResult result = test::run_ricochet({"help", command});
         EXPECT_EQ(result.exit_code, 0);
@@ -92,7 +92,7 @@ TEST(CommandLine, HelpOfACommandIsThatOfItsOption) {
     EXPECT_NE(test::run_ricochet({"help"}).output.find("ricochet help COMMAND"), std::string::npos);
 }
 
-TEST(CommandLine, HelpOfNoCommandIsRefusedWithTheOneThatMayBeMeant) {
+TEST(CommandLine, HelpOfAnUnknownCommandIsRefusedWithASuggestion) {
     const test::ProgramResult result = test::run_ricochet({"help", "rnu"});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.output, "");

@@ -1,4 +1,4 @@
-// Work that asks for more memory than there is ends with one line.
+// Tests that work beyond the available memory ends with one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST(MemoryOfPrograms, EveryCommandRefusesASceneThatDoesNotFitByItsKey) {
     expect_refused(run_ricochet({"run", scene, "--output", output}), by);
     expect_refused(run_ricochet({"compare", scene, "--output", output}), by);
     EXPECT_FALSE(std::filesystem::exists(output)) << "nothing was begun";
-    // What only the command line asks for counts too.
+    // Settings from the command line count too.
     const std::string small = "emitters[0].burst=1500000";
     EXPECT_EQ(run_ricochet({"check", scene, "--set", small}).exit_code, 0);
 }
@@ -61,13 +61,13 @@ TEST(MemoryOfPrograms, PicturesAndFilmsThatDoNotFitAreRefusedByTheirSize) {
                        "ricochet: --size 16384x16384: asks for about ");
         EXPECT_FALSE(std::filesystem::exists(target));
     }
-    // The layer of soft discs takes more than the picture.
+    // The layer of soft discs needs more memory than the picture.
     const std::string target = folder.path("picture.png").string();
     expect_refused(run_ricochet({"render", output, "--output", target, "--size", "6000x6000", "--draw", "glow"}),
                    "ricochet: --size 6000x6000: asks for about 4.32 GB");
 }
 
-TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {
+TEST(MemoryOfPrograms, TheEstimateIsCloseToTheUseOfARun) {
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("s.json", R"({"ricochet": 1, "simulation": {"duration": 0.05},
@@ -76,7 +76,7 @@ TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {
                                   .string();
     const std::string checked = run_ricochet({"check", scene}).output;
     EXPECT_NE(checked.find(", about 107 MB of memory\n"), std::string::npos) << checked;
-    if (kSanitized) return;  // sanitizers take memory of their own
+    if (kSanitized) return;  // sanitizers need memory of their own
     ASSERT_EQ(run_ricochet({"run", scene, "--output", folder.path("out").string(), "--quiet"}).exit_code, 0);
     const auto summary = nlohmann::json::parse(folder.read("out/summary.json"));
     const auto peak = summary["peak_memory_bytes"].get<double>();
@@ -84,7 +84,8 @@ TEST(MemoryOfPrograms, TheEstimateIsAboutWhatARunTakes) {
     EXPECT_LT(107e6, 1.5 * peak);
 }
 
-// Whatever allocation fails: no crash, one line, and nothing under a final name that is not whole.
+// The program must not crash whichever allocation fails. It prints one line and leaves no partial file under a final
+// name.
 TEST(MemoryOfPrograms, ARunThatRunsOutOfMemoryAnywhereEndsWithOneLine) {
     if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes: a program with a ceiling does not start";
     const TemporaryFolder folder;

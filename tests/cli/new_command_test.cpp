@@ -27,7 +27,7 @@ std::string text_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(NewCommand, WritesOfEveryTemplateASceneThatRunsForClosedAndOpenMeshes) {
+TEST(NewCommand, WritesRunnableScenesOfEveryTemplateForClosedAndOpenMeshes) {
     const test::TemporaryFolder folder;
     (void)folder.write("closed.obj", test::kObjTetrahedron);
     (void)folder.write("open.obj", kOpen);
@@ -50,7 +50,7 @@ TEST(NewCommand, WritesOfEveryTemplateASceneThatRunsForClosedAndOpenMeshes) {
     }
 }
 
-TEST(NewCommand, ScenesSayHowTheyAreDrawnAndWhatSpheresDoToEachOther) {
+TEST(NewCommand, ScenesStateTheirPictureAndTheContactsOfSpheres) {
     const test::TemporaryFolder folder;
     const std::string mesh = folder.write("open.obj", kOpen).string();
     const auto scene_of = [&](const std::string& kind) {
@@ -64,8 +64,8 @@ TEST(NewCommand, ScenesSayHowTheyAreDrawnAndWhatSpheresDoToEachOther) {
     EXPECT_EQ(scene_of("gas").find("\"picture\""), std::string::npos);
 }
 
-// Every corner of the box is in a picture of 16 to 9.
-TEST(NewCommand, TheCameraOfTheGasAroundAnOpenMeshSeesAllOfItsBox) {
+// Every corner of the box is inside a picture with the aspect ratio 16 to 9.
+TEST(NewCommand, TheCameraSeesTheWholeBoxOfAGasAroundAnOpenMesh) {
     const test::TemporaryFolder folder;
     for (const std::string& mesh : {kOpen, std::string("v 0 0 0\nv 20 0 0\nv 0 1 1\nf 1 2 3\n"),
                                     std::string("v 0 0 0\nv 1 0 30\nv 0 1 1\nf 1 2 3\n")}) {
@@ -93,8 +93,8 @@ TEST(NewCommand, TheCameraOfTheGasAroundAnOpenMeshSeesAllOfItsBox) {
     }
 }
 
-// Two tetrahedra that share a face: nothing gets out, but three faces meet in each of its edges.
-TEST(NewCommand, AGasIsAroundAMeshWhoseInsideNobodyCanTell) {
+// The mesh is two tetrahedra with a common face. It is closed, but three faces meet at each edge of the common face.
+TEST(NewCommand, AGasSurroundsAMeshWithoutAWellDefinedInterior) {
     const test::TemporaryFolder folder;
     const std::string mesh = folder
                                  .write("m.obj",
@@ -112,7 +112,7 @@ TEST(NewCommand, AGasIsAroundAMeshWhoseInsideNobodyCanTell) {
     EXPECT_NE(text_of(scene).find("\"name\": \"box\""), std::string::npos);
 }
 
-TEST(NewCommand, FitsToAMeshOfAnySizeAndPlace) {
+TEST(NewCommand, FitsAMeshOfAnySizeAndPosition) {
     const test::TemporaryFolder folder;
     for (const std::string mesh : {"v 0 0 0\nv 1e-4 0 0\nv 0 1e-4 2e-5\nf 1 2 3\n",
                                    "v 400000 5000000 80\nv 400900 5000000 90\nv 400000 5000800 120\nf 1 2 3\n",
@@ -167,7 +167,7 @@ TEST(NewCommand, AMeshInAnotherUnitGetsTheSceneOfTheSameMeshInMetres) {
     }
 }
 
-TEST(NewCommand, DoubtsASizeThatIsImplausibleInMetresUntilAUnitIsStated) {
+TEST(NewCommand, QuestionsASizeThatIsImplausibleInMetresUntilAUnitIsStated) {
     const test::TemporaryFolder folder;
     const std::string hopper = folder.write("hopper.obj", "v 0 0 0\nv 410 0 0\nv 0 410 300\nf 1 2 3\n");
     const std::string scene = folder.path("s.json").string();
@@ -192,7 +192,7 @@ TEST(NewCommand, DoubtsASizeThatIsImplausibleInMetresUntilAUnitIsStated) {
     EXPECT_TRUE(read_scene(scene).warnings.empty());
 }
 
-TEST(NewCommand, LeavesAFileThatIsThereAloneUnlessItIsTold) {
+TEST(NewCommand, KeepsAnExistingFileUnlessForced) {
     const test::TemporaryFolder folder;
     const std::string mesh = folder.write("m.obj", test::kObjTetrahedron);
     const std::string scene = folder.write("s.json", "mine");

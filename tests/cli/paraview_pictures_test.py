@@ -1,4 +1,7 @@
-"""paraview_pictures_test.py RECIPE SCRIPT EMPTY: what pictures of a run that ParaView has drawn must show."""
+"""Checks pictures of a run drawn by ParaView.
+
+Usage: paraview_pictures_test.py RECIPE SCRIPT EMPTY
+"""
 
 import sys
 
@@ -7,7 +10,7 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 
 
 def colors(path):
-    """How many colours there are, and how many pixels that are redder than they are blue by far."""
+    """Returns the number of different colours, and the number of pixels with much more red than blue."""
     reader = vtkPNGReader()
     reader.SetFileName(path)
     reader.Update()
@@ -20,5 +23,5 @@ def colors(path):
 recipe, script, empty = (colors(path) for path in sys.argv[1:4])
 print(f"colours and red pixels: {recipe}, {script}, without particles {empty}")
 assert recipe[0] > 1000 and script[0] > 1000, "the particles are not drawn in the colours of their speed"
-assert recipe[1] > 300 and script[1] > 300, "the fastest are not red"
-assert empty[1] < 150, "there is more that is red than the x-axis in the corner where there are no particles"
+assert recipe[1] > 300 and script[1] > 300, "the fastest particles are not red"
+assert empty[1] < 150, "without particles, more than the x-axis in the corner is red"

@@ -1,6 +1,6 @@
-"""Opens frames in pieces with VTK's own parallel reader, the one that ParaView uses, and holds them against whole ones.
+"""Opens frames in pieces with VTK's own parallel reader, which ParaView uses, and compares them with whole frames.
 
-pieces_test.py WHOLE PIECES: two folders of the same run.
+Usage: pieces_test.py WHOLE PIECES, with two folders of the same run.
 """
 
 import os
@@ -27,7 +27,7 @@ def series(folder):
 
 
 def rows(reader, path):
-    """{id: all values of that particle, bit by bit}, and the arrays' names and types."""
+    """Returns {id: all values of that particle, bit by bit}, and the names and types of the arrays."""
     errors = []
     reader.AddObserver("ErrorEvent", lambda *_: errors.append(path))
     reader.SetFileName(path)
@@ -55,7 +55,7 @@ def main(whole, pieces):
         right = rows(vtkXMLPPolyDataReader(), os.path.join(pieces, index))
         check(left == right, f"{index} differs from {file}")
         particles += len(left[0])
-    print(f"{len(found)} frames in pieces with {particles} particles are those of one process")
+    print(f"{len(found)} frames in pieces with {particles} particles equal the frames of one process")
 
 
 main(*sys.argv[1:])

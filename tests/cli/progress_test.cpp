@@ -14,7 +14,7 @@ namespace RICOCHET_FILE {
 const std::string kScene = R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 0.05},
     "colliders": [{"type": "plane", "normal": [0, 0, 1]}], "particles": [{"position": [0, 0, 1]}]})";
 
-TEST(Progress, IsShownInAPipeOnlyWhereItIsAskedFor) {
+TEST(Progress, IsShownInAPipeOnlyIfRequested) {
     const test::TemporaryFolder folder;
     const std::string scene = folder.write("s.json", kScene);
     const std::string out = folder.path("out").string();
@@ -32,7 +32,7 @@ TEST(Progress, IsShownInAPipeOnlyWhereItIsAskedFor) {
     EXPECT_NE(drawn.errors.find("picture 1 of 1"), std::string::npos) << drawn.errors;
 }
 
-TEST(Progress, RefusesOtherWordsBeforeTheWork) {
+TEST(Progress, RefusesUnknownValuesBeforeTheRun) {
     const test::TemporaryFolder folder;
     const std::string scene = folder.write("s.json", kScene);
     const std::string out = folder.path("out").string();

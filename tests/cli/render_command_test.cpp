@@ -19,7 +19,7 @@ using test::ProgramResult;
 using test::run_ricochet;
 using test::TemporaryFolder;
 
-// A folder as a run leaves it that was cut off: three frames, a mesh, and no run.json.
+// Folder of an interrupted run: three frames, a mesh, and no run.json.
 struct RunFolderFiles {
     TemporaryFolder folder;
 
@@ -47,7 +47,7 @@ struct RunFolderFiles {
 
 std::string png_size(const std::string& bytes) { return bytes.substr(16, 8); }
 
-TEST(RenderCommand, DrawsTheLastFrameOrTheOneThatIsAskedFor) {
+TEST(RenderCommand, DrawsTheLastFrameOrTheRequestedOne) {
     const RunFolderFiles files;
     EXPECT_EQ(files.render("last.png").exit_code, 0);
     EXPECT_EQ(files.render("ten.png", {"--frame", "10"}).exit_code, 0);
@@ -57,8 +57,7 @@ TEST(RenderCommand, DrawsTheLastFrameOrTheOneThatIsAskedFor) {
     EXPECT_TRUE(png == files.folder.read("ten.png"));
 }
 
-// At each time the picture is, to the bit, that of a scene in which the collider stands where it is then.
-TEST(RenderCommand, SaysThatStreaksNeedAShutter) {
+TEST(RenderCommand, NotesThatStreaksNeedAShutter) {
     const RunFolderFiles files;
     const ProgramResult closed = files.render("a.png", {"--draw", "streaks"});
     EXPECT_EQ(closed.exit_code, 0) << closed.errors;
@@ -67,7 +66,8 @@ TEST(RenderCommand, SaysThatStreaksNeedAShutter) {
     EXPECT_EQ(files.render("c.png", {"--draw", "spheres"}).output.find("note:"), std::string::npos);
 }
 
-TEST(RenderCommand, ShowsCollidersThatMoveWhereTheyAreInThatFrame) {
+// At each time the picture must equal, bit for bit, the picture of a scene with the collider at that position.
+TEST(RenderCommand, ShowsMovingCollidersAtTheirPositionInThatFrame) {
     const TemporaryFolder folder;
     const auto pictures = [&](const std::string& name, const std::string& placement) {
         const auto scene = folder.write(
@@ -136,7 +136,7 @@ TEST(RenderCommand, EveryOptionChangesThePicture) {
     }
 }
 
-TEST(RenderCommand, ADraftIsNotAskedForWhatItHasNot) {
+TEST(RenderCommand, ADraftRefusesOptionsOfFinePictures) {
     const RunFolderFiles files;
     const std::vector<std::vector<std::string>> finer = {{"--samples", "16"}, {"--no-filter"}, {"--lens", "2"}};
     for (std::vector<std::string> options : finer) {
@@ -151,7 +151,7 @@ TEST(RenderCommand, ADraftIsNotAskedForWhatItHasNot) {
     }
 }
 
-TEST(RenderCommand, NightIsShortForItsLight) {
+TEST(RenderCommand, NightIsShortForTheLightOfNight) {
     const RunFolderFiles files;
     EXPECT_EQ(files.render("short.png", {"--night"}).exit_code, 0);
     EXPECT_EQ(files.render("long.png", {"--light", "night"}).exit_code, 0);
@@ -168,7 +168,7 @@ TEST(RenderCommand, ThePictureDoesNotDependOnThreads) {
     EXPECT_TRUE(files.folder.read("one.png") == files.folder.read("seven.png"));
 }
 
-/// What `render` is called with, and words of its answer.
+/// Wrong arguments of `render`, with a part of the expected message.
 struct Wrong {
     std::vector<std::string> arguments;
     const char* message;
@@ -218,7 +218,7 @@ const std::vector<Wrong> kWrongs = {
     {{"--unknown"}, "--unknown"},
 };
 
-TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
+TEST(RenderCommand, RefusesWrongArgumentsInOneLineWithTheExpectedValues) {
     const RunFolderFiles files;
     for (const Wrong& wrong : kWrongs) {
         SCOPED_TRACE(wrong.arguments.front() + " " + wrong.arguments.back());
@@ -234,7 +234,7 @@ TEST(RenderCommand, RefusesWrongArgumentsInOneLineThatSaysWhatIsRight) {
     }
 }
 
-TEST(RenderCommand, RefusesFoldersAndNamesThatAreWrong) {
+TEST(RenderCommand, RefusesWrongFoldersAndNames) {
     const RunFolderFiles files;
     const TemporaryFolder empty;
     EXPECT_EQ(files.render("a.jpg").exit_code, 2);
@@ -266,15 +266,14 @@ TEST(RenderCommand, MakesAFilmWithFfmpegAndNothingWithoutIt) {
     }
 }
 
-/// The name in front of the program, so that no file may grow beyond so many kibibytes: a full disk, as programs see
-/// it.
+/// Returns a prefix that limits the size of files, in KiB. To the program this looks like a full disk.
 test::ProgramStart with_room_for(int kibibytes) {
     test::ProgramStart start;
     start.prefix = {"bash", "-c", "ulimit -f " + std::to_string(kibibytes) + "; exec \"$@\"", "bash"};
     return start;
 }
 
-TEST(RenderCommand, AFilmThatTheDiskDoesNotTakeEndsWithOneLineAndWithoutAFile) {
+TEST(RenderCommand, AFilmOnAFullDiskEndsWithOneLineAndWithoutAFile) {
     if (std::system("command -v ffmpeg > /dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
     const RunFolderFiles files;
     const std::vector<std::string> film{"render",  files.path(""), "--output",  files.path("film.mp4"),
@@ -294,8 +293,8 @@ TEST(RenderCommand, AFilmThatTheDiskDoesNotTakeEndsWithOneLineAndWithoutAFile) {
     }
 }
 
-// An encoder that breaks off and says that all is well.
-TEST(RenderCommand, AFilmThatTheEncoderHasNotFinishedGetsNoName) {
+// The imitated encoder stops early and returns success.
+TEST(RenderCommand, AnUnfinishedFilmGetsNoFinalName) {
     const RunFolderFiles files;
     const std::string bytes = std::string("\0\0\0\x18", 4) + "ftypisom" + std::string(12, '\0');
     (void)files.folder.write("start", bytes + std::string("\0\0\1\0", 4) + "mdat");
@@ -313,8 +312,8 @@ TEST(RenderCommand, AFilmThatTheEncoderHasNotFinishedGetsNoName) {
     EXPECT_FALSE(files.exists("film.mp4"));
 }
 
-// A scene's own moment and radius are what the options would say; options come first.
-TEST(RenderCommand, PicturesAreAsTheSceneSays) {
+// The time and the radius in a scene have the same effect as the options. Options take precedence.
+TEST(RenderCommand, PicturesFollowTheSettingsOfTheScene) {
     const TemporaryFolder folder;
     const auto run = [&](const std::string& name, const std::string& picture) {
         const auto scene = folder.write(name + ".json", R"({"ricochet": 1,
@@ -345,7 +344,7 @@ TEST(RenderCommand, PicturesAreAsTheSceneSays) {
                 picture("plain", {}));
 }
 
-// Points that lie on the floor, seen from below it: their balls are on the other side.
+// The points lie on the floor, and the camera is below it. The balls must stay on the other side of the floor.
 TEST(RenderCommand, LargeBallsDoNotPokeThroughWalls) {
     const TemporaryFolder folder;
     std::vector<std::string> pictures;

@@ -18,10 +18,10 @@ using test::TemporaryFolder;
 
 constexpr const char* kShard = "v 1 0 0\nv -1 0.5 0\nv -1 -0.5 0\nv 0 0 0.6\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
 
-// A folder with runs of scenes in it.
+// Fixture with a folder of runs.
 class Shapes : public testing::Test {
 protected:
-    // Its output folder.
+    // Runs a scene and returns its output folder.
     [[nodiscard]] std::string run(const std::string& name, const std::string& keys) const {
         const auto scene = folder_.write(name + ".json", R"({"ricochet": 1,
             "simulation": {"time_step": 0.02, "duration": 0.4, "integrator": "ballistic"}, )" +
@@ -37,13 +37,13 @@ protected:
                     {"render", run, "--output", folder_.path(output).string(), "--size", "96x64", "--samples", "2"});
         return run_ricochet(more);
     }
-    // The bytes of a picture that can be made.
+    // Returns the bytes of a picture that must succeed.
     [[nodiscard]] std::string picture(const std::string& run, std::vector<std::string> more = {}) const {
         const ProgramResult result = render(run, "p.png", std::move(more));
         EXPECT_EQ(result.exit_code, 0) << result.errors;
         return folder_.read("p.png");
     }
-    // Width and height of what is seen before a transparent background, pixels.
+    // Returns the width and height of the visible objects before a transparent background, in pixels.
     [[nodiscard]] std::pair<int, int> extent(const std::string& run, std::vector<std::string> more) const {
         more.insert(more.end(), {"--background", "transparent", "--no-filter"});
         (void)picture(run, std::move(more));
@@ -71,7 +71,7 @@ protected:
 const std::string kBalls = R"("particles": [{"position": [0, 0, 0], "radius": 0.5, "spin": [1, 2, 3]},
     {"position": [3, 0, 1], "radius": 0.5}, {"position": [0, 0, 4], "velocity": [1, 0, 0]}])";
 
-TEST_F(Shapes, WhatTheSceneDrawsTheCommandLineDrawsFromTheSameFiles) {
+TEST_F(Shapes, SceneAndCommandLineDrawTheSameFromTheSameFiles) {
     const std::string plain = run("plain", kBalls);
     const std::string sprites =
         run("sprites", kBalls + R"(, "picture": {"particles": "sprites", "sprite": "dot.png"})");
@@ -83,12 +83,12 @@ TEST_F(Shapes, WhatTheSceneDrawsTheCommandLineDrawsFromTheSameFiles) {
     EXPECT_TRUE(picture(plain, {"--sprite", path("dot.png")}) == dots);
     EXPECT_TRUE(picture(plain, {"--mesh", path("shard.obj")}) == shards);
     std::filesystem::remove(folder_.path("dot.png"));
-    EXPECT_TRUE(picture(sprites) == dots) << "the run keeps its own";
+    EXPECT_TRUE(picture(sprites) == dots) << "the run must keep its own copy of the mesh";
     EXPECT_TRUE(picture(sprites, {"--draw", "spheres", "--camera", "9,-9,5,1,0,2"}) ==
                 picture(plain, {"--camera", "9,-9,5,1,0,2"}));
 }
 
-TEST_F(Shapes, SpritesHaveTheirImagesColoursUnlessOthersAreAskedFor) {
+TEST_F(Shapes, SpritesHaveTheColoursOfTheirImageUnlessOthersAreRequested) {
     const std::string balls = run("balls", kBalls);
     const ProgramResult own = render(balls, "own.png", {"--sprite", path("dot.png")});
     EXPECT_NE(own.output.find("in the colours of the sprite"), std::string::npos) << own.output;
@@ -97,7 +97,7 @@ TEST_F(Shapes, SpritesHaveTheirImagesColoursUnlessOthersAreAskedFor) {
     EXPECT_TRUE(folder_.read("own.png") != folder_.read("mapped.png"));
 }
 
-TEST_F(Shapes, RefusesFilesThatAreMissingOrDoNotGoWithTheDrawing) {
+TEST_F(Shapes, RefusesMissingAndUnsuitableFiles) {
     const std::string balls = run("balls", kBalls);
     (void)folder_.write("words.png", "words");
     (void)folder_.write("point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
@@ -118,8 +118,8 @@ TEST_F(Shapes, RefusesFilesThatAreMissingOrDoNotGoWithTheDrawing) {
     }
 }
 
-// Seen from the side: 16 pixels a metre. A ball of radius 1 that is 1.6 times as long is 1 / sqrt(1.6) as high.
-TEST_F(Shapes, AStretchedBallHasTheLengthThatItsSpeedSays) {
+// The view is from the side, with 16 pixels per metre. A ball of radius 1 stretched by 1.6 is 1 / sqrt(1.6) as high.
+TEST_F(Shapes, AStretchedBallHasALengthInProportionToItsSpeed) {
     const std::vector<std::string> side = {"--camera", "2,-10,0,2,0,0,22.6198649480404"};
     const std::string moving = R"("particles": [{"position": [0, 0, 0], "velocity": [5, 0, 0], "radius": 0.5}])";
     const auto at_rest = extent(run("plain", moving), side);
@@ -132,8 +132,8 @@ TEST_F(Shapes, AStretchedBallHasTheLengthThatItsSpeedSays) {
     EXPECT_NEAR(most.first, 32.0, 1.5);
 }
 
-// It lands after 0.2 s with 5 m/s, when a frame is written: half as high then, and on the floor.
-TEST_F(Shapes, ABallThatLandsIsFlatterAtItsImpact) {
+// The ball lands after 0.2 s at 5 m/s, in the step of a frame. It is then half as high and lies on the floor.
+TEST_F(Shapes, ALandingBallIsFlatterAtItsImpact) {
     const std::string falls = R"("particles": [{"position": [0, 0, 1.5], "velocity": [0, 0, -5], "radius": 0.5}],
         "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true}}],
         "output": {"contacts": true}, "picture": {"stretch": {"impact": 0.2, "time": 0.1}})";
@@ -150,7 +150,8 @@ TEST_F(Shapes, ABallThatLandsIsFlatterAtItsImpact) {
     EXPECT_NEAR(frame("14").second, 16, 1);
 }
 
-// At night what glows at the reference is brighter than anything, and what is at room temperature is dark.
+// At night a particle at the reference temperature is brighter than the rest, and a particle at room temperature is
+// dark.
 TEST_F(Shapes, HotParticlesShineAsBlackBodies) {
     const std::string hot = R"("attributes": {"temperature": {"default": 1500}},
         "particles": [{"position": [-1, 0, 0], "velocity": [0, 0.5, 0], "radius": 0.5}, {"position": [1, 0, 0], "velocity": [0, 0.5, 0], "radius": 0.5,
@@ -181,7 +182,7 @@ TEST_F(Shapes, HotParticlesShineAsBlackBodies) {
     EXPECT_EQ(render(plain, "c.png", {"--black-body", "20"}).exit_code, 2);
 }
 
-TEST_F(Shapes, ToldThatAClosedColliderHidesTheParticles) {
+TEST_F(Shapes, WarnsThatAClosedColliderHidesTheParticles) {
     const std::string box = run("box", R"("particles": [{"position": [0, 0, 0]}, {"position": [0.2, 0, 0]}],
         "colliders": [{"name": "crate", "type": "box", "size": [1, 1, 1]}])");
     const std::string note = "note: most particles are inside \"crate\"";
@@ -198,8 +199,8 @@ TEST_F(Shapes, ToldThatAClosedColliderHidesTheParticles) {
     EXPECT_NE(render(drum, "p.png").output.find("inside \"drum\""), std::string::npos);
 }
 
-// A collider that moves looks, to the bit, as one at rest that stands where it is.
-TEST_F(Shapes, CollidersThatMoveHaveTheirLooksAndTheColoursOfTheirImpacts) {
+// A moving collider must look bit for bit like a collider at rest at the same position.
+TEST_F(Shapes, MovingCollidersHaveTheirLooksAndTheColoursOfTheirImpacts) {
     const std::string ball = R"("particles": [{"position": [0, 0, 1.2], "velocity": [0, 0, -6], "radius": 0.1}],
         "colliders": [{"name": "box", "type": "box", "size": [1, 1, 1], )";
     const std::string moves = R"("motion": [{"time": 0, "position": [0, 0, 0]}, {"time": 1, "position": [0, 0, 0]}])";
@@ -217,7 +218,7 @@ TEST_F(Shapes, CollidersThatMoveHaveTheirLooksAndTheColoursOfTheirImpacts) {
     EXPECT_TRUE(still != picture(run("moving", ball + moves + "}]"), view));
 }
 
-// Two of them, far from each other: each picture looks at one. 16 pixels a metre.
+// Several kinds of drawing, far from each other. Each picture shows one of them, with 16 pixels per metre.
 const std::string kTwoKinds = R"("emitters": [
     {"name": "streaks", "type": "point", "burst": 1, "velocity": [5, 0, 0], "particle_radius": 0.25,
      "drawing": {"particles": "streaks"}},
@@ -233,8 +234,9 @@ std::string looking_at(double x, double z) {
            ",22.6198649480404";
 }
 
-TEST_F(Shapes, EachEmittersParticlesAreDrawnAsItSays) {
-    // A needle along x and y that turns about nothing: its turn is its own, its reach one radius.
+TEST_F(Shapes, ParticlesAreDrawnAsTheirEmitterRequests) {
+    // The mesh is a needle in the xy plane. Its particles do not spin. Each has its own orientation, and its length is
+    // within one radius of the centre.
     (void)folder_.write("flat.obj", "v 1 0 0\nv -1 0.02 0\nv -1 -0.02 0\nf 1 2 3\nf 3 2 1\n");
     const std::string output = run("kinds", kTwoKinds);
     const auto streak = extent(output, {"--camera", looking_at(1.5, 0)});
@@ -255,7 +257,7 @@ TEST_F(Shapes, EachEmittersParticlesAreDrawnAsItSays) {
     EXPECT_TRUE(is_needle(extent(output, {"--camera", looking_at(0, 40)}))) << "the run keeps its own";
 }
 
-TEST_F(Shapes, FlatDrawingsOfSeveralKindsAreLaidOverWhatIsSolid) {
+TEST_F(Shapes, FlatDrawingsOfSeveralKindsAreDrawnOverSolidOnes) {
     const std::string output = run("flat", R"("emitters": [
         {"name": "glow", "type": "point", "center": [-2, 0, 0], "burst": 1, "particle_radius": 0.4, "color": [1, 0, 0],
          "drawing": {"particles": "glow"}},

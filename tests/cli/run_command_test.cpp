@@ -45,7 +45,7 @@ struct RunFiles {
 
 bool is_one_line(const std::string& text) { return std::count(text.begin(), text.end(), '\n') == 1; }
 
-TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
+TEST(RunCommand, ADivergingRunStopsWithOneLineAndWritesNoInvalidState) {
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("spring.json", R"({
@@ -67,9 +67,9 @@ TEST(RunCommand, ARunThatDivergesStopsWithOneLineAndNoNonsenseOnDisk) {
     EXPECT_EQ(summary["frames"].get<int>(), summary["steps"].get<int>() + 1);
 }
 
-// They are born where their parent hits, bounce together, and are so near to each other that a half of a step throws
-// them.
-TEST(RunCommand, FragmentsThatTheirOwnGravityThrowsEndTheRun) {
+// The fragments are born where their parent hits, and bounce together. They are so close that half a step accelerates
+// them beyond all limits.
+TEST(RunCommand, FragmentsAcceleratedByTheirOwnGravityEndTheRun) {
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("fragments.json", R"({
@@ -89,8 +89,8 @@ TEST(RunCommand, FragmentsThatTheirOwnGravityThrowsEndTheRun) {
     EXPECT_NE(result.errors.find("beyond the speed of light"), std::string::npos) << result.errors;
 }
 
-// A sheet so stiff that what friction holds of one point decides what it holds of the next, down to the shortest step.
-TEST(RunCommand, SaysHowManyImplicitStepsWereNotSolved) {
+// The sheet is so stiff that friction at one point determines friction at the next, down to the shortest step.
+TEST(RunCommand, ReportsTheNumberOfUnsolvedImplicitSteps) {
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("stiff.json", R"({
@@ -116,7 +116,7 @@ TEST(RunCommand, SaysHowManyImplicitStepsWereNotSolved) {
     EXPECT_NE(result.output.find(note), std::string::npos) << result.output;
 }
 
-TEST(RunCommand, SaysWhichImpulsesTheTotalsOfCollidersLeaveOut) {
+TEST(RunCommand, ReportsImpulsesMissingFromTheTotalsOfColliders) {
     const TemporaryFolder folder;
     const std::string scene = folder
                                   .write("heavy.json", R"({
@@ -138,7 +138,7 @@ TEST(RunCommand, SaysWhichImpulsesTheTotalsOfCollidersLeaveOut) {
     EXPECT_NE(result.errors.find("(lost_impulses): 1\n"), std::string::npos) << result.errors;
 }
 
-TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
+TEST(RunCommand, WritesFramesAtTheGivenIntervalAndTheFinalState) {
     const RunFiles files;
     const ProgramResult result = files.run({"--output-state", files.folder.path("state.csv").string()});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -159,7 +159,7 @@ TEST(RunCommand, WritesFramesEverySoManyStepsAndTheFinalState) {
     EXPECT_NE(result.output.find(summary["state_hash"].get<std::string>()), std::string::npos) << result.output;
 }
 
-/// The fields of a table's rows, without the header.
+/// Returns the fields of a table's rows, without the header.
 std::vector<std::vector<std::string>> rows_of(const std::string& table) {
     std::vector<std::vector<std::string>> rows;
     std::istringstream lines(table);
@@ -172,8 +172,9 @@ std::vector<std::vector<std::string>> rows_of(const std::string& table) {
     return rows;
 }
 
-// Grains fall on a flap: what they give to it is what it has, over the run and in the summary.
-TEST(RunCommand, WritesWhatIsDoneToBodiesAndHowTheyMove) {
+// Grains fall on a flap. The angular momentum that they transfer must equal the angular momentum of the flap, in the
+// table and in the summary.
+TEST(RunCommand, WritesTheLoadsAndMotionsOfBodies) {
     const RunFiles files;
     (void)files.folder.write("scene.json",
                              R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1, "seed": 2},
@@ -195,19 +196,19 @@ TEST(RunCommand, WritesWhatIsDoneToBodiesAndHowTheyMove) {
     double hits = 0.0;
     for (const auto& row : colliders) {
         EXPECT_EQ(row.at(1), "flap");
-        torque += 0.1 * std::stod(row.at(6));  // y, over 0.1 s
+        torque += 0.1 * std::stod(row.at(6));  // the y component, over 0.1 s
         hits += std::stod(row.at(9));
     }
     EXPECT_GT(hits, 10.0);
     EXPECT_EQ(hits, summary["colliders"][1]["hits"].get<double>());
     EXPECT_FALSE(summary["colliders"][0].contains("work"));
     EXPECT_NEAR(torque, summary["colliders"][1]["angular_impulse"][1].get<double>(), 1e-12);
-    // About its axis: 3 kg (1 + 0.01) / 12 m^2 + 3 kg (0.5 m)^2.
+    // The moment of inertia about its axis is 3 kg (1 + 0.01) / 12 m^2 + 3 kg (0.5 m)^2.
     const double rate = std::stod(bodies.back().at(12));
     EXPECT_GT(rate, 0.01);
     EXPECT_NEAR(torque, (3.0 * 1.01 / 12.0 + 0.75) * rate, 1e-12);
     EXPECT_EQ(rate, summary["bodies"][0]["rate"].get<double>());
-    // Turned about y by half the coordinate, as quaternions say it.
+    // The quaternion contains half of the rotation angle about y.
     ASSERT_EQ(bodies.back().size(), 18U);
     const double angle = std::stod(bodies.back().at(11));
     EXPECT_NEAR(std::stod(bodies.back().at(14)), std::cos(0.5 * angle), 1e-14);
@@ -216,8 +217,8 @@ TEST(RunCommand, WritesWhatIsDoneToBodiesAndHowTheyMove) {
     EXPECT_EQ(std::stod(bodies.back().at(17)), 0.0);
 }
 
-// A box that goes from -1 to 1 m and a quarter turn round, beside one at rest.
-TEST(RunCommand, WritesCollidersThatMoveWhereTheyAreInEveryFrame) {
+// A box moves from -1 to 1 m with a quarter turn, beside one at rest.
+TEST(RunCommand, WritesMovingCollidersAtTheirPositionInEveryFrame) {
     const RunFiles files;
     (void)files.folder.write("scene.json", R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
         "colliders": [{"name": "floor", "type": "plane", "normal": [0, 0, 1]},
@@ -248,16 +249,16 @@ TEST(RunCommand, WritesCollidersThatMoveWhereTheyAreInEveryFrame) {
     const auto colliders = nlohmann::json::parse(files.folder.read("out/run.json"))["colliders"];
     EXPECT_FALSE(colliders[0].contains("moves"));
     EXPECT_EQ(colliders[1]["moves"], true);
-    // In the series of what stands still there is no collider that moves.
+    // The series of colliders at rest contains no moving collider.
     EXPECT_EQ(files.folder.read("out/colliders.pvd").find("collider_01"), std::string::npos);
-    // The next run has none, and leaves none.
+    // The next run has no moving colliders and must leave none of these files.
     (void)files.folder.write("scene.json", kScene);
     ASSERT_EQ(files.run().exit_code, 0);
     EXPECT_FALSE(files.exists("out/moving_000000.vtp"));
     EXPECT_FALSE(files.exists("out/moving.pvd"));
 }
 
-TEST(RunCommand, WritesTheContactLogWhereItIsAskedForAndClearsItAway) {
+TEST(RunCommand, WritesTheContactLogIfRequestedAndRemovesAnOldOne) {
     const RunFiles files;
     EXPECT_EQ(files.run({"--set", "output.contacts=true"}).exit_code, 0);
     for (const char* name :
@@ -324,7 +325,7 @@ TEST(RunCommand, ASecondRunReplacesTheFirst) {
     EXPECT_EQ(files.folder.read("out/notes.txt"), "mine");
 }
 
-TEST(RunCommand, AWrongSceneTouchesNothing) {
+TEST(RunCommand, AWrongSceneChangesNoFile) {
     const RunFiles files;
     EXPECT_EQ(files.run().exit_code, 0);
     const std::string before = files.folder.read("out/summary.json");
@@ -337,7 +338,7 @@ TEST(RunCommand, AWrongSceneTouchesNothing) {
     EXPECT_FALSE(fresh.exists("out"));
 }
 
-// Wrong arguments end with 2, what the system refuses with 1; each says why in one line and names the culprit.
+// Expects a refusal in one line that names the cause. Wrong arguments end with 2, and errors of the system with 1.
 void expect_refused(const ProgramResult& result, int exit_code, const std::string& culprit) {
     SCOPED_TRACE(culprit);
     EXPECT_EQ(result.exit_code, exit_code) << result.errors;
@@ -346,7 +347,7 @@ void expect_refused(const ProgramResult& result, int exit_code, const std::strin
     EXPECT_NE(result.errors.find(culprit), std::string::npos) << result.errors;
 }
 
-TEST(RunCommand, RefusesThreadCountsThatMakeNoSense) {
+TEST(RunCommand, RefusesInvalidThreadCounts) {
     const RunFiles files;
     for (const char* threads : {"0", "-1", "1000000", "two", "1.5", "", "99999999999999999999"}) {
         if (*threads == '\0') continue;
@@ -355,7 +356,7 @@ TEST(RunCommand, RefusesThreadCountsThatMakeNoSense) {
     EXPECT_FALSE(files.exists("out"));
 }
 
-TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
+TEST(RunCommand, ResumesOnlyInterruptedRuns) {
     const RunFiles files;
     expect_refused(files.run({"--resume"}), 2, "no run was here that could be resumed");
     EXPECT_FALSE(files.exists("out"));
@@ -367,7 +368,8 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     EXPECT_TRUE(files.exists("out/summary.json"));
     (void)files.folder.write("out/checkpoint.bin", "not a checkpoint at all");
     expect_refused(files.run({"--resume"}), 2, "not a checkpoint;");
-    (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");  // little-endian, as earlier versions began
+    // little-endian, as in files of earlier versions
+    (void)files.folder.write("out/checkpoint.bin", "4KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "a checkpoint of another version");
     (void)files.folder.write("out/checkpoint.bin", "8KHCOCIR and more");
     expect_refused(files.run({"--resume"}), 2, "its checksum is wrong");
@@ -376,7 +378,7 @@ TEST(RunCommand, ResumesOnlyWhatWasInterrupted) {
     expect_refused(files.run({"--resume"}), 2, "found no regular file, expected a checkpoint");
 }
 
-TEST(RunCommand, NeverWritesTheFinalStateOverWhatItReadsOrWrites) {
+TEST(RunCommand, NeverWritesTheFinalStateOverItsOtherFiles) {
     const RunFiles files;
     const std::string scene = files.folder.read("scene.json");
     expect_refused(files.run({"--output-state", files.scene}), 2, "is the scene itself");
@@ -391,7 +393,7 @@ TEST(RunCommand, NeverWritesTheFinalStateOverWhatItReadsOrWrites) {
     EXPECT_EQ(files.run({"--output-state", files.folder.path("summary.json").string()}).exit_code, 0);
 }
 
-TEST(RunCommand, RefusesOutputFoldersThatAreNotItsOwn) {
+TEST(RunCommand, RefusesForeignOutputFolders) {
     const RunFiles files;
     (void)files.folder.write("other", "x");
     std::filesystem::create_directory(files.folder.path("out"));
@@ -412,7 +414,7 @@ TEST(RunCommand, RefusesAMissingSceneOutputOrStateFolder) {
     expect_refused(files.run({"--output-state", files.folder.path("").string()}), 2, "not a regular file");
 }
 
-TEST(RunCommand, AFullDiskIsAFailureThatIsTold) {
+TEST(RunCommand, ReportsAFullDiskAsAFailure) {
     if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
     const RunFiles files;
     const ProgramResult result =

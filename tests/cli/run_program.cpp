@@ -27,7 +27,7 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
     return pointers;
 }
 
-// The test's own environment with the settings in place of those of the same name.
+// Returns the test's own environment, with the given settings replacing settings of the same name.
 std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
     const auto name = [](std::string_view setting) { return setting.substr(0, setting.find('=') + 1); };
     std::vector<std::string> all = settings;

@@ -1,5 +1,4 @@
-/// \file
-/// Runs the command-line tool as a user does.
+/// \file Runs the command-line tool like a user.
 #pragma once
 
 #include <sys/types.h>
@@ -12,41 +11,41 @@
 
 namespace ricochet::test {
 
-/// What a program left behind.
+/// Results of a program.
 struct ProgramResult {
-    int exit_code = -1;  ///< -1 when it was ended by a signal
-    int signal = 0;      ///< the one that ended it; 0 when none did
+    int exit_code = -1;  ///< -1 if a signal ended it
+    int signal = 0;      ///< signal that ended it, or 0
     std::string output;  ///< standard output
     std::string errors;  ///< standard error
 };
 
-/// How the tool is started, beside its arguments.
+/// Environment and redirections of the tool, in addition to its arguments.
 struct ProgramStart {
-    std::vector<std::string> environment;  ///< NAME=VALUE, more than the test's own
-    std::vector<std::string> prefix;       ///< a program, with arguments, that starts the tool
-    std::string output;                    ///< a file for standard output instead of ProgramResult::output
-    std::string errors;                    ///< the same for standard error
+    std::vector<std::string> environment;  ///< NAME=VALUE, in addition to the test's own
+    std::vector<std::string> prefix;       ///< program with arguments that starts the tool
+    std::string output;                    ///< file for standard output instead of ProgramResult::output
+    std::string errors;                    ///< file for standard error instead of ProgramResult::errors
 };
 
-/// The tool that was built with the tests, while it runs.
+/// Running process of the tool that was built with the tests.
 class RunningProgram {
 public:
     explicit RunningProgram(const std::vector<std::string>& arguments, const ProgramStart& start = {});
-    /// Kills it where it was not waited for.
+    /// Kills the process if wait() was not called.
     ~RunningProgram();
     RunningProgram(const RunningProgram&) = delete;
     RunningProgram& operator=(const RunningProgram&) = delete;
 
     void send(int signal) const;
-    /// Whether it still runs.
+    /// Returns true if the process still runs.
     [[nodiscard]] bool is_running();
-    /// Waits until it has taken all signals that were sent. False when it has ended.
+    /// Waits until the process has received all sent signals. Returns false if it has ended.
     [[nodiscard]] bool takes_signals();
-    /// Waits until it has worked for so many seconds of processor time more. False when it has ended.
+    /// Waits until the process has used the given further processor time, in s. Returns false if it has ended.
     [[nodiscard]] bool works(double seconds);
-    /// Waits for a file. False when the program has ended without it.
+    /// Waits until a file exists. Returns false if the program has ended without it.
     [[nodiscard]] bool makes(const std::filesystem::path& file);
-    /// To be called once.
+    /// Waits for the end of the process. Must be called once.
     [[nodiscard]] ProgramResult wait();
 
 private:
@@ -58,7 +57,7 @@ private:
     int status_ = 0;
 };
 
-/// Runs the tool and waits for it.
+/// Runs the tool and waits for its end.
 [[nodiscard]] ProgramResult run_ricochet(const std::vector<std::string>& arguments, const ProgramStart& start = {});
 
 }  // namespace ricochet::test

@@ -15,7 +15,7 @@ namespace RICOCHET_FILE {
 using test::run_ricochet;
 using test::TemporaryFolder;
 
-// Balls and a point that bounce on a floor and between walls; one is born late.
+// Balls and a point that bounce on a floor and between walls. One of them is born late.
 constexpr const char* kScene = R"({"ricochet": 1,
     "simulation": {"time_step": 0.01, "duration": 0.8, "integrator": "ballistic"},
     "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
@@ -37,7 +37,8 @@ std::string run_with(const TemporaryFolder& folder, const std::string& name, con
     return output;
 }
 
-// Largest distance of what lies between the coarse frames from the frames of a run that wrote all of them.
+// Returns the largest distance between positions interpolated from coarse frames and the frames of a run that wrote all
+// steps.
 double error_between(RunTimeline& coarse, RunTimeline& fine) {
     double error = 0.0;
     for (int k = 0; k <= 80; ++k) {
@@ -52,7 +53,7 @@ double error_between(RunTimeline& coarse, RunTimeline& fine) {
     return error;
 }
 
-TEST(RunTimeline, BetweenFramesParticlesAreWhereFramesOfTheirOwnWouldShowThem) {
+TEST(RunTimeline, BetweenFramesParticlesAreInterpolatedCorrectly) {
     const TemporaryFolder folder;
     RunTimeline fine(open_run_folder(run_with(folder, "fine", "1", false)));
     RunTimeline coarse(open_run_folder(run_with(folder, "coarse", "20", true)));
@@ -63,7 +64,7 @@ TEST(RunTimeline, BetweenFramesParticlesAreWhereFramesOfTheirOwnWouldShowThem) {
     EXPECT_GT(error_between(blind, fine), 0.05);
 }
 
-TEST(RunTimeline, AShutterSeesTheWayWithTheImpactsInIt) {
+TEST(RunTimeline, AnOpenShutterShowsThePathWithItsImpacts) {
     const TemporaryFolder folder;
     RunTimeline coarse(open_run_folder(run_with(folder, "coarse", "20", true)));
     // The ball falls 0.2 m, until its centre is 0.1 m above the floor.
@@ -80,7 +81,7 @@ TEST(RunTimeline, AShutterSeesTheWayWithTheImpactsInIt) {
     EXPECT_TRUE(coarse.at(0.3, 0.0).paths.empty());
 }
 
-TEST(RunTimeline, AFramesOwnTimeShowsItAsItIs) {
+TEST(RunTimeline, TheTimeOfAFrameShowsThatFrame) {
     const TemporaryFolder folder;
     const RunFolder run = open_run_folder(run_with(folder, "coarse", "20", true));
     RunTimeline timeline(run);
@@ -92,8 +93,8 @@ TEST(RunTimeline, AFramesOwnTimeShowsItAsItIs) {
     EXPECT_NEAR(timeline.spacing(), 0.2, 1e-12);
 }
 
-// A ball falls from rest by 0.2 m: it lands after sqrt(2 h / g), at sqrt(2 g h).
-TEST(RunTimeline, TheImpactNearestToAMomentIsAsTheFallSays) {
+// A ball falls 0.2 m from rest. It lands after sqrt(2 h / g), at sqrt(2 g h).
+TEST(RunTimeline, TheImpactNearestToATimeMatchesTheFall) {
     const TemporaryFolder folder;
     const auto scene = folder.write("fall.json", R"({"ricochet": 1,
         "simulation": {"time_step": 0.01, "duration": 0.4, "integrator": "ballistic"},

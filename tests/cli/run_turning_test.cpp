@@ -33,9 +33,9 @@ std::string run_of(const TemporaryFolder& folder, const std::string& more) {
     return folder.path("out").string();
 }
 
-// In free flight a spin stays: the turn is that of the whole age at once, at and between frames, whatever was asked for
-// before.
-TEST(RunTurning, InFreeFlightItTurnsByTheSpinTimesTheAge) {
+// In free flight the spin is constant. The rotation follows from the whole age at once, at frames and between them,
+// independent of earlier queries.
+TEST(RunTurning, RotationInFreeFlightIsTheSpinTimesTheAge) {
     const TemporaryFolder folder;
     const RunFolder run =
         open_run_folder(run_of(folder, R"("particles": [{"position": [0, 0, 0], "radius": 0.1, "spin": [3, -1, 2]},
@@ -53,7 +53,7 @@ TEST(RunTurning, InFreeFlightItTurnsByTheSpinTimesTheAge) {
     }
 }
 
-TEST(RunTurning, ParticlesThatAreBornLaterTurnFromTheirBirthOn) {
+TEST(RunTurning, ParticlesBornLaterRotateFromTheirBirthOn) {
     const TemporaryFolder folder;
     const RunFolder run = open_run_folder(
         run_of(folder, R"("emitters": [{"type": "point", "center": [0, 0, 0], "velocity": [1, 0, 0], "rate": 10,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Processes of a shared run are killed at random moments: no file is half-written under its name, what is there can be
-# read, and other processes, more or fewer, go on to the state of one process.
-# shared_kills_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS [SEED]
+# Kills processes of a shared run at random moments. No file is half-written under its name, and all files can be read.
+# More or fewer other processes continue to the state of one process.
+# Usage: shared_kills_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS [SEED]
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
@@ -20,7 +20,7 @@ fail() {
     exit 1
 }
 
-# begin RANKS ARGUMENTS...: a run in the background; its processes leave their ids in FOLDER/pid.RANK.
+# begin RANKS ARGUMENTS...: starts a run in the background; its processes write their ids to FOLDER/pid.RANK.
 begin() {
     rm -f "$folder"/pid.*
     # shellcheck disable=SC2016  # the ranks fill these in
@@ -30,7 +30,7 @@ begin() {
     run=$!
 }
 
-# Everything under its own name is whole.
+# Fails unless every file under a final name is complete.
 expect_whole_files() {
     local file piece
     for file in "$folder/run"/*.vtp "$folder/run"/*.pvtp "$folder/run"/*.pvd; do
@@ -57,7 +57,7 @@ resumed=0
 arguments=()
 while ((killed < kills)); do
     ranks=$((2 + RANDOM % 3))
-    # Mostly in pieces; what one run has gathered another one goes on with in pieces, and the other way round.
+    # Most runs write pieces. Each run may continue from gathered files or from pieces.
     pieces=(--set "output.pieces=$( ((RANDOM % 4)) && echo true || echo false)")
     begin "$ranks" "${pieces[@]}" "${arguments[@]}"
     sleep "$((RANDOM % 3)).$((RANDOM % 1000 + 1000))"

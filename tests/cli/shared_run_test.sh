@@ -1,7 +1,10 @@
 #!/usr/bin/env bash
-# Runs that several processes share, started by mpirun: the bits of one process, resumed by more and by fewer; what ends
-# one of them ends all, with one line, and leaves what a resumed run needs; what cannot be shared is refused.
-# shared_run_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS [PYTHON]: PYTHON has VTK, or skips
+# Tests runs shared by several processes under mpirun:
+# - They have the bits of one process, also when resumed by more or fewer processes.
+# - An error in one process ends all of them with one line, and leaves the files that a resumed run needs.
+# - Scenes that cannot be shared are refused.
+# Usage: shared_run_test.sh RICOCHET MPIRUN SCENES FOLDER KILLS [PYTHON]
+# PYTHON has VTK; without it the tests of readers are skipped.
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
@@ -9,8 +12,8 @@ scenes="$3"
 folder="$4"
 kills="$5"
 python="${6:-}"
-# As root, on fewer processors than ranks, and in containers, which do not let processes read each other's memory. The
-# second line is for the fifth release.
+# Open MPI runs as root, on fewer processors than ranks, and in containers, which forbid processes to read each other's
+# memory. The second line is for Open MPI 5.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_btl_vader_single_copy_mechanism=none
 export PRTE_ALLOW_RUN_AS_ROOT=1 PRTE_ALLOW_RUN_AS_ROOT_CONFIRM=1
 
@@ -19,27 +22,27 @@ fail() {
     exit 1
 }
 
-# ranks N ARGUMENTS...: a run by N processes of one thread each, which leave their process ids in FOLDER/pid.RANK.
+# ranks N ARGUMENTS...: runs N processes of one thread each, which write their process ids to FOLDER/pid.RANK.
 ranks() {
     # shellcheck disable=SC2016  # the ranks fill these in
     "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n "$1" bash -c 'echo $$ >"$0/pid.$OMPI_COMM_WORLD_RANK"; exec "$@"' \
         "$folder" "$ricochet" run "${@:2}" --threads 1 --quiet
 }
 
-# expect_end NAME CODE WORDS: `code` and NAME.out are of a run that has ended with this exit code and one line of ours.
+# expect_end NAME CODE WORDS: expects that the run with `code` and NAME.out ended with this exit code and one line.
 expect_end() {
     ((code == $2)) || fail "$1: exit code $code, expected $2: $(cat "$folder/$1.out")"
     (($(grep -c '^ricochet: ' "$folder/$1.out") == 1)) || fail "$1: not one line: $(cat "$folder/$1.out")"
     grep -q "^ricochet: .*$3" "$folder/$1.out" || fail "$1: not '$3': $(cat "$folder/$1.out")"
 }
 
-# What does not depend on the time it took, nor on who did it.
+# Prints the summary without values that depend on run time or on the number of processes.
 summary_of() {
     grep -vE '"(wall_seconds|output_seconds|processes|busiest_process|particles_moved|common_memory_bytes|threads|peak_memory_bytes)"' "$folder/$1/summary.json" ||
         fail "$1 has no summary"
 }
 
-# same_run A B: summaries and all files are the same, byte by byte.
+# same_run A B: expects that the summaries and all files are the same, byte by byte.
 same_run() {
     local file
     diff <(summary_of "$1") <(summary_of "$2") || fail "$2 has another summary than $1"
@@ -55,7 +58,8 @@ same_run() {
     cmp "$folder/$1.csv" "$folder/$2.csv" || fail "$2 ends in another state than $1"
 }
 
-# same_checkpoint A B [FILE]: but for the seconds spent (16 bytes after the first 16) and the check sum over all (the last 8).
+# same_checkpoint A B [FILE]: compares checkpoints without the run times (16 bytes after the first 16) and the check sum
+# (the last 8).
 same_checkpoint() {
     local name
     for name in "$1" "$2"; do
@@ -64,8 +68,8 @@ same_checkpoint() {
     cmp "$folder/$1.state" "$folder/$2.state" || fail "$2 has another checkpoint than $1"
 }
 
-# same_particles A B: what an export makes of the frames is the same, byte by byte, and so is all else but the frames,
-# which are in pieces in B.
+# same_particles A B: expects that the exported frames and all other files are the same, byte by byte. The frames
+# themselves are in pieces in B.
 same_particles() {
     local file
     diff <(summary_of "$1") <(summary_of "$2") || fail "$2 has another summary than $1"
@@ -81,7 +85,7 @@ same_particles() {
     [[ -z "$(compgen -G "$folder/$2/*.partial" || true)" ]] || fail "$2 holds unfinished files"
 }
 
-# Waits until run `run` has written that many frames into the folder, or has ended.
+# Waits until run `run` has written the given number of frames into the folder, or has ended.
 wait_for_frames() {
     until (($(compgen -G "$folder/$1/particles_*[0-9].*vtp" | wc -l) >= $2)) || ! kill -0 "$run" 2>/dev/null; do
         sleep 0.02
@@ -91,7 +95,7 @@ wait_for_frames() {
 rm -rf "$folder"
 mkdir -p "$folder"
 
-# Emitters, children that are born at impacts and as trails, the loads of colliders that move, and springs.
+# Tests emitters, children born at impacts and as trails, loads of moving colliders, and springs.
 for scene in fountain shattering bouncing_table rope_and_cloth; do
     cut=(--set simulation.duration=0.6 --set output.contacts=true)
     "$ricochet" run "$scenes/$scene.json" --output "$folder/$scene" --output-state "$folder/$scene.csv" "${cut[@]}" --quiet
@@ -102,7 +106,7 @@ for scene in fountain shattering bouncing_table rope_and_cloth; do
     done
 done
 
-# Ranks of one machine hold a mesh once, where the system lets one process open what another one has.
+# Ranks on one machine share one copy of a mesh, if the system lets a process open the memory of another one.
 awk 'BEGIN {
     n = 150
     for (j = 0; j <= n; ++j) for (i = 0; i <= n; ++i) print "v", i / n, j / n, 0.02 * sin(40 * i / n) * cos(31 * j / n)
@@ -130,7 +134,7 @@ else
     echo "processes may not open each other's files here: $common bytes of the mesh are in common"
 fi
 
-# A folder in the place of a frame ends the run when that frame is due. What is there goes on with other ranks.
+# A folder with the name of a frame ends the run at that frame. Other numbers of ranks then continue from its files.
 scene="$scenes/shattering.json"
 cut=(--set simulation.duration=1.2 --set output.every=10 --set output.checkpoint_every=20 --set output.contacts=true)
 "$ricochet" run "$scene" --output "$folder/whole" --output-state "$folder/whole.csv" "${cut[@]}" --quiet
@@ -151,7 +155,7 @@ rm -r "$folder/stopped-4/particles_000170.vtp"
 ranks 3 "$scene" --output "$folder/stopped-4" --output-state "$folder/stopped-4.csv" --resume "${cut[@]}"
 same_run whole stopped-4
 
-# Processes are lost, one after the other; others go on from the checkpoint.
+# Processes are killed one after the other. Others continue from the checkpoint.
 cut=(--set "simulation.duration=$((2 + kills / 4))" --set output.every=5 --set output.checkpoint_every=5)
 scene="$scenes/fountain.json"
 "$ricochet" run "$scene" --output "$folder/alone" --output-state "$folder/alone.csv" "${cut[@]}" --quiet
@@ -196,11 +200,12 @@ code=0
 "$ricochet" export "$folder/pieces-3" --format ply --output "$folder/lost.ply" >"$folder/lost.out" 2>&1 || code=$?
 expect_end lost 2 'particles_000012_p1.vtp: not a regular file'
 
-# 4, 2 and 3 ranks go on one after the other from checkpoints in parts; in between one process alone, gathered.
+# 4, 2 and 3 ranks continue one after the other from checkpoints in parts. In between one process continues alone, with
+# gathered files.
 cut=(--set simulation.duration=1.2 --set output.every=10 --set output.checkpoint_every=20)
 scene="$scenes/shattering.json"
 "$ricochet" run "$scene" --output "$folder/parts-whole" --output-state "$folder/parts-whole.csv" "${cut[@]}" --quiet
-# stop_at FRAME RANKS ARGUMENTS...: until a folder is in the place of that frame's index.
+# stop_at FRAME RANKS ARGUMENTS...: runs until a folder blocks the index of that frame.
 stop_at() {
     mkdir -p "$folder/parts/particles_$1.pvtp/obstacle"
     code=0
@@ -221,7 +226,7 @@ same_particles parts-whole parts-alone
 ranks 3 "$scene" --output "$folder/parts" --output-state "$folder/parts.csv" "${cut[@]}" --set output.pieces=true --resume
 same_particles parts-whole parts
 
-# A checkpoint that lacks a part, or has one of another time, is refused as a whole.
+# A checkpoint with a missing part, or with a part of another time, is refused as a whole.
 truncate -s -1 "$folder/parts-lost"/checkpoint_0_p1.bin
 code=0
 ranks 2 "$scene" --output "$folder/parts-lost" "${cut[@]}" --resume >"$folder/parts-lost.out" 2>&1 || code=$?
@@ -231,7 +236,8 @@ code=0
 ranks 2 "$scene" --output "$folder/parts-lost" "${cut[@]}" --resume >"$folder/parts-lost.out" 2>&1 || code=$?
 expect_end parts-lost 2 'checkpoint.bin: its part checkpoint_0_p1.bin is missing'
 
-# A signal to one of them ends all after the same step, with a checkpoint. Meanwhile nobody else gets the folder.
+# A signal to one process ends all of them after the same step, with a checkpoint. Meanwhile no other run gets the
+# folder.
 ranks 3 "$scene" --output "$folder/signal" --set simulation.duration=1000 >"$folder/signal.out" 2>&1 &
 run=$!
 wait_for_frames signal 3
@@ -246,7 +252,7 @@ wait "$run" || code=$?
 grep -q '"interrupted": true' "$folder/signal/summary.json" || fail "the summary does not say that it was interrupted"
 [[ -f "$folder/signal/checkpoint.bin" ]] || fail "a run that was ended by a signal has no checkpoint"
 
-# Wrong input is told once, also where it is another one's.
+# Wrong input is reported once, even if another rank finds it.
 refuse() {
     code=0
     ranks 3 "${@:3}" --output "$folder/refused" >"$folder/$1.out" 2>&1 || code=$?
@@ -256,8 +262,8 @@ refuse missing 'there is no file' "$folder/missing.json"
 refuse option 'not expected: --bogus' "$scene" --bogus
 refuse springs 'output.pieces: found true beside springs' "$scenes/rope_and_cloth.json" --set output.pieces=true
 
-# Ranks that were asked for different things touch no file: what an earlier run has left stays, its checkpoint too.
-# unlike NAME ARGUMENTS...: a second rank with these arguments besides.
+# Ranks with different arguments change no file. The files of an earlier run remain, including its checkpoint.
+# unlike NAME ARGUMENTS...: adds a second rank with these arguments.
 unlike() {
     local before
     before="$(ls -A "$folder/signal")"
@@ -272,7 +278,7 @@ unlike other-resume --output "$folder/signal" --resume
 unlike other-folder --output "$folder/other"
 unlike other-state --output "$folder/signal" --output-state "$folder/other.csv"
 
-# What one of them alone comes to is told with its number.
+# An error of one rank alone is reported with its number.
 code=0
 "$mpirun" --quiet --map-by :OVERSUBSCRIBE -n 1 "$ricochet" run "$scene" --output "$folder/alone-wrong" --quiet : \
     -n 1 "$ricochet" run "$folder/missing.json" --output "$folder/alone-wrong" --quiet >"$folder/wrong.out" 2>&1 || code=$?

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Every shipped scene, shared by several processes: the hash, the counters and the totals of one process. What processes
-# do not share is refused by name, and named here.
-# shared_scenes_test.sh RICOCHET MPIRUN SCENES FOLDER SECONDS RANKS THREADS: "1 2 3" ranks with "1 2" threads each, for
-# at most so many seconds of each scene. The first number of ranks finds what is refused: two or more.
+# Runs every shipped scene on several processes, with the hash, the counters and the totals of one process. Scenes that
+# cannot be shared are refused by name and listed here.
+# Usage: shared_scenes_test.sh RICOCHET MPIRUN SCENES FOLDER SECONDS RANKS THREADS
+# RANKS and THREADS are lists such as "1 2 3" and "1 2". SECONDS limits the simulated time of each scene. The first
+# number of ranks must be at least two, because it also finds the refused scenes.
 set -euo pipefail
 ricochet="$1"
 mpirun="$2"
@@ -20,13 +21,13 @@ fail() {
     exit 1
 }
 
-# What does not depend on the time it took, nor on who did it.
+# Prints the summary without values that depend on run time or on the number of processes.
 summary_of() {
     grep -vE '"(wall_seconds|output_seconds|processes|busiest_process|particles_moved|common_memory_bytes|threads|peak_memory_bytes)"' \
         "$folder/$1/summary.json"
 }
 
-# How long to run a scene, s: as long as it says, but no longer than asked for.
+# Prints the simulated time of a scene, in s: its own duration, but at most the requested one.
 cut_of() {
     "$ricochet" check "$1" | sed -n 's/.* \([0-9]*\) steps* of \([0-9.e-]*\) s,.*/\1 \2/p' |
         awk -v most="$seconds" '{ t = $1 * $2; printf "%.9g", t < most ? t : most }'

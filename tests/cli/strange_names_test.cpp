@@ -1,4 +1,4 @@
-// Is what strangers give to the program shown as escapes, and never obeyed by a terminal?
+// Names from untrusted input are printed as escapes, so that a terminal never obeys them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

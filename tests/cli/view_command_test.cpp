@@ -59,7 +59,7 @@ TEST(ViewCommand, ShowsMeshesOfARunInPieces) {
     EXPECT_EQ(folder.read("true.html").size(), folder.read("false.html").size());
 }
 
-TEST(ViewCommand, RefusesWhatItCannotShowWithOneLine) {
+TEST(ViewCommand, RefusesUnsuitableInputWithOneLine) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("drop.json", kScene).string();
     const std::string run = folder.path("run").string();
@@ -88,7 +88,7 @@ TEST(ViewCommand, RefusesWhatItCannotShowWithOneLine) {
     }
 }
 
-TEST(ViewCommand, LeavesAnOlderPageWhereTheNewOneCannotBeMade) {
+TEST(ViewCommand, KeepsAnOlderPageIfTheNewOneFails) {
     const TemporaryFolder folder;
     const std::string scene = folder.write("drop.json", kScene).string();
     const std::string run = folder.path("run").string();

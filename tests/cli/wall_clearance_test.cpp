@@ -29,7 +29,7 @@ WallClearance box_of(const Vec3& size) {
     return walls;
 }
 
-TEST(WallClearance, BallsStandOnThePlaneThatTheirPointsLieOn) {
+TEST(WallClearance, BallsRestOnThePlaneThatContainsTheirPoints) {
     const WallClearance walls({{{0, 0, 1}, {0, 0, 1}}});
     Balls balls({{3, 4, 1 + 1e-12}, {3, 4, 1 - 1e-12}, {0, 0, 1.05}, {0, 0, 5}}, 0.1);
     balls.clear(walls);
@@ -40,7 +40,7 @@ TEST(WallClearance, BallsStandOnThePlaneThatTheirPointsLieOn) {
     for (const double radius : balls.radii) EXPECT_EQ(radius, 0.1);
 }
 
-TEST(WallClearance, BallsOfTheirOwnSizeStayWhereTheyAre) {
+TEST(WallClearance, BallsOfTheirOwnSizeAreNotMoved) {
     Balls balls({{0, 0, -0.45}, {0.49, 0.49, 0.49}}, 0.1, 0.1);
     const std::vector<Vec3> before = balls.centers;
     balls.clear(box_of({1, 1, 1}));
@@ -48,7 +48,7 @@ TEST(WallClearance, BallsOfTheirOwnSizeStayWhereTheyAre) {
     EXPECT_EQ(balls.radii, (std::vector<double>{0.1, 0.1}));
 }
 
-// Inside of a cube, in its corners and edges too, and outside of it: no ball pokes through a face.
+// Points are inside a cube, also in its corners and edges, and outside of it. No ball may cross a face.
 TEST(WallClearance, NoBallPokesThroughABox) {
     const WallClearance walls = box_of({1, 1, 1});
     RandomSequence random(5, 0, 0);
@@ -71,12 +71,12 @@ TEST(WallClearance, NoBallPokesThroughABox) {
         Vec3 outside;
         for (int axis = 0; axis < 3; ++axis) outside[axis] = std::max(0.0, std::fabs(c[axis]) - 0.5);
         EXPECT_GE((inner > 0.0 ? inner : length(outside)), 0.98 * balls.radii[i]);
-        EXPECT_EQ(balls.radii[i], 0.12);  // there is room everywhere
+        EXPECT_EQ(balls.radii[i], 0.12);  // there is enough space everywhere
         EXPECT_LT(length(c - points[i]), 2.0 * 0.12);
     }
 }
 
-TEST(WallClearance, InAGapBallsAreAsLargeAsItIs) {
+TEST(WallClearance, BallsInAGapFillItsWidth) {
     WallClearance walls({{{0, 0, 0}, {0, 0, 1}}});
     walls.add({{{-9, -9, 0.1}, {9, -9, 0.1}, {0, 9, 0.1}}, {{0, 1, 2}}});
     Balls balls({{0, 0, 1e-9}, {0, 0, 0.03}, {0, 0, 0.1 - 1e-9}, {0, 0, 0.02}}, 0.5);
@@ -91,7 +91,7 @@ TEST(WallClearance, InAGapBallsAreAsLargeAsItIs) {
     }
 }
 
-TEST(WallClearance, TurnedAndShiftedScenesGiveTurnedAndShiftedBalls) {
+TEST(WallClearance, RotatedAndShiftedScenesGiveRotatedAndShiftedBalls) {
     const TriangleMesh ball = testing::sphere_mesh({}, 1.0, 2);
     Placement placement;
     placement.position = {100, -20, 3};

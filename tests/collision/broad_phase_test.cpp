@@ -1,4 +1,4 @@
-// For how long a path is clear, as points along it say it.
+// Compares the clear time of paths with sampled points along them.
 #include "ricochet/collision/broad_phase.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// m, of a point from the nearest surface.
+/// Returns the distance of a point from the nearest surface, in m.
 double distance_of(const CollisionWorld& world, const Vec3& p) {
     double nearest = std::numeric_limits<double>::infinity();
     for (SurfaceId surface = 0; surface < world.surface_count(); ++surface) {
@@ -46,7 +46,7 @@ TEST(TimeClear, EndsBeforeAnythingComesNear) {
         const QueryMargins margins(world, path, radius, beside);
         const double clear = time_clear_of(world, margins, path, 1e-3);
         constexpr int kPoints = 100;
-        double near = 1.0;  // s, at which a sample is as near as counts
+        double near = 1.0;  // first time, in s, at which a sample counts as near
         for (int k = kPoints; k-- > 0;) {
             const double time = static_cast<double>(k) / kPoints;
             if (distance_of(world, path.position(time)) <= radius + margins.slack) near = time;
@@ -59,7 +59,7 @@ TEST(TimeClear, EndsBeforeAnythingComesNear) {
     EXPECT_GT(ended, 40U);
 }
 
-TEST(TimeClear, IsAllOfAPathThatStaysAwayAndNothingOfOneThatBeginsThere) {
+TEST(TimeClear, IsTheWholePathIfItStaysAwayAndZeroIfItBeginsNear) {
     CollisionWorld world = world_of(mesh_collider(floor_mesh(1.0, 8)));
     world.prepare_radius(0.0);
     const auto clear = [&](const Path& path) {

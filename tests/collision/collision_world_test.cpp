@@ -40,8 +40,8 @@ TEST(CollisionWorld, BakesScaleThenRotationThenPosition) {
     EXPECT_EQ(world.bounds().upper, (Vec3{10, 22, 34}));
 }
 
-// So many that they are baked in several blocks.
-TEST(CollisionWorld, BakesEveryVertexOfLargeMeshesToTheSameBitsForAnyNumberOfThreads) {
+// The mesh has enough vertices to be baked in several blocks.
+TEST(CollisionWorld, BakesLargeMeshesToTheSameBitsForAnyNumberOfThreads) {
     TriangleMesh large;
     constexpr std::uint32_t kVertices = 50'001;
     for (std::uint32_t i = 0; i < kVertices; ++i) {
@@ -119,7 +119,7 @@ TEST(CollisionWorld, NamesEverySurfaceOfMixedPlanesAndMeshes) {
     EXPECT_EQ(world.mesh_of(4)->vertices.size(), 18U);
 }
 
-TEST(CollisionWorld, AnswersAboutASurfaceAlikeForAPlaneAndATriangleInIt) {
+TEST(CollisionWorld, TreatsAPlaneAndATriangleInItAlike) {
     const auto world = world_of(plane_collider({0, 0, 1}, {0, 0, 5}), mesh_collider(testing::floor_mesh(2.0, 1, 1.0)));
     const Vec3 above{0.5, 0.25, 1.5};
     const Vec3 below{0.5, 0.25, 0.5};
@@ -137,7 +137,7 @@ TEST(CollisionWorld, AnswersAboutASurfaceAlikeForAPlaneAndATriangleInIt) {
     }
     const Path along = line_path(on, {1, 0, 0}, 10.0);
     EXPECT_EQ(world.time_over(0, along, 0.0), 10.0);
-    EXPECT_NEAR(world.time_over(1, along, 0.0), 1.5, 1e-13);  // the corners' own rounding is allowed for
+    EXPECT_NEAR(world.time_over(1, along, 0.0), 1.5, 1e-13);  // allows for the rounding of the corners
 }
 
 TEST(CollisionWorld, RefusesPlacementsThatFlattenTheMeshAndNamesTheCollider) {
@@ -154,7 +154,7 @@ TEST(CollisionWorld, RefusesPlacementsThatFlattenTheMeshAndNamesTheCollider) {
     EXPECT_NE(refusal(plane_collider({1e80, 0, 0}, {0, 0, 1})).find("1e75"), std::string::npos);
 }
 
-TEST(CollisionWorld, LeavesDegenerateTrianglesOutOfCollisionsButKeepsTheirNumbers) {
+TEST(CollisionWorld, ExcludesDegenerateTrianglesFromCollisionsButKeepsTheirNumbers) {
     TriangleMesh mesh = testing::floor_mesh(1.0, 1);
     mesh.triangles.insert(mesh.triangles.begin() + 1, Triangle{0, 1, 1});
     mesh.triangles.push_back({0, 0, 0});
@@ -168,7 +168,7 @@ TEST(CollisionWorld, LeavesDegenerateTrianglesOutOfCollisionsButKeepsTheirNumber
     EXPECT_EQ(world.mesh_of(0)->triangles.size(), 4U);
 }
 
-// From end to end, or along one axis; in no case in silence.
+// A collider can be too small in its whole extent or along one axis. Both cases raise an error.
 TEST(CollisionWorld, RefusesSurfacesBelowTheSmallestSizeAndNamesTheCollider) {
     const auto expect_refused = [](const ColliderShape& shape) {
         const std::string message = refusal({"speck", shape, 0, ""});

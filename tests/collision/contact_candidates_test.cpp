@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(ContactCandidates, KnowsNothingUntilItIsToldAndThenUpToFourTriangles) {
+TEST(ContactCandidates, IsUnknownAtFirstAndStoresUpToFourTriangles) {
     EXPECT_FALSE(ContactCandidates().is_known());
     ContactCandidates candidates = ContactCandidates::none();
     ASSERT_TRUE(candidates.is_known());

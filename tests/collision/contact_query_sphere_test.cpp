@@ -1,4 +1,4 @@
-// Spheres against worlds of meshes, planes and shapes.
+// Sphere queries in worlds of meshes, planes and shapes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ using testing::Course;
 
 constexpr double kRadius = 0.05;
 
-/// A square floor of many triangles, tilted so that no coordinate of it is exact.
+/// Square floor of many triangles, tilted so that its coordinates are not exact.
 struct TiltedFloor {
     TiltedFloor() : normal(normalized(Vec3{0.3, -0.2, 1.0})) {
         const auto [t, b] = tangent_frame(normal);
@@ -44,7 +44,7 @@ struct TiltedFloor {
     TriangleMesh mesh;
 };
 
-/// The first time of impact by a test of every triangle on its own.
+/// Returns the first time of impact from a separate test of every triangle.
 std::optional<double> first_of_all(const CollisionWorld& world, const Path& path, double radius) {
     const SphereSweep sweep(path, radius);
     std::optional<double> first;
@@ -56,8 +56,8 @@ std::optional<double> first_of_all(const CollisionWorld& world, const Path& path
     return first;
 }
 
-// Whatever the order in which triangles are proposed, and whatever is left out after the first contact that is found.
-TEST(SphereAmongTriangles, HitsFirstWhatATestOfEveryTriangleHitsFirst) {
+// The result must not depend on the order of proposed triangles, nor on triangles skipped after the first contact.
+TEST(SphereAmongTriangles, FindsTheFirstImpactOfABruteForceTest) {
     constexpr std::uint64_t kSeed = 4711;
     RandomSequence random(kSeed, 0, 0);
     TriangleMesh rough = testing::sphere_mesh({}, 1.0, 3);
@@ -83,9 +83,9 @@ TEST(SphereAmongTriangles, HitsFirstWhatATestOfEveryTriangleHitsFirst) {
     EXPECT_GT(contacts, test::scaled(2000) / 2);
 }
 
-// A path of six million kilometres, beside which certified positions may lie by more than the boxes leave: they do not
-// hold it, and every triangle is a candidate.
-TEST(SphereAmongTriangles, HitsAMeshWithWhateverMayLieBesideItsPath) {
+// The path is six million kilometres long. Certified positions can deviate from it by more than the margin of the
+// boxes. The broad phase therefore proposes every triangle.
+TEST(SphereAmongTriangles, HitsAMeshThatOnlyDeviationsFromALongPathReach) {
     CollisionWorld world = testing::world_of(testing::mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     ContactScratch scratch;
     constexpr double kSphere = 0.135;
@@ -107,8 +107,9 @@ TEST(SphereAmongTriangles, HitsAMeshWithWhateverMayLieBesideItsPath) {
     }
 }
 
-// What is certified may lie beside the path: a triangle that the path itself clears by less is not left out.
-TEST(SphereAmongTriangles, BlocksPositionsThatLieBesideThePath) {
+// Certified positions can lie beside the path. Triangles stay candidates even if the path itself clears them by a small
+// distance.
+TEST(SphereAmongTriangles, BlocksPositionsBesideThePath) {
     CollisionWorld world = testing::world_of(testing::mesh_collider(testing::floor_mesh(1.0, 4)));
     ContactScratch scratch;
     world.prepare_radius(kRadius);
@@ -121,13 +122,13 @@ TEST(SphereAmongTriangles, BlocksPositionsThatLieBesideThePath) {
     EXPECT_FALSE(found.near.is_free(path.c[0], path.end - Vec3{0, 0, kBeside}));
 }
 
-// Flat inner edges and vertices must not be felt: no kick out of the plane of incidence, no second impact.
-TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneEvenOverSeamsAndVertices) {
+// Flat inner edges and vertices must not affect the bounce: no impulse out of the plane of incidence, no second impact.
+TEST(SphereOnAFlatFloorOfManyTriangles, BouncesAsOnOnePlaneOverSeamsAndVertices) {
     const TiltedFloor floor;
     Course course({testing::mesh_collider(floor.mesh)}, {"", 1.0, 0.0}, {});
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(4000); ++i) {
-        // The foot is on a seam, on a vertex, a little beside them, or anywhere.
+        // The contact point is on a seam, on a vertex, slightly beside them, or anywhere.
         double x = 0.125 * std::floor(14.0 * random.uniform() - 7.0);
         double y = 0.125 * std::floor(14.0 * random.uniform() - 7.0);
         const double beside = i % 4 == 0 ? 0.0 : std::pow(10.0, -3.0 - 13.0 * random.uniform());
@@ -155,7 +156,7 @@ TEST(SphereOnAFlatFloorOfManyTriangles, RollsOverSeamsWithoutLosingSpeed) {
 }
 
 TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
-    // A pit of three steep walls: the sphere touches the walls far from the bottom.
+    // Pit of three steep walls. The sphere touches the walls far from the bottom.
     const std::vector<ColliderDescription> walls{testing::plane_collider({0, 0, 0}, {2, 0, 1}),
                                                  testing::plane_collider({0, 0, 0}, {-1, 1.7, 1}),
                                                  testing::plane_collider({0, 0, 0}, {-1, -1.7, 1})};
@@ -173,7 +174,7 @@ TEST(SphereInACornerTighterThanItself, StaysOffAllWallsByItsRadius) {
     EXPECT_TRUE(resting);
 }
 
-// Two plates hardly farther apart than the sphere is wide: it bounces between them and never gets out.
+// The gap between two plates is barely wider than the sphere. The sphere bounces between them and must not escape.
 TEST(SphereBetweenPlatesANanometreWiderThanItself, NeitherLeaksNorSticks) {
     const double gap = 2.0 * kRadius + 1e-9;
     Course course(
@@ -188,18 +189,18 @@ TEST(SphereBetweenPlatesANanometreWiderThanItself, NeitherLeaksNorSticks) {
         ASSERT_NEAR(sphere.state.position.z, 0.5 * gap, 0.5e-9 + sphere_tolerance(kRadius, 4.0));
     }
     EXPECT_NEAR(sphere.state.position.x, 2.5, 1e-9);
-    // One bounce for every nanometre that it moves across.
+    // The sphere bounces once per nanometre of motion across the plates.
     EXPECT_NEAR(static_cast<double>(bounces), 6.0 * 1e-5 / 1e-9, 600.0);
 }
 
-TEST(SphereOnAnEdgeAndOnAVertex, IsTurnedBackAlongTheLineToTheFoot) {
+TEST(SphereOnAnEdgeAndOnAVertex, BouncesAlongTheLineToTheContactPoint) {
     const TriangleMesh plate{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     Course course({testing::mesh_collider(plate)}, {"", 1.0, 0.0}, {});
-    // Beyond the edge y = 0 by half a radius: the normal leans out by 30 degrees.
+    // The centre is half a radius beyond the edge y = 0, so the normal is tilted outward by 30 degrees.
     MovingParticle on_edge{{{0.4, -0.5 * kRadius, 0.5}, {0, 0, -1}, 1.0, kRadius, 0.0}, {}, 0, 0};
     ASSERT_EQ(course.move(on_edge, 1.0).bounces, 1U);
     EXPECT_LT(length(on_edge.state.velocity - Vec3{0, -std::sin(3.14159265358979323846 / 3.0), 0.5}), 1e-14);
-    // Head-on at the corner, along its diagonal.
+    // Hits the corner head-on along its diagonal.
     const Vec3 out = normalized(Vec3{-1, -1, 0});
     MovingParticle on_corner{{0.5 * out, -out, 1.0, kRadius, 0.0}, {}, 0, 0};
     ASSERT_EQ(course.move(on_corner, 1.0).bounces, 1U);

@@ -39,7 +39,7 @@ TriangleMesh soup(int count, RandomSequence& random) {
     return mesh;
 }
 
-/// The contact by testing every surface of the world.
+/// First contact from a test of every surface of the world.
 struct Reference {
     double time = 0.0;
     std::vector<SurfaceId> surfaces;
@@ -200,7 +200,8 @@ TEST(ContactQuery, DecidesAboutSegmentsNearThePathExactly) {
     }
 }
 
-// A path so strongly curved, next to triangles so small, ends in time: only pieces near the triangles are halved.
+// The path is strongly curved and the triangles are tiny. The query ends in time because it bisects only pieces near
+// the triangles.
 TEST(ContactQuery, EndsForPathsThatCurveEnormously) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({}, 1e-3, 3)));
     ContactScratch scratch;
@@ -233,15 +234,15 @@ TEST(ContactQuery, MissesNothingAlongAPathWhoseCurvatureUnderflows) {
     EXPECT_NEAR(contact->time, 0.45, 1e-12);
 }
 
-TEST(ContactQuery, ListsTheSurfacesAPointStandsOn) {
+TEST(ContactQuery, ListsTheSurfacesThatAPointTouches) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), mesh_collider(testing::floor_mesh(1.0, 2)),
                                 plane_collider({0, 0, 5}, {0, 0, 1}));
     ContactScratch scratch;
     const Vec3 center{0, 0, 0};
     const auto found = query(world, scratch, line_path(center, {0, 0, -1}, 1.0), 0.0);
-    EXPECT_EQ(found.near.surfaces_at(center).size(), 1U + 6U);  // six triangles meet in the middle
+    EXPECT_EQ(found.near.surfaces_at(center).size(), 1U + 6U);  // six triangles share the centre vertex
     EXPECT_TRUE(found.near.is_free_after(center, {0, 0, 1}));
-    EXPECT_FALSE(found.near.is_free_after(center, {0, 1, 0}));  // stays in their plane
+    EXPECT_FALSE(found.near.is_free_after(center, {0, 1, 0}));  // the path stays in their plane
     EXPECT_FALSE(found.near.is_free(center, {0, 0, 1}));
 }
 

@@ -1,4 +1,4 @@
-// What links beside a mesh that deforms may do, in numbers known in closed form.
+// Tests space-time segments beside a deforming mesh against closed-form values.
 #include "ricochet/collision/deforming_sweep.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kRise = 2.0;  // m/s
 
-/// A triangle that rises through z = 0 at the time 0.5 s.
+/// Triangle that rises through z = 0 at 0.5 s.
 struct RisingTriangle {
     std::shared_ptr<const FrameTree> frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{});
     std::shared_ptr<ColliderList> list;
@@ -42,8 +42,9 @@ struct RisingTriangle {
     }
 };
 
-// A sphere may overlap by 1e-12 of the coordinates where it is, not of those where its path was to lead.
-TEST(DeformingSweep, LetsASphereSinkInByTheRoundingOfItsOwnPlaceOnly) {
+// A sphere may overlap a surface by 1e-12 of its own coordinates. The coordinates of the end of its path must not
+// count.
+TEST(DeformingSweep, LetsASphereOverlapByTheRoundingOfItsOwnPositionOnly) {
     const RisingTriangle scene;
     constexpr double kRadius = 0.125;
     for (const double far : {1.0, 1e5}) {
@@ -57,7 +58,7 @@ TEST(DeformingSweep, LetsASphereSinkInByTheRoundingOfItsOwnPlaceOnly) {
         const WayPoint start{begin, 0.0, begin};
         MovingSweep sweep(view, geometry, query, start, scratch);
         const ContactQueryResult found = sweep.sweep(start);
-        // Straight down to where the triangle is at a time; the path is not asked.
+        // The segment goes straight down to the triangle's position at that time. It does not depend on the path.
         const auto is_free_with_gap = [&](double gap) {
             constexpr double kTime = 0.5;
             const Vec3 end{0, 0, kRadius + gap};

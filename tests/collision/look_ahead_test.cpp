@@ -30,7 +30,7 @@ Path random_path(RandomSequence& random, const Vec3& acceleration) {
     return parabola_path(3.0 * random.in_unit_ball(), velocity, acceleration, 3.0);
 }
 
-TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
+TEST(TimeFreeOfPlane, EndsShortlyBeforeThePathReachesTheMargin) {
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(5000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -51,14 +51,14 @@ TEST(TimeFreeOfPlane, IsBeforeTheMarginIsReachedAndNotLongBefore) {
     }
 }
 
-// The plane's point is so far along it that the height of the start rounds to the wrong side.
-TEST(TimeFreeOfPlane, IsNothingWhereRoundingHidesTheSide) {
+// The plane's point is far away along the plane, so the height of the start rounds to the wrong side.
+TEST(TimeFreeOfPlane, IsZeroIfRoundingHidesTheSide) {
     const Plane plane{{8e8, -6e8, 0}, {0.6, 0.8, 0}};
     EXPECT_EQ(time_free_of_plane(line_path({-7e-8, 0, 0}, {0, -1e-9, 0}, 100.0), plane, 0.0), 0.0);
     EXPECT_EQ(time_free_of_plane(line_path({1, 0, 0}, {0, 1e-9, 0}, 100.0), plane, 0.0), 100.0);
 }
 
-TEST(TimeOutside, IsFreeOfTheBoxAndLongWhereTheBoxIsFarAway) {
+TEST(TimeOutside, IsFreeOfTheBoxAndLongIfTheBoxIsFarAway) {
     RandomSequence random(2, 0, 0);
     int outside = 0;
     for (int i = 0; i < test::scaled(5000); ++i) {
@@ -95,7 +95,7 @@ CollisionWorld rough_world(const TriangleMesh& mesh) {
     return CollisionWorld(std::move(colliders));
 }
 
-TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheFreeTimeFound) {
+TEST(LookAhead, NoTriangleEntersTheMarginBeforeTheFreeTimeEnds) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
     RandomSequence random(2, 0, 0);
     for (Vec3& v : mesh.vertices) v *= 1.0 + 0.1 * random.uniform();
@@ -143,14 +143,14 @@ TEST(LookAhead, NothingIsNearerThanTheMarginUntilTheFreeTimeFound) {
     EXPECT_GT(curved_spheres.told, 0.8 * curved_spheres.possible) << curved_spheres.told / curved_spheres.possible;
 }
 
-/// A rough ball of fine triangles, with some things inside.
+/// Rough ball of fine triangles with several meshes inside.
 TriangleMesh furnished_ball(RandomSequence& random) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
     for (Vec3& v : mesh.vertices) v *= 1.0 + 0.02 * random.uniform();
     return testing::merged(std::move(mesh), testing::sphere_mesh({0.2, 0.1, 0.3}, 0.15, 3));
 }
 
-TEST(TimeClearOfField, IsBeforeAnyTriangleIsNearAndMostOfTheTimeToTheFirst) {
+TEST(TimeClearOfField, EndsBeforeAnyTriangleIsNearAndCoversMostOfTheTimeToTheFirst) {
     RandomSequence random(3, 0, 0);
     const TriangleMesh mesh = furnished_ball(random);
     const CollisionWorld world = rough_world(mesh);
@@ -178,8 +178,8 @@ TEST(TimeClearOfField, IsBeforeAnyTriangleIsNearAndMostOfTheTimeToTheFirst) {
     EXPECT_EQ(time_clear_of_field(line_path({}, {1, 0, 0}, 1.0), DistanceField(), 0.0, 0.25), 0.25);
 }
 
-/// Steps of one particle: the contact candidates that a look-ahead finds must lead the query of a later step to the
-/// contact that the broad phase finds.
+/// Tests several steps of one particle. The contact candidates from a look-ahead must lead a later query to the contact
+/// that the broad phase finds.
 TEST(LookAhead, CandidatesLeadALaterQueryToTheContactOfTheBroadPhase) {
     RandomSequence random(4, 0, 0);
     const TriangleMesh mesh = furnished_ball(random);
@@ -201,7 +201,7 @@ TEST(LookAhead, CandidatesLeadALaterQueryToTheContactOfTheBroadPhase) {
         const LookAhead look_ahead{parabola_path(start, velocity, acceleration, 1.0), margin, 2.0 * h, h};
         const auto found = query(world, scratch, path, radius, &look_ahead);
         if (found.contact) continue;
-        // The last step that begins before something is near.
+        // Selects the last step that begins before a surface is near.
         const double free = std::max(found.ahead.free_until, h);
         const double from = h * std::max(1.0, std::floor(free / h));
         if (!found.ahead.candidates.is_known() || found.ahead.candidates_until < from + h) continue;

@@ -1,4 +1,4 @@
-// Which bodies are near, and where they are, as looking at each of them says it.
+// Compares the broad phase for moving bodies, and their positions, with a test of every body.
 #include "ricochet/collision/moving_colliders.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Balls that go round and to and fro, one a frame, a plane that moves, and a ball at rest.
+/// Balls that spin and oscillate, each on its own frame, with a moving plane and a ball at rest.
 struct ManyBodies {
     std::shared_ptr<const FrameTree> frames;
     std::shared_ptr<ColliderList> list;
@@ -48,7 +48,7 @@ struct ManyBodies {
     }
 };
 
-TEST(MovingColliders, NearABoxAreAllThatDoNotStayOutOfItInTheirOrder) {
+TEST(MovingColliders, NearABoxAreAllThatEnterItInTheirOrder) {
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         SCOPED_TRACE(seed);
         ManyBodies many(1 + 12 * seed, seed);
@@ -62,7 +62,7 @@ TEST(MovingColliders, NearABoxAreAllThatDoNotStayOutOfItInTheirOrder) {
                 const BodyId except = query % 3 == 0
                                           ? kAtRest
                                           : static_cast<BodyId>(static_cast<std::size_t>(query) % many.bodies->size());
-                std::vector<BodyId> expected{kAtRest};  // what is there already stays
+                std::vector<BodyId> expected{kAtRest};  // existing entries are kept
                 if (except != kAtRest && !many.bodies->stays_out(kAtRest, box)) expected.push_back(kAtRest);
                 for (BodyId body = 0; body < many.bodies->size(); ++body) {
                     if (body != except && !many.bodies->stays_out(body, box)) expected.push_back(body);
@@ -75,8 +75,9 @@ TEST(MovingColliders, NearABoxAreAllThatDoNotStayOutOfItInTheirOrder) {
     }
 }
 
-// What is born is looked for near its place only; where nothing is known of the time, among all bodies.
-TEST(Births, FindTheBodiesThatLookingAtEachOfThemFinds) {
+// A spawned particle is tested only against bodies near its position. If no boxes are known for the time, it is tested
+// against all bodies.
+TEST(Births, FindTheBodiesThatATestOfEachBodyFinds) {
     ManyBodies near(60, 5);
     ManyBodies all(60, 5);
     RandomSequence random(5, 2, 0);
@@ -98,7 +99,7 @@ TEST(Births, FindTheBodiesThatLookingAtEachOfThemFinds) {
             }
             found += overlap ? 1 : 0;
             EXPECT_EQ(off_bodies(*near.bodies, center, time), off_bodies(*all.bodies, center, time));
-            // Exactly on a body: it is put off it.
+            // The point is exactly on a body and is moved off it.
             const MovingPose pose = near.bodies->pose(0, time);
             const Vec3 on = pose.point({0.3, 0.2, -50.0});
             EXPECT_EQ(off_bodies(*near.bodies, on, time), off_bodies(*all.bodies, on, time));
@@ -107,8 +108,8 @@ TEST(Births, FindTheBodiesThatLookingAtEachOfThemFinds) {
     EXPECT_GT(found, 50U);
 }
 
-// Poses are remembered: those of other times, bodies, steps and scenes are never mixed up.
-TEST(MovingColliders, AreWhereTheirFramesAreWhateverWasAskedBefore) {
+// Poses are cached. Poses of other times, bodies, steps and scenes must never be confused.
+TEST(MovingColliders, FollowTheirFramesWhateverWasQueriedBefore) {
     ManyBodies a(7, 1);
     ManyBodies b(7, 2);
     RandomSequence random(3, 0, 0);
@@ -128,8 +129,8 @@ TEST(MovingColliders, AreWhereTheirFramesAreWhateverWasAskedBefore) {
     }
 }
 
-// Wherever a body is within a step, it is in its box.
-TEST(SweptBoxes, HoldABodyAllTheTime) {
+// A body stays in its swept box at every time of a step.
+TEST(SweptBoxes, ContainTheirBodyAtAllTimes) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         SCOPED_TRACE(seed);
         const ManyBodies many(5, seed);

@@ -28,7 +28,7 @@ TEST(DeepestOverlap, IsNoneForASphereThatTouches) {
     EXPECT_TRUE(deepest_overlap(floor, {3, 4, 0.25 - 1.1 * tolerance}, 0.25));
 }
 
-TEST(DeepestOverlap, IsNoneForPointsAndForWhatIsWhollyInsideASolid) {
+TEST(DeepestOverlap, IsNoneForPointsAndForSpheresWhollyInsideASolid) {
     const CollisionWorld world = world_of(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})), ball_collider(4));
     EXPECT_FALSE(deepest_overlap(world, {0.1, 0.2, 0.3}, 0.6));
     EXPECT_TRUE(deepest_overlap(world, {0.1, 0.2, 0.3}, 0.8));
@@ -61,7 +61,7 @@ TEST(DeepestOverlap, IsWithTheNearestOfAllSurfaces) {
     EXPECT_GT(overlaps, count / 10);
 }
 
-TEST(CoreRadius, IsAPointWhereTheCentreIsOnTheSurface) {
+TEST(CoreRadius, IsZeroIfTheCentreIsOnTheSurface) {
     EXPECT_EQ(core_radius({0, 0.0}, {1, 2, 3}, 0.5), 0.0);
     EXPECT_EQ(core_radius({0, 1e-9}, {1, 2, 3}, 0.5), 0.0);
     EXPECT_NEAR(core_radius({0, 0.125}, {1, 2, 3}, 0.5), 0.125, 1e-14);

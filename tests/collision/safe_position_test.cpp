@@ -30,7 +30,7 @@ bool intersects_any(const CollisionWorld& world, const Vec3& p, const Vec3& q) {
     return false;
 }
 
-/// True when the path can be followed to the position in segments that intersect nothing, by the exact oracle.
+/// Returns true if segments along the path reach the position without intersecting a surface, by the exact test.
 bool can_be_walked(const CollisionWorld& world, const Path& path, double from, const Vec3& p, double to, const Vec3& q,
                    int depth) {
     if (!intersects_any(world, p, q)) return true;
@@ -43,7 +43,7 @@ bool can_be_walked(const CollisionWorld& world, const Path& path, double from, c
 
 class SafePositionFarOut : public ::testing::TestWithParam<double> {
 protected:
-    /// A turned box, moved by some of its sizes.
+    /// A rotated box, displaced by a multiple of (1, 2, -3) m.
     CollisionWorld world_{{mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1}),
                                          {GetParam() * Vec3{1, 2, -3}, {1, 2, 3}, 25.0, {1, 1, 1}})}};
     Vec3 center_ = GetParam() * Vec3{1, 2, -3};
@@ -71,7 +71,7 @@ TEST_P(SafePositionFarOut, IsOneContactOffsetBeforeTheSurfaceAlongCertifiedSegme
         const double offset = contact_offset(safe_position.reached.position);
         EXPECT_GE(height, 0.5 * offset);
         EXPECT_LE(height, 64.0 * offset);
-        // Off the true contact by no more than the contact offset and the rounding of the path.
+        // The distance from the true contact is at most the contact offset plus the rounding of the path.
         const double rounding = 64.0 * ulp(max_abs(center_) + 8.0);
         EXPECT_LE(length(safe_position.reached.position - path.position(contact->time)), 256.0 * offset + rounding);
     }
@@ -91,7 +91,7 @@ TEST_P(SafePositionFarOut, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
         ASSERT_FALSE(safe_position.stayed);
         const ContactSurface& hit = contact->first();
         Vec3 away = random.unit_vector();
-        // From straight away to grazing.
+        // The direction ranges from straight away to grazing.
         const double lift = std::pow(10.0, -12.0 * random.uniform());
         away += (lift - dot(away, hit.normal)) * hit.normal;
         const auto found_next = query(world_, scratch, line_path(safe_position.reached.position, 3.0 * away, 1.0), 0.0);
@@ -101,7 +101,7 @@ TEST_P(SafePositionFarOut, LeavingInAnyDirectionDoesNotHitTheSameSurfaceAgain) {
     }
 }
 
-TEST(SafePosition, InACornerStandsOffAllItsWalls) {
+TEST(SafePosition, KeepsAContactOffsetFromAllWallsOfACorner) {
     const auto world = world_of(plane_collider({0, 0, 0}, {1, 0, 0}), plane_collider({0, 0, 0}, {0, 1, 0}),
                                 plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
@@ -114,8 +114,8 @@ TEST(SafePosition, InACornerStandsOffAllItsWalls) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_GT(safe_position.reached.position[axis], 0.0);
 }
 
-// In a wedge of 0.001 rad, next to its edge, stepping off one wall means stepping through the other.
-TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
+// Near the edge of a wedge of 0.001 rad, an offset from one wall would cross the other wall.
+TEST(SafePosition, StaysBetweenTheWallsOfASharpWedge) {
     const double angle = 1e-3;
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 1, 0}),
                                 plane_collider({0, 0, 0}, {std::sin(angle), -std::cos(angle), 0}));
@@ -141,7 +141,7 @@ TEST(SafePosition, InASharpWedgeKeepsBetweenTheWalls) {
 }
 
 TEST(FollowPath, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
-    // A ridge of height 1 along y; the arc passes 0.25 above it, its chord runs through it.
+    // The ridge of height 1 runs along y. The arc passes 0.25 above it, and the chord of the arc crosses it.
     TriangleMesh ridge{{{-0.5, -5, 0}, {0, -5, 1}, {0.5, -5, 0}, {-0.5, 5, 0}, {0, 5, 1}, {0.5, 5, 0}},
                        {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}}};
     const auto world = world_of(mesh_collider(ridge));
@@ -155,7 +155,7 @@ TEST(FollowPath, CertifiesAnArcOverARidgeWhoseChordIsBlocked) {
     EXPECT_EQ(followed.reached.position, over.end);
 }
 
-// The ridge is made of triangles so small that the chord's middle lies far off every piece that the broad phase is
+// The triangles of the ridge are tiny. The middle of the chord lies far from every piece that the broad phase was
 // queried for.
 TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     const auto world = world_of(mesh_collider(testing::sphere_mesh({0, 0, 0.5}, 0.05, 3)));
@@ -170,8 +170,8 @@ TEST(FollowPath, DoesNotTrustAChordThatTheBroadPhaseHasNotCovered) {
     EXPECT_FALSE(followed.blocker);
 }
 
-// Of triangles without extent no path is near enough to a chord of its own accord.
-TEST(FollowPath, EndsNextToTrianglesOfAnySmallness) {
+// For triangles without extent, no path is close enough to its chord without an explicit limit.
+TEST(FollowPath, EndsNextToTinyAndDegenerateTriangles) {
     for (const double size : {0.0, 1e-30, 1e-9}) {
         const TriangleMesh specks{{{-1, 0, 0}, {-1 + size, 0, 0}, {-1, size, 0}, {1, 0, 0.5}, {1, size, 0.5}},
                                   {{0, 1, 2}, {3, 4, 3}, {0, 0, 0}}};
@@ -190,7 +190,7 @@ TEST(FollowPath, EndsNextToTrianglesOfAnySmallness) {
     }
 }
 
-TEST(FollowPath, StopsWhereAChordIsBlocked) {
+TEST(FollowPath, StopsAtABlockedChord) {
     const auto world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     ContactScratch scratch;
     const Path down = parabola_path({0, 0, 1}, {}, {0, 0, -2}, 2.0);
@@ -205,7 +205,7 @@ TEST(FollowPath, StopsWhereAChordIsBlocked) {
     EXPECT_EQ(contact.first().normal, (Vec3{0, 0, 1}));
 }
 
-TEST(StepOff, LeavesTowardsTheNormalOfWhatItStandsOn) {
+TEST(StepOff, MovesAlongTheNormalOfTheTouchedSurface) {
     const auto world = world_of(mesh_collider(testing::box_mesh({0, 0, 0}, {1, 1, 1})));
     ContactScratch scratch;
     for (const Vec3& position : {Vec3{0.25, 0.5, 1}, Vec3{1, 0.5, 1}, Vec3{1, 1, 1}, Vec3{0, 0.5, 0.5}}) {

@@ -36,7 +36,7 @@ using testing::Side;
 using testing::sphere_mesh;
 using testing::world_of;
 
-/// Repetitions of a random test.
+/// Returns the number of repetitions of a random test.
 int cases(int full) { return test::case_factor(100) * test::scaled(full); }
 
 bool same(const SurfacePoint& x, const SurfacePoint& y) {
@@ -50,8 +50,8 @@ std::vector<SurfacePoint> all_near(const SignedDistance& distance, const Vec3& p
     return found;
 }
 
-/// A closed surface full of spikes and pits around the origin, that every ray from there intersects once: radii between
-/// 0.35 and 1. Vertices are repeated for every triangle, as in files.
+/// Returns a closed surface of spikes and pits around the origin, with radii between 0.35 and 1. Every ray from the
+/// origin intersects it once. Each triangle has its own vertices, as in STL files.
 TriangleMesh star(std::uint64_t seed, double size = 1.0, int levels = 2) {
     TriangleMesh mesh = sphere_mesh({}, 1.0, levels);
     RandomSequence random(seed, 0, 0);
@@ -65,7 +65,8 @@ TriangleMesh star(std::uint64_t seed, double size = 1.0, int levels = 2) {
     return apart;
 }
 
-/// Anywhere; near a vertex, an edge and a face, from a hundredth of the size down to 1e-12 of it; on a vertex.
+/// Returns a point anywhere, on a vertex, or near a vertex, an edge or a face. Near means a distance from a hundredth
+/// of the size down to 1e-12 of it.
 Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSequence& random) {
     const auto& [a, b, c] =
         mesh.triangles[static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()))];
@@ -90,7 +91,7 @@ Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSeque
     }
 }
 
-/// The side of every kind of point is that of exact parity; what cannot be decided is rare.
+/// Expects that each kind of point has the side given by exact parity. Undecided points must be rare.
 void expect_sides_of_parity(const TriangleMesh& mesh, int count, std::uint64_t seed) {
     const auto world = world_of(mesh_collider(mesh));
     const SignedDistance distance(world);
@@ -129,7 +130,7 @@ TEST(SignedDistance, HasTheSideOfParityInNestedShells) {
 TEST(SignedDistance, HasTheSideOfParityOnBoxesAndSpheres) {
     expect_sides_of_parity(box_mesh({-1, -2, -3}, {1, 2, 3}), cases(3000), 8);
     expect_sides_of_parity(sphere_mesh({1, 2, 3}, 2.0, 3), cases(3000), 9);
-    // Boxes that touch along an edge and at a vertex: edges of four triangles.
+    // The boxes touch along an edge and at a vertex, so some edges have four triangles.
     const TriangleMesh touching =
         merged(merged(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({1, 1, 0}, {2, 2, 1})), box_mesh({2, 2, 1}, {3, 3, 2}));
     expect_sides_of_parity(touching, cases(3000), 10);
@@ -154,8 +155,8 @@ INSTANTIATE_TEST_SUITE_P(Closed, SignedDistanceOfRealMesh,
                              return std::filesystem::path(name.param).stem().string().substr(0, 5);
                          });
 
-// Beside the tip of a needle the tip is nearest, and the faces that turn away from p have it behind their planes: one
-// of them is as near as any other, and its normal says "inside".
+// Beside the tip of a needle, the tip is the nearest point. The faces that turn away from p have p behind their planes.
+// All faces at the tip are equally near, so the normal of one face can wrongly say "inside".
 TEST(SignedDistance, IsRightBesideATipWhereAFacesNormalIsWrong) {
     const TriangleMesh needle{{{0, 0, 0}, {0.1, 0.1, -1}, {-0.1, 0.1, -1}, {-0.1, -0.1, -1}, {0.1, -0.1, -1}},
                               {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 4, 3}, {1, 3, 2}}};
@@ -175,11 +176,11 @@ TEST(SignedDistance, IsRightBesideATipWhereAFacesNormalIsWrong) {
         }
         EXPECT_EQ(behind, 1);
     }
-    // The face that misleads is the first one for p in its back.
+    // The first face has p behind its plane and would give the wrong side.
     EXPECT_EQ(world.side_of_surface(0, {0, -3e-4, 1e-4}), -1);
 }
 
-/// What the order of the header says, by testing every triangle.
+/// Returns the closest point in the order documented in the header, from a test of every triangle.
 std::optional<SurfacePoint> by_brute_force(const CollisionWorld& world, std::uint32_t collider, const Vec3& p) {
     std::optional<SurfacePoint> best;
     std::array<double, 2> key{HUGE_VAL, 0};
@@ -244,7 +245,7 @@ TEST(SignedDistance, FindsTheNearestTriangleOfBruteForce) {
     }
 }
 
-TEST(SignedDistance, NearListsWhatClosestFindsInTheOrderOfTheColliders) {
+TEST(SignedDistance, NearListsTheClosestPointsInTheOrderOfTheColliders) {
     const auto world = mixed_world();
     const SignedDistance distance(world);
     RandomSequence random(23, 0, 0);
@@ -256,7 +257,7 @@ TEST(SignedDistance, NearListsWhatClosestFindsInTheOrderOfTheColliders) {
         for (std::uint32_t c = 0; c < world.colliders().size(); ++c) {
             if (const auto one = distance.closest(c, p, within)) expected.push_back(*one);
         }
-        std::vector<SurfacePoint> found{SurfacePoint{}};  // what is there stays there
+        std::vector<SurfacePoint> found{SurfacePoint{}};  // existing entries are kept
         distance.near(p, within, found);
         ASSERT_TRUE(std::equal(found.begin(), found.end(), expected.begin(), expected.end(), same)) << i;
         listed += found.size() - 1;
@@ -293,7 +294,7 @@ TEST(SignedDistance, HasTheSameBitsWithAndWithoutCullingOnAnyInstructionSetAndTh
     }
 }
 
-TEST(SignedDistance, OfPlanesBallsAndCylindersIsTheirFormula) {
+TEST(SignedDistance, MatchesTheFormulasOfPlanesBallsAndCylinders) {
     const auto world =
         world_of(plane_collider({0, 0, 1}, {0, 0, 2}), ColliderDescription{"ball", BallShape{2.0, {}}, 0},
                  ColliderDescription{"cylinder", CylinderShape{1.0, 6.0, {{10, 0, 0}, {0, 0, 1}, 0.0, {1, 1, 1}}}, 0});
@@ -340,10 +341,10 @@ TEST(SignedDistance, ListsNothingBeyondTheGivenDistance) {
     EXPECT_EQ(all_near(distance, {0.25, 1.0, 0.5}, 0.0).size(), 1U);
 }
 
-TEST(SignedDistance, OnTheSurfaceTheDirectionIsTheSurfacesOwn) {
+TEST(SignedDistance, HasTheNormalAsDirectionOnTheSurface) {
     const auto world = world_of(mesh_collider(box_mesh({0, 0, 0}, {1, 1, 1})));
     const SignedDistance distance(world);
-    // A point that is in a face and on its rim counts as the face's.
+    // A point in a face and on its rim is assigned to the face.
     for (const Vec3& p : {Vec3{0.25, 0.5, 1.0}, Vec3{1.0, 0.5, 1.0}, Vec3{1.0, 1.0, 1.0}}) {
         const auto found = distance.closest(0, p, 0.0);
         ASSERT_TRUE(found);
@@ -353,7 +354,7 @@ TEST(SignedDistance, OnTheSurfaceTheDirectionIsTheSurfacesOwn) {
     }
 }
 
-TEST(SignedDistance, SaysWhereTheClosestPointIsOnAnOpenRim) {
+TEST(SignedDistance, ReportsClosestPointsOnAnOpenRim) {
     const auto world = world_of(mesh_collider(floor_mesh(1.0, 4)));
     const SignedDistance distance(world);
     const auto above = distance.closest(0, {0.1, 0.2, 0.5}, 1.0);
@@ -361,7 +362,7 @@ TEST(SignedDistance, SaysWhereTheClosestPointIsOnAnOpenRim) {
     EXPECT_EQ(above->side, 1);
     EXPECT_FALSE(above->on_rim);
     EXPECT_EQ(distance.closest(0, {0.1, 0.2, -0.5}, 1.0)->side, -1);
-    EXPECT_FALSE(distance.closest(0, {0.5, 0.5, -0.5}, 1.0)->on_rim);  // a vertex inside
+    EXPECT_FALSE(distance.closest(0, {0.5, 0.5, -0.5}, 1.0)->on_rim);  // an inner vertex
     for (const Vec3& p : {Vec3{1.5, 0.1, 0.1}, Vec3{1.5, 1.5, 0.0}, Vec3{1.0 + 1e-12, 0.1, 0.0}}) {
         const auto beyond = distance.closest(0, p, 1.0);
         ASSERT_TRUE(beyond);
@@ -384,7 +385,7 @@ TEST(SignedDistance, IsUndecidedOnSheetsBackToBack) {
 }
 
 TEST(SignedDistance, KnowsOutsideUnderMirroredPlacementsAndBesideOtherColliders) {
-    // Two boxes with a common face: each is a collider with normals of its own.
+    // Two boxes share a face. Each is a collider with its own normals.
     const auto world = world_of(mesh_collider(box_mesh({0, 0, 0}, {1, 1, 1}), {{}, {0, 0, 1}, 0.0, {-1, 1, 1}}),
                                 mesh_collider(box_mesh({0, 0, 0}, {1, 1, 1})));
     const SignedDistance distance(world);
@@ -436,7 +437,7 @@ TEST(SignedDistance, SegmentsIntersectACollidersSurfacesExactly) {
     EXPECT_GT(intersected, 0);
 }
 
-TEST(SignedDistance, NearTakesNoMemoryOnceItsListHasGrown) {
+TEST(SignedDistance, NearAllocatesNothingOnceItsListHasGrown) {
     const auto world = mixed_world();
     const SignedDistance distance(world);
     std::vector<SurfacePoint> found;
@@ -451,7 +452,7 @@ TEST(SignedDistance, NearTakesNoMemoryOnceItsListHasGrown) {
     EXPECT_EQ(guard.peak_bytes(), 0U);
 }
 
-TEST(SignedDistance, OfAnEmptySceneIsNothing) {
+TEST(SignedDistance, FindsNothingInAnEmptyScene) {
     const CollisionWorld world({});
     const SignedDistance distance(world);
     EXPECT_TRUE(all_near(distance, {1, 2, 3}, HUGE_VAL).empty());

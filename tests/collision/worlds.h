@@ -1,5 +1,4 @@
-/// \file
-/// Collision worlds for tests, in a line each.
+/// \file Short constructors of collision worlds for tests.
 #pragma once
 
 #include <memory>
@@ -25,14 +24,14 @@ CollisionWorld world_of(Colliders... colliders) {
     return CollisionWorld(std::vector<ColliderDescription>{std::move(colliders)...});
 }
 
-/// One query, for tests that ask about many worlds and paths.
+/// Runs one query, for tests of many worlds and paths.
 inline ContactQueryResult query(const CollisionWorld& world, ContactScratch& scratch, const Path& path, double radius,
                                 const LookAhead* look_ahead = nullptr, const ContactCandidates& candidates = {}) {
     const SurfaceGeometry geometry(world, scratch.plane_cache);
     return find_first_contact(geometry, {path, radius, look_ahead, candidates}, scratch);
 }
 
-/// The square [-half, half]^2 at height z in cells x cells squares of two triangles, wound upward.
+/// Returns the square [-half, half]^2 at height z, with cells x cells squares of two triangles each and upward normals.
 inline TriangleMesh floor_mesh(double half, int cells, double z = 0.0) {
     TriangleMesh mesh;
     const auto n = static_cast<std::uint32_t>(cells);

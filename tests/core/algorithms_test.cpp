@@ -13,7 +13,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
+TEST(ForEachIf, VisitsEachMatchOnceInOrderAndNothingElse) {
     RandomSequence random(5, 0, 0);
     for (int i = 0; i < 300; ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -33,7 +33,7 @@ TEST(ForEachIf, VisitsEachMatchOfTheRangeOnceAndInOrderAndNothingElse) {
     }
 }
 
-TEST(KeepMarked, KeepsWhatIsMarkedInItsOrder) {
+TEST(KeepMarked, KeepsMarkedElementsInOrder) {
     RandomSequence random(11, 0, 0);
     for (int i = 0; i < 600; ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -52,7 +52,7 @@ TEST(KeepMarked, KeepsWhatIsMarkedInItsOrder) {
     }
 }
 
-TEST(KeepMarked, OfAListThatIsNotFilledKeepsNothing) {
+TEST(KeepMarked, KeepsNothingOfAnEmptyList) {
     std::vector<int> list;
     keep_marked(list, {1, 0, 1});
     EXPECT_TRUE(list.empty());
@@ -65,7 +65,7 @@ TEST(GrowCapacityBy, AddsExactlyTheCapacityThatIsRequested) {
     EXPECT_EQ(list, std::vector<int>(10, 3));
 }
 
-TEST(GrowCapacityBy, ReallocatesAListThatGrowsByOneRarely) {
+TEST(GrowCapacityBy, RarelyReallocatesAListThatGrowsByOne) {
     std::vector<int> list;
     int moves = 0;
     for (int i = 0; i < 100'000; ++i) {

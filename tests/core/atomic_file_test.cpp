@@ -14,12 +14,12 @@ namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
-/// Files in the folder of `target`, which counts too.
+/// Returns the number of files in the folder of `target`, including `target`.
 std::size_t files_beside(const std::filesystem::path& target) {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(target.parent_path()), {}));
 }
 
-TEST(AtomicFile, NothingHasItsNameBeforeItIsComplete) {
+TEST(AtomicFile, HasItsNameOnlyOnceItIsComplete) {
     const TemporaryFolder folder;
     const auto target = folder.path("frame");
     AtomicFile file(target);
@@ -31,7 +31,7 @@ TEST(AtomicFile, NothingHasItsNameBeforeItIsComplete) {
     EXPECT_EQ(files_beside(target), 1U);
 }
 
-TEST(AtomicFile, WhatIsGivenUpLeavesTheOlderFileAndNoOther) {
+TEST(AtomicFile, LeavesOnlyTheOlderFileIfNotCommitted) {
     const TemporaryFolder folder;
     const auto target = folder.path("frame");
     write_file(target, "older");
@@ -43,7 +43,7 @@ TEST(AtomicFile, WhatIsGivenUpLeavesTheOlderFileAndNoOther) {
     EXPECT_EQ(files_beside(target), 1U);
 }
 
-TEST(AtomicFile, TakesPiecesWithoutBytesAndWithoutAnAddress) {
+TEST(AtomicFile, AcceptsEmptyPiecesWithANullAddress) {
     const TemporaryFolder folder;
     const auto target = folder.path("frame");
     AtomicFile file(target);
@@ -56,7 +56,7 @@ TEST(AtomicFile, TakesPiecesWithoutBytesAndWithoutAnAddress) {
     EXPECT_EQ(std::filesystem::file_size(target), 0U);
 }
 
-TEST(AtomicFile, AFolderIsNoTarget) {
+TEST(AtomicFile, RefusesAFolderAsTarget) {
     const TemporaryFolder folder;
     EXPECT_THROW(AtomicFile{folder.path("")}, InputError);
     EXPECT_THROW(AtomicFile{folder.path("missing/frame")}, RunError);

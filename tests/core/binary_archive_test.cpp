@@ -29,7 +29,7 @@ BinaryReader reader_of(const Bytes& bytes) {
     });
 }
 
-TEST(BinaryArchive, BringsBackWhatWasWritten) {
+TEST(BinaryArchive, RestoresWrittenValues) {
     std::vector<Vec3> many(100'000, Vec3{1, 2, 3});
     many.back() = {4, 5, 6};
     const Bytes bytes =
@@ -46,8 +46,8 @@ TEST(BinaryArchive, BringsBackWhatWasWritten) {
     EXPECT_TRUE(none.empty());
 }
 
-// A damaged length says 2^60 entries of 24 bytes, with eight bytes behind it.
-TEST(BinaryArchive, TakesNoMoreMemoryThanThereAreBytes) {
+// A damaged length claims 2^60 entries of 24 bytes, but only eight bytes follow.
+TEST(BinaryArchive, AllocatesNoMoreMemoryThanTheFileHasBytes) {
     const Bytes bytes = written([](BinaryWriter& a) { a(std::uint64_t{1} << 60), a(std::uint64_t{0}); });
     BinaryReader reader = reader_of(bytes);
     std::vector<Vec3> list;
@@ -59,7 +59,7 @@ TEST(BinaryArchive, TakesNoMoreMemoryThanThereAreBytes) {
     EXPECT_LE(texts.capacity(), 4U);
 }
 
-TEST(BinaryArchive, RefusesListsThatDoNotBelongTogether) {
+TEST(BinaryArchive, RefusesListsOfInconsistentLengths) {
     const Bytes bytes = written([](BinaryWriter& a) { a(std::vector<double>{1, 2, 3}); });
     std::vector<double> list;
     EXPECT_THROW(reader_of(bytes)(list, 2), InputError);
@@ -75,7 +75,7 @@ TEST(BinaryArchive, RefusesListsThatDoNotBelongTogether) {
     EXPECT_TRUE(list.empty());
 }
 
-TEST(BinaryArchive, RefusesTruthValuesThatAreNone) {
+TEST(BinaryArchive, RefusesInvalidBooleans) {
     bool flag = false;
     const Bytes bytes = written([](BinaryWriter& a) { a(std::uint8_t{2}); });
     EXPECT_THROW(reader_of(bytes)(flag), InputError);

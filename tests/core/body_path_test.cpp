@@ -22,7 +22,7 @@ BodyPath some_path() {
     return path;
 }
 
-// Against differences of the places of a point of the body.
+// Compares with finite differences of the position of a point of the body.
 TEST(BodyPath, HasTheVelocitiesAndAccelerationsOfItsPoints) {
     const BodyPath path = some_path();
     const Vec3 p{0.4, 0.7, -0.3};
@@ -40,7 +40,7 @@ TEST(BodyPath, HasTheVelocitiesAndAccelerationsOfItsPoints) {
     }
 }
 
-// Its carrier goes along the cubic, whatever turns about it.
+// The carrier follows the cubic, independently of the rotation about it.
 TEST(BodyPath, MovesItsCarrierAlongTheCubic) {
     const BodyPath path = some_path();
     const Vec3 start = path.at(1.0).point(path.carrier);
@@ -61,8 +61,8 @@ TEST(BodyPath, StaysWithinItsBounds) {
     }
 }
 
-// One path after the other, each from where the last has ended: no bit between them.
-TEST(ADrivenFrame, IsWhereItsPathsSayWithoutAGap) {
+// The second path starts at the end of the first one, so the poses agree in all bits.
+TEST(ADrivenFrame, FollowsConsecutivePathsWithoutAGap) {
     FrameDescription body;
     body.name = "body";
     body.is_driven = true;

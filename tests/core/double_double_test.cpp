@@ -18,7 +18,7 @@ using testing::relative_error;
 constexpr double kU2 = 0x1p-106;  // u^2, the unit of the published bounds
 constexpr int kCases = test::scaled(20000);
 
-/// Operands of all relative sizes; every other pair nearly cancels when subtracted.
+/// Operands of all relative sizes. Every other pair nearly cancels in a subtraction.
 class Operands {
 public:
     explicit Operands(std::uint64_t stream) : random_(314159, static_cast<std::uint32_t>(stream), 0) {}
@@ -28,7 +28,7 @@ public:
         const double high = single();
         return two_sum(high, high * random_.uniform_around(0.0, 0x1p-53));
     }
-    /// Close to -x: the sum loses up to some 100 bits.
+    /// Returns a number close to -x. The sum with x loses up to about 100 bits.
     DoubleDouble nearly_opposite(const DoubleDouble& x) {
         const double change = std::ldexp(random_.uniform_around(0.0, 1.0), -static_cast<int>(random_.uniform() * 104));
         return two_sum(-x.hi * (1.0 + change), -x.lo);
@@ -118,7 +118,7 @@ TEST(DoubleDouble, RootSquaredIsTheNumberWithinThePublishedBound) {
     for (int i = 0; i < kCases; ++i) {
         const DoubleDouble x = abs(operands.pair());
         const Rational root = exact(sqrt(x));
-        // (r (1 + e))^2 = r^2 (1 + 2 e): twice the root's bound of 25/8 u^2 and a little for the square of e.
+        // (r (1 + e))^2 = r^2 (1 + 2 e): the bound is twice the root's bound of 25/8 u^2, plus a small term for e^2.
         const Rational error = Rational(root * root / exact(x) - 1);
         ASSERT_LE(std::fabs(static_cast<double>(error)), 2.0 * 25.0 / 8.0 * kU2 * 1.0001) << "case " << i;
     }
@@ -143,7 +143,7 @@ TEST(DoubleDouble, ScalesByPowersOfTwoExactly) {
     EXPECT_EQ(scaled(scaled(x, 900), -900), x);
 }
 
-// Usable in constant expressions.
+// The functions are usable in constant expressions.
 static_assert(two_product(0x1p27 + 1.0, 0x1p27 + 1.0) == DoubleDouble{0x1p54 + 0x1p28, 1.0});
 static_assert(two_sum(1.0, 0x1p-60) == DoubleDouble{1.0, 0x1p-60});
 static_assert(static_cast<double>(DoubleDouble{3.0} / DoubleDouble{4.0}) == 0.75);

@@ -17,7 +17,7 @@ namespace RICOCHET_FILE {
 
 using Real = long double;
 
-// A number with its derivative by time.
+// Number with its time derivative.
 struct Dual {
     Real value = 0;
     Real rate = 0;
@@ -51,7 +51,7 @@ Matrix moved_by(const std::array<Dual, 3>& way) {
     return m;
 }
 
-// I + sin K + (1 - cos) K^2 of the unit axis, angle in degrees.
+// Returns I + sin K + (1 - cos) K^2 for the unit axis, with the angle in degrees.
 Matrix turned_by(const Vec3& axis, const Dual& degrees) {
     const Real size = std::sqrt(static_cast<Real>(axis.x) * axis.x + static_cast<Real>(axis.y) * axis.y +
                                 static_cast<Real>(axis.z) * axis.z);
@@ -71,7 +71,8 @@ Matrix turned_by(const Vec3& axis, const Dual& degrees) {
     return m;
 }
 
-// Slope at a key of the parabola through it and its neighbours, by Lagrange's formula; 0 at the ends.
+// Returns the slope at a key of the parabola through the key and its neighbours, by Lagrange's formula. The slope is 0
+// at both ends.
 Real slope_at(const std::vector<CurveKey<double>>& keys, std::size_t k) {
     if (k == 0 || k + 1 == keys.size()) return 0;
     const std::array<Real, 3> t = {keys[k - 1].time, keys[k].time, keys[k + 1].time};
@@ -80,7 +81,7 @@ Real slope_at(const std::vector<CurveKey<double>>& keys, std::size_t k) {
            keys[k + 1].value * (t[1] - t[0]) / ((t[2] - t[0]) * (t[2] - t[1]));
 }
 
-// The curve again, as Hermite polynomials of a dual time.
+// Evaluates the curve independently, as Hermite polynomials of a dual time.
 Dual curve_at(const KeyedCurve<double>& curve, double time) {
     const auto& keys = curve.keys();
     if (time < keys.front().time) return {keys.front().value, 0};
@@ -154,7 +155,7 @@ KeyedCurve<Vec3> ways(RandomSequence& random, Interpolation interpolation) {
     return KeyedCurve<Vec3>(keys, interpolation);
 }
 
-// A slewing base, an upper arm, and a forearm with a hand that slides.
+// Returns a rotating base, an upper arm, and a forearm with a sliding hand.
 std::vector<FrameDescription> random_arm(RandomSequence& random, Interpolation interpolation) {
     std::vector<FrameDescription> arm(3);
     arm[0] = {"base", "", {1, -2, 0.5}, random.unit_vector(), random.uniform_around(0, 180), {}};
@@ -173,7 +174,7 @@ std::vector<FrameDescription> random_arm(RandomSequence& random, Interpolation i
     return arm;
 }
 
-TEST(FrameTree, LaunchesFromAThreeLinkArmAsTheMatrixChainAndItsProductRuleSay) {
+TEST(FrameTree, MatchesTheMatrixChainAndItsDerivativeOnAThreeLinkArm) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         for (const Interpolation interpolation :
              {Interpolation::linear, Interpolation::slow_in_slow_out, Interpolation::spline}) {
@@ -205,7 +206,7 @@ TEST(FrameTree, LaunchesFromAThreeLinkArmAsTheMatrixChainAndItsProductRuleSay) {
     }
 }
 
-TEST(FrameTree, TheAngularVelocityTurnsTheAxesAsTheyTurn) {
+TEST(FrameTree, TheAngularVelocityIsTheDerivativeOfTheAxes) {
     RandomSequence random(9, 0, 0);
     const std::vector<FrameDescription> arm = random_arm(random, Interpolation::spline);
     const FrameTree tree(arm);
@@ -225,8 +226,8 @@ TEST(FrameTree, TheAngularVelocityTurnsTheAxesAsTheyTurn) {
     }
 }
 
-// What turns steadily is bounded by what it does: a rotation's n-th derivative is w^n, a circle's w^n r.
-TEST(FrameTree, BoundsOfSteadyTurnsAndOscillationsAreTheirOwn) {
+// Bounds of steady motions are exact: the n-th derivative of a rotation is w^n, and w^n r on a circle.
+TEST(FrameTree, BoundsOfSteadyTurnsAndOscillationsAreExact) {
     constexpr double kDegrees = 3.14159265358979323846 / 180.0;
     const FrameTree tree({{"hub", "", {9, 9, 9}, {0, 0, 1}, 45.0, {Spin{{1, 2, 2}, -200.0}}},
                           {"rim", "hub", {0, 3, 4}, {0, 0, 1}, 0.0, {}},
@@ -246,8 +247,8 @@ TEST(FrameTree, BoundsOfSteadyTurnsAndOscillationsAreTheirOwn) {
     EXPECT_EQ(tree.bounds(1, 1.0, 2.0).rotation[0], 1.0);
 }
 
-/// n! times the n-th divided difference at times h apart: along its own direction it is the n-th derivative somewhere
-/// between (the mean value theorem), so no bound of that is smaller.
+/// Returns n! times the n-th divided difference at times h apart. Along its own direction it equals the n-th derivative
+/// at some time between (the mean value theorem). No valid bound is smaller.
 Vec3 difference_quotient(const std::array<Vec3, 5>& values, std::size_t n, double h) {
     std::array<Vec3, 5> d = values;
     for (std::size_t k = 1; k <= n; ++k) {
@@ -258,7 +259,7 @@ Vec3 difference_quotient(const std::array<Vec3, 5>& values, std::size_t n, doubl
 
 TEST(FrameTree, BoundsHoldBetweenKeys) {
     const double h = 0.01;
-    std::array<double, 5> largest{};  // of what is found, as a part of its bound
+    std::array<double, 5> largest{};  // largest derivative found, relative to its bound
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         for (const Interpolation interpolation : {Interpolation::linear, Interpolation::slow_in_slow_out,
                                                   Interpolation::spline, Interpolation::cubic_spline}) {
@@ -291,11 +292,11 @@ TEST(FrameTree, BoundsHoldBetweenKeys) {
             }
         }
     }
-    // They are bounds of what happens, not of anything.
+    // The bounds are not far above the derivatives found.
     for (std::size_t n = 1; n < 5; ++n) EXPECT_GT(largest[n], 0.3) << n;
 }
 
-// Of it and of all that it stands on.
+// The next key belongs to the frame or to any frame that carries it.
 TEST(FrameTree, TheNextKeyIsTheFirstOfItsChain) {
     const KeyedCurve<double> turns({{0.5, 0.0}, {2.0, 90.0}});
     const KeyedCurve<Vec3> way({{0.0, {}}, {1.5, {1, 0, 0}}, {3.0, {1, 1, 0}}}, Interpolation::spline);
@@ -310,7 +311,7 @@ TEST(FrameTree, TheNextKeyIsTheFirstOfItsChain) {
     EXPECT_EQ(tree.next_key(2, -1.0), HUGE_VAL);
 }
 
-TEST(FrameTree, TheHashIsOfTheMotionAndNotOfNames) {
+TEST(FrameTree, TheHashDependsOnTheMotionAndNotOnNames) {
     RandomSequence random(4, 0, 0);
     std::vector<FrameDescription> arm = random_arm(random, Interpolation::linear);
     const FrameTree tree(arm);
@@ -325,7 +326,7 @@ TEST(FrameTree, TheHashIsOfTheMotionAndNotOfNames) {
     EXPECT_EQ(FrameTree(arm).hash(1), tree.hash(1));
 }
 
-TEST(FrameTree, AWheelsRimMovesByItsOwnTurningAndWithTheCart) {
+TEST(FrameTree, AWheelsRimMovesByItsOwnSpinAndWithTheCart) {
     const KeyedCurve<Vec3> road({{0.0, {0, 0, 0}}, {10.0, {20, 0, 0}}});
     const KeyedCurve<double> turns({{0.0, 0.0}, {10.0, 3600.0}});
     const FrameTree tree({{"cart", "", {0, 0, 1}, {0, 0, 1}, 0.0, {KeyedTranslation{road}}},
@@ -361,7 +362,7 @@ FrameDescription named(const char* name, const char* parent = "") {
     return frame;
 }
 
-TEST(FrameTree, RefusesWhatIsNoTreeAndNamesTheFrame) {
+TEST(FrameTree, RefusesInvalidTreesAndNamesTheFrame) {
     EXPECT_EQ(message_of({named("a", "b"), named("b"), named("c", "a")}), "");  // any order
     EXPECT_EQ(message_of({named("a", "x")}), "frame 'a': there is no parent 'x'");
     EXPECT_EQ(message_of({named("c", "a"), named("a", "b"), named("b", "a")}),
@@ -398,7 +399,7 @@ std::vector<Particle> births_in_steps(const EmitterDescription& description, dou
     return all;
 }
 
-TEST(FrameEmitter, TheTimeStepChangesNoBitOfABirth) {
+TEST(FrameEmitter, TheTimeStepChangesNoBitOfASpawnedParticle) {
     RandomSequence random(2, 0, 0);
     EmitterDescription description = nozzle();
     description.frames = std::make_shared<const FrameTree>(random_arm(random, Interpolation::slow_in_slow_out));
@@ -415,7 +416,7 @@ TEST(FrameEmitter, TheTimeStepChangesNoBitOfABirth) {
     }
 }
 
-TEST(FrameEmitter, OnAFrameAtRestIsTheEmitterPlacedByHand) {
+TEST(FrameEmitter, OnAFrameAtRestEqualsAnEmitterPlacedByHand) {
     EmitterDescription description = nozzle();
     const std::vector<Particle> local = births_in_steps(description, 0.5, 4);
     FrameDescription frame = named("stand");
@@ -445,7 +446,7 @@ TEST(FrameEmitter, OnAFrameAtRestIsTheEmitterPlacedByHand) {
     }
 }
 
-TEST(FrameEmitter, OnlySpheresLeaveWithTheFramesTurning) {
+TEST(FrameEmitter, OnlySpheresInheritTheSpinOfTheFrame) {
     const KeyedCurve<double> turns({{0.0, 0.0}, {10.0, 3600.0}});
     const FrameTree tree({{"wheel", "", {}, {0, 0, 1}, 0.0, {KeyedRotation{{0, 0, 1}, turns}}}});
     Particle particle;
@@ -455,15 +456,16 @@ TEST(FrameEmitter, OnlySpheresLeaveWithTheFramesTurning) {
     EXPECT_NEAR(launched_from(tree, 0, particle).spin.z, 2.0 * std::acos(-1.0), 1e-14);
 }
 
-TEST(FrameEmitter, RefusesAFrameThatIsNotThere) {
+TEST(FrameEmitter, RefusesAMissingFrame) {
     EmitterDescription description = nozzle();
     description.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{named("a")});
     description.frame = 1;
     EXPECT_THROW(Emitter(description, 0, 0), InputError);
 }
 
-// Work that grew with the cube of the number of frames would not end here, and chains of their own would take 3 GB.
-TEST(FrameTree, OfManyFramesOnEachOtherIsMadeInProportionToThem) {
+// Work that grew with the cube of the number of frames would not finish here. Separate chains for all frames would need
+// 3 GB.
+TEST(FrameTree, IsBuiltInLinearTimeForALongChain) {
     constexpr std::size_t kFrames = 30000;
     std::vector<FrameDescription> frames;
     for (std::size_t i = 0; i < kFrames; ++i) {
@@ -480,7 +482,7 @@ TEST(FrameTree, OfManyFramesOnEachOtherIsMadeInProportionToThem) {
     EXPECT_EQ(frame_in_circle(frames), 20000U);
 }
 
-TEST(FrameTree, FindsTheFirstFrameOfACircleAndNoneBeforeIt) {
+TEST(FrameTree, FindsTheFirstFrameOfACycleAndNoneBeforeIt) {
     const auto circle_of = [](const std::vector<std::string>& parents) {
         std::vector<FrameDescription> frames;
         for (std::size_t i = 0; i < parents.size(); ++i) {
@@ -491,10 +493,10 @@ TEST(FrameTree, FindsTheFirstFrameOfACircleAndNoneBeforeIt) {
         return frame_in_circle(frames);
     };
     EXPECT_EQ(circle_of({"", "a", "b"}), std::nullopt);
-    EXPECT_EQ(circle_of({"b", "c", "d", "b"}), 1U);  // a stands on the circle
+    EXPECT_EQ(circle_of({"b", "c", "d", "b"}), 1U);  // a is attached to the cycle
     EXPECT_EQ(circle_of({"d", "a", "e", "", "f", "c"}), 2U);
     EXPECT_EQ(circle_of({"unknown", "b"}), 1U);
-    EXPECT_EQ(circle_of({"f", "c", "b", "e", "d", ""}), 1U);  // of two circles
+    EXPECT_EQ(circle_of({"f", "c", "b", "e", "d", ""}), 1U);  // the first of two cycles
 }
 
 }  // namespace RICOCHET_FILE

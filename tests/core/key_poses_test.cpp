@@ -1,4 +1,4 @@
-// Frames that go through poses: at each at its time, and between them as straight and as steadily as can be.
+// Frames that pass through key poses: at each pose at its time, with straight and uniform motion between them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ FrameTree tree_through(const std::vector<KeyPose>& poses) {
     return FrameTree({frame});
 }
 
-/// The turn that a pose states, by itself.
+/// Returns the transformation that a pose states, without its neighbours.
 AffineMap stated(const KeyPose& pose) {
     const FrameTree tree({{"still", "", pose.position, pose.axis, pose.degrees, {}}});
     return tree.at(0, 0.0).world_from_frame;
@@ -38,7 +38,8 @@ double difference(const AffineMap& a, const AffineMap& b) {
     return largest;
 }
 
-/// The angle, rad, of the shortest turn from one rotation to another: of the trace of R_a^T R_b.
+/// Returns the angle, in rad, of the shortest rotation from one orientation to another, computed from the trace of
+/// R_a^T R_b.
 double angle_between(const AffineMap& a, const AffineMap& b) {
     double trace = 0.0;
     for (const Vec3& e : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) trace += dot(a.direction(e), b.direction(e));
@@ -58,7 +59,7 @@ std::vector<KeyPose> random_poses(RandomSequence& random) {
     return poses;
 }
 
-TEST(KeyPoses, AreWhereTheFrameIsAtTheirTimes) {
+TEST(KeyPoses, AreReachedAtTheirTimes) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         RandomSequence random(seed, 0, 0);
         const std::vector<KeyPose> poses = random_poses(random);
@@ -76,8 +77,9 @@ TEST(KeyPoses, AreWhereTheFrameIsAtTheirTimes) {
     }
 }
 
-// One straight way, and one turn about one axis at one rate that is no longer than it has to be.
-TEST(KeyPoses, AreJoinedBySteadyMotionTheShortestWay) {
+// Two poses are joined by one straight path and one rotation about one axis at a constant rate. The rotation is the
+// shortest one.
+TEST(KeyPoses, AreJoinedByTheShortestUniformMotion) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         RandomSequence random(seed, 1, 0);
         const std::vector<KeyPose> poses = random_poses(random);
@@ -93,16 +95,16 @@ TEST(KeyPoses, AreJoinedBySteadyMotionTheShortestWay) {
             EXPECT_LT(length(late.velocity - velocity), 1e-13 * (1.0 + length(velocity))) << "seed " << seed;
             const double rate = length(early.angular_velocity);
             EXPECT_LT(length(early.angular_velocity - late.angular_velocity), 1e-12 * (1.0 + rate)) << "seed " << seed;
-            EXPECT_NEAR(rate * span, angle, 1e-7) << "seed " << seed;  // of an arc cosine
+            EXPECT_NEAR(rate * span, angle, 1e-7) << "seed " << seed;  // rounding of an arc cosine
             EXPECT_LE(rate * span, kPi * (1.0 + 1e-14)) << "seed " << seed;
             EXPECT_EQ(early.acceleration, Vec3());
-            // A fifth of the way is a fifth of the turn.
+            // A fifth of the time gives a fifth of the rotation.
             EXPECT_NEAR(angle_between(stated(poses[k - 1]), early.world_from_frame), 0.2 * angle, 1e-7);
         }
     }
 }
 
-TEST(KeyPoses, OfTheSameTurnDoNotTurnHoweverItIsSaid) {
+TEST(KeyPoses, WithEqualOrientationsDoNotRotateHoweverTheyAreWritten) {
     const std::array<KeyPose, 4> same{
         KeyPose{1.0, {1, 2, 3}, {0, 0, 1}, 90.0}, KeyPose{2.0, {1, 2, 3}, {0, 0, -2}, 270.0},
         KeyPose{3.0, {1, 2, 3}, {0, 0, 1}, 450.0}, KeyPose{4.0, {1, 2, 3}, {0, 0, -1}, -90.0}};
@@ -115,7 +117,7 @@ TEST(KeyPoses, OfTheSameTurnDoNotTurnHoweverItIsSaid) {
     }
 }
 
-// Two ways are as short: it takes one of them, steadily, and arrives.
+// Both directions are equally short. The frame takes one of them at a constant rate and reaches the second pose.
 TEST(KeyPoses, HalfATurnApartAreJoinedByHalfATurn) {
     const std::vector<KeyPose> poses{{0.0, {}, {0, 1, 0}, 10.0}, {2.0, {}, {0, 1, 0}, 190.0}};
     const FrameTree tree = tree_through(poses);
@@ -124,7 +126,7 @@ TEST(KeyPoses, HalfATurnApartAreJoinedByHalfATurn) {
     EXPECT_NEAR(std::fabs(tree.at(0, 1.0).angular_velocity.y), 0.5 * kPi, 1e-15);
 }
 
-TEST(KeyPoses, MustFollowEachOther) {
+TEST(KeyPoses, AreRefusedIfEmptyUnorderedOrNotFinite) {
     const auto message_of = [](const std::vector<KeyPose>& poses) -> std::string {
         try {
             (void)motions_through(poses);

@@ -60,17 +60,17 @@ TEST(KeyedCurve, LinearIsTheStraightLineBetweenKeys) {
     EXPECT_EQ(curve.derivative(1.5), 5.0);
     EXPECT_EQ(curve.value(3.25), 15.0);
     EXPECT_EQ(curve.derivative(3.25), -20.0);
-    EXPECT_EQ(curve.derivative(3.0), -20.0);  // of what follows
+    EXPECT_EQ(curve.derivative(3.0), -20.0);  // the slope of the next segment
 }
 
-TEST(KeyedCurve, SlowInSlowOutIsTheCubicEaseAndAtRestAtEveryKey) {
+TEST(KeyedCurve, SlowInSlowOutIsTheCubicEaseAtRestAtEveryKey) {
     const KeyedCurve<double> curve(Keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}}, Interpolation::slow_in_slow_out);
     EXPECT_EQ(curve.value(1.5), 10.0 + 10.0 * (3.0 / 16.0 - 2.0 / 64.0));
     EXPECT_EQ(curve.derivative(2.0), 1.5 * 10.0 / 2.0);
     for (const double time : {1.0, 3.0, 4.0}) EXPECT_EQ(curve.derivative(time), 0.0);
 }
 
-TEST(KeyedCurve, SplineOnEvenKeysIsCatmullRoms) {
+TEST(KeyedCurve, SplineOnEvenKeysIsACatmullRomSpline) {
     const Keys keys{{0.0, 1.0}, {1.0, -2.0}, {2.0, 4.0}, {3.0, 3.0}};
     const KeyedCurve<double> curve(keys, Interpolation::spline);
     for (const double s : {0.0, 0.1, 0.5, 0.75, 0.99}) {
@@ -97,7 +97,7 @@ TEST(KeyedCurve, SplineThroughUnevenKeysOfAParabolaIsTheParabola) {
     }
 }
 
-TEST(KeyedCurve, TheDerivativeIsTheOneOfTheValueInsideEverySegment) {
+TEST(KeyedCurve, TheDerivativeMatchesDifferencesOfTheValueInEverySegment) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         RandomSequence random(seed, 0, 0);
         const Keys keys = random_keys(random);
@@ -117,7 +117,7 @@ TEST(KeyedCurve, TheDerivativeIsTheOneOfTheValueInsideEverySegment) {
     }
 }
 
-TEST(KeyedCurve, TheSecondDerivativeIsTheOneOfTheDerivativeInsideEverySegment) {
+TEST(KeyedCurve, TheSecondDerivativeMatchesDifferencesOfTheDerivative) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         RandomSequence random(seed, 1, 0);
         const Keys keys = random_keys(random);
@@ -137,11 +137,11 @@ TEST(KeyedCurve, TheSecondDerivativeIsTheOneOfTheDerivativeInsideEverySegment) {
     const KeyedCurve<double> ease(Keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}}, Interpolation::slow_in_slow_out);
     EXPECT_EQ(ease.second_derivative(1.0), 6.0 * 10.0 / 4.0);
     EXPECT_EQ(ease.second_derivative(2.0), 0.0);
-    EXPECT_EQ(ease.second_derivative(3.0), -6.0 * 20.0);  // of what follows
+    EXPECT_EQ(ease.second_derivative(3.0), -6.0 * 20.0);  // of the next segment
     for (const double time : {0.0, 4.0, 9.0}) EXPECT_EQ(ease.second_derivative(time), 0.0);
 }
 
-// No derivative at any time within an interval is larger, and none is much smaller everywhere.
+// A bound is at least the derivative at every time of the interval, and not much larger than the largest derivative.
 TEST(KeyedCurve, BoundsHoldWithinTheirInterval) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         SCOPED_TRACE(seed);
@@ -169,7 +169,7 @@ TEST(KeyedCurve, BoundsHoldWithinTheirInterval) {
     }
 }
 
-TEST(KeyedCurve, BoundsOfOneSegmentAreItsOwn) {
+TEST(KeyedCurve, BoundsWithinOneSegmentAreExact) {
     const Keys keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}};
     const KeyedCurve<double> line(keys);
     EXPECT_EQ(line.bounds(1.2, 2.0), (DerivativeBounds{11.0 + 5.0 * 0.8, 5.0, 0, 0, 0}));
@@ -183,15 +183,15 @@ TEST(KeyedCurve, BoundsOfOneSegmentAreItsOwn) {
     EXPECT_EQ(bounds[3], 12.0 * 5.0 / 4.0);
 }
 
-// exp(a t) times exp(b t) is exp((a + b) t): its derivatives are the powers of a + b, by the binomial theorem.
-TEST(DerivativeBounds, OfAProductAreLeibnizs) {
+// exp(a t) times exp(b t) is exp((a + b) t). By the binomial theorem, its derivatives are the powers of a + b.
+TEST(DerivativeBounds, FollowTheLeibnizRuleForProducts) {
     const auto powers = [](double a) { return DerivativeBounds{1.0, a, a * a, a * a * a, a * a * a * a}; };
     EXPECT_EQ(product(powers(2.0), powers(3.0)), powers(5.0));
     EXPECT_EQ(product(powers(0.5), powers(0.25)), powers(0.75));
     EXPECT_EQ(product({7, 1, 2, 3, 4}, {1, 0, 0, 0, 0}), (DerivativeBounds{7, 1, 2, 3, 4}));
 }
 
-TEST(KeyedCurve, TheNextKeyIsEachInItsTurn) {
+TEST(KeyedCurve, TheNextKeyIsTheFirstOneAfterTheTime) {
     const Keys keys{{1.0, 10.0}, {3.0, 20.0}, {4.0, 0.0}};
     const KeyedCurve<double> held(keys);
     EXPECT_EQ(held.next_key(-5.0), 1.0);
@@ -209,7 +209,7 @@ TEST(KeyedCurve, TheNextKeyIsEachInItsTurn) {
     EXPECT_EQ(repeated.next_key(-2.5), -2.0);
 }
 
-TEST(KeyedCurve, PassesThroughEveryKeyAndIsContinuousWithItsDerivativeWhereItIsSmooth) {
+TEST(KeyedCurve, PassesThroughEveryKeyAndSmoothCurvesHaveContinuousDerivatives) {
     constexpr double kEpsilon = 1e-9;
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
         RandomSequence random(seed, 1, 0);
@@ -230,7 +230,7 @@ TEST(KeyedCurve, PassesThroughEveryKeyAndIsContinuousWithItsDerivativeWhereItIsS
     }
 }
 
-TEST(KeyedCurve, RepeatsWhereTheLastRoundEnded) {
+TEST(KeyedCurve, RepeatsFromTheEndOfTheLastCycle) {
     const Keys keys{{1.0, 0.0}, {2.0, 5.0}, {3.0, 1.0}};
     for (const Interpolation interpolation : kInterpolations) {
         const KeyedCurve<double> curve(keys, interpolation, CurveEnds::repeat);
@@ -246,7 +246,7 @@ TEST(KeyedCurve, RepeatsWhereTheLastRoundEnded) {
         }
     }
     const KeyedCurve<double> turning(Keys{{0.0, 0.0}, {2.0, 360.0}}, Interpolation::spline, CurveEnds::repeat);
-    EXPECT_NEAR(turning.value(1001.0), 180180.0, 1e-9);  // steady
+    EXPECT_NEAR(turning.value(1001.0), 180180.0, 1e-9);  // constant rate
     EXPECT_NEAR(turning.derivative(1001.3), 180.0, 1e-12);
 }
 
@@ -266,12 +266,13 @@ TEST(KeyedCurve, ASplineAlongASineFollowsItWithThirdOrderInItsKeys) {
     EXPECT_GT(largest_error(32) / largest_error(64), 7.0);
 }
 
-/// The second derivative just beside a time, by one-sided differences of the derivative: linear in each segment.
+/// Returns the second derivative beside a time, from one-sided differences of the derivative. It is linear in each
+/// segment.
 double second_derivative(const KeyedCurve<double>& curve, double time, double side) {
     const double h = side * 1e-4;
     const double near = (curve.derivative(time + 2.0 * h) - curve.derivative(time + h)) / h;
     const double far = (curve.derivative(time + 4.0 * h) - curve.derivative(time + 3.0 * h)) / h;
-    return near - 0.75 * (far - near);  // of time + 1.5 h and + 3.5 h: on to the time itself
+    return near - 0.75 * (far - near);  // extrapolates from time + 1.5 h and + 3.5 h to the time itself
 }
 
 TEST(KeyedCurve, TheSecondDerivativeOfACubicSplineIsContinuousAtEveryKey) {

@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A kernel's files about memory, in a folder of their own; the limits of this process hold all the same.
+/// Imitated kernel files about memory, in a temporary folder. The real limits of this process still apply.
 class FakeKernel {
 public:
     FakeKernel() {
@@ -34,18 +34,18 @@ private:
     test::TemporaryFolder folder_;
 };
 
-TEST(MemoryLimit, WithoutGroupsIsWhatTheMachineHasFreeWithItsSwap) {
+TEST(MemoryLimit, WithoutGroupsIsTheFreeMemoryAndSwapOfTheMachine) {
     const FakeKernel kernel;
     EXPECT_EQ(kernel.limit().bytes, 4'500'000.0 * 1024.0);
     EXPECT_EQ(kernel.limit().source, "the free memory of the machine");
 }
 
-TEST(MemoryLimit, WithoutAFileAboutMemoryIsThatOfTheMachine) {
+TEST(MemoryLimit, WithoutMeminfoIsTheMemoryOfTheMachine) {
     const MemoryLimit limit = memory_limit({"/no/such/folder", "/no/such/folder", "/no/such/folder"});
     EXPECT_GT(limit.bytes, 1e6);
 }
 
-TEST(MemoryLimit, IsTheLeastOfTheControlGroupsAboveTheProcess) {
+TEST(MemoryLimit, IsTheSmallestLimitOfTheControlGroupsAboveTheProcess) {
     const FakeKernel kernel;
     kernel.write("self/cgroup", "0::/user/work/job\n");
     kernel.write("cgroup/user/memory.max", "3000000\n");
@@ -57,7 +57,7 @@ TEST(MemoryLimit, IsTheLeastOfTheControlGroupsAboveTheProcess) {
     EXPECT_EQ(kernel.limit().bytes, 2e6);
 }
 
-TEST(MemoryLimit, KnowsControlGroupsOfTheFirstVersion) {
+TEST(MemoryLimit, ReadsControlGroupsOfVersion1) {
     const FakeKernel kernel;
     kernel.write("self/cgroup", "11:cpu,cpuacct:/a\n5:hugetlb,memory:/a/b\n0::/\n");
     kernel.write("cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
@@ -68,14 +68,14 @@ TEST(MemoryLimit, KnowsControlGroupsOfTheFirstVersion) {
     EXPECT_EQ(kernel.limit().bytes, 6e6);
 }
 
-TEST(MemoryLimit, InAContainerIsThatOfTheGroupThatTheContainerSees) {
+TEST(MemoryLimit, InAContainerIsTheLimitOfTheVisibleGroup) {
     const FakeKernel kernel;
     kernel.write("self/cgroup", "0::/machine/container\n");
     kernel.write("cgroup/memory.max", "1000000\n");
     EXPECT_EQ(kernel.limit().bytes, 1e6);
 }
 
-TEST(MemoryLimit, SurvivesFilesThatMakeNoSense) {
+TEST(MemoryLimit, ToleratesMalformedFiles) {
     const FakeKernel kernel;
     kernel.write("self/cgroup", "\n:\n0:\n0::\nnonsense\n7:memory\n");
     kernel.write("cgroup/memory.max", "many\n");
@@ -84,10 +84,10 @@ TEST(MemoryLimit, SurvivesFilesThatMakeNoSense) {
     EXPECT_GT(kernel.limit().bytes, 1e6) << "that of the machine";
 }
 
-TEST(MemoryLimit, IsWhatTheLimitsOfTheProcessLeave) {
+TEST(MemoryLimit, IsTheRemainderOfTheProcessLimits) {
     const test::MemoryCeiling ceiling(300e6);
     const MemoryLimit limit = memory_limit();
-    EXPECT_LE(limit.bytes, 301e6);  // pages that are given back since the ceiling was set
+    EXPECT_LE(limit.bytes, 301e6);  // allows for pages freed since the ceiling was set
     EXPECT_GT(limit.bytes, 200e6);
     EXPECT_EQ(limit.source, "the rest of `ulimit -d`");
     EXPECT_NO_THROW(require_memory(100e6, "a small thing"));
@@ -101,7 +101,7 @@ TEST(MemoryLimit, IsWhatTheLimitsOfTheProcessLeave) {
     }
 }
 
-TEST(MemoryLimit, IsSaidInUnitsOfAThousand) {
+TEST(MemoryLimit, IsPrintedInDecimalUnits) {
     EXPECT_EQ(memory_text(0.0), "0 B");
     EXPECT_EQ(memory_text(999.0), "999 B");
     EXPECT_EQ(memory_text(1000.0), "1 kB");

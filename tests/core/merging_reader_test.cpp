@@ -1,4 +1,4 @@
-// What several processes have saved is read as one would have saved it.
+// The saved parts of several processes must read like the file of one process.
 #include "ricochet/core/merging_reader.h"
 
 #include <gtest/gtest.h>
@@ -13,12 +13,12 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Lists beside ids, as a simulation has them.
+/// Lists indexed by ids, as in a simulation.
 struct Lists {
     std::uint64_t common = 7;
     std::vector<std::uint64_t> ids;
     std::vector<double> pairs;         // two for each id
-    std::vector<double> rare;          // one for each, or none where all are absent
+    std::vector<double> rare;          // one for each id, or empty if all are absent
     std::vector<std::uint32_t> marks;  // saved one by one
 
     void append(std::uint64_t id, bool is_rare) {
@@ -52,13 +52,13 @@ std::vector<std::byte> bytes_of(Lists& lists) {
     return bytes;
 }
 
-TEST(MergingReader, ReadsWhatOneProcessWouldHaveSaved) {
+TEST(MergingReader, ReadsTheSameValuesAsFromOneProcess) {
     RandomSequence random(4, 0, 0);
     for (int round = 0; round < 200; ++round) {
         SCOPED_TRACE(round);
         Lists whole;
         std::vector<Lists> parts(1 + static_cast<std::size_t>(random.uniform() * 6.0));
-        const double change = random.uniform();  // long runs of one part, or short ones
+        const double change = random.uniform();  // selects long or short runs of one part
         const auto count = static_cast<std::uint64_t>(random.uniform() * 60.0);
         std::size_t owner = 0;
         for (std::uint64_t k = 0; k < count; ++k) {
@@ -81,7 +81,7 @@ TEST(MergingReader, ReadsWhatOneProcessWouldHaveSaved) {
     }
 }
 
-TEST(MergingReader, RefusesListsThatDoNotFitTogether) {
+TEST(MergingReader, RefusesListsOfInconsistentLengths) {
     Lists part;
     part.append(1, false);
     part.pairs.push_back(0.0);

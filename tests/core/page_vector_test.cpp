@@ -18,7 +18,7 @@ struct alignas(64) Line {
 
 std::uintptr_t place_of(const void* memory) { return reinterpret_cast<std::uintptr_t>(memory); }
 
-TEST(PageVector, HasPagesOfItsOwnFromTheStatedSizeOn) {
+TEST(PageVector, UsesSeparatePagesFromTheStatedSizeOn) {
     const PageVector<std::uint64_t> small(kLeastOwnPages / sizeof(std::uint64_t) - 1);
     EXPECT_TRUE(own_pages(small).empty());
     const PageVector<std::uint64_t> large(kLeastOwnPages / sizeof(std::uint64_t));
@@ -27,7 +27,7 @@ TEST(PageVector, HasPagesOfItsOwnFromTheStatedSizeOn) {
     EXPECT_TRUE(own_pages(PageVector<std::uint64_t>()).empty());
 }
 
-TEST(PageVector, KeepsWhatItHoldsWhileItGrowsIntoPagesAndIsCopied) {
+TEST(PageVector, KeepsItsElementsWhileItGrowsIntoPagesAndIsCopied) {
     PageVector<std::uint32_t> list;
     for (std::uint32_t k = 0; k < 300'000; ++k) list.push_back(k);
     const PageVector<std::uint32_t> copy = list;
@@ -42,11 +42,11 @@ TEST(PageVector, AlignsSmallListsToo) {
     EXPECT_EQ(place_of(lines.data()) % alignof(Line), 0U);
 }
 
-TEST(PageVector, ThrowsWhereThereIsNoMemory) {
+TEST(PageVector, ThrowsIfMemoryRunsOut) {
     EXPECT_THROW(PageVector<std::uint8_t>(std::numeric_limits<std::ptrdiff_t>::max()), std::bad_alloc);
 }
 
-TEST(PageVector, ReadsAndEndsAsBeforeOnceItsPagesAreReplaced) {
+TEST(PageVector, WorksAsBeforeOnceItsPagesAreReplaced) {
     PageVector<std::uint64_t> list(100'001);
     std::iota(list.begin(), list.end(), std::uint64_t{5});
     const auto pages = own_pages(list);

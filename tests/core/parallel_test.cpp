@@ -41,8 +41,8 @@ TEST(Parallel, AnOrderedSumHasTheSameBitsForAnyThreadCount) {
     }
 }
 
-// Whatever the order in which threads come to them; the blocks before it run to their end.
-TEST(Parallel, TheExceptionOfTheFirstBlockThatThrowsComesOut) {
+// The order in which threads reach the blocks must not matter. All earlier blocks run to their end.
+TEST(Parallel, TheExceptionOfTheFirstThrowingBlockIsRethrown) {
     for (const int threads : {1, 2, 5}) {
         const ThreadLimit limit(threads);
         for (int round = 0; round < 50; ++round) {
@@ -61,8 +61,8 @@ TEST(Parallel, TheExceptionOfTheFirstBlockThatThrowsComesOut) {
     }
 }
 
-// Plain memory on purpose: the thread sanitizer has to see that the loop orders it.
-TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
+// The test uses plain memory on purpose, so that the thread sanitizer checks the ordering by the loop.
+TEST(Parallel, WritesBeforeTheLoopAndInsideItAreVisible) {
     std::vector<int> values(5000, 0);
     for (int round = 1; round <= 20; ++round) {
         for (int& v : values) ++v;
@@ -73,9 +73,9 @@ TEST(Parallel, BodiesSeeWhatWasWrittenBeforeAndTheCallerSeesWhatTheyWrote) {
     }
 }
 
-// More threads than processors, so that waiting threads steal work from each other; an arena of its own, since
-// the one that the library makes has no more slots than there are processors.
-TEST(Parallel, ABodyThatWaitsForTasksOfItsOwnIsNotInterruptedByAnotherOne) {
+// There are more threads than processors, so waiting threads steal work from each other. The test makes its own arena,
+// because the library's arena has no more slots than processors.
+TEST(Parallel, ABlockThatWaitsForItsOwnTasksIsNotInterruptedByAnother) {
     const ThreadLimit limit(8);
     std::atomic<int> interrupted{0};
     std::atomic<double> sink{0};
@@ -105,7 +105,6 @@ TEST(Parallel, AnExceptionReachesTheCaller) {
                  std::runtime_error);
 }
 
-// Keys that differ in few bits, in all, or in none, with many equal ones.
 TEST(Parallel, MoreThreadsThanAnyMachineHasAreRefused) {
     EXPECT_THROW(const ThreadLimit limit(1025), InputError);
     EXPECT_THROW(const ThreadLimit limit(1'000'000), InputError);
@@ -114,7 +113,7 @@ TEST(Parallel, MoreThreadsThanAnyMachineHasAreRefused) {
     EXPECT_GE(thread_count(), 1);
 }
 
-TEST(LoopStop, EndsLoopsAndThoseWithinTheirBlocks) {
+TEST(LoopStop, EndsLoopsAndNestedLoops) {
     struct Ended : std::exception {};
     for (const int threads : {1, 4}) {
         const ThreadLimit limit(threads);
@@ -134,7 +133,7 @@ TEST(LoopStop, EndsLoopsAndThoseWithinTheirBlocks) {
     }
 }
 
-TEST(LoopStop, IsAskedByItsOwnLoopsAloneAndOnlyWhileItLives) {
+TEST(LoopStop, IsCheckedByItsOwnLoopsAloneAndOnlyDuringItsLifetime) {
     std::atomic<int> asked = 0;
     const auto loop = [] { parallel_for_blocks(8, 1, [](std::size_t, std::size_t, std::size_t) {}); };
     {
@@ -157,6 +156,7 @@ TEST(LoopStop, IsAskedByItsOwnLoopsAloneAndOnlyWhileItLives) {
     EXPECT_EQ(asked, 9);
 }
 
+// Sorts keys that differ in few bits, in all, or in none, with many equal ones.
 TEST(Parallel, SortsByKeyAndKeepsTheOrderOfEqualKeys) {
     for (const std::size_t count : {0, 1, 1000, 1024, 100003}) {
         for (const std::uint64_t mask : {0ULL, 0x7ULL, 0xFF00FULL << 20U, 0x8000000000000001ULL, ~0ULL}) {

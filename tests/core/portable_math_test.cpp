@@ -18,7 +18,7 @@ using test::scaled;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kFewUlps = 4 * std::numeric_limits<double>::epsilon();
 
-// The C library is right to an ulp; it only differs between systems.
+// The C library is accurate to about one ulp, but its results differ between systems.
 TEST(PortableMath, AgreesWithTheLibraryToAFewUlps) {
     RandomSequence random(11, 0, 0);
     for (int i = 0; i < scaled(20000); ++i) {
@@ -37,7 +37,7 @@ TEST(PortableMath, AgreesWithTheLibraryToAFewUlps) {
     }
 }
 
-TEST(PortableMath, IsExactWhereExactValuesExist) {
+TEST(PortableMath, IsExactIfExactValuesExist) {
     EXPECT_EQ(portable_exp(0.0), 1.0);
     EXPECT_EQ(portable_log(1.0), 0.0);
     EXPECT_EQ(portable_pow(5.0, 0.0), 1.0);
@@ -52,7 +52,7 @@ TEST(PortableMath, TheAngleOfASineAndCosineIsTheArcTangent) {
     RandomSequence random(12, 0, 0);
     const long double whole = 2.0L * std::acos(-1.0L);
     for (int i = 0; i < scaled(20000); ++i) {
-        // Any size, and all angles: those next to the axes too.
+        // Covers all magnitudes and all angles, including angles next to the axes.
         const double size = std::exp(random.uniform_around(0, 20));
         const double small = std::exp(-40.0 * random.uniform());
         const double sine = i % 2 == 0 ? size * random.uniform() : size * small;
@@ -68,7 +68,7 @@ TEST(PortableMath, TheAngleOfASineAndCosineIsTheArcTangent) {
     EXPECT_NEAR(turns_of(3.0, 3.0), 0.125, 1e-16);
 }
 
-TEST(PortableMath, EndsWhereDoublesEnd) {
+TEST(PortableMath, HandlesOverflowAndUnderflow) {
     EXPECT_EQ(portable_exp(-800.0), 0.0);
     EXPECT_EQ(portable_exp(-kInfinity), 0.0);
     EXPECT_EQ(portable_exp(710.0), kInfinity);

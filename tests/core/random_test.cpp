@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Known answers published with the Random123 library (kat_vectors, philox4x32 with ten rounds).
+// Expected values published with the Random123 library (kat_vectors, philox4x32 with ten rounds).
 TEST(Philox, GivesThePublishedKnownAnswers) {
     using Block = std::array<std::uint32_t, 4>;
     EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}), (Block{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
@@ -41,8 +41,8 @@ TEST(RandomSequence, DirectionsAreUnitAndUniform) {
         mean += d / count;
         mean_square += Vec3{d.x * d.x, d.y * d.y, d.z * d.z} / count;
     }
-    // Standard error of a component's mean is 1/sqrt(3 n) = 1.3e-3, of its square's sqrt(4/45 / n) = 6.7e-4: five
-    // sigma.
+    // The standard error of a component's mean is 1/sqrt(3 n) = 1.3e-3. The standard error of its mean square is
+    // sqrt(4/45 / n) = 6.7e-4. The limits are five sigma.
     for (int axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(mean[axis], 0.0, 6.5e-3);
         EXPECT_NEAR(mean_square[axis], 1.0 / 3.0, 3.4e-3);

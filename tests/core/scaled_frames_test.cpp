@@ -1,4 +1,4 @@
-// Frames whose scale changes, in chains: where their points are, how fast they can go, and what is refused.
+// Chains of frames with changing scales: positions of points, bounds of speed, and refused input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ KeyedScale growth() {
 }
 KeyedScale squash() { return {KeyedCurve<Vec3>({{-1.0, {1, 1, 1}}, {2.5, {0.4, 2, 1}}})}; }
 
-/// A hand that is squashed, on an arm that grows and spins.
+/// Returns a hand that is squashed, on an arm that grows and spins.
 FrameTree arm() {
     FrameDescription lower{"arm", "", {0.5, -1, 2}, {1, 0, 0}, 30.0, {Spin{{0, 0, 1}, 70.0}, growth()}};
     FrameDescription upper{"hand",    "arm", {1, 0.2, 0},
@@ -29,8 +29,8 @@ FrameTree arm() {
 
 Vec3 by_axes(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
 
-// The rigid parts between two scales are trees of their own: x = M1(S1 M2(S2 M3 p)).
-TEST(ScaledFrames, StandWhereRigidMotionsAndScalesOneAfterTheOtherHaveThem) {
+// Separate trees describe the rigid parts between two scales: x = M1(S1 M2(S2 M3 p)).
+TEST(ScaledFrames, MatchRigidMotionsAndScalesAppliedInTurn) {
     const FrameTree frames = arm();
     FrameTree lower({{"arm", "", {0.5, -1, 2}, {1, 0, 0}, 30.0, {Spin{{0, 0, 1}, 70.0}}}});
     FrameTree upper(
@@ -44,14 +44,14 @@ TEST(ScaledFrames, StandWhereRigidMotionsAndScalesOneAfterTheOtherHaveThem) {
     }
     EXPECT_TRUE(frames.is_scaled(0));
     EXPECT_TRUE(frames.is_scaled(1));
-    EXPECT_TRUE(frames.is_scaled(2));  // by what it stands on
+    EXPECT_TRUE(frames.is_scaled(2));  // scaled by its parents
     EXPECT_FALSE(lower.is_scaled(0));
     for (const double time : {0.0, 0.7}) {
         EXPECT_EQ(lower.map(0, time).point({1, 2, 3}), lower.at(0, time).point({1, 2, 3}));
     }
 }
 
-TEST(ScaledFrames, GoNoFasterThanTheirBounds) {
+TEST(ScaledFrames, AreNoFasterThanTheirBounds) {
     const FrameTree frames = arm();
     const Vec3 p{0.4, -0.6, 0.5};
     const auto at = [&](double time) { return frames.map(2, time).point(p); };
@@ -70,7 +70,7 @@ TEST(ScaledFrames, GoNoFasterThanTheirBounds) {
     }
 }
 
-TEST(ScaledFrames, KnowTheirKeysAndTellEachOtherApart) {
+TEST(ScaledFrames, ReportTheirKeysAndDifferInTheirHash) {
     const FrameTree frames = arm();
     EXPECT_EQ(frames.next_key(1, -5.0), 0.0);
     EXPECT_EQ(frames.next_key(2, -5.0), -1.0);
@@ -94,7 +94,7 @@ std::string refusal(const Call& call) {
     return "";
 }
 
-TEST(ScaledFrames, HaveFactorsAboveZeroAndNoRigidPose) {
+TEST(ScaledFrames, RequirePositiveFactorsAndHaveNoRigidPose) {
     const FrameTree frames = arm();
     EXPECT_EQ(refusal([&] { static_cast<void>(frames.at(2, 0.0)); }),
               "frame 'tip': it is scaled, expected one that keeps its size");

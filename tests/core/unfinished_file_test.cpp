@@ -16,7 +16,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// What a process does that removes its unfinished files and ends.
+/// Returns the exit code of a child process that does the given work and then removes its unfinished files and exits.
 template <class Work>
 int exit_code_of_child(const Work& work) {
     const pid_t child = ::fork();
@@ -35,7 +35,7 @@ std::size_t files_in(const std::filesystem::path& folder) {
         std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator()));
 }
 
-TEST(UnfinishedFile, IsRemovedWhenTheProcessEndsAtOnceAndNothingElseIs) {
+TEST(UnfinishedFile, IsTheOnlyFileRemovedWhenTheProcessEndsAtOnce) {
     const test::TemporaryFolder folder;
     write_file(folder.path("old"), "kept");
     EXPECT_EQ(exit_code_of_child([&] {
@@ -44,7 +44,7 @@ TEST(UnfinishedFile, IsRemovedWhenTheProcessEndsAtOnceAndNothingElseIs) {
                   done->commit();
                   delete done;
                   for (const char* const name : {"new", "old", "third"}) {
-                      (new AtomicFile(folder.path(name)))->write("half");  // never ended: the process is
+                      (new AtomicFile(folder.path(name)))->write("half");  // not committed, because the process ends
                   }
               }),
               7);
@@ -53,7 +53,7 @@ TEST(UnfinishedFile, IsRemovedWhenTheProcessEndsAtOnceAndNothingElseIs) {
     EXPECT_EQ(folder.read("done"), "complete");
 }
 
-TEST(UnfinishedFile, IsRemovedAfterTheProgramThatWritesItIsGone) {
+TEST(UnfinishedFile, IsRemovedAfterItsProgramHasEnded) {
     const test::TemporaryFolder folder;
     const auto path = folder.path("film.partial");
     EXPECT_EQ(exit_code_of_child([&] {
@@ -67,7 +67,7 @@ TEST(UnfinishedFile, IsRemovedAfterTheProgramThatWritesItIsGone) {
     EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(UnfinishedFile, IsForgottenInAnyOrderOnAnyThread) {
+TEST(UnfinishedFile, IsUnregisteredInAnyOrderOnAnyThread) {
     const test::TemporaryFolder folder;
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t) {

@@ -1,10 +1,13 @@
-# Checks the Markdown files of the repository: every relative link names a file or folder, every name in backquotes that
-# looks like a path into the repository exists, the programs in them are those of tests/package/consumer, and public headers
-# name public headers only. With -D installed=ON: only the links, of an installed tree's documents.
+# Checks the Markdown files of the repository:
+# - Every relative link names a file or folder.
+# - Every name in backquotes that looks like a path into the repository exists.
+# - The programs in them are the programs of tests/package/consumer.
+# - Public headers name public headers only.
+# With -D installed=ON it checks only the links in the documents of an installed tree.
 cmake_minimum_required(VERSION 3.25)
 set(wrong)
 
-# Ends the check where something is wrong.
+# Ends the check with an error if there are findings.
 function(report)
   if(wrong)
     list(JOIN wrong "\n  " lines)
@@ -18,7 +21,7 @@ list(APPEND documents ${more})
 
 foreach(document IN LISTS documents)
   file(READ ${root}/${document} text)
-  # CMake cuts lists at semicolons, except between brackets: neither may be in the items.
+  # CMake splits lists at semicolons, except between brackets. The items must contain neither.
   string(REPLACE ";" "," text "${text}")
   string(REPLACE "](" "@link(" text "${text}")
   string(REPLACE "[" "<" text "${text}")
@@ -60,7 +63,7 @@ foreach(pair IN ITEMS README.md=main.cpp docs/library.md=walkthrough.cpp)
   endif()
 endforeach()
 
-# Who installs the library reads its public headers, and has no others.
+# Users of the installed library have its public headers and no others.
 file(STRINGS ${root}/src/ricochet/public_headers.txt public_headers REGEX "^[^#]")
 foreach(header IN LISTS public_headers)
   file(READ ${root}/src/ricochet/${header} text)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Finds sentences that break the style rules of CONTRIBUTING.md, and limits their share.
 
-Reads comments of C++, Python, JavaScript, CMake and shell files, docstrings, string literals that are sentences, names of
-tests, and the text and tables of Markdown files.
+Reads comments of C++, Python, JavaScript, CMake and shell files, and docstrings. Also reads string literals that are
+sentences, names of tests, and the text and tables of Markdown files.
 """
 
 import argparse

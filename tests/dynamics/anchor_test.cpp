@@ -16,9 +16,9 @@ using std::numbers::pi;
 using test::carried;
 using test::field_of;
 
-TEST(Anchor, PullsByStretchAndBrakesAlongTheSpring) {
+TEST(Anchor, PullsByStretchAndDampsAlongTheSpring) {
     const auto anchor = make_anchor({{1, 0, 0}, 10.0, 2.0, 0.5});
-    // Stretched by 1 m, moving outwards with 4 m/s and across with 7.
+    // Stretched by 1 m. The particle moves outward at 4 m/s and across at 7 m/s.
     EXPECT_EQ(anchor->acceleration({{4, 0, 0}, {4, 7, 0}, 2.0, 0.0, 0.0}), (Vec3{-6, 0, 0}));
     EXPECT_EQ(anchor->acceleration({{2, 0, 0}, {}, 2.0, 0.0, 0.0}), (Vec3{5, 0, 0}));
     EXPECT_DOUBLE_EQ(*anchor->potential_energy({{4, 0, 0}, {}, 2.0, 0.0, 0.0}), 5.0);
@@ -34,7 +34,7 @@ TEST(Anchor, SwingsWithTheOscillatorsFrequency) {
     EXPECT_NEAR(carried(forces, start, period, 1000).position.x, 1.25, 1e-9);
 }
 
-TEST(Anchor, DiesOutAsADampedOscillatorDoes) {
+TEST(Anchor, DecaysLikeADampedOscillator) {
     const double k = 8.0;
     const double m = 0.5;
     const double c = 0.4;
@@ -47,7 +47,7 @@ TEST(Anchor, DiesOutAsADampedOscillatorDoes) {
     EXPECT_NEAR(end.position.x, 1.0 + swing, 1e-9);
 }
 
-TEST(Anchor, HoldsOnlyThoseThatHangOnIt) {
+TEST(Anchor, ActsOnItsParticlesOnly) {
     const auto anchor = make_anchor({{}, 1.0, 0.0, 0.0, {9, 2, 5}});
     for (const std::uint64_t id : {0U, 2U, 3U, 5U, 9U, 10U}) {
         const ForceInput state{{1, 0, 0}, {}, 1.0, 0.0, 0.0, id};

@@ -43,7 +43,7 @@ TEST(AttributeTable, RefusesNamesThatAreTakenAndOddComponents) {
     EXPECT_NO_THROW(AttributeTable({*looks_attribute("color"), *looks_attribute("opacity"), *looks_attribute("size")}));
 }
 
-TEST(LifeCurve, MultipliesWhatAParticleWasBornWith) {
+TEST(LifeCurve, MultipliesTheInitialValueOfAParticle) {
     const KeyedCurve<Vec3> fade(std::vector<CurveKey<Vec3>>{{0.0, {1, 1, 1}}, {1.0, {0, 0.5, 0}}});
     const std::vector<LifeCurve> curves = {{"color", fade, true}, {"heat", fade, false}};
     EXPECT_EQ(shown_value(curves, "color", {1, 1, 0.5}, 2.0, 4.0), (Vec3{0.5, 0.75, 0.25}));

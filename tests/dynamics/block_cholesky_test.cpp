@@ -1,4 +1,5 @@
-// Does the factorization of block matrices solve what it is given, and refuse what is not definite?
+// Tests that the factorization of block matrices solves its systems and refuses matrices that are not positive
+// definite.
 #include "ricochet/dynamics/block_cholesky.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace RICOCHET_FILE {
 
 using Pair = BlockCholesky::Pair;
 
-/// Springs between rows, with a mass at every row, as implicit steps have them.
+/// Returns the matrix of springs between rows with a mass at every row, as in implicit steps.
 BlockMatrix springs(std::size_t rows, const std::vector<Pair>& pairs, double mass, RandomSequence& random) {
     BlockMatrix matrix;
     matrix.own.resize(rows);
@@ -51,7 +52,7 @@ std::vector<double> product(const BlockMatrix& matrix, const std::vector<Pair>& 
     return y;
 }
 
-/// Largest error of the solution for a known one.
+/// Returns the largest error of the computed solution against a known one.
 double error_of(std::size_t rows, const std::vector<Pair>& pairs, RandomSequence& random) {
     const BlockMatrix matrix = springs(rows, pairs, 0.5, random);
     std::vector<double> expected(3 * rows);
@@ -79,12 +80,13 @@ std::vector<Pair> grid(std::uint32_t side) {
     return pairs;
 }
 
-// The condition number is below 3e2 for a mass of 0.5 and a few dozen springs at a row: some hundred roundings.
+// The condition number is below 3e2 for a mass of 0.5 and a few dozen springs at a row. The error is therefore some
+// hundred rounding units.
 TEST(BlockCholesky, SolvesForRandomPairsAndGrids) {
     RandomSequence random(31, 0, 0);
     for (const std::uint32_t rows : {1U, 2U, 3U, 7U, 40U, 150U}) {
         for (int density = 0; density < 4; ++density) {
-            std::vector<Pair> pairs;  // some of them more than once
+            std::vector<Pair> pairs;  // some of them repeated
             for (std::uint32_t k = 0; rows > 1 && k < density * rows; ++k) {
                 const auto first = static_cast<std::uint32_t>(random.uniform() * rows);
                 const auto second = static_cast<std::uint32_t>(random.uniform() * rows);
@@ -96,7 +98,7 @@ TEST(BlockCholesky, SolvesForRandomPairsAndGrids) {
     for (const std::uint32_t side : {2U, 5U, 12U, 40U}) EXPECT_LT(error_of(side * side, grid(side), random), 1e-13);
 }
 
-TEST(BlockCholesky, SolvesForAStarAndForAllWithAll) {
+TEST(BlockCholesky, SolvesForAStarAndACompleteGraph) {
     RandomSequence random(32, 0, 0);
     std::vector<Pair> star;
     std::vector<Pair> all;
@@ -108,7 +110,7 @@ TEST(BlockCholesky, SolvesForAStarAndForAllWithAll) {
     EXPECT_LT(error_of(60, all, random), 1e-13);
 }
 
-TEST(BlockCholesky, SaysHowManyOperationsItTakes) {
+TEST(BlockCholesky, CountsItsOperations) {
     const auto chain = [](std::uint32_t rows) {
         std::vector<Pair> pairs;
         for (std::uint32_t k = 1; k < rows; ++k) pairs.push_back({k - 1, k});
@@ -123,7 +125,7 @@ TEST(BlockCholesky, SaysHowManyOperationsItTakes) {
     EXPECT_NEAR(BlockCholesky(60, all).operations() / (size * size * size / 6.0), 1.0, 0.1);
 }
 
-TEST(BlockCholesky, RefusesWhatIsNotDefiniteAndGoesOnAfterwards) {
+TEST(BlockCholesky, RefusesIndefiniteMatricesAndStaysUsable) {
     RandomSequence random(33, 0, 0);
     const std::vector<Pair> pairs = grid(9);
     const BlockMatrix good = springs(81, pairs, 0.5, random);

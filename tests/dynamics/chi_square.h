@@ -8,7 +8,7 @@
 
 namespace ricochet::test {
 
-/// Sum of (observed - expected)^2 / expected.
+/// Returns the sum of (observed - expected)^2 / expected.
 inline double chi_square(const std::vector<double>& observed, const std::vector<double>& expected) {
     double sum = 0.0;
     for (std::size_t i = 0; i < observed.size(); ++i) {
@@ -17,7 +17,7 @@ inline double chi_square(const std::vector<double>& observed, const std::vector<
     return sum;
 }
 
-/// Value that chi-square with the given degrees of freedom exceeds with probability 1e-6.
+/// Returns the value that chi-square with the given degrees of freedom exceeds with probability 1e-6.
 /// Method: E. B. Wilson and M. M. Hilferty, "The distribution of chi-square", PNAS 17(12), 1931.
 inline double chi_square_limit(std::size_t degrees_of_freedom) {
     const double z = 4.753424;  // one-sided 1e-6 quantile of the normal distribution

@@ -32,7 +32,7 @@ Particle parent_of(std::uint64_t lineage) {
     return parent;
 }
 
-TEST(ChildEmitter, BirthsOfALifeDoNotDependOnHowTimeIsCut) {
+TEST(ChildEmitter, BirthsDuringALifeDoNotDependOnTheTimeSteps) {
     EmitterDescription description;
     description.rate = {40.0, 30.0};
     const Emitter emitter = child_emitter({}, description);
@@ -54,7 +54,7 @@ TEST(ChildEmitter, BirthsOfALifeDoNotDependOnHowTimeIsCut) {
     }
 }
 
-TEST(ChildEmitter, BirthsBeyondThoseThatAreListedAreCounted) {
+TEST(ChildEmitter, BirthsBeyondTheListedOnesAreCounted) {
     EmitterDescription description;
     description.rate = {40.0, 0.0};
     const Emitter few = child_emitter({}, description);
@@ -66,14 +66,14 @@ TEST(ChildEmitter, BirthsBeyondThoseThatAreListedAreCounted) {
         EXPECT_EQ(births.more, 40 - births.first.size());
         for (std::size_t k = 0; k < births.first.size(); ++k) EXPECT_EQ(births.first[k].ordinal, all[k].ordinal);
     }
-    // A list of these would take sixteen gigabytes, and time.
+    // A list of all births would take sixteen gigabytes and a long time.
     description.rate = {1e12, 0.0};
     const LifeBirths many = births_in_life(child_emitter({}, description), parent_of(1), 0.25, 4.25, 3);
     EXPECT_EQ(many.first.size(), 3U);
     EXPECT_EQ(many.more, 1'000'000'000U - 3U);
 }
 
-TEST(ChildEmitter, EveryParentDrawsItsOwnRateAndTheMeanIsTheOneGiven) {
+TEST(ChildEmitter, EveryParentDrawsItsOwnRateAroundTheGivenMean) {
     EmitterDescription description;
     description.rate = {50.0, 20.0};
     const Emitter emitter = child_emitter({}, description);
@@ -86,11 +86,12 @@ TEST(ChildEmitter, EveryParentDrawsItsOwnRateAndTheMeanIsTheOneGiven) {
         EXPECT_LE(count, 4 * 70.0 + 1.0);
         sum += count;
     }
-    // Uniform of half width 80: standard deviation 46.2, of the mean of 2000 parents 1.03; five of them.
+    // The distribution is uniform with half width 80 and standard deviation 46.2. The mean of 2000 parents has a
+    // standard deviation of 1.03. The limit is five of them.
     EXPECT_NEAR(sum / parents, 200.0, 5.2);
 }
 
-TEST(ChildEmitter, ChildrenBeginAtTheirParentWithThePartOfItsVelocityAndItsAttributes) {
+TEST(ChildEmitter, ChildrenStartAtTheirParentWithPartOfItsVelocityAndItsAttributes) {
     ParentRule rule;
     rule.inherit_velocity = 0.5;
     const Particle child = make_child(child_emitter(rule), parent_of(9), 0, 1.5);
@@ -103,7 +104,7 @@ TEST(ChildEmitter, ChildrenBeginAtTheirParentWithThePartOfItsVelocityAndItsAttri
     EXPECT_EQ(child.attributes[1], (Vec3{0.1, 0.2, 0.3}));
 }
 
-TEST(ChildEmitter, AColourOfItsOwnIsMixedWithTheInheritedPart) {
+TEST(ChildEmitter, ItsOwnColourIsMixedWithTheInheritedPart) {
     EmitterDescription description;
     description.attributes = {{"color", {1, 1, 1}, {}}};
     ParentRule rule;
@@ -160,7 +161,7 @@ TEST(ChildEmitter, FragmentsShareTheMassExactlyInAnyOrder) {
     }
 }
 
-TEST(ChildEmitter, FragmentsOfNextToNothingAreNeverLighterThanTheSmallestMass) {
+TEST(ChildEmitter, FragmentsOfATinyMassAreNeverLighterThanTheSmallestMass) {
     EmitterDescription description;
     description.mass = {1.0, 0.999};
     description.speed = {2.0, 1.0};
@@ -179,7 +180,7 @@ TEST(ChildEmitter, FragmentsOfNextToNothingAreNeverLighterThanTheSmallestMass) {
             double sum = 0.0;
             Vec3 momentum;
             for (const Particle& fragment : fragments) {
-                // Where each gets just that, by the rounding of the share.
+                // Each fragment gets exactly the smallest mass, up to the rounding of its share.
                 EXPECT_GE(fragment.mass, 1e-300 * (1.0 - 1e-14)) << units << " in " << count;
                 EXPECT_TRUE(is_finite(fragment.velocity) && std::isfinite(fragment.radius));
                 sum += fragment.mass;
@@ -191,7 +192,7 @@ TEST(ChildEmitter, FragmentsOfNextToNothingAreNeverLighterThanTheSmallestMass) {
     }
 }
 
-TEST(ChildEmitter, TheKineticEnergyGrowsByTheLaunchesSeenFromTheirCentreOfMass) {
+TEST(ChildEmitter, TheKineticEnergyGrowsByTheLaunchesRelativeToTheirCentreOfMass) {
     EmitterDescription description;
     description.speed = {3.0, 0.0};
     description.mass = {1.0, 0.5};
@@ -203,7 +204,7 @@ TEST(ChildEmitter, TheKineticEnergyGrowsByTheLaunchesSeenFromTheirCentreOfMass) 
     const auto fragments = make_fragments(emitter, parent, 200, 0, 1.0);
     double energy = 0.0;
     for (const Particle& fragment : fragments) energy += 0.5 * fragment.mass * length_squared(fragment.velocity);
-    // 200 launches of 3 m/s in random directions: their centre moves by about 3 / sqrt(200) m/s.
+    // The centre of mass of 200 launches at 3 m/s in random directions moves at about 3 / sqrt(200) m/s.
     const double own = energy - 0.5 * parent.mass * length_squared(parent.velocity);
     EXPECT_LE(own, 0.5 * parent.mass * 9.0 * (1.0 + 1e-12));
     EXPECT_GE(own, 0.5 * parent.mass * 9.0 * 0.95);
@@ -221,7 +222,8 @@ TEST(ChildEmitter, CountsAreDrawnAroundTheirMeanAndNeverNegative) {
         ASSERT_LE(count, 4U);
         sum += count;
     }
-    // Uniform in -2..4, rounded, below 0 cut off: (1 + 2 + 3 + 4 / 2) / 6 = 4 / 3; standard deviation 1.37; five sigma.
+    // The counts are uniform in -2..4, rounded, and cut off below 0. Their mean is (1 + 2 + 3 + 4 / 2) / 6 = 4 / 3, and
+    // their standard deviation 1.37. The limit is five sigma.
     EXPECT_NEAR(sum / parents, 4.0 / 3.0, 5.0 * 1.37 / std::sqrt(parents));
 }
 

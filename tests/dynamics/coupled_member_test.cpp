@@ -1,4 +1,4 @@
-// Members that leave the plan of a step: what the others do to them, and what they do to the others.
+// Tests members of a particle system that deviate from the planned step, and the interaction with the other members.
 #include "ricochet/dynamics/coupled_member.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ public:
         for (std::size_t k = 0; k < 3; ++k) sum += system_.mass(k) * velocities[k];
         return sum;
     }
-    /// Member 0 turns back in the middle of the step and flies straight on; returns its velocities.
+    /// Reverses member 0 in the middle of the step. It then flies on in a straight line. Returns its velocities.
     std::vector<FlownPiece> turn_back() {
         const double half = 0.5 * kStep;
         FlownPiece before = piece_of(plans[0]);
@@ -68,7 +68,7 @@ private:
     ParticleSystem system_;
 };
 
-TEST(FlownPiece, EndsWithTheVelocityThatTheMethodSays) {
+TEST(FlownPiece, EndsWithTheVelocityOfTheMethod) {
     const PlannedSystem planned(IntegratorKind::velocity_verlet);
     const FlownPiece piece = piece_of(planned.plans[1]);
     EXPECT_EQ(piece.at(0.0).velocity, planned.plans[1].start.velocity);
@@ -76,7 +76,7 @@ TEST(FlownPiece, EndsWithTheVelocityThatTheMethodSays) {
     EXPECT_EQ(piece.at(kStep).position, planned.plans[1].path.end);
 }
 
-TEST(CoupledMember, FeelsOnItsPlanWhatTheSystemSays) {
+TEST(CoupledMember, HasTheForceOfTheSystemOnItsPlannedPath) {
     const PlannedSystem planned(IntegratorKind::rk4);
     const ParticleSystem& system = planned.system();
     for (std::size_t k = 0; k < 3; ++k) {
@@ -88,7 +88,7 @@ TEST(CoupledMember, FeelsOnItsPlanWhatTheSystemSays) {
     }
 }
 
-TEST(CoupledMember, FeelsTheOthersWhereTheyAreAtTheTime) {
+TEST(CoupledMember, UsesThePositionsOfTheOthersAtTheSameTime) {
     const PlannedSystem planned(IntegratorKind::rk4);
     ForceInput input = planned.plans[2].start;
     input.time = 0.6 * kStep;
@@ -98,22 +98,22 @@ TEST(CoupledMember, FeelsTheOthersWhereTheyAreAtTheTime) {
               1e-12);
 }
 
-TEST(CoupledMember, MayBeHeld) {
+TEST(CoupledMember, CanHaveAConstantAcceleration) {
     const CoupledMember held({1, 2, 3});
     EXPECT_FALSE(held.varies());
     EXPECT_EQ(held.acceleration({}), (Vec3{1, 2, 3}));
 }
 
-TEST(Departures, ChangeNothingWhereAllFlyAsPlanned) {
+TEST(Departures, ChangeNothingIfAllMembersFlyAsPlanned) {
     PlannedSystem planned(IntegratorKind::rk4);
     std::vector<Vec3> velocities = planned.planned_velocities();
     planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
     EXPECT_EQ(velocities, planned.planned_velocities());
 }
 
-// 2 v in the middle of a step stretches the spring by 2 v h / 2 at its end: an impulse of k v h^2 / 4, and 2 v c h / 2
-// by the damper.
-TEST(Departures, GiveTheOthersTheImpulseOfTheDeparture) {
+// A velocity change of 2 v in the middle of a step stretches the spring by 2 v h / 2 at the end of the step. The spring
+// adds an impulse of k v h^2 / 4, and the damper adds 2 v c h / 2.
+TEST(Departures, TransferTheImpulseOfTheDeviationToTheOthers) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const std::vector<FlownPiece> flown = planned.turn_back();
@@ -131,7 +131,7 @@ TEST(Departures, GiveTheOthersTheImpulseOfTheDeparture) {
     }
 }
 
-TEST(Departures, KeepMomentumButForWhatTheImpactGave) {
+TEST(Departures, ConserveMomentumExceptForTheImpactImpulse) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const std::vector<FlownPiece> flown = planned.turn_back();
@@ -145,7 +145,7 @@ TEST(Departures, KeepMomentumButForWhatTheImpactGave) {
     }
 }
 
-TEST(Departures, LeaveTheVelocitiesOfThoseThatNothingMoves) {
+TEST(Departures, LeaveTheVelocitiesOfUnaffectedMembers) {
     PlannedSystem planned(IntegratorKind::rk4);
     std::vector<Vec3> velocities = planned.planned_velocities();
     planned.departures.record(0, planned.turn_back(), {});
@@ -153,8 +153,9 @@ TEST(Departures, LeaveTheVelocitiesOfThoseThatNothingMoves) {
     EXPECT_EQ(velocities, planned.planned_velocities());
 }
 
-// In contact too: a spring pulls on one that a surface has held where it was, and on the other end the opposite.
-TEST(Departures, GiveBothEndsTheSameWhereOneIsHeld) {
+// This also holds in contact. The spring pulls on a particle that a surface has stopped, and applies the opposite
+// impulse at its other end.
+TEST(Departures, GiveOppositeImpulsesToBothEndsIfOneIsStopped) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const Flight& plan = planned.plans[0];

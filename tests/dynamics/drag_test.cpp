@@ -22,19 +22,19 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const ForceInput kState{{1, 2, 3}, {4, -5, 6}, 2.0, 0.25, 0.5};
 
-// Speed of a particle that has fallen for long enough.
+// Returns the speed of a particle after a fall of the given duration, in m/s.
 double terminal_speed(std::unique_ptr<Force> drag, ForceInput state, double duration) {
     const ForceField forces = field_of(make_gravity({0, 0, -9.81}), std::move(drag));
     return -carried(forces, state, duration, 2000).velocity.z;
 }
 
-TEST(LinearDrag, PullsAgainstTheVelocityInProportion) {
+TEST(LinearDrag, OpposesTheVelocityInProportion) {
     // F = -c v with c = 0.5 kg/s on 2 kg.
     EXPECT_EQ(make_linear_drag(0.5)->acceleration(kState), (Vec3{-1, 1.25, -1.5}));
     EXPECT_FALSE(make_linear_drag(0.5)->is_uniform());
 }
 
-TEST(LinearDrag, StoresNoEnergyAndOnlyTakesIt) {
+TEST(LinearDrag, StoresNoEnergyAndOnlyDissipatesIt) {
     const auto drag = make_linear_drag(0.5);
     EXPECT_EQ(*drag->potential_energy(kState), 0.0);
     EXPECT_LT(dot(drag->acceleration(kState), kState.velocity), 0.0);
@@ -57,7 +57,7 @@ TEST(LinearDrag, WithoutAFlowIsVelocityTimesOneRoundedFactor) {
     }
 }
 
-TEST(LinearDrag, EndsAtWeightOverCoefficient) {
+TEST(LinearDrag, ReachesWeightOverCoefficient) {
     const ForceInput falling{{}, {}, 0.3, 0.0, 0.0};
     EXPECT_NEAR(terminal_speed(make_linear_drag(0.6), falling, 20.0), 0.3 * 9.81 / 0.6, 1e-12);
 }
@@ -69,18 +69,18 @@ TEST(LinearDrag, SlowsDownExponentially) {
     EXPECT_NEAR(end.position.x, 1.5 * (1.0 - std::exp(-2.0)), 1e-9);
 }
 
-TEST(QuadraticDrag, GrowsWithTheSquareAndEndsAtItsRoot) {
+TEST(QuadraticDrag, GrowsWithTheSquareAndReachesItsTerminalSpeed) {
     const auto drag = make_quadratic_drag(0.5);
     EXPECT_NEAR(length(drag->acceleration(kState)), 0.5 * length_squared(kState.velocity) / 2.0, 1e-12);
     EXPECT_LT(dot(drag->acceleration(kState), kState.velocity), 0.0);
     const ForceInput falling{{}, {}, 0.3, 0.0, 0.0};
     EXPECT_NEAR(terminal_speed(make_quadratic_drag(0.02), falling, 20.0), std::sqrt(0.3 * 9.81 / 0.02), 1e-10);
-    // Falling from rest: v = v_end tanh(g t / v_end).
+    // A particle that falls from rest has v = v_end tanh(g t / v_end).
     const double v_end = std::sqrt(0.3 * 9.81 / 0.02);
     EXPECT_NEAR(terminal_speed(make_quadratic_drag(0.02), falling, 0.8), v_end * std::tanh(9.81 * 0.8 / v_end), 1e-9);
 }
 
-TEST(SphereDrag, IsTheQuadraticOneWithHalfDensityCoefficientAndArea) {
+TEST(SphereDrag, IsQuadraticWithHalfDensityTimesCoefficientAndArea) {
     const double k = 0.5 * 1.2 * 0.47 * pi * 0.25 * 0.25;
     const Vec3 expected = make_quadratic_drag(k)->acceleration(kState);
     EXPECT_NEAR(length(make_sphere_drag(0.47, 1.2)->acceleration(kState) - expected), 0.0, 1e-14);
@@ -89,8 +89,8 @@ TEST(SphereDrag, IsTheQuadraticOneWithHalfDensityCoefficientAndArea) {
     EXPECT_EQ(length(make_sphere_drag(0.47, 1.2)->acceleration(point)), 0.0);
 }
 
-TEST(StokesDrag, EndsAtStokesSpeedInABuoyantFluid) {
-    // A glass bead of 50 micrometres in water: 2 (density difference) g r^2 / (9 viscosity).
+TEST(StokesDrag, ReachesStokesSpeedInABuoyantFluid) {
+    // A glass bead of 50 micrometres in water falls at 2 (density difference) g r^2 / (9 viscosity).
     const double r = 50e-6;
     const double mass = 2500.0 * 4.0 / 3.0 * pi * r * r * r;
     const ForceField forces =
@@ -100,7 +100,7 @@ TEST(StokesDrag, EndsAtStokesSpeedInABuoyantFluid) {
 }
 
 TEST(SchillerNaumannCoefficient, HasTheValuesOfItsFormula) {
-    // Computed to 30 digits apart from this program.
+    // Reference values with 30 digits, computed independently of this program.
     const double table[][2] = {{0.01, 2415.21607011356170677},
                                {0.1, 247.401206145542910385},
                                {1.0, 27.6},
@@ -116,7 +116,7 @@ TEST(SchillerNaumannCoefficient, HasTheValuesOfItsFormula) {
     EXPECT_THROW((void)schiller_naumann_coefficient(0.0), InputError);
 }
 
-TEST(SchillerNaumannDrag, IsDragByItsCoefficientAtEverySpeed) {
+TEST(SchillerNaumannDrag, MatchesItsCoefficientAtEverySpeed) {
     const double density = 1.2;
     const double viscosity = 1.8e-5;
     const auto drag = make_schiller_naumann_drag(density, viscosity);
@@ -130,7 +130,7 @@ TEST(SchillerNaumannDrag, IsDragByItsCoefficientAtEverySpeed) {
     }
 }
 
-TEST(SchillerNaumannDrag, IsStokesAtVanishingSpeedAndNothingAtRest) {
+TEST(SchillerNaumannDrag, IsStokesDragAtVanishingSpeedAndZeroAtRest) {
     const auto drag = make_schiller_naumann_drag(1000.0, 1e-3);
     const ForceInput slow{{}, {1e-12, 0, 0}, 1e-6, 1e-5, 0.0};
     EXPECT_NEAR(drag->acceleration(slow).x / make_stokes_drag(1e-3)->acceleration(slow).x, 1.0, 1e-4);
@@ -141,8 +141,8 @@ TEST(SchillerNaumannDrag, IsStokesAtVanishingSpeedAndNothingAtRest) {
     EXPECT_EQ(length(drag->acceleration(still)), 0.0);
 }
 
-TEST(SchillerNaumannDrag, EndsWhereTheFormulaBalancesTheWeight) {
-    // A rain drop of 1 mm radius; the speed by bisection of the formula.
+TEST(SchillerNaumannDrag, ReachesTheSpeedAtWhichTheFormulaBalancesTheWeight) {
+    // Rain drop of 1 mm radius. Its speed follows from bisection of the formula.
     const double r = 1e-3;
     const double mass = 1000.0 * 4.0 / 3.0 * pi * r * r * r;
     double low = 0.1;
@@ -167,7 +167,7 @@ std::vector<std::function<std::unique_ptr<Force>(FlowPointer)>> all_laws() {
             [](FlowPointer flow) { return make_schiller_naumann_drag(1.2, 1e-3, std::move(flow)); }};
 }
 
-TEST(Drag, IsThatOfTheVelocityRelativeToTheFlow) {
+TEST(Drag, UsesTheVelocityRelativeToTheFlow) {
     for (const auto& make : all_laws()) {
         const auto in_wind = make(make_wind({1, 2, 3}));
         ForceInput relative = kState;
@@ -189,7 +189,7 @@ TEST(Drag, IsAsSteadyAsItsFlow) {
     }
 }
 
-TEST(Drag, CarriesAParticleToTheWindsSpeed) {
+TEST(Drag, AcceleratesAParticleToTheWindSpeed) {
     const ForceField forces = field_of(make_linear_drag(1.0, make_wind({3, 0, 0})));
     EXPECT_NEAR(carried(forces, {{}, {}, 0.1, 0.0, 0.0}, 5.0, 1000).velocity.x, 3.0, 1e-12);
 }
@@ -203,7 +203,7 @@ TEST(Drag, RefusesValuesOutOfRange) {
     EXPECT_THROW((void)make_schiller_naumann_drag(1.0, 0.0), InputError);
 }
 
-TEST(Drag, TheMessageSaysWhatWasFoundAndExpected) {
+TEST(Drag, TheMessageGivesTheFoundAndExpectedValues) {
     try {
         (void)make_linear_drag(-0.5);
         FAIL();
@@ -212,7 +212,7 @@ TEST(Drag, TheMessageSaysWhatWasFoundAndExpected) {
     }
 }
 
-TEST(Buoyancy, LiftsByTheWeightOfWhatIsDisplaced) {
+TEST(Buoyancy, LiftsByTheWeightOfTheDisplacedFluid) {
     const auto lift = make_buoyancy(1000.0, {0, 0, -9.81});
     const double volume = 4.0 / 3.0 * pi * 0.25 * 0.25 * 0.25;
     EXPECT_NEAR(lift->acceleration(kState).z, 1000.0 * volume * 9.81 / 2.0, 1e-12);

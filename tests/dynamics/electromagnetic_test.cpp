@@ -25,7 +25,7 @@ TEST(LorentzForce, IsChargeTimesFieldAndCrossProduct) {
     EXPECT_TRUE(make_lorentz_force({2.0, {1, 0, 0}, {}})->is_uniform());
 }
 
-TEST(LorentzForce, TurnsAParticleWithTheCyclotronsRadiusAndFrequency) {
+TEST(LorentzForce, CirclesWithTheCyclotronRadiusAndFrequency) {
     const double q = 2.0;
     const double m = 0.5;
     const double b = 3.0;
@@ -34,7 +34,7 @@ TEST(LorentzForce, TurnsAParticleWithTheCyclotronsRadiusAndFrequency) {
     const double period = 2.0 * pi * m / (q * b);
     const ForceField forces = field_of(make_lorentz_force({q, {}, {0, 0, b}}));
     const ForceInput start{{}, {speed, 0, 0}, m, 0.0, 0.0};
-    // A positive charge turns clockwise about B: its circle's centre is at -y.
+    // A positive charge circles clockwise about B, so the centre of its circle is at -y.
     const ForceInput half = carried(forces, start, period / 2.0, 1000);
     EXPECT_NEAR(length(half.position - Vec3(0, -2.0 * radius, 0)), 0.0, 1e-9);
     const ForceInput whole = carried(forces, start, period, 2000);
@@ -50,7 +50,7 @@ TEST(LorentzForce, DriftsAcrossBothFields) {
     const ForceField forces = field_of(make_lorentz_force({1.0, e, b}));
     const ForceInput end = carried(forces, {{}, {}, 1.0, 0.0, 0.0}, 3.0 * period, 3000);
     EXPECT_NEAR(length(end.position - drift * (3.0 * period)), 0.0, 1e-9);
-    // Who moves with the drift feels nothing.
+    // A particle that moves with the drift velocity has no acceleration.
     EXPECT_EQ(forces.acceleration({{}, drift, 1.0, 0.0, 0.0}), Vec3{});
 }
 

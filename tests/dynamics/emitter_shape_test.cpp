@@ -33,7 +33,7 @@ std::vector<LaunchPlace> samples(const EmitterShape& shape, std::uint64_t count 
     return places;
 }
 
-// Chi-square over equally likely bins against the value exceeded with probability 1e-6; the seed is fixed.
+// Compares chi-square over equally likely bins with the value exceeded with probability 1e-6. The seed is fixed.
 void expect_uniform(const std::vector<LaunchPlace>& places, std::size_t bins,
                     const std::function<double(const LaunchPlace&)>& fraction) {
     std::vector<double> observed(bins, 0.0);
@@ -60,7 +60,7 @@ std::string refusal(const EmitterShape& shape) {
     return "";
 }
 
-TEST(EmitterShape, AConeIsFilledUniformlyAndLaunchesAlongTheLineFromItsTip) {
+TEST(EmitterShape, AConeIsFilledUniformlyAndLaunchesAwayFromItsTip) {
     const ConeShape cone{{1, 2, 3}, {0, 3, 0}, 30.0, 2.0};
     const auto places = samples(cone);
     const double slope = std::tan(kPi / 6.0);
@@ -99,8 +99,8 @@ TEST(EmitterShape, AMeshVolumeIsFilledUniformly) {
     expect_uniform(places, 40, [](const LaunchPlace& p) { return 0.5 * (1.0 + p.direction.z); });
 }
 
-// As programs write it that give each side of a seam vertices of its own; with a face listed twice.
-TEST(EmitterShape, AMeshVolumeWithSeamsAndARepeatedFaceIsFilledAsTheClosedMesh) {
+// Some programs write separate vertices for both sides of a seam. The mesh also has a repeated face.
+TEST(EmitterShape, AMeshVolumeWithSeamsAndARepeatedFaceIsFilledLikeTheClosedMesh) {
     const TriangleMesh box = testing::box_mesh({-1, 0, 2}, {1, 3, 2.5});
     TriangleMesh seamed;
     for (const Triangle& t : box.triangles) {
@@ -135,7 +135,7 @@ TEST(EmitterShape, ABallWithAHoleIsFilledByVolumeAndTheHoleStaysEmpty) {
 
 TEST(EmitterShape, AMeshSurfaceIsCoveredByArea) {
     const auto mesh = shared(read_mesh(std::string(RICOCHET_SOURCE_DIR) + "/meshes/box.obj").mesh);
-    // Triangles of very different area: a thin long box.
+    // The box is long and thin, so its triangles have very different areas.
     TriangleMesh stretched = *mesh;
     for (Vec3& v : stretched.vertices) v = {v.x * 10.0, v.y, v.z * 0.2};
     const auto places = samples(MeshSurfaceShape{shared(stretched)});
@@ -168,7 +168,7 @@ TEST(EmitterShape, AMeshSurfaceIsCoveredByArea) {
     EXPECT_LT(chi_square(observed, expected), chi_square_limit(expected.size() - 1));
 }
 
-TEST(EmitterShape, MeshesWithoutAnInsideAreRefused) {
+TEST(EmitterShape, MeshesWithoutAnInteriorAreRefused) {
     TriangleMesh open = testing::box_mesh({}, {1, 1, 1});
     open.triangles.pop_back();
     EXPECT_NE(refusal(MeshVolumeShape{shared(open)}).find("not closed"), std::string::npos);
@@ -179,22 +179,22 @@ TEST(EmitterShape, MeshesWithoutAnInsideAreRefused) {
     EXPECT_EQ(refusal(ConeShape{{}, {0, 0, 1}, 20.0, 1.0}), "");
 }
 
-// A camera at distance 10 with 90 degrees and 200 pixels: one metre there is ten pixels.
-TEST(ScreenArea, IsThatOfThePicture) {
+// For a camera at distance 10 with 90 degrees and 200 pixels, one metre is ten pixels.
+TEST(ScreenArea, IsTheProjectedAreaInPixels) {
     const ReferenceCamera camera{{0, 0, 10}, {0, 0, 0}, 90.0, 200.0};
     EXPECT_NEAR(screen_area(DiskShape{{}, {0, 0, 1}, 2.0}, camera), kPi * 400.0, 1.0);
     EXPECT_NEAR(screen_area(DiskShape{{}, {1, 0, 0}, 2.0}, camera), 0.0, 1e-9);
     EXPECT_NEAR(screen_area(BoxShape{{}, {3, 2, 0}}, camera), 600.0, 1e-9);
     EXPECT_NEAR(screen_area(BoxShape{{0, 0, -10}, {3, 2, 0}}, camera), 150.0, 1e-9);
     EXPECT_EQ(screen_area(PointShape{}, camera), 0.0);
-    // The outline of a ball on the axis is seen at the tangent of asin(r / d).
+    // The outline of a ball on the axis appears at the tangent of asin(r / d).
     const double tangent = 2.0 / std::sqrt(96.0);
     EXPECT_NEAR(screen_area(SphereShape{{}, 2.0, false}, camera), kPi * 1e4 * tangent * tangent, 1.5);
     EXPECT_NEAR(screen_area(MeshVolumeShape{shared(testing::box_mesh({-1, -1, -1}, {1, 1, 0}))}, camera), 400.0, 1e-9);
     EXPECT_NEAR(screen_area(ConeShape{{0, 0, 0}, {0, 0, -1}, 45.0, 1.0}, camera), kPi * 1e4 / 121.0, 0.5);
 }
 
-TEST(ScreenArea, WhatStandsBesideOrBehindTheCameraIsRefused) {
+TEST(ScreenArea, ShapesBesideOrBehindTheCameraAreRefused) {
     const ReferenceCamera camera{{0, 0, 0}, {0, 0, -1}, 35.0, 720.0};
     EXPECT_THROW((void)screen_area(BoxShape{{0, 0, 1}, {1, 1, 4}}, camera), InputError);
     EXPECT_THROW((void)screen_area(SphereShape{{0, 0, -1}, 2.0, false}, camera), InputError);

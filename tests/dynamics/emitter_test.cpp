@@ -40,7 +40,7 @@ std::vector<Particle> all_births_of(const EmitterDescription& description, std::
     return Emitter(description, seed, number).births(0.0, 1.0);
 }
 
-// Chi-square of the samples over equally likely bins, against the value exceeded with probability 1e-6.
+// Compares chi-square over equally likely bins with the value exceeded with probability 1e-6.
 void expect_uniform(const std::vector<Particle>& samples, std::size_t bins,
                     const std::function<double(const Particle&)>& fraction) {
     std::vector<double> observed(bins, 0.0);
@@ -71,7 +71,7 @@ void expect_same_bits(const std::vector<Particle>& a, const std::vector<Particle
     }
 }
 
-TEST(Emitter, ASteadyRateGivesBirthWhenTheIntegralPassesHalfCounts) {
+TEST(Emitter, ASteadyRateSpawnsWhenItsIntegralPassesHalfCounts) {
     EmitterDescription description = burst_of(PointShape{}, 0);
     description.rate = {10.0, 0.0};
     description.start = 2.0;
@@ -109,8 +109,8 @@ TEST(Emitter, TheRateIsDrawnAnewForEverySecondWithinItsSpread) {
         mean += c / static_cast<double>(seconds);
     }
     for (const double c : counts) variance += (c - mean) * (c - mean) / static_cast<double>(seconds - 1);
-    // Uniform of half width 200: standard deviation 115.5; of the mean of 400: 5.77; the variance's relative standard
-    // error is sqrt(0.8 / 400) = 0.045. Five sigma.
+    // The distribution is uniform with half width 200 and standard deviation 115.5. The mean of 400 has 5.77. The
+    // relative standard error of the variance is sqrt(0.8 / 400) = 0.045. The limits are five sigma.
     EXPECT_NEAR(mean, 2000.0, 29.0);
     EXPECT_NEAR(variance, 200.0 * 200.0 / 3.0, 5 * 0.045 * 13333.0);
 }
@@ -124,12 +124,12 @@ TEST(Emitter, NegativeDrawsOfTheRateCountAsZero) {
     for (const Particle& p : births) counts[static_cast<std::size_t>(p.birth_time)] += 1.0;
     const auto idle = std::count(counts.begin(), counts.end(), 0.0);
     // Half of the seconds draw a negative rate: 200 +- 10 (one sigma). The mean rate is 300 / 4, with a standard
-    // deviation of 96.8 per second: five sigma of the total are 9680.
+    // deviation of 96.8 per second. Five sigma of the total are 9680.
     EXPECT_NEAR(static_cast<double>(idle), 200.0, 50.0);
     EXPECT_NEAR(static_cast<double>(births.size()), 400 * 75.0, 9700.0);
 }
 
-TEST(Emitter, BirthsDoNotDependOnHowTimeIsCut) {
+TEST(Emitter, BirthsDoNotDependOnTheTimeSteps) {
     EmitterDescription description = burst_of(DiskShape{{1, 2, 3}, {1, 1, 0}, 0.5}, 100);
     description.start = 0.3;
     description.stop = 6.5;
@@ -178,7 +178,7 @@ TEST(Emitter, TheEndOfTheIntervalBelongsToTheNextOne) {
     EXPECT_TRUE(emitter.births(2.0, 3.0).empty());
 }
 
-TEST(Emitter, StopEndsTheRateAndLimitEndsEverything) {
+TEST(Emitter, StopEndsTheRateAndLimitEndsAllBirths) {
     EmitterDescription description = burst_of(PointShape{}, 7);
     description.rate = {10.0, 0.0};
     description.stop = 2.0;
@@ -249,7 +249,7 @@ TEST(Emitter, ASphereIsCoveredUniformlyAndLaunchesOutward) {
     expect_uniform(births, 50, [](const Particle& p) { return (p.position.z - 1.0) / 4.0; });
 }
 
-TEST(Emitter, APointLaunchesInEveryDirectionAlike) {
+TEST(Emitter, APointLaunchesEquallyInAllDirections) {
     EmitterDescription description = burst_of(PointShape{{1, 2, 3}});
     description.speed = {1.0, 0.0};
     const auto births = all_births(description);
@@ -266,7 +266,8 @@ TEST(Emitter, AConeIsUniformInSolidAngle) {
         description.cone_degrees = degrees;
         description.speed = {1.0, 0.0};
         const auto births = all_births(description);
-        // Height below the apex over the cap's height, from the distance to the axis where the cone is narrow.
+        // Computes the height below the apex relative to the cap's height. For narrow cones it uses the distance from
+        // the axis.
         const double cap = 2.0 * std::pow(std::sin(degrees * kPi / 360.0), 2.0);
         expect_uniform(births, 50, [&](const Particle& p) {
             const double ring = p.velocity.x * p.velocity.x + p.velocity.z * p.velocity.z;
@@ -278,7 +279,7 @@ TEST(Emitter, AConeIsUniformInSolidAngle) {
     }
 }
 
-TEST(Emitter, WithoutAConeAllGoExactlyAlongTheDirection) {
+TEST(Emitter, WithoutAConeAllLaunchExactlyAlongTheDirection) {
     EmitterDescription description = burst_of(BoxShape{}, 100);
     description.direction = {0, -2, 0};
     description.speed = {3.0, 0.0};
@@ -296,7 +297,7 @@ TEST(Emitter, AttributesAreUniformAroundTheirMeans) {
     expect_uniform(births, 50, [](const Particle& p) { return (p.velocity.x - 2.5) / 1.0; });
     expect_uniform(births, 50, [](const Particle& p) { return (p.mass - 1.75) / 0.5; });
     expect_uniform(births, 50, [](const Particle& p) { return (p.lifetime - 3.0) / 2.0; });
-    // Independent of each other: the correlation of n pairs has a standard deviation of 1 / sqrt(n).
+    // The attributes are independent of each other. The correlation of n pairs has a standard deviation of 1 / sqrt(n).
     double correlation = 0.0;
     for (const Particle& p : births) {
         correlation += (p.velocity.x - 3.0) * (p.mass - 2.0) / (0.5 * 0.25 / 3.0) / static_cast<double>(kSamples);
@@ -312,7 +313,7 @@ TEST(Emitter, DefaultsAreOneKilogramForever) {
     EXPECT_EQ(p.velocity, Vec3{});
 }
 
-// A unit square of two triangles, one of them cut into a small and a large part, and a degenerate triangle.
+// Returns a unit square of two triangles, one of them split into a small and a large part, and a degenerate triangle.
 std::shared_ptr<const TriangleMesh> unequal_square() {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->vertices = {{0, 0, 5}, {1, 0, 5}, {1, 1, 5}, {0, 1, 5}, {0.1, 0.1, 5}};
@@ -332,7 +333,7 @@ TEST(Emitter, AMeshIsCoveredUniformlyByArea) {
     EXPECT_LT(chi_square(cells, expected), chi_square_limit(99));
 }
 
-TEST(Emitter, MeshBirthsStandJustOffTheSurfaceOnTheOutwardSide) {
+TEST(Emitter, MeshBirthsAreJustOffTheSurfaceOnTheOutwardSide) {
     EmitterDescription description = burst_of(MeshSurfaceShape{unequal_square()}, 1000);
     description.speed = {2.0, 0.0};
     for (const Particle& p : all_births(description)) {
@@ -342,11 +343,11 @@ TEST(Emitter, MeshBirthsStandJustOffTheSurfaceOnTheOutwardSide) {
     }
 }
 
-TEST(Emitter, MeshBirthsAreOffTheirTriangleByTheExactSignWhateverItsShape) {
+TEST(Emitter, MeshBirthsAreOutsideTheirTriangleByTheExactSignForAnyShape) {
     RandomSequence random(3, 0, 0);
     for (int round = 0; round < 300; ++round) {
         SCOPED_TRACE(round);
-        // Slender, tilted triangles, near the origin and far from it.
+        // Slender, tilted triangles near the origin and far from it.
         const double size = std::ldexp(1.0, round % 40 - 20);
         const Vec3 a = 1000.0 * (round % 3) * random.unit_vector();
         const Vec3 b = a + size * random.unit_vector();
@@ -362,7 +363,7 @@ TEST(Emitter, MeshBirthsAreOffTheirTriangleByTheExactSignWhateverItsShape) {
     }
 }
 
-TEST(Emitter, RefusesWhatItCannotEmitAndNamesIt) {
+TEST(Emitter, RefusesInvalidSettingsAndNamesThem) {
     const auto refused = [](const std::function<void(EmitterDescription&)>& spoil, const char* word) {
         EmitterDescription description = burst_of(PointShape{}, 1);
         spoil(description);
@@ -390,7 +391,7 @@ TEST(Emitter, RefusesWhatItCannotEmitAndNamesIt) {
     refused([](auto& d) { d.shape = MeshSurfaceShape{std::make_shared<TriangleMesh>()}; }, "area");
 }
 
-TEST(EmitterBirthTest, ThatRefusesNothingChangesNoBit) {
+TEST(EmitterBirthTest, ChangesNoBitIfItAcceptsAll) {
     EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 200);
     description.speed = {2.0, 1.0};
     description.mass = {1.0, 0.5};
@@ -399,7 +400,7 @@ TEST(EmitterBirthTest, ThatRefusesNothingChangesNoBit) {
     expect_same_bits(Emitter(description, 7, 3).births(0.0, 1.0, 1000, all), all_births_of(description, 7, 3));
 }
 
-TEST(EmitterBirthTest, MovesOnlyWhatItRefusesAndKeepsAllElse) {
+TEST(EmitterBirthTest, MovesOnlyRefusedBirths) {
     EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 2000);
     description.direction = {0, 0, 1};
     description.speed = {2.0, 1.0};
@@ -424,7 +425,7 @@ TEST(EmitterBirthTest, MovesOnlyWhatItRefusesAndKeepsAllElse) {
     expect_uniform(after, 10, [](const Particle& p) { return 2.0 * (p.position.x + 0.5); });
 }
 
-TEST(EmitterBirthTest, RefusesAfterABoundedNumberOfPositionsAndGoesOn) {
+TEST(EmitterBirthTest, SkipsABirthAfterABoundedNumberOfPositions) {
     EmitterDescription description = burst_of(SphereShape{{}, 1.0, false}, 5);
     description.rate = {10.0, 0.0};
     int asked = 0;
@@ -437,7 +438,7 @@ TEST(EmitterBirthTest, RefusesAfterABoundedNumberOfPositionsAndGoesOn) {
     EXPECT_EQ(emitter.births(1.0, 2.0).size(), 10U);
 }
 
-TEST(EmitterBirthTest, AsksOnceAtAPoint) {
+TEST(EmitterBirthTest, TestsEachBirthOfAPointOnce) {
     int asked = 0;
     const BirthTest none = [&](const Particle&) { return ++asked == 0; };
     Emitter emitter(burst_of(PointShape{}, 8), 1, 0);
@@ -446,7 +447,7 @@ TEST(EmitterBirthTest, AsksOnceAtAPoint) {
     EXPECT_EQ(asked, 8);
 }
 
-TEST(EmitterBirthTest, SparesWhatThereIsNoRoomFor) {
+TEST(EmitterBirthTest, DoesNotTestBirthsBeyondTheLimit) {
     int asked = 0;
     const BirthTest all = [&](const Particle&) { return ++asked > 0; };
     Emitter emitter(burst_of(PointShape{}, 8), 1, 0);
@@ -456,7 +457,7 @@ TEST(EmitterBirthTest, SparesWhatThereIsNoRoomFor) {
     EXPECT_EQ(emitter.born(), 8U);
 }
 
-TEST(EmitterBirthTest, SeesThePositionInTheWorld) {
+TEST(EmitterBirthTest, ReceivesThePositionInTheWorld) {
     EmitterDescription description = burst_of(BoxShape{{}, {1, 1, 1}}, 100);
     FrameDescription frame;
     frame.name = "cart";

@@ -27,7 +27,7 @@ TEST(FieldForce, IsUniformAndSteadyWhenItsFieldIs) {
     EXPECT_TRUE(of(make_rotation({}, {0, 0, 1}))->is_steady());
 }
 
-TEST(Swirl, GoesRoundItsAxisWithItsAccelerationAtTheRim) {
+TEST(Swirl, CirclesItsAxisWithItsAccelerationAtTheRim) {
     const auto swirl = make_swirl({1, 0, 0}, {0, 0, 2}, 6.0, 0.5);
     const auto at = [&](double r) { return swirl->acceleration({{1 + r, 0, 9}, {}, 3.0, 0.0, 0.0}); };
     EXPECT_NEAR(at(0.5).y, 6.0, 1e-14);

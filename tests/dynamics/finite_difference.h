@@ -1,5 +1,4 @@
-/// \file
-/// Derivatives of fields and potentials by differences.
+/// \file Derivatives of fields and potentials by finite differences.
 #pragma once
 
 #include <functional>
@@ -9,7 +8,7 @@
 
 namespace ricochet::test {
 
-/// d velocity / d axis by the sixth-order central difference, exact for polynomials up to degree six.
+/// Returns d velocity / d axis by the sixth-order central difference, which is exact for polynomials up to degree six.
 inline Vec3 flow_slope(const FlowField& flow, const Vec3& position, double time, int axis, double h) {
     constexpr double kWeights[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
     Vec3 sum;
@@ -35,7 +34,7 @@ inline Vec3 vorticity(const FlowField& flow, const Vec3& position, double time, 
     return {y.z - z.y, z.x - x.z, x.y - y.x};
 }
 
-/// -grad U / m by the sixth-order central difference.
+/// Returns -grad U / m by the sixth-order central difference.
 inline Vec3 acceleration_of_potential(const Force& force, const ForceInput& input, double h) {
     constexpr double kWeights[3] = {45.0 / 60.0, -9.0 / 60.0, 1.0 / 60.0};
     Vec3 result;

@@ -34,7 +34,7 @@ TEST(Wind, IsTheSameEverywhereAndAtAllTimes) {
     EXPECT_THROW((void)make_wind({0, kNan, 0}), InputError);
 }
 
-TEST(GustyWind, SwingsAboutItsMeanWithItsFrequency) {
+TEST(GustyWind, OscillatesAboutItsMeanWithItsFrequency) {
     const FlowPointer wind = make_gusty_wind({4, 0, 0}, {0.5, 2.0, 0.0});
     EXPECT_EQ(wind->velocity({}, 0.0).x, 4.0);
     EXPECT_NEAR(wind->velocity({}, 0.125).x, 6.0, 1e-14);
@@ -48,7 +48,7 @@ TEST(GustyWind, SwingsAboutItsMeanWithItsFrequency) {
     EXPECT_THROW((void)make_gusty_wind({}, {1.0, 1.0, kNan}), InputError);
 }
 
-TEST(RankineVortex, TurnsRigidlyInsideAndFallsAsOneOverTheDistanceOutside) {
+TEST(RankineVortex, RotatesRigidlyInsideAndDecaysWithTheInverseDistanceOutside) {
     const FlowPointer vortex = make_vortex({{1, 0, 0}, {0, 0, 5}, 3.0, 0.5});
     for (const double r : {0.01, 0.2, 0.499, 0.501, 1.0, 30.0}) {
         const double speed = r < 0.5 ? 3.0 * r / (2.0 * pi * 0.25) : 3.0 / (2.0 * pi * r);
@@ -60,7 +60,7 @@ TEST(RankineVortex, TurnsRigidlyInsideAndFallsAsOneOverTheDistanceOutside) {
     EXPECT_FALSE(vortex->is_uniform());
 }
 
-TEST(LambOseenVortex, HasTheKnownProfileFromTheAxisOn) {
+TEST(LambOseenVortex, HasItsAnalyticProfile) {
     const FlowPointer vortex = make_vortex({{}, {0, 0, 1}, 2.0, 0.5, VortexProfile::lamb_oseen});
     for (const double r : {1e-9, 1e-3, 0.0499, 0.0501, 0.3, 0.5, 1.0, 20.0}) {
         const double speed = -2.0 / (2.0 * pi * r) * std::expm1(-r * r / 0.25);
@@ -80,14 +80,14 @@ TEST(Vortex, HasNoDivergence) {
     }
 }
 
-TEST(Vortex, RefusesWhatIsNone) {
+TEST(Vortex, RefusesInvalidSettings) {
     EXPECT_THROW((void)make_vortex({{}, {0, 0, 0}, 1.0, 1.0}), InputError);
     EXPECT_THROW((void)make_vortex({{}, {0, 0, 1}, kNan, 1.0}), InputError);
     EXPECT_THROW((void)make_vortex({{}, {0, 0, 1}, 1.0, 0.0}), InputError);
     EXPECT_THROW((void)make_vortex({{kNan, 0, 0}, {0, 0, 1}, 1.0, 1.0}), InputError);
 }
 
-TEST(Source, GivesItsStrengthThroughLargeSpheres) {
+TEST(Source, HasItsStrengthAsFluxThroughLargeSpheres) {
     const FlowPointer source = make_source({1, 2, 3}, 5.0, 0.1);
     const double r = 2.0;
     const Vec3 v = source->velocity({1, 2, 3 + r}, 0.0);
@@ -99,7 +99,7 @@ TEST(Source, GivesItsStrengthThroughLargeSpheres) {
     EXPECT_THROW((void)make_source({}, 1.0, -0.1), InputError);
 }
 
-TEST(Rotation, IsThatOfARigidBody) {
+TEST(Rotation, IsTheVelocityOfARigidBody) {
     const FlowPointer rotation = make_rotation({1, 0, 0}, {0, 0, 2});
     EXPECT_EQ(rotation->velocity({1, 3, 5}, 0.0), (Vec3{-6, 0, 0}));
     expect_near(vorticity(*rotation, {4, 5, 6}, 0.0, 0.1), {0, 0, 4}, 1e-12);
@@ -113,7 +113,7 @@ TEST(Shear, GrowsAlongItsGradient) {
     EXPECT_THROW((void)make_shear({}, {1, 0, 0}, {0, 0, 0}), InputError);
 }
 
-TEST(FlowPastSphere, SlidesAlongTheSurfaceAndStopsAtItsPoles) {
+TEST(FlowPastSphere, IsTangentialAtTheSurfaceAndZeroAtItsPoles) {
     const Vec3 center(1, 2, 3);
     const Vec3 stream(0, 0, 4);
     const FlowPointer flow = make_flow_past_sphere(center, 0.5, stream);
@@ -122,7 +122,7 @@ TEST(FlowPastSphere, SlidesAlongTheSurfaceAndStopsAtItsPoles) {
         const Vec3 n = random.unit_vector();
         const Vec3 v = flow->velocity(center + 0.5000000001 * n, 0.0);
         EXPECT_NEAR(dot(v, n), 0.0, 1e-8);
-        // On the surface the speed is 3/2 of the stream's part along it.
+        // The speed on the surface is 3/2 of the tangential component of the stream.
         EXPECT_NEAR(length(v), 1.5 * length(stream - n * dot(stream, n)), 1e-8);
     }
     EXPECT_NEAR(length(flow->velocity({1, 2, 3.5}, 0.0)), 0.0, 1e-15);
@@ -131,7 +131,7 @@ TEST(FlowPastSphere, SlidesAlongTheSurfaceAndStopsAtItsPoles) {
     expect_near(flow->velocity({1e6, 0, 0}, 0.0), stream, 1e-15);
 }
 
-TEST(FlowPastSphere, HasNeitherSourcesNorVortices) {
+TEST(FlowPastSphere, HasNeitherDivergenceNorCurl) {
     const FlowPointer flow = make_flow_past_sphere({}, 0.5, {1, 2, 3});
     RandomSequence random(5, 0, 0);
     for (int i = 0; i < 50; ++i) {

@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Circles about the z axis, one radian a second.
+// Returns a flow in circles about the z axis at one radian per second.
 FlowPointer turning() { return make_rotation({}, {0, 0, 1}); }
 Vec3 on_circle(double t) { return {std::cos(t), std::sin(t), 0.0}; }
 
@@ -20,7 +20,8 @@ FlowPointer driven() {
 }
 Vec3 driven_at(double t) { return {0.5 * std::exp(-t) + 0.5 * (std::cos(t) + std::sin(t)), 0, 0}; }
 
-// Distance from the closed form after one unit of time in equal steps, and largest distance of the path within them.
+// Distance from the closed form after one unit of time in equal steps, and the largest distance of the path inside the
+// steps.
 struct Errors {
     double end = 0.0;
     double between = 0.0;
@@ -44,7 +45,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, FlowPathOrder,
                                            std::tuple{IntegratorKind::midpoint, 2.0},
                                            std::tuple{IntegratorKind::rk4, 4.0}));
 
-TEST_P(FlowPathOrder, IsTheMethodsInSteadyAndInChangingFlowsAlsoInsideTheSteps) {
+TEST_P(FlowPathOrder, IsTheOrderOfTheMethodInSteadyAndUnsteadyFlowsAndInsideSteps) {
     const auto [kind, order] = GetParam();
     const FlowPointer circle = turning();
     const FlowPointer push = driven();
@@ -56,7 +57,7 @@ TEST_P(FlowPathOrder, IsTheMethodsInSteadyAndInChangingFlowsAlsoInsideTheSteps) 
     }
 }
 
-TEST(FlowPath, DormandPrinceIsOfFifthOrderAndItsOwnErrorKeepsTheTolerance) {
+TEST(FlowPath, DormandPrinceIsOfFifthOrderAndMeetsItsTolerance) {
     const FlowPointer flow = turning();
     const Errors coarse = errors_of(Integrator(IntegratorKind::dormand_prince, {1e9, 1e9}).kind, *flow, &on_circle, 1);
     EXPECT_GT(coarse.end, 0.0);
@@ -69,7 +70,7 @@ TEST(FlowPath, DormandPrinceIsOfFifthOrderAndItsOwnErrorKeepsTheTolerance) {
         while (time < 6.0) {
             const FlowPath way = flow_path(integrator, *flow, x, time, 6.0 - time, first);
             const double h = way.path.duration;
-            // One piece, from where it starts: on a circle of that radius.
+            // Compares one piece with the circle through its own start.
             for (const double s : {0.25 * h, 0.5 * h, 0.75 * h, h}) {
                 const Vec3 exact{x.x * std::cos(s) - x.y * std::sin(s), x.x * std::sin(s) + x.y * std::cos(s), 0.0};
                 EXPECT_LT(length(way.path.position(s) - exact), 1.1 * tolerance);

@@ -1,4 +1,4 @@
-// What holds for every force: accelerations follow from potentials, and sums have the same bits from any thread.
+// Properties of every force: accelerations follow from potentials, and sums have the same bits on every thread.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -54,7 +54,7 @@ TEST(EveryForce, IsMinusTheGradientOfItsPotential) {
     for (int i = 0; i < 200; ++i) {
         const ForceInput state = random_state(random);
         for (std::size_t k = 0; k < forces.size(); ++k) {
-            if (length(state.position - Vec3(0.1, 0.2, 0.3)) < 0.2) continue;  // the anchor's kink
+            if (length(state.position - Vec3(0.1, 0.2, 0.3)) < 0.2) continue;  // the kink of the anchor's force
             const Vec3 a = forces[k]->acceleration(state);
             const Vec3 difference = test::acceleration_of_potential(*forces[k], state, 2e-3);
             EXPECT_NEAR(length(a - difference), 0.0, 1e-7 * (1.0 + length(a))) << "force " << k << ", round " << i;
@@ -74,7 +74,7 @@ TEST(EveryForce, SumsToTheSameBitsOnEveryThread) {
     std::vector<std::thread> threads;
     for (std::size_t t = 0; t < kThreads; ++t) {
         threads.emplace_back([&, t] {
-            // Each in an order of its own.
+            // Each thread uses its own order.
             for (std::size_t i = 0; i < states.size(); ++i) {
                 const std::size_t at = (i * 7 + t * 131) % states.size();
                 found[t][at] = field.acceleration(states[at]);

@@ -11,7 +11,7 @@ namespace RICOCHET_FILE {
 
 const ForceInput kState{{1, 2, 3}, {4, -5, 6}, 2.0, 0.0, 0.5};
 
-TEST(Gravity, AcceleratesEveryMassAlike) {
+TEST(Gravity, AcceleratesEveryMassEqually) {
     const auto gravity = make_gravity({0, -9.81, 0});
     EXPECT_EQ(gravity->acceleration(kState), (Vec3{0, -9.81, 0}));
     EXPECT_TRUE(gravity->is_uniform());
@@ -49,7 +49,7 @@ TEST(CallableForce, AsAnAccelerationIsNotDivided) {
     EXPECT_THROW((void)make_acceleration(nullptr), InputError);
 }
 
-TEST(CallableForce, KnowsOfItselfWhatItIsTold) {
+TEST(CallableForce, HasThePropertiesStatedAtItsConstruction) {
     const auto spring = make_force(
         [](const ForceInput& input) { return -4.0 * input.position; },
         {.potential = [](const ForceInput& input) { return 2.0 * length_squared(input.position); }, .is_steady = true});
@@ -61,7 +61,7 @@ TEST(CallableForce, KnowsOfItselfWhatItIsTold) {
     EXPECT_TRUE(constant->is_steady());
 }
 
-TEST(CallableForce, IsToldWhichParticleItActsOn) {
+TEST(CallableForce, ReceivesTheParticleItActsOn) {
     const auto by_id = make_force([](const ForceInput& input) { return Vec3(static_cast<double>(input.id), 0, 0); });
     ForceInput state = kState;
     EXPECT_EQ(by_id->acceleration(state).x, 0.0);
@@ -70,7 +70,7 @@ TEST(CallableForce, IsToldWhichParticleItActsOn) {
 }
 
 TEST(ForceField, AddsInTheOrderGiven) {
-    // (1 + 2^53) - 2^53 is 0 in doubles, (2^53 - 2^53) + 1 is 1: the order is visible.
+    // (1 + 2^53) - 2^53 is 0 in doubles, but (2^53 - 2^53) + 1 is 1, so the result shows the order.
     const auto sum = [](double first, double second, double third) {
         std::vector<std::unique_ptr<Force>> forces;
         for (const double x : {first, second, third}) forces.push_back(make_gravity({x, 0, 0}));
@@ -98,7 +98,7 @@ TEST(ForceField, WithoutForcesIsFreeFlight) {
     EXPECT_EQ(*none.potential_energy(kState), 0.0);
 }
 
-TEST(ForceOnSome, IsFeltByThoseOnly) {
+TEST(ForceOnSome, ActsOnTheSelectedParticlesOnly) {
     const auto force = make_force_on({9, 2}, make_gravity({0, 0, -2}));
     for (const std::uint64_t id : {0U, 2U, 3U, 9U}) {
         const ForceInput state{{0, 0, 5}, {}, 2.0, 0.0, 0.0, id};

@@ -34,7 +34,7 @@ std::array<std::uint64_t, 6> bits(const PhaseState& state) {
             of(state.velocity.x), of(state.velocity.y), of(state.velocity.z)};
 }
 
-TEST(FreeFlight, LeadsToTheSameBitsAsTheFlightOfEveryIntegrator) {
+TEST(FreeFlight, HasTheSameBitsAsTheFlightOfEveryIntegrator) {
     RandomSequence random(9, 0, 0);
     for (int i = 0; i < test::scaled(2000); ++i) {
         const ForceField field = gravity(i % 3 == 0 ? Vec3{} : 20.0 * random.in_unit_ball());
@@ -57,7 +57,7 @@ TEST(ForeseenPath, PassesThroughTheEndsOfAllFurtherSteps) {
         const Vec3 acceleration = 20.0 * random.in_unit_ball();
         const ForceField field = gravity(acceleration);
         const double h = 0.01 + 0.1 * random.uniform();
-        const double first = i % 2 == 0 ? h : h * random.uniform();  // after a bounce the rest of a step
+        const double first = i % 2 == 0 ? h : h * random.uniform();  // after a bounce, only the rest of a step remains
         const ForceInput state{random.in_unit_ball(), 5.0 * random.in_unit_ball(), 1.0, 0.0, 0.0};
         for (const IntegratorKind kind : kKinds) {
             const Flight whole = begin_flight(kind, field, state, h);
@@ -80,7 +80,7 @@ TEST(ForeseenPath, PassesThroughTheEndsOfAllFurtherSteps) {
     }
 }
 
-TEST(CommonAcceleration, IsTheSumWhereEveryForceIsTheSameForAll) {
+TEST(CommonAcceleration, IsTheSumIfEveryForceIsTheSameForAllParticles) {
     std::vector<std::unique_ptr<Force>> forces;
     forces.push_back(make_gravity({0.1, 0.2, -9.81}));
     forces.push_back(make_gravity({0.3, 0, 1}));
@@ -90,7 +90,7 @@ TEST(CommonAcceleration, IsTheSumWhereEveryForceIsTheSameForAll) {
     EXPECT_EQ(ForceField().common_acceleration(), Vec3{});
 }
 
-TEST(CommonAcceleration, IsNothingWhereAForceMayDifferFromParticleToParticle) {
+TEST(CommonAcceleration, IsAbsentIfAForceDiffersBetweenParticles) {
     std::vector<std::unique_ptr<Force>> forces;
     forces.push_back(make_gravity({0, 0, -9.81}));
     forces.push_back(make_force([](const ForceInput&) { return Vec3{1, 0, 0}; }, {{}, true, true}));

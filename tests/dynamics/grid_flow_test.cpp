@@ -43,7 +43,7 @@ TEST(GridFlow, IsExactAtItsPoints) {
     EXPECT_EQ(flow->velocity({-0.5, 2.25, 5}, 0.0), grid.values[1 + 4 * (1 + 3 * 1)]);
 }
 
-TEST(GridFlow, OutsideIsTheNearestValueOrNothing) {
+TEST(GridFlow, HasTheNearestValueOrZeroOutside) {
     const FlowPointer clamped = make_grid_flow(sampled_grid(), OutsideGrid::clamp);
     const FlowPointer zero = make_grid_flow(sampled_grid(), OutsideGrid::zero);
     EXPECT_NEAR(length(clamped->velocity({-5, 2.1, 4}, 0.0) - linear({-1, 2.1, 4})), 0.0, 1e-14);
@@ -55,13 +55,13 @@ TEST(GridFlow, OutsideIsTheNearestValueOrNothing) {
     (void)clamped->velocity({std::nan(""), 0, 0}, 0.0);  // no index may leave the grid
 }
 
-TEST(GridFlow, OnePointAlongAnAxisHoldsAllAlongIt) {
+TEST(GridFlow, IsConstantAlongAnAxisWithOnePoint) {
     const FlowPointer flow =
         make_grid_flow({{0, 0, 0}, {1, 1, 1}, {2, 1, 1}, {{0, 0, 0}, {2, 0, 0}}}, OutsideGrid::zero);
     EXPECT_EQ(flow->velocity({0.5, 77, -3}, 0.0), (Vec3{1, 0, 0}));
 }
 
-TEST(GridFlow, RefusesWhatIsNoGrid) {
+TEST(GridFlow, RefusesInvalidGrids) {
     const auto refuses = [](auto change) {
         VectorGrid grid = sampled_grid();
         change(grid);

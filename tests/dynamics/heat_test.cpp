@@ -1,4 +1,4 @@
-// How temperatures go towards that of the surroundings, by closed forms.
+// Compares the relaxation of temperatures towards the surroundings with closed forms.
 #include "ricochet/dynamics/heat.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ TEST(Cooling, ByConvectionIsNewtonsExponentialForAnyDuration) {
 }
 
 // T(t) = (T0^-3 + 3 b t)^(-1/3).
-TEST(Cooling, ByRadiationIntoTheDarkIsTheCubeRootForAnyDuration) {
+TEST(Cooling, ByRadiationIntoTheDarkMatchesTheCubeRootForAnyDuration) {
     for (const double t : {1e-6, 0.1, 10.0, 1e4, 1e12}) {
         for (const double start : {1.0, 300.0, 3000.0}) {
             const double expected = std::pow(std::pow(start, -3.0) + 3.0 * 1e-9 * t, -1.0 / 3.0);
@@ -34,7 +34,8 @@ TEST(Cooling, ByRadiationIntoTheDarkIsTheCubeRootForAnyDuration) {
     }
 }
 
-/// b t that a body takes from T0 to T, the temperatures in those of the surroundings: the integral of dx / (x^4 - 1).
+/// Returns the value of b t at which a body has cooled from T0 to T: the integral of dx / (x^4 - 1). Temperatures are
+/// relative to the surroundings.
 long double time_of(long double from, long double to) {
     const auto integral = [](long double x) {
         return 0.25L * std::log(std::fabs((x - 1.0L) / (x + 1.0L))) - 0.5L * std::atan(x);
@@ -42,7 +43,7 @@ long double time_of(long double from, long double to) {
     return integral(from) - integral(to);
 }
 
-TEST(Cooling, ByRadiationAmongWarmThingsTakesTheTimeThatItsIntegralSays) {
+TEST(Cooling, ByRadiationIntoWarmSurroundingsTakesTheTimeOfItsIntegral) {
     for (const double from : {0.01, 0.5, 0.99, 1.01, 2.0, 10.0}) {
         for (const double t : {1e-4, 1e-2, 0.3, 2.0}) {
             const double to = cooled(300.0 * from, 300.0, {0.0, 1.0 / (300.0 * 300.0 * 300.0)}, t) / 300.0;
@@ -54,7 +55,7 @@ TEST(Cooling, ByRadiationAmongWarmThingsTakesTheTimeThatItsIntegralSays) {
 }
 
 // With Ta = 0 the equation is Bernoulli's: T^-3 = (T0^-3 + b / a) e^(3 a t) - b / a.
-TEST(Cooling, ByBothIntoTheColdIsBernoullisClosedForm) {
+TEST(Cooling, ByBothIntoTheColdMatchesBernoullisClosedForm) {
     const double a = 0.7;
     const double b = 2e-9;
     for (const double t : {1e-3, 0.1, 1.0, 8.0}) {
@@ -73,7 +74,7 @@ TEST(Cooling, IsTheSameInOneStepAsInMany) {
     }
 }
 
-TEST(Cooling, NeverPassesTheSurroundingsHoweverLongTheStep) {
+TEST(Cooling, NeverPassesTheAmbientTemperatureInAnyStep) {
     RandomSequence random(20261126, 0, 0);
     for (int k = 0; k < 2000; ++k) {
         SCOPED_TRACE(testing::Message() << "seed 20261126, case " << k);
@@ -87,13 +88,13 @@ TEST(Cooling, NeverPassesTheSurroundingsHoweverLongTheStep) {
     }
 }
 
-TEST(Cooling, LeavesWhatIsNoNumberAsItIs) {
+TEST(Cooling, KeepsNanAndIgnoresNegativeDurations) {
     EXPECT_TRUE(std::isnan(cooled(std::numeric_limits<double>::quiet_NaN(), 300.0, {1.0, 1.0}, 1.0)));
     EXPECT_EQ(cooled(400.0, 300.0, {1.0, 1.0}, -1.0), 400.0);
     EXPECT_EQ(cooled(300.0, 300.0, {1.0, 1.0}, 1.0), 300.0);
 }
 
-TEST(HeatTransfer, IsThatOfASphereAtRestWhereNothingBlows) {
+TEST(HeatTransfer, IsThatOfASphereAtRestInStillAir) {
     EXPECT_DOUBLE_EQ(heat_transfer_coefficient({}, 0.5e-3, 0.0), 2.0 * 0.0257 / 1e-3);
     Convection given;
     given.coefficient = 12.5;
@@ -120,7 +121,7 @@ TEST(HeatTransfer, RatesAreSurfaceOverHeatCapacity) {
     EXPECT_NEAR(rates.radiation, 0.8 * kSigma * area / (0.002 * 500.0), 1e-22);
 }
 
-// Sums of such rates leave the range of doubles; the steps that were shortened for that never ended.
+// Sums of such rates overflow. Steps shortened for that reason would never end.
 TEST(Cooling, AtRatesNearTheEndOfDoublesLeavesTheAmbientTemperature) {
     for (const double rate : {1e306, 4e307, 1.7e308}) {
         EXPECT_EQ(cooled(1900.0, 293.0, {rate, 1e-13}, 0.02), 293.0);

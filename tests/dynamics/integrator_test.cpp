@@ -1,5 +1,5 @@
-// Orders of convergence in free flight, against closed forms; what symplectic methods keep; what an adaptive one
-// promises.
+// Tests of integrators in free flight: orders of convergence against closed forms, invariants of symplectic methods,
+// and the tolerance of the adaptive method.
 #include "ricochet/dynamics/integrator.h"
 #include "ricochet/dynamics/flight.h"
 
@@ -25,7 +25,7 @@ ForceField field_of(std::function<Vec3(const ForceInput&)> force) {
     return ForceField(std::move(list));
 }
 
-/// Flies freely for `duration` in equal steps; an adaptive method cuts them further.
+/// Flies freely for `duration` in equal steps, which an adaptive method subdivides.
 ForceInput fly(const Integrator& integrator, const ForceField& forces, ForceInput state, double duration, int steps) {
     const double h = duration / steps;
     for (int k = 0; k < steps; ++k) {
@@ -43,7 +43,7 @@ ForceInput fly(const Integrator& integrator, const ForceField& forces, ForceInpu
     return state;
 }
 
-/// A motion of which the end is known.
+/// Motion with a known final state.
 struct KnownMotion {
     std::string name;
     std::function<Vec3(const ForceInput&)> force;
@@ -53,7 +53,7 @@ struct KnownMotion {
     Vec3 velocity;
 };
 
-/// One period but a bit of a harmonic oscillator of mass 2 and angular frequency 3.
+/// Returns almost one period of a harmonic oscillator of mass 2 and angular frequency 3.
 KnownMotion oscillator() {
     const double t = 1.7;
     const double w = 3.0;
@@ -65,8 +65,9 @@ KnownMotion oscillator() {
             {-w * std::sin(w * t), 1.5 * std::cos(w * t), 0}};
 }
 
-/// Part of an ellipse of eccentricity 0.4 round a centre of strength 1, from the pericentre to the eccentric
-/// anomaly 2.5. Not a whole one: after that the errors of the symplectic Euler step's two half kicks cancel.
+/// Returns a part of an ellipse of eccentricity 0.4 about a centre of strength 1, from the pericentre to the eccentric
+/// anomaly 2.5. A whole ellipse is unsuitable, because the errors of the two half kicks of symplectic Euler would
+/// cancel.
 KnownMotion kepler() {
     const double e = 0.4;
     const double anomaly = 2.5;
@@ -83,7 +84,7 @@ KnownMotion kepler() {
             {-rate * std::sin(anomaly), rate * b * std::cos(anomaly), 0}};
 }
 
-/// Linear drag with gravity: the speed approaches the terminal one.
+/// Returns a fall with linear drag, in which the speed approaches the terminal speed.
 KnownMotion drag() {
     const double tau = 0.5;
     const double g = 9.81;
@@ -101,8 +102,8 @@ KnownMotion drag() {
             terminal + fade * (v0 - terminal)};
 }
 
-/// A particle dragged along by a rigid vortex, the flow w x r: x'' = (w x x - x') / tau, solved as z'' + z'/tau = i w
-/// z/tau.
+/// Returns a particle dragged along by a rigid vortex, the flow w x r. x'' = (w x x - x') / tau is solved as z'' +
+/// z'/tau = i w z/tau.
 KnownMotion vortex() {
     const double tau = 0.3;
     const double w = 2.0;
@@ -133,7 +134,7 @@ double error_of(const Integrator& integrator, const KnownMotion& motion, int ste
     return length(end.position - motion.position) + length(end.velocity - motion.velocity);
 }
 
-/// Slope of log(error) against log(step) over numbers of steps that grow by a factor.
+/// Returns the slope of log(error) against log(step), over numbers of steps that grow by a constant factor.
 double measured_order(IntegratorKind kind, const KnownMotion& motion, int from, int count) {
     double sx = 0.0;
     double sy = 0.0;
@@ -155,7 +156,7 @@ double measured_order(IntegratorKind kind, const KnownMotion& motion, int from, 
 struct Order {
     IntegratorKind kind;
     double order;
-    int from;  // steps
+    int from;  // in steps
 };
 
 class FreeFlight : public ::testing::TestWithParam<Order> {};
@@ -175,7 +176,7 @@ TEST_P(FreeFlight, HasTheOrderOfItsMethod) {
     }
 }
 
-TEST(DormandPrince, IsOfOrderFiveWhereItDoesNotCutTheStep) {
+TEST(DormandPrince, IsOfOrderFiveIfItDoesNotSubdivideTheStep) {
     const ErrorTolerance generous{1e6, 1e6};
     for (const KnownMotion& motion : {oscillator(), kepler(), drag(), vortex()}) {
         SCOPED_TRACE(motion.name);
@@ -186,8 +187,8 @@ TEST(DormandPrince, IsOfOrderFiveWhereItDoesNotCutTheStep) {
     }
 }
 
-// The tolerance is that of one sub-step; over a run errors add up and, on orbits, grow with time.
-TEST(DormandPrince, KeepsItsToleranceFromOneHugeStep) {
+// The tolerance applies to one substep. Over a run the errors add up, and on orbits they grow with time.
+TEST(DormandPrince, MeetsItsToleranceInOneHugeStep) {
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
         for (const KnownMotion& motion : {oscillator(), kepler(), drag(), vortex()}) {
             SCOPED_TRACE(motion.name);
@@ -196,7 +197,7 @@ TEST(DormandPrince, KeepsItsToleranceFromOneHugeStep) {
     }
 }
 
-TEST(DormandPrince, SpendsMoreStepsWhereTheToleranceIsSmaller) {
+TEST(DormandPrince, TakesMoreSubstepsForASmallerTolerance) {
     const KnownMotion motion = kepler();
     std::vector<int> counts;
     for (const double tolerance : {1e-3, 1e-6, 1e-9}) {
@@ -212,7 +213,7 @@ TEST(DormandPrince, SpendsMoreStepsWhereTheToleranceIsSmaller) {
     EXPECT_LT(2 * counts[1], counts[2]);
 }
 
-// The path between a sub-step's ends is what is swept.
+// The sweep uses the path between the ends of a substep.
 TEST(DormandPrince, ThePathStaysWithinTheToleranceOfTheTrajectory) {
     const double tolerance = 1e-6;
     const KnownMotion motion = kepler();
@@ -234,7 +235,7 @@ TEST(DormandPrince, ThePathStaysWithinTheToleranceOfTheTrajectory) {
     }
 }
 
-TEST(UniformForce, EveryMethodOfOrderTwoFliesTheExactParabola) {
+TEST(UniformForce, EveryMethodOfOrderTwoFollowsTheExactParabola) {
     std::vector<std::unique_ptr<Force>> list;
     list.push_back(make_gravity({0, 0, -9.81}));
     const ForceField forces(std::move(list));
@@ -248,7 +249,7 @@ TEST(UniformForce, EveryMethodOfOrderTwoFliesTheExactParabola) {
     }
 }
 
-TEST(VelocityOnTheWay, IsThatOfAShorterStep) {
+TEST(VelocityOnTheWay, EqualsTheVelocityAfterAShorterStep) {
     const KnownMotion motion = vortex();
     const ForceField forces = field_of(motion.force);
     for (const auto kind : {IntegratorKind::forward_euler, IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
@@ -288,7 +289,8 @@ Drift drift_of(IntegratorKind kind, int periods, int steps_per_period) {
     return drift;
 }
 
-// Euler's symplectic method errs by h / 2 at most, Verlet's by h^2 / 4, for ever; forward Euler grows by h^2 a step.
+// The energy error stays below h / 2 for symplectic Euler and below h^2 / 4 for Verlet. The energy of forward Euler
+// grows by h^2 per step.
 TEST(SymplecticMethods, KeepTheEnergyBoundedOverAHundredThousandPeriods) {
     const double h = 2.0 * kPi / 40;
     const Drift euler = drift_of(IntegratorKind::symplectic_euler, 100000, 40);
@@ -299,7 +301,7 @@ TEST(SymplecticMethods, KeepTheEnergyBoundedOverAHundredThousandPeriods) {
     EXPECT_GT(drift_of(IntegratorKind::forward_euler, 20, 40).largest, 1.0);
 }
 
-TEST(IntegratorNames, StandInTheOrderOfTheEnumeration) {
+TEST(IntegratorNames, AreInTheOrderOfTheEnumeration) {
     const std::vector<std::string_view> names = integrator_names();
     for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(name_of(static_cast<IntegratorKind>(k)), names[k]);
 }

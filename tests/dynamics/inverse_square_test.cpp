@@ -1,4 +1,5 @@
-// Sums of the inverse-square law: closed forms, a tree against the direct sum, bits, and what no one should simulate.
+// Tests sums of the inverse-square law: closed forms, the tree against the direct sum, reproducible bits, and
+// degenerate input.
 #include "ricochet/dynamics/inverse_square.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ std::vector<Vec3> by_tree(const WeightedPoints& points, double softening, double
     return field;
 }
 
-/// Of the differences against the root mean square of the fields.
+/// Errors of fields relative to the root mean square of the expected fields.
 struct FieldError {
     double mean = 0.0;  // root mean square
     double largest = 0.0;
@@ -62,7 +63,7 @@ TEST(DirectField, IsNewtonsLawOfTwoPoints) {
     EXPECT_EQ(potential, (std::vector<double>{4.0, 1.5}));
 }
 
-TEST(DirectField, OfASoftenedPointIsPlummers) {
+TEST(DirectField, MatchesPlummersFormulaForASoftenedPoint) {
     const WeightedPoints points{{{0, 0, 0}, {3, 0, 0}}, {2.0, 0.0}};
     EXPECT_NEAR(direct(points, 4.0)[1].x, -2.0 * 3.0 / 125.0, 1e-16);
     std::vector<double> potential(2);
@@ -82,7 +83,7 @@ TEST(DirectField, KeepsMomentum) {
     EXPECT_LT(length(sum), 1e-14 * magnitude);
 }
 
-TEST(DirectField, OfPointsAtOnePlaceIsZeroBetweenThem) {
+TEST(DirectField, IsZeroBetweenCoincidentPoints) {
     const WeightedPoints points{{{1, 1, 1}, {1, 1, 1}, {1, 1, 2}}, {1.0, 5.0, 2.0}};
     for (const double softening : {0.0, 0.5}) {
         for (const std::vector<Vec3>& field : {direct(points, softening), by_tree(points, softening, 0.5)}) {
@@ -93,14 +94,14 @@ TEST(DirectField, OfPointsAtOnePlaceIsZeroBetweenThem) {
     }
 }
 
-/// What the tree's error is stated to be below: docs/particle-forces.md.
+/// Upper bounds of the tree's error as stated in docs/particle-forces.md.
 struct StatedError {
     double opening;
     double mean;
     double largest;
 };
 
-TEST(SourceTree, ErrsAsStated) {
+TEST(SourceTree, HasTheStatedErrors) {
     for (const StatedError& stated :
          {StatedError{0.3, 4e-4, 4e-3}, StatedError{0.5, 2e-3, 2e-2}, StatedError{0.7, 1e-2, 1e-1}}) {
         for (const std::uint64_t seed : {1U, 2U, 3U}) {
@@ -113,8 +114,8 @@ TEST(SourceTree, ErrsAsStated) {
     }
 }
 
-// Charges of both signs: moments of groups are small differences, and first moments are not zero.
-TEST(SourceTree, ErrsAsStatedForChargesOfBothSigns) {
+// With charges of both signs, the moments of groups are small differences and the first moments are not zero.
+TEST(SourceTree, HasTheStatedErrorsForChargesOfBothSigns) {
     for (const StatedError& stated : {StatedError{0.3, 3e-3, 3e-2}, StatedError{0.5, 1.5e-2, 1.5e-1}}) {
         const WeightedPoints points = charges_in_cube(5000, 7);
         const FieldError error = error_of(by_tree(points, 0.001, stated.opening), direct(points, 0.001));
@@ -132,8 +133,9 @@ TEST(SourceTree, HasThePotentialOfItsField) {
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-3 * expected[i]);
 }
 
-// A group's expansion against its points, far away: what is left out is of third order in its size.
-TEST(SourceTree, TakesGroupsToSecondOrder) {
+// Compares the far-field expansion of a group with the sum over its points. The omitted terms are of third order in its
+// size.
+TEST(SourceTree, ExpandsGroupsToSecondOrder) {
     for (const double softening : {0.0, 0.4}) {
         std::vector<double> errors;
         for (const double size : {0.1, 0.05}) {
@@ -149,7 +151,7 @@ TEST(SourceTree, TakesGroupsToSecondOrder) {
     }
 }
 
-TEST(SourceTree, TakesWorkInProportionToTheParticlesTimesTheirLogarithm) {
+TEST(SourceTree, NeedsWorkInProportionToNLogN) {
     const auto work_of = [](std::size_t count) {
         TreeWork work;
         (void)by_tree(plummer_ball(count, 9), 0.01, 0.6, &work);
@@ -161,15 +163,15 @@ TEST(SourceTree, TakesWorkInProportionToTheParticlesTimesTheirLogarithm) {
     EXPECT_LT(many, 64000.0 / 40.0);
 }
 
-// A million: each has twenty times fewer interactions, and far fewer, than in the direct sum.
-TEST(SourceTreeLong, TakesFarLessThanATwentiethOfAMillionSquared) {
+// Each of a million particles has at most a two-hundredth of the interactions of the direct sum.
+TEST(SourceTreeLong, NeedsLessThanATwoHundredthOfAMillionSquared) {
     constexpr std::size_t kMany = 1000000;
     TreeWork work;
     (void)by_tree(plummer_ball(kMany, 10), 0.001, 0.5, &work);
     EXPECT_LT(static_cast<double>(work.with_points + work.with_groups), 1e12 / 200.0);
 }
 
-// Cells of the first cube cannot tell the points of either clump apart.
+// Cells of the first subdivision cannot separate the points of either clump.
 TEST(SourceTree, SplitsClumpsFarSmallerThanTheWhole) {
     WeightedPoints points;
     for (const double offset : {0.0, 1e7}) {
@@ -194,7 +196,7 @@ TEST(SourceTree, GivesTheSameBitsForAnyThreadCount) {
     }
 }
 
-TEST(SourceTree, StandsWhatIsNotFiniteAndPointsAtOnePlace) {
+TEST(SourceTree, ToleratesNonFiniteAndCoincidentPoints) {
     WeightedPoints same{std::vector<Vec3>(500, Vec3{1, 2, 3}), std::vector<double>(500, 1.0)};
     for (const Vec3& g : by_tree(same, 0.0, 0.5)) EXPECT_EQ(g, (Vec3{}));
     WeightedPoints broken = plummer_ball(500, 2);

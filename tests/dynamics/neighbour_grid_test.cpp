@@ -37,7 +37,7 @@ Box3 ball_box(const Vec3& center, double radius) {
     return {center - r, center + r};
 }
 
-/// Balls with radii spread evenly over so many powers of ten, in a box around a centre.
+/// Returns balls in a box around a centre. Their radii are spread evenly over the given number of decades.
 std::vector<Box3> random_balls(std::uint64_t seed, std::size_t count, double decades, const Vec3& size,
                                const Vec3& center) {
     RandomSequence random(seed, 1, 0);
@@ -52,10 +52,10 @@ std::vector<Box3> random_balls(std::uint64_t seed, std::size_t count, double dec
     return boxes;
 }
 
-TEST(NeighbourGrid, FindsWhatBruteForceFindsForRadiiOfOneSizeAndOverThreeDecades) {
-    NeighbourGrid grid;  // one, so that what it keeps must not matter
+TEST(NeighbourGrid, MatchesBruteForceForEqualRadiiAndOverThreeDecades) {
+    NeighbourGrid grid;  // reused, because its stored state must not affect the result
     std::size_t found = 0;
-    for (int seed = 1; seed <= std::max(20, scaled(60)); ++seed) {  // of every size
+    for (int seed = 1; seed <= std::max(20, scaled(60)); ++seed) {  // covers every size
         SCOPED_TRACE("seed " + std::to_string(seed));
         const auto count = static_cast<std::size_t>(1 + 37 * (seed % 20));
         const double decades = seed % 4;
@@ -101,7 +101,7 @@ TEST(NeighbourGrid, LongBoxesPointsEmptyOnesAndThoseFarAwayAreFound) {
     }
 }
 
-TEST(NeighbourGrid, FindsAllThatAnyBoxMeets) {
+TEST(NeighbourGrid, FindsAllBoxesThatAnyBoxOverlaps) {
     for (int seed = 1; seed <= scaled(20); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const std::vector<Box3> boxes =
@@ -123,7 +123,7 @@ TEST(NeighbourGrid, FindsAllThatAnyBoxMeets) {
     }
 }
 
-TEST(NeighbourGrid, NothingAndOneBoxHaveNoPairs) {
+TEST(NeighbourGrid, FindsNoPairsInZeroOrOneBox) {
     NeighbourGrid grid;
     EXPECT_TRUE(grid.find_pairs({}).empty());
     const std::vector<Box3> one{ball_box({1, 2, 3}, 0.5)};
@@ -134,7 +134,7 @@ TEST(NeighbourGrid, NothingAndOneBoxHaveNoPairs) {
     EXPECT_EQ(grid.find_pairs(points).size(), 3U);
 }
 
-TEST(NeighbourGrid, WhereNothingIsLeftNothingIsNear) {
+TEST(NeighbourGrid, FindsNothingOnceAllBoxesAreRemoved) {
     const std::vector<Box3> two = {{{0, 0, 0}, {1, 1, 1}}, {{0.5, 0.5, 0.5}, {2, 2, 2}}};
     NeighbourGrid grid;
     EXPECT_EQ(grid.find_pairs(two).size(), 1U);
@@ -158,9 +158,9 @@ TEST(NeighbourGrid, HasTheSamePairsInTheSameOrderForAnyNumberOfThreads) {
     }
 }
 
-TEST(NeighbourGrid, TakesTheMemoryThatItSays) {
+TEST(NeighbourGrid, UsesTheMemoryThatItReports) {
     const auto count = static_cast<std::size_t>(scaled(200000));
-    const double side = 0.513 * std::cbrt(static_cast<double>(count));  // as densely for any count
+    const double side = 0.513 * std::cbrt(static_cast<double>(count));  // same density for any count
     const std::vector<Box3> boxes = random_balls(4, count, 0.1, side * Vec3{1, 1, 1}, {0, 0, 0});
     NeighbourGrid grid;
     const std::size_t pairs = grid.find_pairs(boxes).size();

@@ -27,7 +27,7 @@ std::vector<std::uint32_t> near_by_brute_force(const std::vector<Box3>& boxes, c
     return near;
 }
 
-TEST(NeighbourPairs, FewThatChangeAgainAndAgainAreFoundAsIfAllWereLookedForAnew) {
+TEST(NeighbourPairs, RepeatedChangesOfAFewBoxesGiveThePairsOfAFullSearch) {
     NeighbourPairs kept;
     NeighbourGrid anew;
     for (int seed = 1; seed <= test::scaled(40); ++seed) {
@@ -55,7 +55,7 @@ TEST(NeighbourPairs, FewThatChangeAgainAndAgainAreFoundAsIfAllWereLookedForAnew)
     }
 }
 
-/// m, by which a box goes on in a call.
+/// way: largest displacement of a box in a call along each axis, in m.
 Box3 moved(const Box3& box, RandomSequence& random, double way) {
     if (box.empty()) return box;
     const auto step = [&] { return way * (2.0 * random.uniform() - 1.0); };
@@ -63,8 +63,9 @@ Box3 moved(const Box3& box, RandomSequence& random, double way) {
     return {box.lower + by, box.upper + by};
 }
 
-// Boxes that go little, of which a few go far or come and go, and then all far: whatever has been kept, the same pairs.
-TEST(NeighbourPairs, ThoseOfBoxesThatDriftAreFoundAsIfAllWereLookedForAnew) {
+// Most boxes move slightly, a few move far, appear or disappear, and finally all move far. The pairs must not depend on
+// the stored state.
+TEST(NeighbourPairs, DriftingBoxesGiveThePairsOfAFullSearch) {
     NeighbourPairs kept;
     NeighbourGrid anew;
     for (int seed = 1; seed <= test::scaled(12); ++seed) {

@@ -1,4 +1,4 @@
-// Forces of near pairs: closed forms, every pair once, potentials that are those of the forces, what is refused.
+// Tests forces of near pairs: closed forms, one evaluation per pair, consistent potentials, and refused settings.
 #include "ricochet/dynamics/pair_forces.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Particles without more than a test says.
+/// Particles with default values for everything that a test does not set.
 struct Crowd {
     std::vector<Vec3> positions;
     std::vector<Vec3> velocities = std::vector<Vec3>(positions.size());
@@ -40,7 +40,7 @@ Crowd two(double distance, double radius = 0.0) {
     return crowd;
 }
 
-/// Of the first of two, along the line away from the second.
+/// Returns the force on the first of two particles, along the line away from the second.
 double push(const ParticlesForce& force, const Crowd& crowd) { return -accelerations(force, crowd)[0].y; }
 
 TEST(LennardJones, IsTheDerivativeOfThePowersShiftedByTheForceAtTheCutoff) {
@@ -67,9 +67,10 @@ TEST(PairForces, HaveThePotentialsOfTheirForces) {
     for (const double r : {0.9, 1.05, 1.2, 1.35}) expect_potential(*make_cohesion({100.0, 0.4, 0.0}), r, 0.5);
 }
 
-TEST(Cohesion, IsAsStated) {
+TEST(Cohesion, MatchesItsFormula) {
     const auto force = make_cohesion({100.0, 0.3, 0.0});
-    EXPECT_NEAR(push(*force, two(1.1, 0.5)), -100.0 * 0.1 * (4.0 / 9.0), 1e-12);  // the most, at a third of the range
+    // the maximum, at a third of the range
+    EXPECT_NEAR(push(*force, two(1.1, 0.5)), -100.0 * 0.1 * (4.0 / 9.0), 1e-12);
     EXPECT_NEAR(push(*force, two(0.9, 0.5)), 10.0, 1e-12);
     EXPECT_EQ(push(*force, two(1.31, 0.5)), 0.0);
     Crowd closing = two(1.0, 0.5);
@@ -87,7 +88,7 @@ Crowd crowd_of(std::size_t count, std::uint64_t seed) {
     return crowd;
 }
 
-/// The sum over all pairs in the order of the particles.
+/// Sums over all pairs in the order of the particles.
 std::vector<Vec3> by_brute_force(const Crowd& crowd, double cutoff, const std::function<Vec3(const PairState&)>& law) {
     std::vector<Vec3> sums(crowd.positions.size());
     for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -108,7 +109,7 @@ std::vector<Vec3> by_brute_force(const Crowd& crowd, double cutoff, const std::f
     return sums;
 }
 
-TEST(PairForces, AreThoseOfEveryPairWithinTheCutoffOnce) {
+TEST(PairForces, IncludeEveryPairWithinTheCutoffOnce) {
     const auto law = [](const PairState& pair) {
         return (pair.masses[0] * pair.masses[1] / pair.distance) * pair.direction - 0.2 * pair.relative_velocity;
     };
@@ -140,7 +141,7 @@ TEST(PairForces, GiveTheSameBitsForAnyThreadCount) {
     }
 }
 
-TEST(PairForces, AreZeroAtOnePlaceAndPassOverWhatIsNotFinite) {
+TEST(PairForces, AreZeroForCoincidentPairsAndSkipNonFinitePositions) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     Crowd crowd{{{1, 1, 1}, {1, 1, 1}, {kNan, 0, 0}, {1, 1, 2.2}}};
     const std::vector<Vec3> found = accelerations(*make_lennard_jones({}), crowd);
@@ -150,7 +151,7 @@ TEST(PairForces, AreZeroAtOnePlaceAndPassOverWhatIsNotFinite) {
     EXPECT_NEAR(found[3].z, -2.0 * found[0].z, 1e-12);
 }
 
-TEST(PairForces, AreRefusedForSettingsThatMakeNoSense) {
+TEST(PairForces, AreRefusedForInvalidSettings) {
     const auto expect_refused = [](const char* words, const std::function<void()>& call) {
         try {
             call();

@@ -1,4 +1,4 @@
-// The classical interface: dimension, state, derivative; and what comes out must not depend on who asks how.
+// Tests the classical interface of dimension, state and derivative. Its results must not depend on the order of calls.
 #include "ricochet/dynamics/particle_system.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST_F(PairOnASpring, HasSixDimensionsForEachMember) {
     EXPECT_EQ(system_.time(), 0.25);
 }
 
-TEST_F(PairOnASpring, GivesBackTheStateThatItWasGiven) {
+TEST_F(PairOnASpring, ReturnsTheStateThatWasSet) {
     std::vector<double> state(18);
     for (std::size_t i = 0; i < 12; ++i) state[i] = 0.5 * static_cast<double>(i);
     state[12] = 3.0;
@@ -62,12 +62,13 @@ TEST_F(PairOnASpring, GivesBackTheStateThatItWasGiven) {
 TEST_F(PairOnASpring, DerivativeIsVelocityAndAccelerationOfTheClosedForm) {
     std::vector<double> d(18);
     system_.derivative(0.25, d);
-    // Spring 0 is stretched by 0.5 m along x, its ends move across it: 20 N; spring 1 is at rest length.
+    // Spring 0 is stretched by 0.5 m along x and its ends move across it, so its force is 20 N. Spring 1 is at rest
+    // length.
     const std::vector<double> expected{0, 1, 0, 10.0, 0, -9.81, 0, 0, 0, -40.0, 0, -9.81, 0, 0, 0, 0, 0, 0};
     for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(d[i], expected[i], 1e-13) << i;
 }
 
-TEST_F(PairOnASpring, DerivativeOfAGivenStateIsThatOfTheSystemInThisState) {
+TEST_F(PairOnASpring, DerivativeOfAGivenStateEqualsTheDerivativeInThatState) {
     std::vector<double> state(18);
     system_.get_state(state);
     for (std::size_t i = 0; i < 12; ++i) state[i] += 0.1 * std::sin(static_cast<double>(i));
@@ -79,7 +80,7 @@ TEST_F(PairOnASpring, DerivativeOfAGivenStateIsThatOfTheSystemInThisState) {
     EXPECT_EQ(from_outside, from_inside);
 }
 
-TEST_F(PairOnASpring, PinnedMembersKeepTheirPositionWhateverTheStateSays) {
+TEST_F(PairOnASpring, PinnedMembersKeepTheirPositionInAnyState) {
     std::vector<double> state(18, 5.0);
     system_.set_state(state);
     EXPECT_EQ(system_.positions()[2], (Vec3{3, 4, 0}));

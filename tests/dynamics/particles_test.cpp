@@ -21,7 +21,7 @@ Particles with_ids(const std::vector<std::uint64_t>& ids) {
     return particles;
 }
 
-TEST(Particles, GiveBackWhatWasAppended) {
+TEST(Particles, ReturnAppendedParticles) {
     const Particles particles = with_ids({7, 3});
     ASSERT_EQ(particles.size(), 2U);
     const Particle second = particles.at(1);
@@ -56,7 +56,7 @@ TEST(Particles, StartWithoutAHistory) {
     EXPECT_EQ(particles.unsimulated_time[0], 0.0);
 }
 
-TEST(Particles, CompactKeepsTheFlaggedOnesInTheirOrderInEveryArray) {
+TEST(Particles, CompactKeepsFlaggedEntriesInOrderInEveryArray) {
     Particles particles = with_ids({0, 1, 2, 3, 4});
     for (std::size_t i = 0; i < 5; ++i) {
         particles.contacts[i] = static_cast<std::uint32_t>(10 + i);
@@ -84,7 +84,7 @@ TEST(Particles, OrderByIdListsEveryEntryOnce) {
     EXPECT_TRUE(Particles{}.order_by_id().empty());
 }
 
-TEST(Particles, AreOrderedByIdsThatLieCloseFarApartOrRepeat) {
+TEST(Particles, AreOrderedByDenseSparseAndRepeatedIds) {
     const std::vector<std::vector<std::uint64_t>> lists = {
         {},
         {5},

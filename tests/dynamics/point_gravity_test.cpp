@@ -23,7 +23,7 @@ TEST(PointGravity, PullsByTheInverseSquare) {
     EXPECT_FALSE(sun->is_uniform());
 }
 
-TEST(PointGravity, IsThatOfAPlummerSphereWithSoftening) {
+TEST(PointGravity, EqualsAPlummerSphereWithSoftening) {
     const auto cluster = make_point_gravity({{{}, 10.0, 3.0}});
     const ForceInput state{{4, 0, 0}, {}, 2.0, 0.0, 0.0};
     EXPECT_DOUBLE_EQ(cluster->acceleration(state).x, -10.0 * 4.0 / 125.0);
@@ -31,7 +31,7 @@ TEST(PointGravity, IsThatOfAPlummerSphereWithSoftening) {
     EXPECT_EQ(cluster->acceleration({{}, {}, 1.0, 0.0, 0.0}), Vec3{});
 }
 
-TEST(PointGravity, HoldsACircularOrbitOfKeplersPeriod) {
+TEST(PointGravity, KeepsACircularOrbitWithKeplersPeriod) {
     const double mu = 3.0;
     const double r = 2.0;
     const double period = 2.0 * std::numbers::pi * std::sqrt(r * r * r / mu);

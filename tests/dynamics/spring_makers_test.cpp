@@ -74,7 +74,7 @@ TEST(Rope, SplitsItsMassByLengthSoThatEndsHaveHalf) {
     EXPECT_DOUBLE_EQ(rope.particles[4].mass, 0.25);
 }
 
-TEST(Rope, OfAMaterialIsAsStiffAsAWholeHoweverItIsCut) {
+TEST(Rope, HasTheStiffnessOfItsMaterialForAnyNumberOfSegments) {
     for (const std::size_t nodes : {2U, 5U, 40U}) {
         RopeSettings settings = rope_of(nodes);
         settings.stiffness.reset();
@@ -99,7 +99,7 @@ TEST(Rope, LongerThanTheDistanceHangsAsACatenary) {
     }
 }
 
-TEST(Rope, KeepsItsLengthAndEndsWhereverTheyAre) {
+TEST(Rope, KeepsItsLengthAndEndPoints) {
     for (const Vec3& to : {Vec3{3, 0, 4}, Vec3{0, 0, -2}, Vec3{0, 0, 2}, Vec3{0.001, -5, 1}, Vec3{1, 1, -1}}) {
         for (const double slack : {1.0, 1.0000000001, 1.0001, 1.5, 30.0}) {
             RopeSettings settings = rope_of(2001);
@@ -110,7 +110,7 @@ TEST(Rope, KeepsItsLengthAndEndsWhereverTheyAre) {
             for (const Spring& spring : rope.springs) along += distance(rope, spring);
             EXPECT_NEAR(along, *settings.length, 2e-3 * *settings.length) << to.x << " " << slack;
             EXPECT_EQ(rope.particles.back().position, to);
-            // No kink at the end: the last segment is as long as its neighbours.
+            // There is no kink at the end: the last segment is as long as its neighbours.
             EXPECT_LE(distance(rope, rope.springs.back()), 1.001 * rope.springs.back().rest_length) << slack;
         }
     }
@@ -161,7 +161,7 @@ TEST(Cloth, HasASpringForEveryEdgeAndABendingSpringAcrossEveryInnerOne) {
     const SpringBody cloth = make_cloth(sphere, settings);
     const std::size_t vertices = sphere.vertices.size();
     const std::size_t faces = sphere.triangles.size();
-    const std::size_t edges = vertices + faces - 2;  // Euler
+    const std::size_t edges = vertices + faces - 2;  // Euler's formula
     ASSERT_EQ(cloth.particles.size(), vertices);
     ASSERT_EQ(cloth.springs.size(), 2 * edges);
     EXPECT_EQ(cloth.faces.size(), faces);
@@ -185,7 +185,7 @@ TEST(Cloth, FacesNameTheSpringsAlongTheirEdges) {
     }
 }
 
-TEST(Cloth, OfASheetCountsItsEdges) {
+TEST(Cloth, HasASpringForEveryEdgeOfASheet) {
     const TriangleMesh sheet = sheet_mesh({1, 2, 3}, {4, 0, 0}, {0, 3, 0}, 4, 3);
     EXPECT_EQ(sheet.vertices.size(), 20U);
     EXPECT_EQ(sheet.triangles.size(), 24U);
@@ -194,17 +194,17 @@ TEST(Cloth, OfASheetCountsItsEdges) {
     ClothSettings settings;
     settings.stiffness = 1.0;
     settings.pinned = {0, 4};
-    const std::size_t edges = 20 + 24 - 1;  // Euler, for a disk
+    const std::size_t edges = 20 + 24 - 1;  // Euler's formula for a disk
     const SpringBody plain = make_cloth(sheet, settings);
     EXPECT_EQ(plain.springs.size(), edges);
     EXPECT_TRUE(plain.particles[0].pinned);
     EXPECT_TRUE(plain.particles[4].pinned);
     EXPECT_FALSE(plain.particles[1].pinned);
     settings.bending_stiffness = 1.0;
-    EXPECT_EQ(make_cloth(sheet, settings).springs.size(), edges + (edges - 14));  // 14 edges on the rim
+    EXPECT_EQ(make_cloth(sheet, settings).springs.size(), edges + (edges - 14));  // 14 edges are on the rim
 }
 
-TEST(Cloth, HasNoBendingSpringWhereThreeFacesShareAnEdge) {
+TEST(Cloth, HasNoBendingSpringIfThreeFacesShareAnEdge) {
     const TriangleMesh fins{{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                             {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
     ClothSettings settings;
@@ -213,7 +213,7 @@ TEST(Cloth, HasNoBendingSpringWhereThreeFacesShareAnEdge) {
     EXPECT_EQ(make_cloth(fins, settings).springs.size(), 7U);
 }
 
-TEST(Cloth, RefusesWhatCannotBeCloth) {
+TEST(Cloth, RefusesUnsuitableMeshes) {
     const TriangleMesh sheet = sheet_mesh({}, {1, 0, 0}, {0, 1, 0}, 1, 1);
     TriangleMesh stray = sheet;
     stray.vertices.push_back({9, 9, 9});
@@ -230,7 +230,7 @@ TEST(Cloth, RefusesWhatCannotBeCloth) {
     EXPECT_THROW((void)sheet_mesh({}, {1, 0, 0}, {0, 1, 0}, 1, 0), InputError);
 }
 
-TEST(SpringBody, AppendsBodiesWithIdsAndSpringsMovedUp) {
+TEST(SpringBody, AppendsBodiesWithShiftedIdsAndSprings) {
     SpringBody body = make_rope(rope_of(3));
     body.append(make_cloth(sheet_mesh({}, {1, 0, 0}, {0, 1, 0}, 1, 1), {}));
     ASSERT_EQ(body.particles.size(), 7U);

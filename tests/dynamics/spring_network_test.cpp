@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Particles and springs at random; particle i has the id 10 + 3 i.
+/// Random particles and springs. Particle i has the id 10 + 3 i.
 struct RandomNetwork {
     explicit RandomNetwork(unsigned seed, std::size_t particles = 40, std::size_t spring_count = 120) {
         std::mt19937 random(seed);
@@ -59,15 +59,15 @@ std::string refusal(std::vector<Spring> springs) {
 
 TEST(SpringForce, PullsByStretchAndDampsAlongTheSpringOnly) {
     const Spring spring{0, 1, 2.0, 10.0, 0.5};
-    // Stretched by 1 m; the far end leaves with 4 m/s and moves across with 7.
+    // Stretched by 1 m. The far end recedes at 4 m/s and moves across at 7 m/s.
     EXPECT_EQ(spring_force(spring, {1, 0, 0}, {}, {4, 0, 0}, {4, 7, 0}), (Vec3{12, 0, 0}));
     // Compressed by 1 m.
     EXPECT_EQ(spring_force(spring, {1, 0, 0}, {}, {1, 0, 1}, {}), (Vec3{0, 0, -10}));
-    // Moving as one.
+    // Both ends move with the same velocity.
     EXPECT_EQ(spring_force(spring, {1, 0, 0}, {5, 6, 7}, {3, 0, 0}, {5, 6, 7}), Vec3{});
 }
 
-TEST(SpringForce, IsZeroWhereTheEndsCoincide) {
+TEST(SpringForce, IsZeroIfTheEndsCoincide) {
     EXPECT_EQ(spring_force({0, 1, 2.0, 10.0, 0.5}, {1, 2, 3}, {}, {1, 2, 3}, {4, 5, 6}), Vec3{});
 }
 
@@ -167,7 +167,7 @@ TEST(SpringNetwork, ForceIsTheNegativeSlopeOfTheEnergy) {
     }
 }
 
-TEST(SpringNetwork, LinksAndBondsStandInTheOrderOfSpringNumbers) {
+TEST(SpringNetwork, LinksAndBondsAreInTheOrderOfSpringNumbers) {
     RandomNetwork made(4);
     SpringNetwork network(made.springs);
     std::reverse(made.ids.begin(), made.ids.end());
@@ -202,7 +202,7 @@ TEST(SpringNetwork, CoupledListsOnlyParticlesWithASpring) {
     EXPECT_EQ(network.force_on(2, places, places), Vec3{});
 }
 
-TEST(SpringNetwork, BreaksWhatIsStretchedBeyondItsLimitForGood) {
+TEST(SpringNetwork, BreaksOverstretchedSpringsPermanently) {
     SpringNetwork network({{0, 1, 1.0, 1.0, 0.0, 0.5}, {1, 2, 1.0, 1.0, 0.0}, {2, 3, 1.0, 1.0, 0.0, 0.25}});
     const std::vector<std::uint64_t> ids{0, 1, 2, 3};
     network.bind(ids);
@@ -224,7 +224,7 @@ TEST(SpringNetwork, BreaksWhatIsStretchedBeyondItsLimitForGood) {
     EXPECT_EQ(network.lost(), 0U);
 }
 
-TEST(SpringNetwork, LosesTheSpringsOfParticlesThatAreGoneForGood) {
+TEST(SpringNetwork, RemovesTheSpringsOfRemovedParticlesPermanently) {
     SpringNetwork network({{0, 1, 1.0, 1.0, 0.0}, {1, 2, 1.0, 1.0, 0.0}, {2, 3, 1.0, 1.0, 0.0}});
     network.bind(std::vector<std::uint64_t>{0, 2, 3});
     EXPECT_EQ(network.lost(), 2U);

@@ -1,4 +1,5 @@
-// Whole systems of particles: closed forms of coupled oscillations, orders, and agreement with single particles.
+// Tests whole systems of particles: closed forms of coupled oscillations, orders of convergence, and agreement with
+// single particles.
 #include "ricochet/dynamics/system_integrator.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +34,7 @@ struct FreeSystem {
         particle.pinned = pinned;
         particles.append(particle);
     }
-    /// All particles as members. Returns whether every step was solved.
+    /// Steps all particles as members. Returns true if every step was solved.
     bool run(const Integrator& integrator, double duration, int steps) {
         springs.bind(particles.id);
         std::vector<std::uint32_t> all(particles.size());
@@ -62,7 +63,8 @@ struct FreeSystem {
     Particles particles;
 };
 
-/// Two masses on a spring, no gravity: their distance swings with omega^2 = k (1/m1 + 1/m2), their middle drifts.
+/// Returns two masses on a spring without gravity. Their distance oscillates with omega^2 = k (1/m1 + 1/m2), and their
+/// centre drifts.
 FreeSystem swinging_pair() {
     FreeSystem system({{0, 1, 1.0, 18.0, 0.0}});
     system.add({0, 0, 0}, {0.1, 0.2, 0.0}, 1.0);
@@ -82,7 +84,7 @@ double error_of_pair(IntegratorKind kind, int steps) {
     return length(system.particles.position[0] - first) + length(system.particles.position[1] - second);
 }
 
-TEST(SystemIntegrator, FindsTheSwingingPairInItsOrder) {
+TEST(SystemIntegrator, SolvesTheOscillatingPairWithItsOrder) {
     const auto order = [](IntegratorKind kind, int steps) {
         return std::log2(error_of_pair(kind, steps) / error_of_pair(kind, 2 * steps));
     };
@@ -100,7 +102,7 @@ TEST(SystemIntegrator, DormandPrinceKeepsItsToleranceOverTheWholeSystem) {
     EXPECT_GT(error_of_pair(IntegratorKind::dormand_prince, 1), 1e-16);
 }
 
-TEST(SystemIntegrator, StepsUncoupledParticlesToTheBitsOfSingleOnes) {
+TEST(SystemIntegrator, StepsUncoupledParticlesToTheBitsOfSingleParticles) {
     for (const IntegratorKind kind : kAllKinds) {
         if (kind == IntegratorKind::ballistic) continue;  // becomes velocity_verlet
         std::vector<std::unique_ptr<Force>> list;
@@ -118,7 +120,7 @@ TEST(SystemIntegrator, StepsUncoupledParticlesToTheBitsOfSingleOnes) {
             EXPECT_LT(length(system.particles.velocity[0] - flight.end_velocity), 1e-10);
             continue;
         }
-        if (kind == IntegratorKind::velocity_verlet) {  // the flight's end is that of its parabola, by Horner's rule
+        if (kind == IntegratorKind::velocity_verlet) {  // the flight's end follows from its parabola by Horner's rule
             EXPECT_LT(length(system.particles.position[0] - flight.path.end), 1e-15);
         } else {
             EXPECT_EQ(system.particles.position[0], flight.path.end) << name_of(kind);
@@ -140,13 +142,13 @@ TEST(SystemIntegrator, ConservesMomentumToRounding) {
         };
         const Vec3 before = momentum();
         system.run(kind, 2.0, 400);
-        // Newton's method leaves a residual of the size of its tolerance; the others only round.
+        // Newton's method leaves a residual of the size of its tolerance. The other methods only round.
         const double allowed = kind == IntegratorKind::implicit_euler ? 1e-9 : 1e-13;
         EXPECT_LT(length(momentum() - before), allowed) << name_of(kind);
     }
 }
 
-TEST(SystemIntegrator, ImplicitEulerStaysStableWhereExplicitEulerExplodes) {
+TEST(SystemIntegrator, ImplicitEulerStaysStableWhenExplicitEulerDiverges) {
     // omega h = sqrt(2e8) * 0.01 = 141.
     const auto largest_after = [](IntegratorKind kind) {
         FreeSystem system({{0, 1, 1.0, 1e8, 0.0}});
@@ -194,8 +196,8 @@ TEST(SystemIntegrator, ImplicitEulerSolvesItsEquationsWithDragAndCompressedSprin
     EXPECT_EQ(end.positions()[0], x0[0]);
 }
 
-// Nodes that stop while others fly on press springs to nothing: where the energy has saddles Newton's method has to get
-// past them, without dozens of factorizations.
+// If some nodes stop while others fly on, springs are compressed to zero length. The energy then has saddles, which
+// Newton's method must pass without dozens of factorizations.
 TEST(SystemIntegrator, ImplicitEulerSolvesViolentStepsInFewIterations) {
     for (const double damping : {0.0, 0.1}) {
         SCOPED_TRACE(damping);
@@ -226,8 +228,9 @@ TEST(SystemIntegrator, ImplicitEulerSolvesViolentStepsInFewIterations) {
     }
 }
 
-// A spring without a length has no direction, and gets one within the step: its places in the matrix are there before.
-TEST(SystemIntegrator, ImplicitEulerPullsApartWhatBeginsAtOnePoint) {
+// A spring without length has no direction at first and gets one within the step. Its entries in the matrix must be
+// allocated in advance.
+TEST(SystemIntegrator, ImplicitEulerSeparatesCoincidentParticles) {
     for (const int others : {0, 1, 5}) {
         SCOPED_TRACE(others);
         std::vector<Spring> springs;
@@ -243,7 +246,7 @@ TEST(SystemIntegrator, ImplicitEulerPullsApartWhatBeginsAtOnePoint) {
     }
 }
 
-TEST(SpringStability, BoundIsWhereAPairBeginsToExplode) {
+TEST(SpringStability, BoundIsTheStepAtWhichAPairStartsToDiverge) {
     const std::vector<Spring> springs{{0, 1, 1.0, 100.0, 0.0}};
     std::vector<Particle> particles(2);
     for (const IntegratorKind kind : {IntegratorKind::symplectic_euler, IntegratorKind::velocity_verlet}) {

@@ -1,5 +1,4 @@
-/// \file
-/// A free particle carried by the integrators.
+/// \file Integration of a free particle.
 #pragma once
 
 #include <memory>
@@ -10,7 +9,7 @@
 
 namespace ricochet::test {
 
-/// A sum of one or more forces.
+/// Returns a sum of one or more forces.
 template <class... Forces>
 ForceField field_of(Forces... forces) {
     std::vector<std::unique_ptr<Force>> list;
@@ -18,7 +17,7 @@ ForceField field_of(Forces... forces) {
     return ForceField(std::move(list));
 }
 
-/// The state after `duration` s in equal steps of the classical Runge-Kutta method.
+/// Returns the state after `duration` s in equal steps of the classical Runge-Kutta method.
 inline ForceInput carried(const ForceField& forces, ForceInput state, double duration, int steps) {
     const double h = duration / steps;
     for (int i = 0; i < steps; ++i) {

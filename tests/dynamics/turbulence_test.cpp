@@ -29,9 +29,9 @@ TurbulenceSettings one_octave() {
     return settings;
 }
 
-// Inside a lattice cell the velocity is a polynomial of degree six in each coordinate, whose derivative the difference
-// gives exactly; it does for two thirds of the points, and the others straddle a cell's wall.
-TEST(Turbulence, HasNoDivergenceButForRounding) {
+// Inside a lattice cell the velocity is a polynomial of degree six in each coordinate, so the difference is exact. Two
+// thirds of the points are inside a cell. The others straddle a cell boundary.
+TEST(Turbulence, HasNoDivergenceExceptForRounding) {
     const FlowPointer flow = make_turbulence(one_octave());
     RandomSequence random(6, 0, 0);
     std::vector<double> divergences;
@@ -49,7 +49,7 @@ TEST(Turbulence, HasNoDivergenceButForRounding) {
     EXPECT_GT(slopes[250], 0.1);  // the terms that cancel are not small
 }
 
-TEST(Turbulence, ADifferenceSeesLessDivergenceTheFinerItIs) {
+TEST(Turbulence, DivergenceByDifferencesShrinksWithTheirStep) {
     TurbulenceSettings settings;
     settings.octaves = 4;
     settings.rate = 0.3;
@@ -73,7 +73,7 @@ TEST(Turbulence, ADifferenceSeesLessDivergenceTheFinerItIs) {
     EXPECT_LT(mean_divergence(1e-4), 1e-4);
 }
 
-TEST(Turbulence, HasTheSpeedThatItIsTold) {
+TEST(Turbulence, HasTheGivenSpeed) {
     for (const std::uint32_t octaves : {1U, 4U}) {
         double squares = 0.0;
         const int count = scaled(40000);
@@ -96,8 +96,8 @@ TEST(Turbulence, HasTheSpeedThatItIsTold) {
     }
 }
 
-// A pattern that only moved on would be found again beside itself.
-TEST(Turbulence, LaterEddiesAreOthersAndNotTheSameMovedOn) {
+// A pattern that is merely translated would reappear beside its old position.
+TEST(Turbulence, LaterEddiesAreNewAndNotTranslatedOnes) {
     TurbulenceSettings settings = one_octave();
     settings.rate = 1.0;
     const FlowPointer flow = make_turbulence(settings);

@@ -1,4 +1,5 @@
-// System calls that fail: a full disk at any byte, errors of every call that output needs, errors of reading.
+// Tests of failing system calls: a full disk at any byte, errors of every call that output needs, and errors of
+// reading.
 #include <gtest/gtest.h>
 
 #include <cerrno>
@@ -47,7 +48,7 @@ ProgramResult run_disturbed(const std::vector<std::string>& arguments, std::vect
     return run_ricochet(arguments, start);
 }
 
-TEST_F(CallFaults, ADiskThatIsFullAtAnyByteEndsTheRunWithOneLineAndItCanBeResumed) {
+TEST_F(CallFaults, ADiskFullAtAnyByteEndsTheRunWithOneLineAndItCanBeResumed) {
     const DisturbedRun run;
     const std::int64_t bytes = test::count_calls(run.output(), run.arguments()).at("bytes");
     ASSERT_GT(bytes, 10000);
@@ -65,8 +66,8 @@ TEST_F(CallFaults, ADiskThatIsFullAtAnyByteEndsTheRunWithOneLineAndItCanBeResume
     }
 }
 
-// Every call in a long run, else some of each kind.
-TEST_F(CallFaults, AnyCallThatFailsEndsTheRunWithOneLineOrIsMadeUpForAndItCanBeResumed) {
+// A long run covers every call. A short run covers some calls of each kind.
+TEST_F(CallFaults, AnyFailingCallIsToleratedOrEndsTheRunWithOneLineAndItCanBeResumed) {
     const DisturbedRun run;
     const CallCounts counts = test::count_calls(run.output(), run.arguments());
     EXPECT_GT(counts.at("rename"), 30);
@@ -87,14 +88,14 @@ TEST_F(CallFaults, AnyCallThatFailsEndsTheRunWithOneLineOrIsMadeUpForAndItCanBeR
     }
 }
 
-TEST_F(CallFaults, WritesThatTakePartOfTheirBytesLoseNone) {
+TEST_F(CallFaults, PartialWritesLoseNoBytes) {
     const DisturbedRun run;
     const ProgramResult result = run_disturbed(run.arguments(), call_fault(run.output(), "write", 1, "short", true));
     EXPECT_EQ(result.exit_code, 0) << result.errors;
     run.expect_survived(result);
 }
 
-TEST_F(CallFaults, AnErrorOfClosingAnUnfinishedFileEndsTheRunAndLeavesNoSuchFile) {
+TEST_F(CallFaults, AnErrorInClosingAnUnfinishedFileEndsTheRunAndRemovesTheFile) {
     const DisturbedRun run;
     for (const std::string name : {"particles_000020.vtp", "checkpoint.bin", "summary.json", "out.csv"}) {
         SCOPED_TRACE(name);
@@ -108,7 +109,7 @@ TEST_F(CallFaults, AnErrorOfClosingAnUnfinishedFileEndsTheRunAndLeavesNoSuchFile
     }
 }
 
-TEST_F(CallFaults, InputThatCannotBeReadEndsTheRunBeforeThereIsAnyOutput) {
+TEST_F(CallFaults, UnreadableInputEndsTheRunBeforeAnyOutput) {
     const DisturbedRun run;
     const std::int64_t opens = test::count_calls(run.input(), run.arguments()).at("open");
     EXPECT_GE(opens, 2);
@@ -125,8 +126,8 @@ TEST_F(CallFaults, InputThatCannotBeReadEndsTheRunBeforeThereIsAnyOutput) {
     }
 }
 
-// "Run it without --resume" would remove a good checkpoint.
-TEST_F(CallFaults, ACheckpointThatCannotBeOpenedNowIsNeitherMissingNorDamaged) {
+// The advice "Run it without --resume" would remove a good checkpoint.
+TEST_F(CallFaults, ACheckpointThatCannotBeOpenedIsReportedAsNeitherMissingNorDamaged) {
     const DisturbedRun run;
     const ProgramResult killed =
         run_disturbed(run.arguments(), call_fault("particles_000050.vtp", "rename", 1, "kill"));
@@ -143,8 +144,8 @@ TEST_F(CallFaults, ACheckpointThatCannotBeOpenedNowIsNeitherMissingNorDamaged) {
     run.expect_resumable();
 }
 
-// A run into the folder of an earlier one removes files first.
-TEST_F(CallFaults, AFileOfAnEarlierRunThatCannotBeRemovedEndsTheRun) {
+// A run into the folder of an earlier run removes its files first.
+TEST_F(CallFaults, AnUnremovableFileOfAnEarlierRunEndsTheRun) {
     const DisturbedRun run;
     ASSERT_EQ(run_ricochet(run.arguments()).exit_code, 0);
     const std::int64_t removed = test::count_calls(run.output(), run.arguments()).at("unlink");
@@ -162,7 +163,7 @@ TEST_F(CallFaults, AFileOfAnEarlierRunThatCannotBeRemovedEndsTheRun) {
     }
 }
 
-TEST_F(CallFaults, WhatCannotBeRemovedDoesNotSpoilTheRest) {
+TEST_F(CallFaults, UnremovableFilesDoNotAffectTheRest) {
     const DisturbedRun run;
     const std::int64_t removed = test::count_calls(run.output(), run.arguments()).at("unlink");
     EXPECT_GT(removed, 0);
@@ -178,12 +179,12 @@ TEST_F(CallFaults, WhatCannotBeRemovedDoesNotSpoilTheRest) {
     }
 }
 
-// What the other commands write.
+// Another command and its output.
 
 struct Command {
     std::string what;
     std::vector<std::string> arguments;
-    std::filesystem::path file;  // where its output goes
+    std::filesystem::path file;  // path of its output
     bool is_standard_output;
 };
 
@@ -231,7 +232,7 @@ void expect_clean_failures(const Command& command, const std::filesystem::path& 
     EXPECT_EQ(std::filesystem::file_size(command.file), whole.size());
 }
 
-TEST_F(CallFaults, OtherCommandsTellWhatTheyCouldNotWriteAndLeaveNoPartOfAFile) {
+TEST_F(CallFaults, OtherCommandsReportFailedWritesAndLeaveNoPartOfAFile) {
     const DisturbedRun run;
     ASSERT_EQ(run_ricochet(run.arguments()).exit_code, 0);
     const test::TemporaryFolder folder;
@@ -239,7 +240,7 @@ TEST_F(CallFaults, OtherCommandsTellWhatTheyCouldNotWriteAndLeaveNoPartOfAFile) 
     for (const Command& command : commands(run, folder)) expect_clean_failures(command, folder.path("written"));
 }
 
-TEST_F(CallFaults, AComparisonTellsWhatItCouldNotWriteAndLeavesNoPartOfAFile) {
+TEST_F(CallFaults, AComparisonReportsFailedWritesAndLeavesNoPartOfAFile) {
     const DisturbedRun run;
     const std::vector<std::string> arguments{"compare",   (run.input() / "scene.json").string(),
                                              "--output",  run.output().string(),
@@ -248,7 +249,7 @@ TEST_F(CallFaults, AComparisonTellsWhatItCouldNotWriteAndLeavesNoPartOfAFile) {
                                              "0.02",      "--responses",
                                              "exact",     "--set",
                                              "output={}"};
-    // Without gnuplot: programs that are started by a disturbed one die.
+    // Runs without gnuplot, because programs started by a disturbed program die.
     const std::string no_programs = "PATH=" + run.input().string();
     const CallCounts counts = test::count_calls(run.output(), arguments, {{no_programs}, {}, {}, {}});
     const std::int64_t stride = test::is_long_run() ? 1 : 3;
@@ -267,7 +268,7 @@ TEST_F(CallFaults, AComparisonTellsWhatItCouldNotWriteAndLeavesNoPartOfAFile) {
     }
 }
 
-TEST_F(CallFaults, ABenchmarkWhoseNumbersCannotBeOpenedEndsBeforeItMeasures) {
+TEST_F(CallFaults, ABenchmarkThatCannotOpenItsOutputEndsBeforeItMeasures) {
     const test::TemporaryFolder folder;
     const auto file = folder.path("numbers.json");
     for (const int error : {ENOSPC, EIO, EMFILE}) {

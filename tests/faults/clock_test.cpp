@@ -1,4 +1,5 @@
-// Clocks that jump forwards and backwards: results and files are those of any other run, and what is shown makes sense.
+// Tests of clocks that jump forwards and backwards. Results and files must not change, and displayed times must be
+// plausible.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -21,7 +22,7 @@ using test::DisturbedRun;
 using test::ProgramResult;
 using test::ProgramStart;
 
-// What a program shows on a terminal.
+// Pseudoterminal that captures the output of a program.
 class Terminal {
 public:
     Terminal() : side_(::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC)) {
@@ -29,7 +30,7 @@ public:
         std::array<char, 64> name{};
         if (::ptsname_r(side_, name.data(), name.size()) != 0) throw std::runtime_error("the terminal has no name");
         name_ = name.data();
-        // Kept open, so that nothing is lost between two programs' openings of it.
+        // Stays open, so that no output is lost while no program has the terminal open.
         other_side_ = ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     }
     ~Terminal() {
@@ -41,7 +42,7 @@ public:
 
     [[nodiscard]] const std::string& name() const { return name_; }
 
-    // All that the program shows until it ends.
+    // Returns all output of the program until it ends.
     [[nodiscard]] std::string watch(test::RunningProgram& program) const {
         std::string shown;
         while (true) {
@@ -90,7 +91,7 @@ TEST(JumpingClocks, ChangeNoResultAndNoFile) {
     }
 }
 
-TEST(JumpingClocks, ShowNoNonsenseOnTheTerminalAndInTheReport) {
+TEST(JumpingClocks, GivePlausibleTimesOnTheTerminalAndInTheReport) {
     if (::access("/dev/pts/ptmx", F_OK) != 0) GTEST_SKIP() << "no pseudo-terminals here: mount devpts on /dev/pts";
     const DisturbedRun run;
     std::size_t lines = 0;
@@ -108,7 +109,7 @@ TEST(JumpingClocks, ShowNoNonsenseOnTheTerminalAndInTheReport) {
         const ProgramResult result = program.wait();
         EXPECT_EQ(result.exit_code, 0) << shown;
         expect_sense(shown);
-        expect_sense(std::regex_replace(result.output, std::regex("/[^ ]*"), ""));  // without names of files
+        expect_sense(std::regex_replace(result.output, std::regex("/[^ ]*"), ""));  // without file names
         lines += static_cast<std::size_t>(std::count(shown.begin(), shown.end(), '\r'));
         run.expect_complete();
     }

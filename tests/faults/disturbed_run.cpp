@@ -27,11 +27,12 @@ constexpr std::uint64_t kFirstCheckpoint = 20;
 constexpr const char* kMesh = "OFF\n4 2 0\n-1 -1 0.2\n1 -1 0.1\n1 1 0.2\n-1 1 0.1\n3 0 1 2\n3 0 2 3\n";
 
 std::string preload() {
-    const char* others = std::getenv("LD_PRELOAD");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* others = std::getenv("LD_PRELOAD");  // NOLINT(concurrency-mt-unsafe): no code sets it
     return std::string("LD_PRELOAD=") + RICOCHET_FAULT_LIBRARY + (others == nullptr ? "" : ":" + std::string(others));
 }
 
-// With the settings of sanitizers that a preloaded library and forbidden calls of their own need.
+// Returns the environment that preloads the library. It includes sanitizer settings that a preloaded library and
+// forbidden calls need.
 std::vector<std::string> preloaded(std::vector<std::string> settings) {
     settings.push_back(preload());
     if (kSanitized) settings.emplace_back("ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0");
@@ -40,7 +41,7 @@ std::vector<std::string> preloaded(std::vector<std::string> settings) {
 
 bool is_unfinished(const std::string& name) { return name.ends_with(".partial"); }
 
-// Files of the folder and their bytes.
+// Returns the files of a folder with their bytes.
 std::map<std::string, std::string> files_in(const std::filesystem::path& folder) {
     std::map<std::string, std::string> files;
     std::error_code ignored;
@@ -56,7 +57,7 @@ std::map<std::string, std::string> files_in(const std::filesystem::path& folder)
 bool is_whole(const std::string& name, const std::string& bytes) {
     if (name.ends_with(".json")) return !nlohmann::json::parse(bytes, nullptr, false).is_discarded();
     if (name == kCheckpointFile || name == kExtensionFile || name == kRunMarkerFile)
-        return true;  // resuming and running anew tell
+        return true;  // checked by resuming and by running again
     return bytes.ends_with("</VTKFile>\n");
 }
 

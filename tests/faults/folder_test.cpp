@@ -1,4 +1,4 @@
-// Folders that are shared, vanish or are forbidden, and standard streams that are closed or full.
+// Tests of shared, removed and forbidden folders, and of closed or full standard streams.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -22,7 +22,7 @@ using test::RunningProgram;
 
 bool begins(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
-// A run that goes on for hours, and the moment when it has written its second frame.
+// Returns arguments for a run that takes hours.
 std::vector<std::string> endless(std::vector<std::string> arguments) {
     arguments.insert(arguments.end(), {"--set", "simulation.duration=1e5"});
     return arguments;
@@ -35,7 +35,7 @@ void wait_for_frames(RunningProgram& program, const std::filesystem::path& folde
     ASSERT_TRUE(program.is_running());
 }
 
-TEST(SharedFolder, BelongsToTheFirstOfTwoRunsAndTheSecondTouchesNothing) {
+TEST(SharedFolder, BelongsToTheFirstOfTwoRunsAndTheSecondChangesNothing) {
     const DisturbedRun run;
     RunningProgram first(endless(run.arguments()));
     wait_for_frames(first, run.output());
@@ -56,7 +56,7 @@ TEST(SharedFolder, BelongsToTheFirstOfTwoRunsAndTheSecondTouchesNothing) {
     run.expect_complete();
 }
 
-TEST(SharedFolder, OfTwoRunsThatBeginTogetherIsLeftCompleteByTheOneThatGotIt) {
+TEST(SharedFolder, IsCompleteAfterTwoRunsStartTogether) {
     const DisturbedRun run;
     for (int k = 0; k < 5 * test::case_factor(20); ++k) {
         SCOPED_TRACE(k);
@@ -75,12 +75,12 @@ TEST(SharedFolder, OfTwoRunsThatBeginTogetherIsLeftCompleteByTheOneThatGotIt) {
     }
 }
 
-TEST(VanishedFolder, EndsTheRunWithOneLineAndComesNotBack) {
+TEST(VanishedFolder, EndsTheRunWithOneLineAndIsNotRecreated) {
     const DisturbedRun run;
     RunningProgram program(endless(run.arguments()));
     wait_for_frames(program, run.output());
     std::error_code error;
-    do {  // files may come into it meanwhile
+    do {  // the run may add files meanwhile
         std::filesystem::remove_all(run.output(), error);
     } while (std::filesystem::exists(run.output()));
     const ProgramResult result = program.wait();
@@ -92,7 +92,7 @@ TEST(VanishedFolder, EndsTheRunWithOneLineAndComesNotBack) {
     run.expect_complete();
 }
 
-// Folders that somebody without rights uses: the tests may run as root, who may do everything.
+// The program runs as a user without rights, because the tests may run as root, for whom nothing is forbidden.
 class ForbiddenFolder : public testing::Test {
 protected:
     void SetUp() override {
@@ -100,7 +100,7 @@ protected:
         bool works = false;
         try {
             works = run_ricochet({"--version"}, start_).exit_code == 0;
-        } catch (const std::exception&) {  // there is no setpriv
+        } catch (const std::exception&) {  // setpriv is missing
         }
         if (!works) GTEST_SKIP() << "the tool cannot be run as a user without rights";
     }
@@ -116,7 +116,7 @@ protected:
     ProgramStart start_;
 };
 
-TEST_F(ForbiddenFolder, InputThatCanOnlyBeReadIsEnough) {
+TEST_F(ForbiddenFolder, ReadOnlyInputIsEnough) {
     const DisturbedRun run;
     for (const auto& entry : std::filesystem::directory_iterator(run.input())) allow(entry.path(), false);
     allow(run.input(), false);
@@ -127,9 +127,9 @@ TEST_F(ForbiddenFolder, InputThatCanOnlyBeReadIsEnough) {
     allow(run.input(), true);
 }
 
-TEST_F(ForbiddenFolder, OutputThatMustNotBeWrittenEndsTheRunWithOneLine) {
+TEST_F(ForbiddenFolder, ForbiddenOutputEndsTheRunWithOneLine) {
     const DisturbedRun run;
-    allow(run.output().parent_path(), false);  // the folder cannot be made
+    allow(run.output().parent_path(), false);  // the folder cannot be created
     const ProgramResult made = run_ricochet(run.arguments(), start_);
     EXPECT_EQ(made.exit_code, 1);
     test::expect_clear_end(made);
@@ -137,7 +137,7 @@ TEST_F(ForbiddenFolder, OutputThatMustNotBeWrittenEndsTheRunWithOneLine) {
         << made.errors;
     allow(run.output().parent_path(), true);
     std::filesystem::create_directory(run.output());
-    allow(run.output(), false);  // it is there and cannot be written to
+    allow(run.output(), false);  // the folder exists but cannot be written to
     const ProgramResult used = run_ricochet(run.arguments(), start_);
     EXPECT_EQ(used.exit_code, 1);
     test::expect_clear_end(used);
@@ -146,7 +146,7 @@ TEST_F(ForbiddenFolder, OutputThatMustNotBeWrittenEndsTheRunWithOneLine) {
     allow(run.output(), true);
 }
 
-TEST_F(ForbiddenFolder, InputThatMustNotBeReadIsRefusedInOneLine) {
+TEST_F(ForbiddenFolder, UnreadableInputIsRefusedInOneLine) {
     const DisturbedRun run;
     allow(run.output().parent_path(), true);
     std::filesystem::permissions(run.input() / "roof.off", std::filesystem::perms::none);
@@ -157,7 +157,7 @@ TEST_F(ForbiddenFolder, InputThatMustNotBeReadIsRefusedInOneLine) {
     EXPECT_NE(result.errors.find("Permission denied"), std::string::npos) << result.errors;
 }
 
-// Standard streams.
+// Starts the tool through a shell that redirects standard streams.
 
 ProgramStart through_shell(const std::string& redirections) {
     ProgramStart start;
@@ -165,7 +165,7 @@ ProgramStart through_shell(const std::string& redirections) {
     return start;
 }
 
-TEST(StandardError, ThatTakesNothingDoesNotChangeTheExitCode) {
+TEST(StandardError, DoesNotChangeTheExitCodeWhenFull) {
     for (const std::string redirection : {"2>/dev/full", "2>&-"}) {
         SCOPED_TRACE(redirection);
         const ProgramResult refused = run_ricochet({"check", "no such scene"}, through_shell(redirection));
@@ -174,14 +174,14 @@ TEST(StandardError, ThatTakesNothingDoesNotChangeTheExitCode) {
     }
 }
 
-TEST(StandardError, ThatIsClosedLeavesTheFilesOfARunAsTheyAre) {
+TEST(StandardError, DoesNotAffectTheFilesOfARunWhenClosed) {
     const DisturbedRun run;
     EXPECT_EQ(run_ricochet(run.arguments(), through_shell("<&- >&- 2>&-")).exit_code, 0);
     run.expect_complete();
 }
 
-// The first file that is opened would take the number of standard error, and the message go into it.
-TEST(StandardError, ThatIsClosedIsNoFileOfTheRunWhenAMessageIsDue) {
+// The first file to be opened would get the descriptor of standard error, and messages would be written into it.
+TEST(StandardError, DoesNotBecomeAFileOfTheRunWhenClosed) {
     const DisturbedRun run;
     RunningProgram program(endless(run.arguments()), through_shell("2>&-"));
     wait_for_frames(program, run.output());
@@ -194,7 +194,7 @@ TEST(StandardError, ThatIsClosedIsNoFileOfTheRunWhenAMessageIsDue) {
     run.expect_complete();
 }
 
-TEST(StandardOutput, ThatTakesNothingIsAnError) {
+TEST(StandardOutput, IsAnErrorWhenFull) {
     const DisturbedRun run;
     const std::string mesh = (run.input() / "roof.off").string();
     for (const std::string redirection : {">/dev/full", ">&-"}) {

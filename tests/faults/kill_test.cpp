@@ -1,4 +1,4 @@
-// Runs that are killed at any moment: nothing is half-written under a final name, and the resumed run has the same
+// Tests of runs killed at any moment. No file is half-written under a final name, and the resumed run has the same
 // bits.
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@ using test::DisturbedRun;
 using test::ProgramResult;
 using test::ProgramStart;
 
-// RICOCHET_FAULT_SEED chooses other moments.
+// RICOCHET_FAULT_SEED selects other moments.
 std::uint64_t seed() {
-    const char* text = std::getenv("RICOCHET_FAULT_SEED");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* text = std::getenv("RICOCHET_FAULT_SEED");  // NOLINT(concurrency-mt-unsafe): no code sets it
     return text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
 }
 
-// Killed at random calls, and when it goes on again, until it comes through.
-TEST(Kill, ARunThatIsKilledBeforeAnyCallThatWritesGoesOnToTheSameBits) {
+// Kills the run at random calls, again after each resume, until it completes.
+TEST(Kill, ARunKilledBeforeAnyWritingCallResumesToTheSameBits) {
     if (!test::can_disturb_calls()) GTEST_SKIP() << "the kernel does not let the calls of a program be disturbed";
     const DisturbedRun run;
     std::int64_t calls = 0;
@@ -52,8 +52,8 @@ TEST(Kill, ARunThatIsKilledBeforeAnyCallThatWritesGoesOnToTheSameBits) {
     }
 }
 
-// At moments of the clock, which need not be in a call. What holds does not depend on where it hits.
-TEST(Kill, ARunThatIsKilledAtAnyMomentGoesOnToTheSameBits) {
+// Kills the run at random times, which need not fall into a call. The checks do not depend on the exact moment.
+TEST(Kill, ARunKilledAtAnyMomentResumesToTheSameBits) {
     const DisturbedRun run;
     const auto start = std::chrono::steady_clock::now();
     ASSERT_EQ(test::run_ricochet(run.arguments()).exit_code, 0);

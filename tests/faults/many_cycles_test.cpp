@@ -1,5 +1,5 @@
-// Simulations made, stepped and destroyed, and meshes read, over and over in one process: memory, open files and
-// threads do not grow.
+// Simulations are created, stepped and destroyed, and meshes are read, many times in one process. Memory, open files
+// and threads must not grow.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -31,7 +31,7 @@ constexpr const char* kScene = R"({
 })";
 constexpr const char* kMesh = "OFF\n4 2 0\n-1 -1 0.2\n1 -1 0.1\n1 1 0.2\n-1 1 0.1\n3 0 1 2\n3 0 2 3\n";
 
-/// Reads scene and mesh, runs, saves and destroys. The hash of the end.
+/// Reads the scene and the mesh, runs, saves and destroys the simulation. Returns the hash of the final state.
 std::uint64_t open_and_close(const test::TemporaryFolder& folder) {
     const ImportedMesh mesh = read_mesh(folder.path("roof.off"));
     EXPECT_EQ(mesh.mesh.triangles.size(), 2U);
@@ -43,12 +43,12 @@ std::uint64_t open_and_close(const test::TemporaryFolder& folder) {
     return simulation.state_hash();
 }
 
-TEST(ManyCycles, OfOpeningAndClosingTakeNoMoreMemoryFilesAndThreads) {
+TEST(ManyCycles, OpeningAndClosingNeedNoMoreMemoryFilesAndThreads) {
     const test::TemporaryFolder folder;
     (void)folder.write("scene.json", kScene);
     (void)folder.write("roof.off", kMesh);
     const int cycles = test::scaled(500) * test::case_factor(20);
-    // Working memory of threads is there after some of them, whichever thread gets work.
+    // After some cycles every thread has allocated its working memory, independent of the assignment of work.
     const int warm_up = cycles / 5 + 5;
     const std::uint64_t hash = open_and_close(folder);
     for (int k = 0; k < warm_up; ++k) ASSERT_EQ(open_and_close(folder), hash);

@@ -1,5 +1,5 @@
-// Memory that runs out at any allocation of the program: one line and an exit code, nothing half-written under a final
-// name, and the run can be resumed to the same bits.
+// Tests of memory that runs out at any allocation of the program. The program ends with one line and an exit code, and
+// no file is half-written under a final name. The run can be resumed to the same bits.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -16,7 +16,8 @@ using test::DisturbedRun;
 using test::ProgramResult;
 using test::ProgramStart;
 
-/// Every so many of the allocations: some thousand of them in a long run, else some ten.
+/// Returns the distance between tested allocations. A long run tests about a thousand of them, a short run about
+/// fifteen.
 std::int64_t stride(std::int64_t allocations) { return allocations / (test::is_long_run() ? 1000 : 15) + 1; }
 
 ProgramResult run_without_memory(const std::vector<std::string>& arguments, std::int64_t at, bool goes_on) {
@@ -25,8 +26,8 @@ ProgramResult run_without_memory(const std::vector<std::string>& arguments, std:
     return test::run_ricochet(arguments, start);
 }
 
-/// Whether the run was about to write run.json or summary.json. The JSON library (3.11) follows a null pointer where it
-/// gives up a document for which there was no memory, and nothing can be done about it here.
+/// Returns true if the run was about to write run.json or summary.json. The JSON library (3.11) dereferences a null
+/// pointer when it discards a document for which memory ran out. Ricochet cannot prevent that.
 bool was_making_json(const DisturbedRun& run) {
     const auto has = [&](const char* name) { return std::filesystem::exists(run.output() / name); };
     return !has("run.json") || (has("particles_000100.vtp") && !has("summary.json"));
@@ -39,7 +40,7 @@ void expect_told(const ProgramResult& result) {
     EXPECT_NE(result.errors.find("memory"), std::string::npos) << result.errors;
 }
 
-TEST(MemoryFaults, AtAnyAllocationOfARunAreToldAndItCanBeResumed) {
+TEST(MemoryFaults, AtAnyAllocationOfARunAreReportedAndItCanBeResumed) {
     const DisturbedRun run;
     const std::int64_t allocations = test::count_allocations(run.arguments());
     ASSERT_GT(allocations, 1000);
@@ -58,7 +59,7 @@ TEST(MemoryFaults, AtAnyAllocationOfARunAreToldAndItCanBeResumed) {
     EXPECT_GT(told, 0);
 }
 
-TEST(MemoryFaults, AtAnyAllocationOfAPictureAreToldAndLeaveAWholeOneOrNone) {
+TEST(MemoryFaults, AtAnyAllocationOfAPictureAreReportedAndLeaveAWholePictureOrNone) {
     const DisturbedRun run;
     ASSERT_EQ(test::run_ricochet(run.arguments()).exit_code, 0);
     const test::TemporaryFolder folder;
@@ -79,7 +80,7 @@ TEST(MemoryFaults, AtAnyAllocationOfAPictureAreToldAndLeaveAWholeOneOrNone) {
     }
 }
 
-TEST(MemoryFaults, AtAnyAllocationOfOtherCommandsAreTold) {
+TEST(MemoryFaults, AtAnyAllocationOfOtherCommandsAreReported) {
     const DisturbedRun run;
     const std::vector<std::vector<std::string>> commands{
         {"info", (run.input() / "roof.off").string()}, {"check", (run.input() / "scene.json").string()}, {"--version"}};

@@ -1,7 +1,7 @@
-// Memory that runs out at any allocation of a command, within one process: one line and an exit code, and the same
-// output when it is tried again. Commands that make or read JSON documents are not here: the destructors of the JSON
-// library allocate, and end the program where they cannot. Those are run as programs of their own, see
-// memory_faults_test.cpp.
+// Tests of memory that runs out at any allocation of a command, within one process. The command ends with one line and
+// an exit code, and gives the same output when it is repeated.
+// Commands that make or read JSON documents are excluded. The destructors of the JSON library allocate, and end the
+// program if they fail. memory_faults_test.cpp runs those commands as separate programs.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -35,7 +35,7 @@ constexpr const char* kScene = R"({
 })";
 constexpr const char* kMesh = "OFF\n4 2 0\n-1 -1 0.2\n1 -1 0.1\n1 1 0.2\n-1 1 0.1\n3 0 1 2\n3 0 2 3\n";
 
-/// Sends a standard stream into a file while it lives.
+/// Redirects a standard stream into a file during its lifetime.
 class Redirection {
 public:
     Redirection(std::FILE* stream, const std::filesystem::path& file)
@@ -72,7 +72,7 @@ protected:
         mesh_ = folder_.write("roof.off", kMesh).string();
     }
 
-    /// allocation: the one that fails; 0 for none.
+    /// allocation: number of the allocation that fails, or 0 for none.
     Ended call(std::vector<std::string> arguments, std::uint64_t allocation = 0) {
         arguments.insert(arguments.begin(), "ricochet");
         std::vector<char*> pointers;
@@ -91,8 +91,8 @@ protected:
         return ended;
     }
 
-    /// Calls the command with every allocation failing in a long run, else a sample of them. check: is given how each
-    /// of them ended.
+    /// Calls the command once for each failing allocation in a long run, or for a sample of them. check: receives the
+    /// result of each call.
     void fail_anywhere(const std::vector<std::string>& arguments, const std::function<void(const Ended&)>& check) {
         ASSERT_EQ(call(arguments).exit_code, 0);
         const std::uint64_t allocations = call(arguments).allocations;
@@ -118,7 +118,7 @@ protected:
     std::string mesh_;
 };
 
-TEST_F(NoMemoryForCommand, CheckAndInfoSayAllOrFail) {
+TEST_F(NoMemoryForCommand, CheckAndInfoGiveTheirFullOutputOrFail) {
     const std::vector<std::vector<std::string>> commands{{"check", scene_}, {"info", mesh_}};
     for (const std::vector<std::string>& arguments : commands) {
         SCOPED_TRACE(arguments.front());

@@ -1,5 +1,5 @@
-// Memory that runs out at any allocation of a simulation: an error that says so, nothing lost but what was being made,
-// and the same bits when it is tried again in the same process.
+// Tests of memory that runs out at any allocation of a simulation. The simulation reports an error and loses only the
+// object under construction. A repetition in the same process gives the same bits.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -27,7 +27,7 @@ constexpr std::uint64_t kNoFault = std::uint64_t{1} << 60U;
 constexpr std::uint64_t kSavedStep = 12;
 constexpr std::uint64_t kSteps = 24;
 
-/// A mesh, a floor, drops that are born and die, a chain of springs, verified.
+/// Returns a verified scene with a mesh, a floor, drops with a limited lifetime, and a chain of springs.
 SimulationSetup busy_setup() {
     SimulationSetup setup;
     setup.options.time_step = 0.02;
@@ -78,7 +78,8 @@ void restore(Simulation& simulation, const Bytes& bytes) {
     });
 }
 
-/// Made, stepped, saved, restored in another one and stepped to the end; the hash of the end.
+/// Creates a simulation, steps it, saves it, restores it in another one and steps that to the end. Returns the hash of
+/// the final state.
 std::uint64_t run_all() {
     Bytes bytes;
     {
@@ -92,7 +93,8 @@ std::uint64_t run_all() {
     return second.state_hash();
 }
 
-/// The hash, or nothing where the want of memory was told, in one of the two ways: by us, or by Embree through us.
+/// Returns the hash, or nothing if the lack of memory was reported. The report comes either from Ricochet or from
+/// Embree through Ricochet.
 std::optional<std::uint64_t> run_without(std::uint64_t allocation, AllocationFault::Later later,
                                          bool* by_embree = nullptr) {
     const AllocationFault fault(allocation, later);
@@ -112,10 +114,10 @@ std::uint64_t count_allocations() {
     return fault.calls();
 }
 
-// Every allocation in a long run, else a sample of them all over.
+// Returns the distance between tested allocations: every one in a long run, otherwise an even sample.
 std::uint64_t stride(std::uint64_t allocations) { return test::is_long_run() ? 1 : allocations / 60 + 1; }
 
-TEST(NoMemory, AtAnyAllocationOfASimulationIsToldAndTheNextOneHasTheSameBits) {
+TEST(NoMemory, AtAnyAllocationOfASimulationIsReportedAndTheNextOneHasTheSameBits) {
     const std::uint64_t hash = run_all();
     const std::uint64_t allocations = count_allocations();
     ASSERT_GT(allocations, 500U);
@@ -131,7 +133,7 @@ TEST(NoMemory, AtAnyAllocationOfASimulationIsToldAndTheNextOneHasTheSameBits) {
     EXPECT_GT(told, 10);
 }
 
-// One thread: what threads keep to work with grows with the blocks that they happen to be given.
+// Uses one thread, because the working memory of threads grows with the blocks they happen to process.
 TEST(NoMemory, AtAnyAllocationOfASimulationLeavesNoMemoryInUse) {
     const ThreadLimit limit(1);
     const std::uint64_t allocations = count_allocations();
@@ -147,7 +149,7 @@ TEST(NoMemory, AtAnyAllocationOfASimulationLeavesNoMemoryInUse) {
     }
 }
 
-/// Steps to the end while memory fails; whether it got there.
+/// Steps to the end while memory fails. Returns true if it reached the end.
 bool steps_through(Simulation& simulation, std::uint64_t allocation) {
     const AllocationFault fault(allocation);
     try {
@@ -160,7 +162,7 @@ bool steps_through(Simulation& simulation, std::uint64_t allocation) {
     }
 }
 
-TEST(NoMemory, InsideAStepASimulationGoesOnFromASavedState) {
+TEST(NoMemory, InsideAStepLetsASimulationResumeFromASavedState) {
     Simulation reference(busy_setup());
     while (reference.step_index() < kSavedStep) reference.step();
     const Bytes bytes = saved(reference);
@@ -182,7 +184,8 @@ TEST(NoMemory, InsideAStepASimulationGoesOnFromASavedState) {
         other.advance(kSteps);
         EXPECT_EQ(other.state_hash(), reference.state_hash());
         if (!simulation.finished()) {
-            // One that has stopped inside a step says so; between two steps it can be asked and goes on.
+            // A simulation that failed inside a step reports it. A simulation that failed between two steps can be
+            // queried and continues.
             try {
                 simulation.advance(kSteps);
                 EXPECT_EQ(simulation.state_hash(), reference.state_hash());

@@ -1,5 +1,4 @@
-/// \file
-/// What this process holds of the machine.
+/// \file Resources that this process uses.
 #pragma once
 
 #include <malloc.h>
@@ -12,7 +11,7 @@
 
 namespace ricochet::test {
 
-/// Bytes of memory that are resident, once what is free has been given back.
+/// Returns the resident memory in bytes, after free memory has been released.
 [[nodiscard]] inline std::size_t resident_bytes() {
     (void)::malloc_trim(0);
     std::ifstream in("/proc/self/statm");
@@ -22,7 +21,8 @@ namespace ricochet::test {
     return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// Entries of a folder of /proc: of "self/fd" the open files, of "self/task" the threads.
+/// Returns the number of entries of a folder of /proc. The folder "self/fd" lists open files, and "self/task" lists
+/// threads.
 [[nodiscard]] inline std::size_t count_in_proc(const char* folder) {
     return static_cast<std::size_t>(
         std::distance(std::filesystem::directory_iterator(std::filesystem::path("/proc") / folder), {}));

@@ -1,4 +1,5 @@
-// A run that goes on and on, with births, deaths, sleep, frames and checkpoints: the memory that it takes stays flat.
+// Tests that the memory use of an endless run stays constant. The run has births, deaths, sleep, frames and
+// checkpoints.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Some 500 spheres at a time: they fall into a bowl, bounce, come to rest, sleep, and die of age.
+// About 500 spheres at a time fall into a bowl, bounce, come to rest, sleep, and die of age.
 constexpr const char* kScene = R"({
   "ricochet": 1,
   "simulation": {"time_step": 0.01, "duration": 1e7, "seed": 5},
@@ -38,15 +39,16 @@ constexpr std::uint64_t kFrameSteps = 200;
 constexpr std::uint64_t kCheckpointSteps = 1000;
 constexpr std::size_t kPhases = 20;
 
-/// Steps of one of kPhases: some seconds of work in all; in a long run some minutes, RICOCHET_SOAK times as many.
+/// Returns the number of steps in each of kPhases. They take some seconds in all. A long run takes some minutes,
+/// multiplied by RICOCHET_SOAK.
 std::uint64_t steps_per_phase() {
-    const char* text = std::getenv("RICOCHET_SOAK");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* text = std::getenv("RICOCHET_SOAK");  // NOLINT(concurrency-mt-unsafe): no code sets it
     const std::uint64_t times = text == nullptr ? 1 : std::strtoull(text, nullptr, 10);
     if (test::is_long_run()) return 100000 * std::max<std::uint64_t>(1, times);
     return static_cast<std::uint64_t>(test::scaled(500));
 }
 
-/// A run as the tool makes it. What it has written is taken away, so that the disk does not fill.
+/// Run as the tool makes it. Written files are removed, so that the disk does not fill.
 class EndlessRun {
 public:
     EndlessRun() {
@@ -71,7 +73,8 @@ public:
     [[nodiscard]] const Simulation& simulation() const { return *simulation_; }
     [[nodiscard]] std::uint64_t most_asleep() const { return most_asleep_; }
 
-    /// Goes on in another simulation that has read the checkpoint of this one, without the list of what is taken away.
+    /// Continues in another simulation that has read the checkpoint of this one. The new writer starts without the list
+    /// of files to remove.
     void resume() {
         writer_->write_frame(*simulation_);
         checkpoint();
@@ -104,8 +107,8 @@ private:
     std::uint64_t most_asleep_ = 0;
 };
 
-TEST(Soak, WithBirthsDeathsSleepAndCheckpointsTakesNoMoreMemoryOnceItIsWarm) {
-    if (test::kSanitized) GTEST_SKIP() << "sanitizers keep what is freed for a while";
+TEST(Soak, WithBirthsDeathsSleepAndCheckpointsNeedsNoMoreMemoryOnceWarm) {
+    if (test::kSanitized) GTEST_SKIP() << "sanitizers keep freed memory for a while";
     EndlessRun run;
     std::vector<std::size_t> resident;
     for (std::size_t phase = 0; phase < kPhases; ++phase) {

@@ -1,5 +1,4 @@
-/// \file
-/// Decisions from a fuzzer's bytes.
+/// \file Choices from a fuzzer's bytes.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +9,9 @@
 
 namespace ricochet::fuzz {
 
-/// Takes the bytes one after the other; behind their end every byte is 0. Two choices within one expression have no
-/// order in C++: each is a statement of its own, or the scene would depend on the compiler.
+/// Reader of choices from consecutive bytes. After the end every byte is 0. C++ does not define the order of two
+/// choices within one expression. Each choice is therefore a separate statement, or the scene would depend on the
+/// compiler.
 class ByteChoices {
 public:
     explicit ByteChoices(std::string_view bytes) : rest_(bytes) {}
@@ -23,7 +23,7 @@ public:
         rest_.remove_prefix(1);
         return value;
     }
-    /// Below `count`, which is at most 256.
+    /// Returns an index below `count`, which is at most 256.
     std::size_t index(std::size_t count) { return byte() % count; }
     template <class T, std::size_t n>
     T one_of(const T (&values)[n]) {
@@ -34,9 +34,9 @@ public:
         const unsigned high = byte();
         return static_cast<std::uint16_t>(high << 8U | byte());
     }
-    /// In [0, 1], in steps of 2^-16.
+    /// Returns a number in [0, 1], in steps of 2^-16.
     double part() { return static_cast<double>(two_bytes()) / 65535.0; }
-    /// A part of one of them.
+    /// Returns a fraction of one of the values.
     template <std::size_t n>
     double part_of(const double (&values)[n]) {
         const double value = one_of(values);
@@ -44,8 +44,8 @@ public:
     }
     double between(double low, double high) { return low + (high - low) * part(); }
 
-    /// In [-2, 2]: on a coarse grid, where things meet in edges and corners and lie in planes; near to the grid; or
-    /// anywhere.
+    /// Returns a coordinate in [-2, 2]: on a coarse grid, near the grid, or anywhere. On the grid, objects touch at
+    /// edges and corners and lie in planes.
     double coordinate() {
         const std::uint8_t kind = byte();
         const double on_grid = static_cast<double>(static_cast<int>(kind >> 2U) - 32) / 16.0;
@@ -67,7 +67,7 @@ public:
         const double z = coordinate();
         return {x, y, z};
     }
-    /// Not zero.
+    /// Returns a direction that is not zero.
     Vec3 direction() {
         const Vec3 v = point();
         return v == Vec3{} ? Vec3{0, 0, 1} : v;

@@ -1,4 +1,4 @@
-// Checkpoints that somebody has edited, with right checksums: each is refused, or is a state like any other.
+// Tests of edited checkpoints with correct checksums. Each is refused or behaves like any other state.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@
 
 namespace ricochet::fuzz {
 
-/// For GoogleTest's messages.
+/// Prints a scene in GoogleTest's messages.
 void PrintTo(const CheckpointScene& scene, std::ostream* out) {  // NOLINT(readability-identifier-naming)
     *out << scene.name;
 }
@@ -27,7 +27,7 @@ namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 4711;
 
-/// The case that runs, for the signal handler.
+/// Name of the current case, for the signal handler.
 std::array<char, 128> current_case{};
 
 extern "C" void name_case_and_die(int signal) {
@@ -36,7 +36,7 @@ extern "C" void name_case_and_die(int signal) {
     static_cast<void>(std::raise(signal));
 }
 
-/// Bytes for fuzz_checkpoint(): the scene's number, then one to three edits of its checkpoint.
+/// Returns bytes for fuzz_checkpoint(): the scene's number, then one to three edits of its checkpoint.
 std::string random_input(std::size_t scene, std::uint64_t number) {
     RandomSequence random(kSeed, static_cast<std::uint32_t>(scene), number);
     const auto below = [&](std::size_t count) {
@@ -45,7 +45,7 @@ std::string random_input(std::size_t scene, std::uint64_t number) {
     std::string bytes(1, static_cast<char>(scene));
     const std::size_t edits = 1 + below(3);
     for (std::size_t k = 0; k < edits; ++k) {
-        // A striking value, up to 16 other bytes, or a copy of another word of the file.
+        // An edit writes an extreme value, up to 16 other bytes, or a copy of another word of the file.
         const std::size_t length = 1 + below(8);
         const std::size_t kind = below(4);
         bytes += static_cast<char>(kind == 0 ? 0 : kind == 1 ? 1 : kCopyEdit);
@@ -58,15 +58,15 @@ std::string random_input(std::size_t scene, std::uint64_t number) {
     return bytes;
 }
 
-/// Set in the environment to look at a case that has failed.
+/// Returns the first case to run. The environment can set it to reproduce a failed case.
 int first_case() {
-    const char* const first = std::getenv("RICOCHET_FIRST_CASE");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* const first = std::getenv("RICOCHET_FIRST_CASE");  // NOLINT(concurrency-mt-unsafe): no code sets it
     return first == nullptr ? 0 : std::atoi(first);
 }
 
 class CheckpointEdits : public ::testing::TestWithParam<CheckpointScene> {};
 
-TEST_P(CheckpointEdits, AreRefusedOrGoOn) {
+TEST_P(CheckpointEdits, AreRefusedOrRunOn) {
     for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGTERM, SIGBUS}) {
         static_cast<void>(std::signal(signal, name_case_and_die));
     }
@@ -83,7 +83,7 @@ TEST_P(CheckpointEdits, AreRefusedOrGoOn) {
         EXPECT_NO_THROW(is_accepted = fuzz_checkpoint(random_input(scene, static_cast<std::uint64_t>(k))));
         refused += is_accepted ? 0 : 1;
     }
-    // Of a few edits all may be refused.
+    // A small number of edits may all be refused.
     constexpr int kEnough = 100;
     EXPECT_TRUE(cases - first < kEnough || refused < cases - first) << refused;
     for (const int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGTERM, SIGBUS})

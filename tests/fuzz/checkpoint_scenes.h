@@ -1,5 +1,4 @@
-/// \file
-/// One small scene for each kind of state that a checkpoint can hold.
+/// \file One small scene for each kind of state in a checkpoint.
 #pragma once
 
 #include <array>
@@ -7,17 +6,17 @@
 
 namespace ricochet::fuzz {
 
-/// A scene whose checkpoints are edited.
+/// Scene whose checkpoints are edited.
 struct CheckpointScene {
     const char* name;
     std::size_t steps;  ///< before the checkpoint
-    const char* text;   ///< the scene file
+    const char* text;   ///< scene file
 };
 
-/// First byte of an edit that copies a word of the file to another place.
+/// First byte of an edit that copies a word of the file to another position.
 inline constexpr unsigned char kCopyEdit = 0xFE;
 
-// New scenes are appended: the first byte of an input is the scene's number.
+// Scenes of the inputs. New scenes must be appended, because the first byte of an input is the scene's number.
 inline constexpr std::array kCheckpointScenes{
     CheckpointScene{"triangles", 3, R"({"ricochet": 1,
         "simulation": {"time_step": 0.02, "duration": 0.2, "bounce_budget": 30},

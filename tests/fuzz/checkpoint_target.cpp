@@ -24,8 +24,8 @@ constexpr std::size_t kChecksums = 2 * sizeof(std::uint64_t);
 
 struct Base {
     std::uint64_t fingerprint = 0;
-    std::string body;             ///< a checkpoint without its two checksums
-    std::size_t state_begin = 0;  ///< of the simulation's state, which has a checksum of its own
+    std::string body;             ///< checkpoint without its two checksums
+    std::size_t state_begin = 0;  ///< start of the simulation's state, which has its own checksum
 };
 
 Base make_base(const CheckpointScene& base_scene) {
@@ -59,7 +59,7 @@ std::string bytes_of(std::uint64_t value) {
     return bytes;
 }
 
-/// Values that are worth trying in any place.
+/// Returns one of the values that are likely to reveal errors at any position.
 std::string striking_value(ByteChoices& choices) {
     return bytes_of(
         choices.one_of<std::uint64_t>({0, 1, 2, 0xFF, 0xFFFF, 0xFFFFFFFF, 1ULL << 32, 1ULL << 62, ~std::uint64_t{0},
@@ -67,7 +67,7 @@ std::string striking_value(ByteChoices& choices) {
                                        0x0000000000000001, 0x8000000000000000, 0x4F80000000000000}));
 }
 
-/// Overwrites, removes or inserts some bytes of a body that has some, or copies a word of it to another place.
+/// Overwrites, removes or inserts some bytes of a non-empty body, or copies a word of it to another position.
 void edit(ByteChoices& choices, std::string& body, std::size_t& state_begin) {
     const std::uint8_t choice = choices.byte();
     const std::size_t kind = choice % 5;
@@ -101,7 +101,7 @@ void require_some_steps(Simulation& simulation) {
     try {
         simulation.advance(kStepsAfter);
     } catch (const DivergedError&) {
-        return;  // springs may begin with any speed
+        return;  // springs may start with any speed
     }
     const Particles& particles = simulation.particles();
     for (std::size_t i = 0; i < particles.size(); ++i) {
@@ -113,7 +113,7 @@ void require_some_steps(Simulation& simulation) {
 
 }  // namespace RICOCHET_FILE
 
-// The first byte chooses the scene, the others edit its checkpoint.
+// The first byte selects the scene, and the others edit its checkpoint.
 bool fuzz_checkpoint(std::string_view bytes) {
     static const ThreadLimit one_thread(1);
     ByteChoices choices(bytes);

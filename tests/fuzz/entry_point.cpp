@@ -1,4 +1,4 @@
-// libFuzzer's entry point for one target, RICOCHET_FUZZ_TARGET.
+// Entry point of libFuzzer for one target, RICOCHET_FUZZ_TARGET.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -8,10 +8,10 @@
 
 namespace RICOCHET_FILE {
 
-/// s of processor time that an input may take, unless the environment says otherwise: long runs go on past what is
-/// slow. libFuzzer's own limit is of the wall's clock, which also counts what other programs take.
+/// Returns the largest processor time of an input, in s. The environment can raise it, so that long runs skip slow
+/// inputs. libFuzzer's own limit is in wall-clock time, which also counts other programs.
 double most_time() {
-    const char* text = std::getenv("RICOCHET_FUZZ_TIME");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* text = std::getenv("RICOCHET_FUZZ_TIME");  // NOLINT(concurrency-mt-unsafe): no code sets it
     return text == nullptr ? 2.0 : std::strtod(text, nullptr);
 }
 
@@ -19,7 +19,7 @@ double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_
 
 }  // namespace RICOCHET_FILE
 
-// What is thrown here ends the fuzzer, which then keeps the input.
+// An exception ends the fuzzer, which then saves the input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
                                       std::size_t size) {  // NOLINT(readability-identifier-naming)
     const double begin = processor_time();

@@ -1,6 +1,5 @@
-/// \file
-/// The fuzz targets: what is done with bytes that a stranger may have written. Each runs under libFuzzer
-/// (entry_point.cpp), and in the ordinary tests over its seeds and all inputs that it ever failed on (replay_test.cpp).
+/// \file Fuzz targets, which process bytes from an untrusted source. Each runs under libFuzzer (entry_point.cpp). The
+/// ordinary tests run it over its seeds and over all inputs that once failed (replay_test.cpp).
 #pragma once
 
 #include <array>
@@ -9,41 +8,41 @@
 
 namespace ricochet::fuzz {
 
-/// What must never happen has happened.
+/// Violation of an invariant.
 class Finding : public std::logic_error {
 public:
     using std::logic_error::logic_error;
 };
 
-/// Throws Finding unless it holds.
+/// Throws Finding unless the claim holds.
 inline void require(bool holds, const char* claim) {
     if (!holds) throw Finding(claim);
 }
 
-// Each returns whether the bytes were accepted, and throws a Finding, or whatever else the program let out, where
-// something is wrong.
+// Each target returns true if it accepts the bytes. It throws a Finding, or passes on an exception of the program, if
+// it finds an error.
 
-/// As text, or binary where it begins so.
+/// Reads text, or binary data if the bytes begin like it.
 [[nodiscard]] bool fuzz_gltf(std::string_view bytes);
 [[nodiscard]] bool fuzz_obj(std::string_view bytes);
 [[nodiscard]] bool fuzz_off(std::string_view bytes);
 [[nodiscard]] bool fuzz_ply(std::string_view bytes);
 [[nodiscard]] bool fuzz_stl(std::string_view bytes);
-/// A particle table.
+/// Reads a particle table.
 [[nodiscard]] bool fuzz_csv(std::string_view bytes);
-/// A flow on a grid.
+/// Reads a flow on a grid.
 [[nodiscard]] bool fuzz_vti(std::string_view bytes);
-/// A frame.
+/// Reads a frame.
 [[nodiscard]] bool fuzz_vtp(std::string_view bytes);
-/// A scene file beside the files of tests/fuzz/scene_files; one that names files elsewhere, or asks for
-/// thousands of particles, is not read.
+/// Reads a scene file in the folder tests/fuzz/scene_files. Scenes that name files elsewhere or request thousands of
+/// particles are skipped.
 [[nodiscard]] bool fuzz_scene(std::string_view bytes);
-/// Edits of a checkpoint (checkpoint_target.cpp), whose checksums are made right again.
+/// Edits a checkpoint (checkpoint_target.cpp) and corrects its checksums.
 [[nodiscard]] bool fuzz_checkpoint(std::string_view bytes);
-/// Choices of which a scene is made (tiny_scene.h), that is run for some steps.
+/// Builds a scene from choices (tiny_scene.h) and runs it for some steps.
 [[nodiscard]] bool fuzz_run(std::string_view bytes);
 
-/// A target by its name, which is also that of its folders of seeds and regressions.
+/// Target with its name, which is also the name of its folders of seeds and regressions.
 struct FuzzTarget {
     const char* name;
     bool (*run)(std::string_view bytes);

@@ -1,5 +1,5 @@
-// Files that a stranger may hand in, damaged in many ways: each is read, or refused with one line, with memory and work
-// in proportion to its size.
+// Tests of untrusted files with many kinds of damage. Each is read, or refused with one line. Memory and work are
+// proportional to the size of the file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ namespace RICOCHET_FILE {
 constexpr std::uint64_t kSeed = 20261128;
 constexpr int kCases = 60;  // of each kind
 
-/// Memory, bytes, and calls of the allocator, for each byte of a file and for every file.
+/// Limits of memory, in bytes, and of calls of the allocator: for each byte of a file, and for every file.
 constexpr std::size_t kMostMemoryPerByte = 2000;
 constexpr std::size_t kMostMemory = 40'000'000;
 constexpr std::uint64_t kMostCallsPerByte = 100;
@@ -91,7 +91,7 @@ std::string checkpoint() {
     return folder.read("c");
 }
 
-/// Where a file stands, and that folder.
+/// Path of a file, with its folder.
 struct Place {
     const test::TemporaryFolder& folder;
     std::filesystem::path file;
@@ -109,7 +109,7 @@ void read_table(const std::string& bytes) {
     if (!table.errors.empty()) throw InputError(table.errors.front());
 }
 
-/// A kind of file: good ones, and how they are read.
+/// Kind of file: valid examples, and the function that reads them.
 struct Kind {
     const char* name;
     const char* extension;
@@ -117,7 +117,7 @@ struct Kind {
     std::function<void(const Place& place, const std::string& bytes)> read;
 };
 
-/// An index over two pieces, which stand beside it.
+/// Returns an index over two pieces in the same folder.
 std::string piece_index(const test::TemporaryFolder& folder) {
     Particles particles;
     for (std::uint64_t k = 0; k < 3; ++k) {
@@ -174,7 +174,7 @@ public:
     std::size_t below(std::size_t count) {
         return static_cast<std::size_t>(random_.uniform() * static_cast<double>(count));
     }
-    /// Damages a file that is not empty in one to three places.
+    /// Damages a non-empty file at one to three positions.
     std::string apply(std::string bytes) {
         for (std::size_t k = 1 + below(3); k > 0 && !bytes.empty(); --k) damage(bytes);
         return bytes;
@@ -229,7 +229,8 @@ private:
     RandomSequence random_;
 };
 
-/// Whether the file was read. Fails where it is refused with more than one plain line, or takes too much.
+/// Returns true if the file was read. Fails if the refusal is more than one plain line, or if the reader uses too much
+/// memory or work.
 bool read_or_refuse(const Kind& kind, const Place& place, const std::string& bytes) {
     constexpr auto kNever = std::numeric_limits<std::uint64_t>::max();
     std::string refusal;
@@ -265,7 +266,7 @@ TEST(MalformedFiles, AreReadOrRefusedWithOneLine) {
             (void)folder.write(place.file.filename().string(), bytes);
             read += read_or_refuse(kind, place, bytes) ? 1 : 0;
         }
-        constexpr int kEnough = 20;  // of fewer all may be read
+        constexpr int kEnough = 20;  // a smaller number may all be read
         EXPECT_TRUE(cases < kEnough || read < cases) << read;
         for (const std::string& good : kind.good) {
             (void)folder.write(place.file.filename().string(), good);

@@ -1,5 +1,4 @@
-/// \file
-/// Bytes under the name of a file, without a disk.
+/// \file Bytes under a file name, without a disk.
 #pragma once
 
 #include <sys/mman.h>
@@ -13,10 +12,10 @@
 
 namespace ricochet::fuzz {
 
-/// A file in memory, which is gone with this object (Linux only).
+/// File in memory, which exists as long as this object (Linux only).
 class MemoryFile {
 public:
-    /// Throws std::runtime_error when there is no memory for it.
+    /// Throws std::runtime_error if memory for it runs out.
     explicit MemoryFile(std::string_view bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
         while (descriptor_ >= 0 && !bytes.empty()) {
             const auto written = ::write(descriptor_, bytes.data(), bytes.size());

@@ -10,7 +10,7 @@
 namespace ricochet::fuzz {
 namespace RICOCHET_FILE {
 
-/// A mesh that comes out must be sound enough for everything that is done to meshes on import.
+/// Reads a mesh. An accepted mesh must pass all processing steps of an import.
 template <typename Reader>
 bool read_mesh_bytes(const Reader& reader, std::string_view bytes) {
     PolygonMesh polygons;
@@ -31,7 +31,8 @@ bool read_mesh_bytes(const Reader& reader, std::string_view bytes) {
     return true;
 }
 
-// Files of buffers are no part of the bytes, and a small file may show a mesh some thousand times at most.
+// Reads glTF without external buffers, which are not part of the bytes. A small file may show a mesh some thousand
+// times at most.
 ParsedMesh read_small_gltf(const MeshSource& source) {
     constexpr std::size_t kFreeCorners = 20'000;
     return read_gltf(source, std::nullopt, kFreeCorners);

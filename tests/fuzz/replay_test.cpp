@@ -1,4 +1,4 @@
-// Runs every fuzz target over its seeds, over all inputs that it ever failed on, and over random ones.
+// Runs every fuzz target over its seeds, over all inputs that once failed, and over random ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 
 namespace ricochet::fuzz {
 
-/// For GoogleTest's messages.
+/// Prints a target in GoogleTest's messages.
 void PrintTo(const FuzzTarget& target, std::ostream* out) {  // NOLINT(readability-identifier-naming)
     *out << target.name;
 }
@@ -28,10 +28,10 @@ namespace RICOCHET_FILE {
 
 const std::filesystem::path kFolder = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz";
 
-/// scripts/fuzz refuses single allocations of this size, bytes.
+/// Size in bytes from which on scripts/fuzz refuses single allocations.
 constexpr std::size_t kMostMemory = 200'000'000;
 
-/// The files of a folder in the order of their names; none where there is no such folder.
+/// Returns the files of a folder in the order of their names, or none if the folder does not exist.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder) {
     std::error_code none;
     std::vector<std::filesystem::path> files;
@@ -47,7 +47,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 class FuzzReplay : public ::testing::TestWithParam<FuzzTarget> {
 protected:
-    /// Fails where the target finds anything wrong; whether it accepts the bytes.
+    /// Fails if the target finds an error. Returns true if it accepts the bytes.
     static bool run(const std::string& bytes) {
         const test::AllocationGuard guard;
         bool is_accepted = false;
@@ -57,7 +57,7 @@ protected:
     }
 };
 
-// Seeds that are refused would begin no search.
+// Refused seeds would be useless as starting points of a search.
 TEST_P(FuzzReplay, AcceptsItsSeedsAndFindsNothingWrong) {
     const auto seeds = files_of(kFolder / "corpus" / GetParam().name);
     EXPECT_FALSE(seeds.empty());
@@ -67,15 +67,15 @@ TEST_P(FuzzReplay, AcceptsItsSeedsAndFindsNothingWrong) {
     }
 }
 
-TEST_P(FuzzReplay, FindsNothingWrongAnyMoreWithWhatOnceFailed) {
+TEST_P(FuzzReplay, FindsNothingWrongInFormerFailures) {
     for (const auto& file : files_of(kFolder / "regressions" / GetParam().name)) {
         SCOPED_TRACE(file);
         static_cast<void>(run(bytes_of(file)));
     }
 }
 
-// Every cut of a seed, and seeds with one byte changed: the targets themselves stand up to anything.
-TEST_P(FuzzReplay, StandsUpToSeedsCutShortAndChanged) {
+// The targets must handle every truncation of a seed, and seeds with one changed byte.
+TEST_P(FuzzReplay, HandlesTruncatedAndChangedSeeds) {
     constexpr std::size_t kCuts = 16;
     for (const auto& seed : files_of(kFolder / "corpus" / GetParam().name)) {
         SCOPED_TRACE(seed);
@@ -93,8 +93,7 @@ TEST_P(FuzzReplay, StandsUpToSeedsCutShortAndChanged) {
 
 class FuzzRandom : public ::testing::TestWithParam<FuzzTarget> {};
 
-// Inputs whose every byte is a choice: of a target whose bytes are text all are refused. A finding is the seed's
-// number.
+// Every byte of these inputs is a choice. Targets that read text refuse all of them. A finding reports its seed.
 TEST_P(FuzzRandom, FindsNothingWrongWithRandomChoices) {
     constexpr std::size_t kLongest = 256;
     const auto inputs = static_cast<std::uint64_t>(test::scaled(100) * test::case_factor(1000));

@@ -14,14 +14,14 @@
 namespace ricochet::fuzz {
 namespace RICOCHET_FILE {
 
-/// How a scene is run.
+/// Settings of a run.
 struct Variant {
     bool verify = false;
-    bool at_once = false;  ///< by advance()
+    bool at_once = false;  ///< one call of advance()
     AccelerationSwitches acceleration{};
 };
 
-/// Two ways that must come to the same bits. Each acceleration is on in one of them or in both.
+/// Returns two variants that must give the same bits. Each acceleration is on in at least one of them.
 std::array<Variant, 2> two_ways(std::uint8_t choice) {
     const auto bit = [&](unsigned k) { return (choice >> k & 1U) != 0; };
     const AccelerationSwitches first{
@@ -32,7 +32,7 @@ std::array<Variant, 2> two_ways(std::uint8_t choice) {
             Variant{.verify = false, .at_once = bit(6), .acceleration = second}};
 }
 
-/// In a round shape a sphere may come where it is narrower than the sphere, and jams there.
+/// Returns true if the scene has a round shape. A sphere can jam inside it at a point that is narrower than the sphere.
 bool has_round_collider(const Simulation& simulation) {
     const auto& colliders = simulation.colliders();
     return std::any_of(colliders.begin(), colliders.end(), [](const ColliderDescription& collider) {
@@ -41,21 +41,22 @@ bool has_round_collider(const Simulation& simulation) {
     });
 }
 
-/// is_uniform: forces are the same everywhere and always. Of others the work is known within bounds only.
+/// Throws a Finding if the state is invalid. is_uniform: all forces are constant in space and time. For other forces
+/// the energy is only known within bounds.
 void require_sound(const Simulation& simulation, bool is_uniform) {
     const Particles& particles = simulation.particles();
     for (std::size_t i = 0; i < particles.size(); ++i) {
         const bool is_known = is_finite(particles.position[i]) && is_finite(particles.velocity[i]);
         require(is_known || particles.frozen[i] != 0, "a particle that moves is somewhere");
     }
-    // The other two let particles pass walls that are thin for their step, by design.
+    // The other two responses let particles pass thin walls by design.
     const ResponseKind response = simulation.options().response;
     if (response != ResponseKind::exact && response != ResponseKind::rollback) return;
     const bool may_jam = has_round_collider(simulation);
     for (const Violation& violation : simulation.violations()) {
         require(violation.kind != ViolationKind::crossing, "no segment crosses a surface");
         require(violation.kind != ViolationKind::gap, "segments join the positions");
-        // Colliders pass a particle whose clock stands still to the end of the run. The verifier has to say so.
+        // Colliders may pass a stalled particle until the end of the run. The verifier must report that.
         const bool may_wait = simulation.statistics().unsimulated_time > 0.0 && violation.time >= simulation.time();
         require(violation.kind != ViolationKind::wrong_side || may_wait, "every particle stays on its side");
         require(violation.kind != ViolationKind::overlap || may_jam, "no sphere overlaps a surface");
@@ -63,7 +64,7 @@ void require_sound(const Simulation& simulation, bool is_uniform) {
     }
 }
 
-/// Hash of the end; 0 where springs gain energy without bound, which ends a run.
+/// Returns the hash of the final state, or 0 if springs gain energy without bound, which ends a run.
 std::uint64_t end_of(ByteChoices choices, const Variant& variant) {
     SimulationSetup setup = tiny_scene(choices);
     setup.options.verify = variant.verify;
@@ -84,7 +85,7 @@ std::uint64_t end_of(ByteChoices choices, const Variant& variant) {
 
 }  // namespace RICOCHET_FILE
 
-// The first byte says how it is run, and whether a second time; the others choose the scene.
+// The first byte selects the variant and whether to run a second time. The others select the scene.
 bool fuzz_run(std::string_view bytes) {
     static const ThreadLimit one_thread(1);
     ByteChoices choices(bytes);

@@ -13,7 +13,7 @@
 namespace ricochet::fuzz {
 namespace RICOCHET_FILE {
 
-/// Scenes may name any file and ask for any number of particles; the fuzzer's may not.
+/// Returns true if a scene names other files or requests too many particles for fuzzing. Ordinary scenes may do both.
 bool is_beyond_the_fuzzer(const detail::JsonMember& member) {
     constexpr double kMostNodes = 64;
     const std::string& key = member.key;

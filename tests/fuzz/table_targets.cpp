@@ -1,4 +1,4 @@
-// Tables of numbers: particles as text, flows on grids, frames.
+// Targets that read tables of numbers: particles as text, flows on grids, frames.
 #include <cmath>
 #include <variant>
 

@@ -14,7 +14,8 @@
 namespace ricochet::fuzz {
 namespace RICOCHET_FILE {
 
-/// Within a step of a sixtieth: from standing still to half a turn, from a creep to across the scene.
+/// Returns a turn rate in degrees per second. In a step of 1/60 s it ranges from zero to half a turn. The speeds below
+/// range from a creep to the width of the scene in one step.
 double turn_rate(ByteChoices& choices) { return choices.part_of({0.0, 10.0, 360.0, 10800.0}); }
 double speed(ByteChoices& choices) { return choices.part_of({0.0, 0.1, 2.0, 60.0}); }
 Vec3 velocity(ByteChoices& choices) {
@@ -47,10 +48,10 @@ FrameMotion motion(ByteChoices& choices, double duration) {
     }
 }
 
-/// One or two frames, the second on the first; or one that is a body.
+/// Adds one or two frames, the second attached to the first, or a single frame that is a body.
 void add_frames(ByteChoices& choices, SimulationSetup& setup) {
     std::vector<FrameDescription> frames(1 + choices.index(2));
-    // What bodies do not go with is refused.
+    // Bodies cannot be combined with emitters and springs.
     const bool is_body = choices.index(4) == 1 && setup.emitters.empty() && setup.springs.empty();
     if (is_body) frames.resize(1);
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -84,7 +85,7 @@ void add_frames(ByteChoices& choices, SimulationSetup& setup) {
     setup.frames = std::make_shared<const FrameTree>(std::move(frames));
 }
 
-/// Every vertex goes to and fro on its own way.
+/// Moves every vertex back and forth along its own path.
 void deform(ByteChoices& choices, MeshShape& shape, double duration) {
     std::vector<std::vector<Vec3>> positions(3, shape.mesh->vertices);
     const double most = choices.one_of<double>({1e-6, 0.05, 0.5});

@@ -1,5 +1,4 @@
-/// \file
-/// What moves beside the particles of a tiny scene, from a fuzzer's bytes.
+/// \file Moving colliders of a tiny scene, from a fuzzer's bytes.
 #pragma once
 
 #include "fuzz/byte_choices.h"
@@ -7,8 +6,8 @@
 
 namespace ricochet::fuzz {
 
-/// Puts colliders into frames that move, bodies that are pushed and meshes that deform, lets materials run, and spheres
-/// meet: all or nothing of that, as the bytes say.
+/// Adds moving frames, driven bodies, deforming meshes, moving materials and collisions between spheres, as the bytes
+/// select. All of them are optional.
 void add_movers(ByteChoices& choices, SimulationSetup& setup);
 
 }  // namespace ricochet::fuzz

@@ -16,9 +16,10 @@ namespace RICOCHET_FILE {
 
 using MeshPointer = std::shared_ptr<const TriangleMesh>;
 
-// An expression draws once at most, outside of braces: compilers evaluate operands and arguments in different orders.
+// An expression outside of braces draws at most once, because compilers evaluate operands and arguments in different
+// orders.
 
-/// Triangles between points that the bytes choose: they may cross, repeat and have no area.
+/// Returns triangles between points selected by the bytes. They may intersect, repeat and have no area.
 MeshPointer any_triangles(ByteChoices& choices) {
     TriangleMesh mesh;
     const std::size_t vertices = 3 + choices.index(6);
@@ -31,7 +32,7 @@ MeshPointer any_triangles(ByteChoices& choices) {
     return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
-/// A sheet of 2 x 2 cells whose points stand as high as the bytes say.
+/// Returns a sheet of 2 x 2 cells with heights selected by the bytes.
 MeshPointer terrain(ByteChoices& choices) {
     TriangleMesh mesh;
     for (int k = 0; k < 9; ++k) mesh.vertices.emplace_back(k % 3 - 1, k / 3 - 1, 0.5 * choices.coordinate());
@@ -75,7 +76,7 @@ Placement placement(ByteChoices& choices) {
     return result;
 }
 
-/// One of four values, or a part of it.
+/// Returns one of four values, or a fraction of it.
 double up_to(ByteChoices& choices, const double (&values)[4]) {
     const double most = choices.one_of(values);
     return choices.yes() ? most * choices.part() : most;
@@ -167,7 +168,7 @@ void add_options(ByteChoices& choices, SimulationSetup& setup) {
     options.duration = options.time_step * static_cast<double>(kTinySteps);
     options.resting_speed = choices.one_of<double>({1e-3, 0.0, 0.05});
     options.bounce_budget = choices.one_of<std::uint32_t>({20, 1, 3});
-    // All particles go back for each bounce of one.
+    // The global rollback repeats the step of all particles for each bounce.
     if (options.rollback.global && options.response == ResponseKind::rollback) options.bounce_budget /= 4;
     options.bounce_budget = std::max<std::uint32_t>(1, options.bounce_budget);
     options.seed = choices.byte();
@@ -185,7 +186,8 @@ double radius(ByteChoices& choices) { return up_to(choices, {0.0, 0.25, 0.1, 1e-
 Particle particle(ByteChoices& choices, double time_step) {
     Particle result;
     result.position = choices.point();
-    // The fastest go through the scene in a step, and not round and round in it, wedged between surfaces.
+    // The fastest particles cross the scene in one step, so that they do not bounce endlessly when wedged between
+    // surfaces.
     const double speed = choices.one_of<double>({0.0, 1.0, 10.0, std::min(1.0 / time_step, 100.0)});
     result.velocity = speed * choices.point();
     result.radius = radius(choices);
@@ -249,7 +251,8 @@ void add_springs(ByteChoices& choices, SimulationSetup& setup) {
         spring.first = k - 1;
         spring.second = k;
         spring.rest_length = choices.part();
-        // Explicit integrators follow it: what they cannot follow goes round and round at any speed.
+        // The stiffness is low enough for explicit integrators. Otherwise particles would gain any speed and bounce
+        // endlessly.
         const double lighter = std::min(setup.particles[k - 1].mass, setup.particles[k].mass);
         spring.stiffness = 0.5 * choices.part() * lighter / (step * step);
         spring.damping = 0.2 * choices.part() * lighter / step;

@@ -1,5 +1,4 @@
-/// \file
-/// Scenes of a few particles and colliders that a fuzzer's bytes choose.
+/// \file Scenes of a few particles and colliders, selected by a fuzzer's bytes.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +8,11 @@
 
 namespace ricochet::fuzz {
 
-/// Steps of a tiny scene.
+/// Number of steps of a tiny scene.
 inline constexpr std::size_t kTinySteps = 5;
 
-/// Every mesh, shape, placement, material, emitter, force, flow, integrator, response and radius that bytes can choose,
-/// in scenes some metres wide. The same bytes make the same scene. May be one that Simulation refuses.
+/// Returns a scene some metres wide. The bytes select mesh, shape, placement, material, emitter, force, flow,
+/// integrator, response and radius. The same bytes give the same scene. Simulation may refuse the scene.
 [[nodiscard]] SimulationSetup tiny_scene(ByteChoices choices);
 
 }  // namespace ricochet::fuzz

@@ -21,12 +21,12 @@ using testing::real;
 using testing::RealVector;
 using testing::ShapeOracle;
 
-// The long test program repeats the claims on this many times as many cases.
+// Returns the number of cases. The long test program multiplies it.
 constexpr std::uint64_t kSeed = 20240917;
 
 int cases(int full) { return test::case_factor(50) * test::scaled(full); }
 
-/// Numbers of one case.
+/// Random numbers of one case.
 class Draws {
 public:
     Draws(std::uint32_t stream, int index) : random_(kSeed, stream, static_cast<std::uint64_t>(index)) {}
@@ -40,7 +40,7 @@ private:
     RandomSequence random_;
 };
 
-/// A shape with its reference and what the tests need to know of it.
+/// Shape with its reference and the properties that tests need.
 struct Case {
     Case(const Placement& placement_in, bool is_capped_in)
         : placement(placement_in),
@@ -57,11 +57,12 @@ struct Case {
     AffineMap map;
     AnalyticShape shape;
     ShapeOracle oracle;
-    double largest;   ///< half axes, m
-    double smallest;  ///< m
+    double largest;   ///< largest half axis, in m
+    double smallest;  ///< smallest half axis, in m
 };
 
-/// Spheres, ellipsoids, circular and elliptic cylinders: rotated or not, mirrored, 1e-6 to 1e6 m, near and far.
+/// Returns spheres, ellipsoids, and circular or elliptic cylinders. They can be rotated or mirrored, from 1e-6 to 1e6 m
+/// in size, near the origin or far from it.
 Case random_case(Draws& draws) {
     Placement placement;
     const int size = draws.one_of(3);
@@ -85,7 +86,7 @@ double largest_coordinate(const Vec3& p, const Case& c) {
     return std::max(max_abs(p), max_abs(c.placement.position) + c.largest);
 }
 
-/// Near the surface at all scales, inside, outside, on axes and at the centre.
+/// Returns points near the surface at all scales, inside, outside, on axes and at the centre.
 Vec3 random_point(Draws& draws, const Case& c) {
     Vec3 local = draws.direction();
     if (c.is_capped) {
@@ -125,10 +126,10 @@ double largest_speed(const Path& path) {
     return 2.0 * speed;
 }
 
-// ---- side and nearest point
+// ---- side and closest point
 // ------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, DecidesTheSideAsFiftyDigitsDo) {
+TEST(AnalyticShape, MatchesTheSideFromFiftyDigits) {
     int undecided = 0;
     for (int i = 0; i < cases(4000); ++i) {
         SCOPED_TRACE(i);
@@ -147,7 +148,7 @@ TEST(AnalyticShape, DecidesTheSideAsFiftyDigitsDo) {
     EXPECT_LT(undecided, cases(4000) / 100 + 20);
 }
 
-TEST(AnalyticShape, KnowsPointsThatLieOnIt) {
+TEST(AnalyticShape, DetectsPointsOnItsSurface) {
     const AnalyticShape ball = AnalyticShape::ball(world_from_local({.position = {5, 6, 7}, .scale = {2, 3, 0.25}}));
     for (const Vec3& p : {Vec3{7, 6, 7}, Vec3{5, 3, 7}, Vec3{5, 6, 7.25}}) {
         EXPECT_EQ(ball.side(p), 0);
@@ -171,7 +172,7 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
         const ShapePoint nearest = c.shape.closest_point(p);
         const auto size = static_cast<double>(abs(reference.distance));
         const auto error = static_cast<double>(abs(nearest.distance - reference.distance));
-        // Away from the surface, rounding the coordinates counts too.
+        // Away from the surface, the rounding of the coordinates contributes too.
         const bool is_away = size >= 0.25 * c.smallest * c.smallest / c.largest;
         const double away = length(p - c.placement.position) + c.largest;
         EXPECT_LE(error, 0x1p-49 * size + (is_away ? 0x1p-52 * away : 0x1p-92 * c.largest));
@@ -179,8 +180,8 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
         EXPECT_LE(std::fabs(length(p - nearest.point) - size), rounding);
         EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(nearest.point)).distance)), rounding);
         EXPECT_NEAR(length(nearest.normal), 1.0, 0x1p-51);
-        // The normal errs as if the position were off by its rounding; outside it turns by 1 / (radius of curvature +
-        // distance). Inside the radius is less, by the depth.
+        // The error of the normal equals the effect of a rounding error of the position. Outside, the normal turns by 1
+        // / (radius of curvature + distance). Inside, the radius of curvature is reduced by the depth.
         const double curvature_radius = c.smallest * c.smallest / c.largest;
         const double turn = 0x1p-52 * length(p - c.placement.position) / (curvature_radius + size);
         if (nearest.distance > 0 || (!c.is_capped && size < 0.1 * curvature_radius)) {
@@ -189,9 +190,9 @@ TEST(AnalyticShape, MeasuresDistancesToRelativeRoundingAtEveryScale) {
     }
 }
 
-TEST(AnalyticShape, FindsBothPointsOfTheMedialAxisEquallyNear) {
+TEST(AnalyticShape, FindsBothClosestPointsOfTheMedialAxisAtEqualDistance) {
     const AnalyticShape ball = AnalyticShape::ball(world_from_local({.position = {}, .scale = {5, 3, 1}}));
-    // On the medial ellipse of the plane z = 0 the ball that fits has this radius (e.g. from the equation of sigma).
+    // On the medial ellipse of the plane z = 0 the inscribed ball has this radius (e.g. from the equation of sigma).
     const Vec3 p{2, 0.5, 0};
     const double radius = std::sqrt(1.0 - p.x * p.x / 24.0 - p.y * p.y / 8.0);
     EXPECT_NEAR(ball.closest_point(p).distance, -radius, 1e-15);
@@ -203,7 +204,7 @@ TEST(AnalyticShape, FindsBothPointsOfTheMedialAxisEquallyNear) {
     EXPECT_NEAR(prolate.closest_point({4.9, 0, 0}).distance, -0.1, 1e-15);  // beyond the last centre of curvature
 }
 
-TEST(AnalyticShape, TakesARotatedUniformScaleForASphere) {
+TEST(AnalyticShape, TreatsARotatedUniformScaleAsASphere) {
     for (int i = 0; i < cases(200); ++i) {
         SCOPED_TRACE(i);
         Draws draws(3, i);
@@ -230,7 +231,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
         const auto middle = box.center();
         const double rounding = 8.0 * ulp(largest_coordinate(middle, c));
         for (int axis = 0; axis < 3; ++axis) {
-            // Far out on this axis the nearest point is the one on the box's wall, nearly.
+            // For a point far out on this axis, the closest point is nearly on the face of the box.
             Vec3 far = middle;
             far[axis] += 1e9 * c.largest;
             const Vec3 touch = c.shape.closest_point(far).point;
@@ -250,7 +251,7 @@ TEST(AnalyticShape, FitsItsBoundsTightly) {
 // ---- segments
 // ------------------------------------------------------------------------------------------------------------
 
-TEST(AnalyticShape, ClearsASegmentExactlyWhenFiftyDigitsDo) {
+TEST(AnalyticShape, ClearsASegmentIfAndOnlyIfFiftyDigitsDo) {
     int refused = 0;
     int freed = 0;
     for (int i = 0; i < cases(6000); ++i) {
@@ -258,7 +259,7 @@ TEST(AnalyticShape, ClearsASegmentExactlyWhenFiftyDigitsDo) {
         Draws draws(5, i);
         const Case c = random_case(draws);
         const Vec3 p = random_point(draws, c);
-        // Also segments that graze: towards a point beside the surface point straight below.
+        // Some segments graze the surface. They aim at a point beside the closest surface point.
         const ShapePoint below = c.shape.closest_point(p);
         const Vec3 aside = cross(below.normal, draws.direction());
         Vec3 q = random_point(draws, c);
@@ -269,7 +270,7 @@ TEST(AnalyticShape, ClearsASegmentExactlyWhenFiftyDigitsDo) {
         const bool is_clear = c.shape.segment_is_clear(p, q);
         const bool intersects = c.oracle.intersects(real(p), real(q));
         EXPECT_FALSE(is_clear && intersects);
-        // Refused without need only where the segment passes within rounding, which random segments do not.
+        // An unnecessary refusal is only allowed if the segment passes within rounding, which random segments do not.
         EXPECT_TRUE(is_clear || intersects || c.shape.side(p) == 0 || c.shape.side(q) == 0);
         ++(is_clear ? freed : refused);
     }
@@ -289,7 +290,8 @@ TEST(AnalyticShape, BoundsTheDistanceOfASegmentFromBelowTightly) {
             EXPECT_EQ(bound, 0.0);
             continue;
         }
-        // The distance from a convex body is convex along the segment, the depth in it is concave.
+        // The distance from a convex body is a convex function along the segment, and the depth inside it is a concave
+        // one.
         const RealVector step = testing::sum(real(q), Real(-1), real(p));
         const auto nearest_at = [&](const Real& t) { return c.oracle.nearest(testing::sum(real(p), t, step)); };
         Real low = 0;
@@ -309,7 +311,7 @@ TEST(AnalyticShape, BoundsTheDistanceOfASegmentFromBelowTightly) {
 // ---- first contact
 // ---------------------------------------------------------------------------------------------------
 
-/// What a contact, or its absence, must fulfil, judged with fifty digits along the exact path.
+/// Checks a contact, or its absence, with fifty digits along the exact path.
 void expect_true_first_contact(const Case& c, const Path& path, double radius,
                                const std::optional<ShapeContact>& found) {
     const int side = c.shape.side(path.c[0]);
@@ -331,7 +333,7 @@ void expect_true_first_contact(const Case& c, const Path& path, double radius,
     EXPECT_LE(static_cast<double>(abs(c.oracle.nearest(real(found->point)).distance)), far);
     EXPECT_LE(dot(found->normal, path.velocity(end)), 0x1p-20 * largest_speed(path));
     EXPECT_NEAR(length(found->normal), 1.0, 0x1p-51);
-    // From the surface to the centre: that is the outward normal at the point, turned to the side it comes from.
+    // The vector from the surface to the centre is the outward normal at the point, turned to the side of the sphere.
     EXPECT_LE(length(position - found->point - radius * found->normal), far + 0x1p-48 * size);
 }
 
@@ -368,7 +370,7 @@ AnalyticShape cylinder_of(const Vec3& scale) {
     return AnalyticShape::cylinder(world_from_local(placement));
 }
 
-TEST(AnalyticShape, TimesTheContactWithASphereAsTheQuadraticFormulaDoes) {
+TEST(AnalyticShape, TimesTheContactWithASphereLikeTheQuadraticFormula) {
     for (int i = 0; i < cases(10000); ++i) {
         SCOPED_TRACE(i);
         Draws draws(9, i);
@@ -406,29 +408,30 @@ TEST(AnalyticShape, TimesTheContactWithASphereAsTheQuadraticFormulaDoes) {
 
 TEST(AnalyticShape, StopsABallOnTheEdgeOfACylinder) {
     const AnalyticShape can = cylinder_of({2, 2, 3});
-    // The ball of radius 0.5 whose centre falls 0.3 beside the side touches the edge 0.4 above the cap.
+    // The ball of radius 0.5 falls with its centre 0.3 outside the side. It touches the edge when the centre is 0.4
+    // above the cap.
     const auto contact = can.first_contact(line_path({2.3, 0, 10}, {0, 0, -1}, 10.0), 0.5);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->time, 6.6, 4e-15);
     EXPECT_LE(length(contact->normal - Vec3{0.6, 0, 0.8}), 4e-15);
     EXPECT_LE(length(contact->point - Vec3{2, 0, 3}), 4e-15);
-    // Beside the cap it touches the cap, beyond the radius nothing.
+    // Above the cap the ball touches the cap. Beyond the radius it touches nothing.
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->time, 6.5);
     EXPECT_EQ(can.first_contact(line_path({1.9, 0, 10}, {0, 0, -1}, 10.0), 0.5)->normal, Vec3(0, 0, 1));
     EXPECT_FALSE(can.first_contact(line_path({2.5 + 1e-12, 0, 10}, {0, 0, -1}, 20.0), 0.5));
-    // Along the side a parabola comes down to the lower edge.
+    // A parabola along the side comes down to the lower edge.
     EXPECT_NEAR(can.first_contact(parabola_path({3, 0, -6}, {0, 0, 0}, {-0.28, 0, 1.04}, 4.0), 0.5)->time,
                 std::sqrt(5.0), 4e-15);
 }
 
-/// A can of radius 1 from z = -2 to z = 2.
+/// Returns a can of radius 1 from z = -2 to z = 2.
 AnalyticShape can_of_four() {
     Placement placement;
     placement.scale = {1, 1, 2};
     return AnalyticShape::cylinder(world_from_local(placement));
 }
 
-TEST(PartsOfACylinder, AreMetOneByOneFromInside) {
+TEST(PartsOfACylinder, AreHitSeparatelyFromInside) {
     const AnalyticShape can = can_of_four();
     EXPECT_EQ(can.part_count(), 3U);
     for (const double radius : {0.0, 0.25}) {
@@ -452,7 +455,7 @@ TEST(PartsOfACylinder, AreMetOneByOneFromInside) {
     }
 }
 
-TEST(PartsOfACylinder, AreOneBodyFromOutside) {
+TEST(PartsOfACylinder, ActAsOneBodyFromOutside) {
     const AnalyticShape can = can_of_four();
     const ShapeContacts hit = can.contacts(line_path({0.5, 0, 9}, {0, 0, -1}, 9.0), 0.25);
     ASSERT_EQ(hit.count, 1U);
@@ -464,7 +467,7 @@ TEST(PartsOfACylinder, AreOneBodyFromOutside) {
     EXPECT_EQ(can.contacts(line_path({0.5, 0, 9}, {0, 0, -1}, 9.0), 0.25, held).count, 0U);
 }
 
-TEST(PartsOfACylinder, EndAtTheirRimsAndGoOnBeyond) {
+TEST(PartsOfACylinder, EndAtTheirRimsOrContinueBeyondThem) {
     const AnalyticShape can = can_of_four();
     const Vec3 p{1.3, 0, 2.4};
     for (const ShapePart part : {ShapePart::side, ShapePart::top}) {
@@ -476,22 +479,23 @@ TEST(PartsOfACylinder, EndAtTheirRimsAndGoOnBeyond) {
     EXPECT_NEAR(can.closest_point_beyond(ShapePart::side, p).distance, 0.3, 1e-15);
     EXPECT_NEAR(can.closest_point_beyond(ShapePart::top, p).distance, 0.4, 1e-15);
     EXPECT_NEAR(can.closest_point_of(ShapePart::bottom, {0.2, 0, 0}).distance, -2.0, 1e-15);
-    // Over the column within the side the side ends at its rim, seen from within.
+    // Seen from inside, above the can, the closest point of the side is at its rim.
     EXPECT_NEAR(can.closest_point_of(ShapePart::side, {0.7, 0, 2.4}).distance, 0.5, 1e-15);
     EXPECT_NEAR(can.time_over(ShapePart::top, line_path({0, 0, 2}, {1, 0, 0}, 9.0), 0.5), 1.5, 1e-15);
     EXPECT_EQ(can.time_over(ShapePart::side, line_path({1, 0, 0}, {0, 0, 1}, 9.0), 0.5), 9.0);
 }
 
 TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
-    // The ball of radius 1/2 does not fit into the tip, whose radius of curvature is 1/5: it is held from all around
-    // where the largest ball about (x, 0, 0), of radius sqrt(1 - x^2 / 24), is no larger.
+    // The ball of radius 1/2 does not fit into the tip, where the radius of curvature is 1/5. The wall stops it from
+    // all sides at x, where the largest ball about (x, 0, 0) has radius sqrt(1 - x^2 / 24) and is no larger.
     const AnalyticShape egg = ball_of({5, 1, 1});
     const double held = std::sqrt(0.75 * 24.0);
     const auto contact = egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.5);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->time, held, 1e-14);
     EXPECT_NEAR(length(contact->point - Vec3{held, 0, 0}), 0.5, 1e-14);
-    // Just beside the axis it touches one side first, from either direction of motion; never later than on the axis.
+    // Slightly beside the axis the ball touches one side first, from either direction of motion. The contact is never
+    // later than on the axis.
     for (const double aside : {1e-300, 1e-15, 1e-9, 1e-4}) {
         const auto beside = egg.first_contact(line_path({0, 0, aside}, {2, 0, 0}, 10.0), 0.5);
         ASSERT_TRUE(beside);
@@ -501,7 +505,7 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
     // A ball that fits into the tip reaches it.
     EXPECT_NEAR(egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.2)->time, 4.8, 1e-14);
     EXPECT_NEAR(egg.first_contact(line_path({0, 0, 0}, {1, 0, 0}, 10.0), 0.01)->time, 4.99, 1e-14);
-    // The same in a lens, whose medial axis is a disk.
+    // In a lens the medial axis is a disk, and the ball stops at the same distance.
     const AnalyticShape lens = ball_of({5, 5, 1});
     const auto wedged = lens.first_contact(line_path({0, 0, 0}, {0.6, 0.8, 0}, 10.0), 0.5);
     ASSERT_TRUE(wedged);
@@ -509,7 +513,7 @@ TEST(AnalyticShape, StopsALargeBallInTheNarrowEndOfAnEllipsoid) {
 }
 
 TEST(AnalyticShape, DistinguishesGrazesFromMissesToRounding) {
-    // Lines that dip into, or pass, the sphere by d: the dip lasts sqrt(8 d).
+    // Lines that dip into the sphere, or pass it, by a distance d. The dip lasts sqrt(8 d).
     for (const double d : {1e-3, 1e-9, 1e-14, 4e-16}) {
         EXPECT_TRUE(unit_ball().first_contact(line_path({-2, 1 - d, 0}, {1, 0, 0}, 4), 0.0)) << d;
         EXPECT_FALSE(unit_ball().first_contact(line_path({-2, 1 + d, 0}, {1, 0, 0}, 4), 0.0)) << d;
@@ -523,7 +527,7 @@ TEST(AnalyticShape, DistinguishesGrazesFromMissesToRounding) {
         EXPECT_TRUE(cylinder_of({3, 1, 2}).first_contact(line_path({-6, 0, 2.5 - d}, {3, 0, 0}, 4), 0.5)) << d;
         EXPECT_FALSE(cylinder_of({3, 1, 2}).first_contact(line_path({-6, 0, 2.5 + d}, {3, 0, 0}, 4), 0.5)) << d;
     }
-    // Parabolas under the wall from inside, which rises less than they bend; the apex passes the wall by about d.
+    // Parabolas inside the wall, which curves less than they do. The apex passes the wall by about d.
     const auto meets_wall = [](double d, double radius) {
         return ball_of({4, 1, 4})
             .first_contact(parabola_path({-1, 0.5 - radius, 0}, {1, 1 + d, 0}, {0, -1, 0}, 2.0), radius)
@@ -542,30 +546,31 @@ TEST(AnalyticShape, StopsOnlyApproachingMotionOfAnOverlappingBall) {
     const AnalyticShape egg = ball_of({2, 3, 2});
     const AnalyticShape can = cylinder_of({2, 2, 2});
     for (const AnalyticShape& shape : {ball, egg, can}) {
-        // Outside by 0.25 with a radius of 0.5: inwards stops at once, outwards never.
+        // The ball of radius 0.5 is 0.25 outside. Inward motion stops at once, outward motion never.
         EXPECT_EQ(shape.first_contact(line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.0);
         EXPECT_EQ(shape.first_contact(line_path({2.25, 0, 0}, {-1, 0, 0}, 9), 0.5)->normal, Vec3(1, 0, 0));
         EXPECT_FALSE(shape.first_contact(line_path({2.25, 0, 0}, {1, 0, 0}, 9), 0.5));
-        // Inside by 0.25: outwards stops at once, inwards it crosses to the other wall.
+        // The ball is 0.25 inside. Outward motion stops at once, inward motion crosses to the other wall.
         EXPECT_EQ(shape.first_contact(line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->time, 0.0);
         EXPECT_EQ(shape.first_contact(line_path({1.75, 0, 0}, {1, 0, 0}, 9), 0.5)->normal, Vec3(-1, 0, 0));
         const auto across = shape.first_contact(line_path({1.75, 0, 0}, {-1, 0, 0}, 9), 0.5);
         ASSERT_TRUE(across);
         EXPECT_NEAR(across->time, 3.25, 1e-15);
         EXPECT_EQ(across->normal, Vec3(1, 0, 0));
-        // Thrown outwards, it falls back: stopped where it turns, still in overlap, or when it comes down again.
+        // A ball thrown outwards falls back. It stops at its turning point if it still overlaps there, or else when it
+        // comes down again.
         EXPECT_NEAR(shape.first_contact(parabola_path({2.25, 0, 0}, {0.5, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 0.5, 1e-9);
         EXPECT_NEAR(shape.first_contact(parabola_path({2.25, 0, 0}, {1, 0, 0}, {-1, 0, 0}, 9), 0.5)->time,
                     1.0 + std::sqrt(0.5), 1e-15);
-        // A ball too large for the inside is stopped past the middle, where the distance shrinks again.
+        // A ball too large for the inside is stopped past the middle, where the distance starts to decrease.
         EXPECT_NEAR(shape.first_contact(line_path({1, 0, 0}, {-1, 0, 0}, 9), 2.5)->time, 1.0, 1e-9);
-        // A centre on the surface itself may leave it to either side, and comes back to it from there.
+        // A centre on the surface may leave it to either side. It returns to the surface from that side.
         EXPECT_FALSE(shape.first_contact(line_path({2, 0, 0}, {1, 0, 0}, 9), 0.5));
         EXPECT_NEAR(shape.first_contact(line_path({2, 0, 0}, {-1, 0, 0}, 9), 0.5)->time, 3.5, 1e-15);
     }
 }
 
-TEST(AnalyticShape, TurnsAPointBornOnTheSurfaceBackFromWhereItHeads) {
+TEST(AnalyticShape, ReflectsAPointBornOnTheSurfaceWhenItReturns) {
     for (const AnalyticShape& shape : {ball_of({2, 2, 2}), ball_of({2, 3, 4}), cylinder_of({2, 3, 4})}) {
         for (const double direction : {1.0, -1.0}) {
             const auto contact = shape.first_contact(line_path({2, 0, 0}, {direction, 0.1, 0.2}, 1), 0.0);
@@ -614,14 +619,14 @@ TEST(AnalyticShape, CullsOnlyPathsThatStayAway) {
 // ---- bouncing
 // ----------------------------------------------------------------------------------------------------------
 
-/// A particle that is reflected at a shape: the least that a simulation does.
+/// Particle that is reflected at a shape, a minimal simulation.
 struct Bouncer {
     const AnalyticShape& shape;
     double radius;
     Vec3 p;
     Vec3 v;
 
-    /// Follows the path to its first contact, or its end; true when it was reflected.
+    /// Follows the path to its first contact or its end. Returns true if the particle was reflected.
     bool follow(const Path& path) {
         const auto contact = shape.first_contact(path, radius);
         if (!contact) {
@@ -644,8 +649,8 @@ TEST(AnalyticShape, KeepsAngleAndChordInsideASphereForAHundredThousandBounces) {
     const AnalyticShape ball = unit_ball();
     const int bounces = test::scaled(100000);
     Bouncer particle{ball, 0.0, {0.3, -0.2, 0.1}, normalized({0.4, 0.5, -0.7})};
-    // The sine of the incidence angle is |p x v|; each safe_position step shortens p by contact_offset, at most 16 ulp
-    // of 1.
+    // The sine of the incidence angle is |p x v|. Each safe position moves p inwards by the contact offset, at most 16
+    // ulp of 1.
     const double sine = length(cross(particle.p, particle.v));
     const double chord = 2.0 * std::sqrt(1.0 - sine * sine);
     Vec3 last;
@@ -680,7 +685,8 @@ TEST(AnalyticShape, LeadsFromFocusToFocusInsideAnEllipsoid) {
     }
 }
 
-/// 100 shapes with 1000 segments each, aimed anywhere and again and again at the wall just hit, fast and slow.
+/// Tests 100 shapes with 1000 segments each. The segments aim anywhere or repeatedly at the last wall, at high and low
+/// speed.
 void bounce_about(std::uint32_t stream, bool with_radius) {
     for (int i = 0; i < cases(100); ++i) {
         SCOPED_TRACE(i);
@@ -713,7 +719,7 @@ void bounce_about(std::uint32_t stream, bool with_radius) {
 }
 
 TEST(AnalyticShape, NeverLetsAPointCross) { bounce_about(12, false); }
-TEST(AnalyticShape, NeverLetsASphereSinkIn) { bounce_about(13, true); }
+TEST(AnalyticShape, NeverLetsASphereOverlap) { bounce_about(13, true); }
 
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -21,8 +21,8 @@ std::vector<Box3> random_boxes(RandomSequence& random, int count, double size) {
     return boxes;
 }
 
-// Fitted anew, it finds what going through all of them finds.
-TEST(BoxTree, FindsTheBoxesThatMeetABox) {
+// A refitted tree finds the boxes that a test of all boxes finds.
+TEST(BoxTree, FindsTheBoxesThatOverlapABox) {
     RandomSequence random(3, 0, 0);
     BoxTree tree;
     for (const int count : {1, 2, 4, 5, 6, 16, 17, 28, 300, 300, 300, 1025, 0}) {
@@ -43,7 +43,7 @@ TEST(BoxTree, FindsTheBoxesThatMeetABox) {
     EXPECT_TRUE(tree.bounds().empty());
 }
 
-TEST(BoxTree, CountsACommonPointAsMeeting) {
+TEST(BoxTree, CountsACommonPointAsAnOverlap) {
     BoxTree tree;
     tree.fit(std::vector<Box3>{{{0, 0, 0}, {1, 1, 1}}});
     int found = 0;
@@ -53,7 +53,7 @@ TEST(BoxTree, CountsACommonPointAsMeeting) {
     EXPECT_EQ(found, 1);
 }
 
-// Beyond what single precision holds, below it, and everywhere.
+// Covers coordinates above and below the range of single precision, and unbounded boxes.
 TEST(BoxTree, FindsBoxesOfAnySize) {
     constexpr double kLargest = 1e75;
     constexpr double kSmallest = 1e-75;

@@ -35,7 +35,7 @@ std::size_t below(RandomSequence& random, std::size_t count) {
     return std::min(count - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(count)));
 }
 
-/// Gives corners vertices of their own with the given probability, as exporters do along seams.
+/// Gives each corner its own vertex with the given probability, as exporters do along seams.
 TriangleMesh split(const TriangleMesh& mesh, double share, RandomSequence& random) {
     TriangleMesh result = mesh;
     for (Triangle& t : result.triangles) {
@@ -49,7 +49,7 @@ TriangleMesh split(const TriangleMesh& mesh, double share, RandomSequence& rando
     return result;
 }
 
-/// Lists random triangles again, turned and with any winding.
+/// Repeats random triangles, with rotated corners and any winding.
 TriangleMesh with_repeats(TriangleMesh mesh, std::size_t repeats, RandomSequence& random) {
     const std::size_t count = mesh.triangles.size();
     for (std::size_t k = 0; k < repeats; ++k) {
@@ -83,7 +83,7 @@ TEST(ClosedSurface, VerticesDuplicatedAlongSeamsLeaveAMeshClosed) {
     for (const TriangleMesh& mesh : closed_meshes()) {
         for (int variant = 0; variant < kVariants; ++variant) {
             SCOPED_TRACE(::testing::Message() << mesh.triangles.size() << " triangles, variant " << variant);
-            const double share = variant == 0 ? 1.0 : random.uniform();  // the first is a soup of triangles
+            const double share = variant == 0 ? 1.0 : random.uniform();  // the first one is a triangle soup
             const TriangleMesh seamed = split(mesh, share, random);
             EXPECT_TRUE(is_closed(seamed));
             EXPECT_TRUE(openings_of(seamed).empty());
@@ -109,7 +109,7 @@ TEST(ClosedSurface, ZeroAndMinusZeroAreOnePosition) {
     EXPECT_TRUE(is_closed(mesh));
 }
 
-TEST(ClosedSurface, PositionsThatDifferInTheLastPlaceAreNotJoined) {
+TEST(ClosedSurface, PositionsThatDifferByOneUlpAreNotJoined) {
     RandomSequence random(13, 0, 0);
     TriangleMesh mesh = split(testing::box_mesh({0, 0, 0}, {1, 1, 1}), 1.0, random);
     mesh.vertices.back() = mesh.vertices.back() + Vec3{0x1p-52, 0, 0};
@@ -130,7 +130,7 @@ TEST(ClosedSurface, JoiningKeepsVerticesAndNumbers) {
     }
 }
 
-TEST(ClosedSurface, RepeatedFacesNeitherOpenAMeshNorTurnItInsideOut) {
+TEST(ClosedSurface, RepeatedFacesNeitherOpenAMeshNorInvertIt) {
     RandomSequence random(15, 0, 0);
     for (const TriangleMesh& mesh : closed_meshes()) {
         for (int variant = 0; variant < kVariants; ++variant) {
@@ -157,7 +157,7 @@ TEST(ClosedSurface, RepeatedFacesDoNotCloseAnOpenMesh) {
     }
 }
 
-TEST(ClosedSurface, ASheetWithBothSidesListedIsClosedAndHasNoInside) {
+TEST(ClosedSurface, ASheetWithBothSidesListedIsClosedAndHasNoInterior) {
     TriangleMesh sheet;
     sheet.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}};
@@ -165,7 +165,7 @@ TEST(ClosedSurface, ASheetWithBothSidesListedIsClosedAndHasNoInside) {
     EXPECT_TRUE(surface.closed);
     EXPECT_TRUE(surface.left_out.empty());
     EXPECT_FALSE(MeshInterior(shared(sheet)).contains({0.5, 0.25, 0}));
-    // Beside a closed shell, with a repeated face, each is judged by its own.
+    // Beside a closed shell with a repeated face, both are judged separately.
     TriangleMesh both = testing::merged(testing::box_mesh({-2, -2, -2}, {2, 2, 2}), sheet);
     both.triangles.push_back(both.triangles.front());
     EXPECT_EQ(closed_surface(both).left_out, (std::vector<std::uint32_t>{16}));
@@ -173,7 +173,7 @@ TEST(ClosedSurface, ASheetWithBothSidesListedIsClosedAndHasNoInside) {
     EXPECT_TRUE(MeshInterior(shared(both)).contains({0.5, 0.25, -0.5}));
 }
 
-TEST(ClosedSurface, TwoCellsWithAWallThatBothListAreClosed) {
+TEST(ClosedSurface, TwoCellsThatBothListTheirCommonWallAreClosed) {
     const TriangleMesh lower = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     const TriangleMesh cells = testing::merged(lower, testing::moved(lower, {0, 0, 1}));
     EXPECT_TRUE(is_closed(cells));
@@ -183,8 +183,8 @@ TEST(ClosedSurface, TwoCellsWithAWallThatBothListAreClosed) {
     EXPECT_FALSE(interior.contains({0.5, 0.25, 2.5}));
 }
 
-TEST(ClosedSurface, AWallThatPartsAnInsideOpensIt) {
-    // Two tetrahedra that share a face listed once.
+TEST(ClosedSurface, AnInnerWallListedOnceOpensAMesh) {
+    // Two tetrahedra share a face that is listed once.
     const std::string text =
         "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 -1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 2 1 5\nf 3 2 5\nf 1 3 5\n";
     const ImportedMesh mesh = read_mesh("t.obj", text);
@@ -196,9 +196,9 @@ TEST(ClosedSurface, AWallThatPartsAnInsideOpensIt) {
     EXPECT_EQ(report.warnings.front().find("not closed, though without an opening"), 0U) << report.warnings.front();
 }
 
-TEST(ClosedSurface, OfNoTrianglesIsNotClosed) { EXPECT_FALSE(is_closed(TriangleMesh{})); }
+TEST(ClosedSurface, AMeshWithoutTrianglesIsNotClosed) { EXPECT_FALSE(is_closed(TriangleMesh{})); }
 
-/// A cube whose six sides have vertices of their own, as texture seams make them, in three formats.
+/// Returns a cube in one of three formats. Its six sides have separate vertices, as along texture seams.
 std::string seamed_cube(const std::string& format) {
     const TriangleMesh cube = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     std::string vertices;
@@ -221,7 +221,7 @@ std::string seamed_cube(const std::string& format) {
            vertices + faces;
 }
 
-TEST(ClosedSurface, FilesOfAllFormatsAreJoinedAlikeAndTellHowManyWere) {
+TEST(ClosedSurface, FilesOfAllFormatsAreJoinedEquallyAndReportTheNumber) {
     for (const std::string format : {"obj", "ply", "off"}) {
         SCOPED_TRACE(format);
         const ImportedMesh mesh = read_mesh("cube." + format, seamed_cube(format));
@@ -238,7 +238,7 @@ TEST(ClosedSurface, FilesOfAllFormatsAreJoinedAlikeAndTellHowManyWere) {
     }
 }
 
-// The triangles of a quad that is listed again from a neighbouring corner are others: its diagonal is the other one.
+// If a quad is repeated from a neighbouring corner, its triangles differ, because it is cut along the other diagonal.
 TEST(ClosedSurface, AQuadListedAgainCountsOnceOrIsReported) {
     const std::string cube =
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"

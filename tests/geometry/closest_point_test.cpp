@@ -19,7 +19,7 @@ using testing::Triangle;
 constexpr std::uint64_t kSeed = 20240613;
 constexpr std::uint64_t kCases = 4000;
 
-/// Largest distance between the points of a case: errors are stated relative to it.
+/// Returns the largest distance between the points of a case. Errors are relative to it.
 double extent_of(const SegmentTriangle& s) {
     double largest = 0.0;
     for (const Vec3& x : {s.p, s.q}) {
@@ -28,7 +28,7 @@ double extent_of(const SegmentTriangle& s) {
     return std::max({largest, length(s.b - s.a), length(s.c - s.a)});
 }
 
-TEST(ClosestPointOnTriangle, IsAtTheTrueDistanceAlsoForSlenderAndDegenerateTriangles) {
+TEST(ClosestPointOnTriangle, HasTheTrueDistanceEvenForSlenderAndDegenerateTriangles) {
     double worst = 0.0;
     for (std::uint64_t index = 0; index < kCases; ++index) {
         const SegmentTriangle s = testing::segment_triangle_case(kSeed, index);
@@ -46,8 +46,8 @@ TEST(ClosestPointOnTriangle, IsAtTheTrueDistanceAlsoForSlenderAndDegenerateTrian
     std::printf("worst error 2^%.1f of the extent\n", std::log2(worst));
 }
 
-// The point counts as led back to when it is as near as rounding of the corners' coordinates allows.
-TEST(BarycentricCoordinates, LeadBackToThePointAlsoForSlenderTriangles) {
+// The coordinates pass if they reproduce the point up to the rounding of the corners' coordinates.
+TEST(BarycentricCoordinates, ReproduceThePointEvenForSlenderTriangles) {
     std::uint64_t faces = 0;
     for (std::uint64_t index = 0; index < kCases; ++index) {
         const SegmentTriangle s = testing::segment_triangle_case(kSeed, index);
@@ -83,7 +83,7 @@ TEST(ClosestPointOnTriangle, NamesTheFeature) {
     const auto feature_at = [&](const Vec3& p) { return closest_point_on_triangle(p, a, b, c).feature; };
     EXPECT_EQ(feature_at({1, 1, 5}), TriangleFeature::kFace);
     EXPECT_EQ(feature_at({1, 1, 0}), TriangleFeature::kFace);
-    EXPECT_EQ(feature_at({2, 0, -3}), TriangleFeature::kFace);  // above an edge the face comes first
+    EXPECT_EQ(feature_at({2, 0, -3}), TriangleFeature::kFace);  // above an edge, the face takes precedence
     EXPECT_EQ(feature_at({1, -2, 1}), TriangleFeature::kEdgeAB);
     EXPECT_EQ(feature_at({3, 3, 1}), TriangleFeature::kEdgeBC);
     EXPECT_EQ(feature_at({-1, 2, 1}), TriangleFeature::kEdgeCA);
@@ -92,7 +92,7 @@ TEST(ClosestPointOnTriangle, NamesTheFeature) {
     EXPECT_EQ(feature_at({-1, 7, 0}), TriangleFeature::kVertexC);
 }
 
-TEST(ClosestPointOnTriangle, OfADegenerateTriangleIsOnItsLongestEdge) {
+TEST(ClosestPointOnTriangle, LiesOnTheLongestEdgeOfADegenerateTriangle) {
     const auto on_segment = closest_point_on_triangle({2, 3, 0}, {0, 0, 0}, {4, 0, 0}, {1, 0, 0});
     EXPECT_EQ(on_segment.distance_squared, 9.0);
     EXPECT_EQ(rank(on_segment.feature), 1);
@@ -101,7 +101,7 @@ TEST(ClosestPointOnTriangle, OfADegenerateTriangleIsOnItsLongestEdge) {
     EXPECT_EQ(rank(at_point.feature), 2);
 }
 
-TEST(ClosestPointOnTriangle, LosesNothingFarFromTheOrigin) {
+TEST(ClosestPointOnTriangle, KeepsItsAccuracyFarFromTheOrigin) {
     const Vec3 far{0x1p40, -0x1p40, 0x1p41};
     const auto found =
         closest_point_on_triangle(far + Vec3{1, 1, 0x1p-10}, far, far + Vec3{4, 0, 0}, far + Vec3{0, 4, 0});
@@ -118,7 +118,8 @@ TEST(ClosestPointOnSegment, IsMeasuredFromTheNearerEnd) {
     EXPECT_EQ(closest_point_on_segment({9, 1, 0}, {4, 1, 0}, {4, 1, 0}).offset, Vec3(5, 0, 0));
 }
 
-/// Smallest distance of [p, q] from the triangle by thirds: it is convex along the segment.
+/// Returns the smallest distance of [p, q] from the triangle by ternary search. The distance is convex along the
+/// segment.
 double reference_distance(const Vec3& p, const Vec3& q, const Triangle& triangle) {
     const auto distance_at = [&](const Digits& fraction) {
         const testing::DigitsVec3 from = testing::digits(p);
@@ -139,7 +140,7 @@ double reference_distance(const Vec3& p, const Vec3& q, const Triangle& triangle
     return static_cast<double>(std::min({distance_at(low), distance_at(0), distance_at(1)}));
 }
 
-TEST(SegmentTriangleDistance, IsTheSmallestOverTheSegment) {
+TEST(SegmentTriangleDistance, IsTheSmallestDistanceOverTheSegment) {
     double worst = 0.0;
     for (std::uint64_t index = 0; index < kCases / 20; ++index) {
         const SegmentTriangle s = testing::segment_triangle_case(kSeed, index);
@@ -161,8 +162,8 @@ TEST(SegmentDistance, HasTheKnownValuesForCrossedParallelAndPointSegments) {
     EXPECT_EQ(squared_distance_of_segments({0, 0, 0}, {4, 0, 0}, {1, 0, 0}, {2, 0, 0}), 0.0);
 }
 
-TEST(SegmentDistance, OfAlmostParallelSegmentsDoesNotDependOnTheirAngle) {
-    // Crossing at height 1/2 with angles down to 1e-17.
+TEST(SegmentDistance, DoesNotDependOnTheAngleOfAlmostParallelSegments) {
+    // The segments cross at height 1/2 with angles down to 1e-17.
     for (double angle = 1.0; angle > 1e-17; angle *= 0.1) {
         const double squared = squared_distance_of_segments({-1, 0, 0}, {1, 0, 0}, {-1, -angle, 0.5}, {1, angle, 0.5});
         EXPECT_NEAR(squared, 0.25, 1e-16) << angle;

@@ -1,4 +1,4 @@
-// Files that many programs write although the formats' descriptions do not allow them, or not quite.
+// Tests of files that many programs write, although the specifications of the formats do not quite allow them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -52,11 +52,11 @@ TEST(ObjDialects, ABackslashContinuesEveryStatement) {
     }
 }
 
-TEST(ObjDialects, ABackslashAtTheEndOfACommentContinuesNothing) {
+TEST(ObjDialects, ABackslashAtTheEndOfACommentIsIgnored) {
     expect_tetrahedron(read_mesh("t.obj", "# c:\\meshes\\\n" + kVertices + "vt 0 0 # c:\\meshes\\\n" + kFaces));
 }
 
-TEST(ObjDialects, NamesEndAtACommentAndGoOnInTheNextLine) {
+TEST(ObjDialects, NamesEndAtACommentAndContinueInTheNextLine) {
     const std::vector<std::pair<std::string, std::string>> cases = {
         {"usemtl red # the paint", "red"},
         {"usemtl red", "red"},
@@ -79,7 +79,7 @@ TEST(ObjDialects, NamesEndAtACommentAndGoOnInTheNextLine) {
     EXPECT_EQ(names_of(read_mesh("t.obj", kVertices + "o cup # of tea\n" + kFaces)), std::vector<std::string>{"cup"});
 }
 
-TEST(ObjDialects, UnknownStatementsAreLeftOutWithOneNote) {
+TEST(ObjDialects, UnknownStatementsAreSkippedWithOneNote) {
     for (const std::string statement :
          {"t crease 2/1/1 0 1 4.7", "cstype2 bspline", "xyz", "vc 1 0 0", "#MRGB 1", "e 1 2", "ctm_version 5",
           "usemap_", "fn 1 2 3", "vcolor 0.5 0.5 0.5", "Object cube", "region a b", "tag-1 2"}) {
@@ -93,7 +93,7 @@ TEST(ObjDialects, UnknownStatementsAreLeftOutWithOneNote) {
                               "3 statements left out, the first is 't' in line 5: OBJ has none of these names"});
 }
 
-TEST(ObjDialects, SlipsThatWouldLoseAPartOfTheSurfaceAreRefused) {
+TEST(ObjDialects, ErrorsThatWouldLosePartOfTheSurfaceAreRefused) {
     for (const std::string statement : {"F 1 2 3", "V 0 0 0", "face 1 2 3", "vertex 0 0 0", "0.5 0.5", "-1 0 0",
                                         "1/1/1", "<svg>", "{", "f:1", "\xc3\xa9t\xc3\xa9 1"}) {
         SCOPED_TRACE(statement);
@@ -102,7 +102,7 @@ TEST(ObjDialects, SlipsThatWouldLoseAPartOfTheSurfaceAreRefused) {
     }
 }
 
-TEST(ObjDialects, ColoursMayBeNoNumbers) {
+TEST(ObjDialects, ColoursNeedNotBeNumbers) {
     for (const std::string colour :
          {"nan nan nan", "NaN NaN NaN", "-nan -nan -nan", "nan(ind) nan(ind) nan(ind)", "-nan(ind) 0 0", "inf inf inf",
           "-inf 0 0 1", "1.#QNAN 1.#QNAN 1.#QNAN", "-1.#IND 0 0", "0.5 nan 0.5 1", "INF 0 0"}) {
@@ -116,7 +116,7 @@ TEST(ObjDialects, ColoursMayBeNoNumbers) {
     EXPECT_NE(refusal("t.obj", "v 0 0 0 red green blue\n" + kVertices + kFaces), "");
 }
 
-TEST(OffDialects, TheCountMayStandRightBehindTheKeyword) {
+TEST(OffDialects, TheCountMayFollowTheKeywordDirectly) {
     const std::string body = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
     for (const std::string header :
          {"OFF4 4 0\n", "OFF4 4 6\n", "OFF4 4\n", "OFF4  4  0 # counts\n", "\nOFF4 4 0\n", "# made by x\nOFF4 4 0\n",
@@ -156,12 +156,12 @@ TEST(OffDialects, LineEndsAreBlanksInAFreeFormFile) {
         SCOPED_TRACE(files[k]);
         expect_tetrahedron(read_mesh("t.off", files[k]));
     }
-    EXPECT_NE(refusal("t.off", files[7]), "");  // a coordinate too many
+    EXPECT_NE(refusal("t.off", files[7]), "");  // one coordinate too many
     EXPECT_NE(refusal("t.off", one_number_a_line + "1\n"), "");
     EXPECT_NE(refusal("t.off", one_number_a_line.substr(0, one_number_a_line.size() - 2)), "");
 }
 
-TEST(StlDialects, OneByteOrLineEndMoreThanPromisedIsNoted) {
+TEST(StlDialects, OneExtraByteOrLineEndIsNoted) {
     for (const std::string& more :
          {std::string("\n"), std::string("\r\n"), std::string("\r"), std::string(1, '\0'), std::string(" "),
           std::string("x"), std::string("\t"), std::string("\xff"), std::string("\x1a"), std::string("0")}) {
@@ -177,7 +177,7 @@ TEST(StlDialects, OneByteOrLineEndMoreThanPromisedIsNoted) {
     EXPECT_NE(refusal("t.stl", whole.substr(0, whole.size() - 1)), "");
 }
 
-TEST(StlDialects, LinesOfATextMayBeginWithAHash) {
+TEST(StlDialects, LinesOfATextMayStartWithAHash) {
     const std::string good = test::kAsciiStlTetrahedron;
     for (const std::string line : {"# made by x\n", "#\n", "   # indented\n", "#solid no\n", "# \t\n#\n", "#\r\n"}) {
         SCOPED_TRACE(line);
@@ -208,7 +208,7 @@ TEST(StlDialects, TheNamesOfSolidsAreGroups) {
     EXPECT_EQ(names({"", " cup"}), (Names{"cup"}));
     EXPECT_EQ(names({" lid", ""}), (Names{"lid"}));
     EXPECT_EQ(names({" lid", " cup", " lid"}), (Names{"lid", "cup"}));
-    // As with a group of several words in OBJ, each word is a name too.
+    // Each word of the name is a name too, like the words of a group in OBJ.
     EXPECT_EQ(names({" Exported from Blender (sub 0)"}),
               (Names{"Exported from Blender (sub 0)", "Exported", "from", "Blender", "(sub", "0)"}));
     EXPECT_EQ(names({"  part one "}), (Names{"part one", "part", "one"}));
@@ -240,7 +240,7 @@ TEST(PlyDialects, AnUnknownLineBeforeTheElementsIsNoted) {
     }
 }
 
-TEST(GltfDialects, AByteStrideOfZeroIsNone) {
+TEST(GltfDialects, AByteStrideOfZeroMeansNoStride) {
     test::GltfFile cube = test::gltf_cube();
     const std::size_t triangles = read_mesh("c.glb", test::glb_of(cube)).mesh.triangles.size();
     for (auto& view : cube.document["bufferViews"]) view["byteStride"] = 0;
@@ -253,7 +253,7 @@ TEST(GltfDialects, AByteStrideOfZeroIsNone) {
     }
 }
 
-TEST(GltfDialects, HiddenNodesAreLeftOutWithAllBelowThem) {
+TEST(GltfDialects, HiddenNodesAreSkippedWithTheirDescendants) {
     const auto with_nodes = [](const nlohmann::json& nodes) {
         test::GltfFile cube = test::gltf_cube();
         cube.document["nodes"] = nodes;
@@ -277,7 +277,7 @@ TEST(GltfDialects, HiddenNodesAreLeftOutWithAllBelowThem) {
     EXPECT_EQ(one.mesh.triangles.size(), 12U);
     ASSERT_EQ(one.notes.size(), 1U);
     EXPECT_EQ(one.notes[0].find("1 node that is hidden by KHR_node_visibility"), 0U) << one.notes[0];
-    // A node below a hidden one is hidden too, whatever it says itself.
+    // A node below a hidden one is hidden too, whatever its own setting.
     const ImportedMesh below = with_nodes({root({1, 2}),
                                            {{"mesh", 0}},
                                            {{"children", {3}}, {"extensions", hidden}},

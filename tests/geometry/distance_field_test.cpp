@@ -24,7 +24,7 @@ DistanceField grid_of(const TriangleMesh& mesh) {
     return {mesh.vertices, mesh.triangles, box};
 }
 
-/// Of any shape and size, slivers and points among them.
+/// Returns triangles of any shape and size, including slivers and points.
 TriangleMesh soup(std::uint32_t count, RandomSequence& random) {
     TriangleMesh mesh;
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -38,7 +38,7 @@ TriangleMesh soup(std::uint32_t count, RandomSequence& random) {
     return mesh;
 }
 
-TEST(DistanceField, NeverSaysMoreThanTheDistanceFromTheNearestTriangle) {
+TEST(DistanceField, NeverExceedsTheDistanceFromTheNearestTriangle) {
     RandomSequence random(41, 0, 0);
     int told = 0;
     for (int i = 0; i < test::scaled(30); ++i) {
@@ -72,15 +72,15 @@ TEST(DistanceField, IsCloseToTheDistanceInOpenSpaceOfMeshesCoarseAndFine) {
         for (int k = 0; k < test::scaled(200); ++k) {
             const bool is_inside = k % 2 == 0;
             const Vec3 p = Vec3{3, 4, 5} + (is_inside ? 0.8 : 4.0) * random.in_unit_ball();
-            // Counted along one axis a distance may be short by the square root of three; outside the box it is that
-            // from the box or that from where one enters it.
+            // A distance along one axis can be short by the square root of three. Outside the box, the bound is the
+            // distance from the box or from the entry point.
             const double least = distance_from(mesh, p) / std::sqrt(3.0) / (is_inside ? 1.0 : 2.0);
             EXPECT_GT(grid.lower_bound(p) + 3.0 * grid.cell(), least);
         }
     }
 }
 
-TEST(DistanceField, KnowsNothingWithoutTrianglesAndWhereRoundingIsLargerThanCells) {
+TEST(DistanceField, IsZeroWithoutTrianglesOrIfRoundingExceedsItsCells) {
     EXPECT_EQ(DistanceField().lower_bound({1, 2, 3}), 0.0);
     EXPECT_EQ(DistanceField({}, {}, {}).lower_bound({1, 2, 3}), 0.0);
     const TriangleMesh far = testing::moved(testing::sphere_mesh({}, 1.0, 2), {1e12, 0, 0});
@@ -92,7 +92,7 @@ TEST(DistanceField, KnowsNothingWithoutTrianglesAndWhereRoundingIsLargerThanCell
     EXPECT_EQ(grid_of(point).lower_bound({5, 5, 5}), 0.0);
 }
 
-TEST(DistanceField, TakesCoarserCellsWhereLargeTrianglesLieInHeaps) {
+TEST(DistanceField, UsesCoarserCellsForStacksOfLargeTriangles) {
     RandomSequence random(43, 0, 0);
     TriangleMesh heap;
     for (std::uint32_t k = 0; k < 100'000; ++k) {
@@ -100,7 +100,7 @@ TEST(DistanceField, TakesCoarserCellsWhereLargeTrianglesLieInHeaps) {
         heap.triangles.push_back({3 * k, 3 * k + 1, 3 * k + 2});
     }
     const DistanceField grid = grid_of(heap);
-    EXPECT_LT(grid.memory_bytes(), 10'000U);  // of two cells a triangle
+    EXPECT_LT(grid.memory_bytes(), 10'000U);  // two cells per triangle
     EXPECT_GT(grid.lower_bound({4, 0, 0}), 2.9);
 }
 

@@ -1,4 +1,4 @@
-// Formats that Assimp reads: the same checks and the same places, or one line that says what is missing.
+// Tests of formats read with Assimp. The same checks apply and positions match, or one line reports the problem.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -13,7 +13,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// The cube of kCubeCorners in Collada, with y up, moved by (1, 2, 3) and scaled by (2, 1, 4).
+/// Returns the cube of kCubeCorners in Collada, with y up, scaled by (2, 1, 4) and moved by (1, 2, 3).
 std::string dae_cube(const std::string& first_number = "-0.5") {
     std::ostringstream numbers;
     std::ostringstream indices;
@@ -46,14 +46,14 @@ std::string refusal(const std::string& name, const std::string& bytes) {
     return "";
 }
 
-TEST(ForeignReader, SaysWhatToDoInABuildWithoutAssimp) {
+TEST(ForeignReader, ExplainsTheRemedyInABuildWithoutAssimp) {
     if (reads_foreign()) GTEST_SKIP() << "this build has Assimp";
     for (const std::string name : {"m.fbx", "m.dae", "m.3DS"}) {
         EXPECT_NE(refusal(name, "x").find("libassimp-dev"), std::string::npos) << refusal(name, "x");
     }
 }
 
-TEST(ForeignReader, PutsACubeWhereItsNodeSays) {
+TEST(ForeignReader, PlacesACubeAsItsNodeSpecifies) {
     if (!reads_foreign()) GTEST_SKIP() << "this build has no Assimp";
     const ImportedMesh cube = read_mesh("m.dae", dae_cube());
     const MeshReport report = report_on(cube);
@@ -69,7 +69,7 @@ TEST(ForeignReader, PutsACubeWhereItsNodeSays) {
     EXPECT_EQ(cube.polygons.group_names[cube.polygons.groups[0].object], "crate");
 }
 
-TEST(ForeignReader, RefusesWhatAssimpCannotReadAndPointsThatAreNotFinite) {
+TEST(ForeignReader, RefusesUnreadableFilesAndNonFinitePoints) {
     if (!reads_foreign()) GTEST_SKIP() << "this build has no Assimp";
     for (const std::string name : {"m.fbx", "m.dae", "m.3ds"}) {
         EXPECT_NE(refusal(name, "no such thing").find("Assimp cannot read it"), std::string::npos)

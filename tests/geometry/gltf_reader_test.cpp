@@ -1,4 +1,4 @@
-// glTF: what comes of files that are good.
+// Tests of valid glTF files.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -22,7 +22,7 @@ Json& primitive_of(GltfFile& file) { return file.document["meshes"][0]["primitiv
 
 const std::vector<Vec3> kSquare = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 
-/// The corners of all triangles as the file has them, with y up.
+/// Returns the corners of all triangles as in the file, with y up.
 std::vector<std::vector<Vec3>> triangles_of(const ImportedMesh& mesh) {
     std::vector<std::vector<Vec3>> all;
     for (const Triangle& t : mesh.mesh.triangles) {
@@ -34,7 +34,7 @@ std::vector<std::vector<Vec3>> triangles_of(const ImportedMesh& mesh) {
 
 using Corners = std::vector<std::vector<Vec3>>;
 
-TEST(GltfReader, PutsACubeWhereItsNestedNodesSayToTheLastBit) {
+TEST(GltfReader, PlacesACubeByItsNestedNodesToTheLastBit) {
     const ImportedMesh cube = read(test::gltf_cube());
     ASSERT_EQ(cube.mesh.triangles.size(), 12U);
     EXPECT_EQ(cube.mesh.vertices.size(), 8U);
@@ -76,7 +76,7 @@ TEST(GltfReader, TurnsStripsAndFansIntoTrianglesOfTheSameSide) {
     primitive_of(fan)["mode"] = 6;
     EXPECT_EQ(triangles_of(read(fan)),
               (Corners{{kSquare[1], kSquare[2], kSquare[0]}, {kSquare[2], kSquare[3], kSquare[0]}}));
-    // Repeated points only turn a strip.
+    // Repeated points only change the orientation of a strip.
     GltfFile turned = test::gltf_of(kSquare, {0, 1, 1, 2, 3});
     primitive_of(turned)["mode"] = 5;
     EXPECT_EQ(read(turned).mesh.triangles.size(), 1U);
@@ -100,7 +100,7 @@ TEST(GltfReader, ReadsIndicesOfEveryTypeAndPointsWithoutIndices) {
     EXPECT_EQ(triangles_of(read(none)), expected);
 }
 
-TEST(GltfReader, ReadsPointsThatLieApartAndSparseOnes) {
+TEST(GltfReader, ReadsInterleavedAndSparsePoints) {
     GltfFile file = test::gltf_of(kSquare, {0, 1, 2});
     std::vector<Vec3> apart;
     for (const Vec3& p : kSquare) apart.insert(apart.end(), {p, Vec3{9, 9, 9}});
@@ -119,12 +119,12 @@ TEST(GltfReader, ReadsPointsThatLieApartAndSparseOnes) {
                                                     {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                                     {"values", {{"bufferView", values}}}};
     EXPECT_EQ(triangles_of(read(file)), (Corners{{kSquare[0], {5, 0, 0}, kSquare[2]}}));
-    // Without a view all other points are zero.
+    // Without a view, all other points are zero.
     file.document["accessors"][points].erase("bufferView");
     EXPECT_EQ(triangles_of(read(file)), (Corners{{{}, {5, 0, 0}, {}}}));
 }
 
-TEST(GltfReader, ReadsSmallIntegersAsPointsOnlyWithTheExtensionForThem) {
+TEST(GltfReader, ReadsSmallIntegersAsPointsOnlyWithTheirExtension) {
     GltfFile file = test::gltf_of(kSquare, {0, 1, 2});
     test::BinaryText bytes;
     bytes.add<std::int16_t>({0, 0, 0, 32767, 0, 0, 32767, -32768, 16384});
@@ -138,7 +138,7 @@ TEST(GltfReader, ReadsSmallIntegersAsPointsOnlyWithTheExtensionForThem) {
     EXPECT_EQ(triangles_of(read(file)), (Corners{{{}, {1, 0, 0}, {1, -1, 16384.0 / 32767.0}}}));
 }
 
-TEST(GltfReader, KeepsTheOutsideOutsideWhereANodeMirrors) {
+TEST(GltfReader, KeepsTheOutwardSideInAMirroringNode) {
     GltfFile file = test::gltf_cube();
     file.document["nodes"][1]["scale"] = {-2, 1, 4};
     const MeshReport report = report_on(read(file));
@@ -146,7 +146,7 @@ TEST(GltfReader, KeepsTheOutsideOutsideWhereANodeMirrors) {
     EXPECT_FALSE(report.wound_inward);
 }
 
-TEST(GltfReader, TakesAMatrixForWhatItsPartsWouldSay) {
+TEST(GltfReader, TreatsAMatrixLikeItsComponents) {
     GltfFile file = test::gltf_cube();
     const ImportedMesh parts = read(file);
     file.document["nodes"][0] = {{"children", {1}}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1}}};
@@ -167,7 +167,7 @@ TEST(GltfReader, NamesFacesByMaterialMeshAndNode) {
     EXPECT_EQ(mesh.polygons.face_groups.size(), 24U);
 }
 
-TEST(GltfReader, ReadsTheSceneThatTheFileShowsAndAllNodesWithoutScenes) {
+TEST(GltfReader, ReadsTheDefaultSceneOrAllNodesWithoutScenes) {
     GltfFile file = test::gltf_of(kSquare, {0, 1, 2});
     file.document["nodes"] = Json::parse(R"([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 1]}])");
     file.document["scenes"] = Json::parse(R"([{"nodes": [0]}, {"nodes": [1]}])");
@@ -181,7 +181,7 @@ TEST(GltfReader, ReadsTheSceneThatTheFileShowsAndAllNodesWithoutScenes) {
     EXPECT_EQ(read(file).mesh.triangles.size(), 2U);
 }
 
-TEST(GltfReader, LeavesPointsAndLinesOutAndSaysSo) {
+TEST(GltfReader, SkipsPointsAndLinesWithANote) {
     GltfFile file = test::gltf_of(kSquare, {0, 1, 2});
     Json lines = primitive_of(file);
     lines["mode"] = 1;
@@ -194,7 +194,7 @@ TEST(GltfReader, LeavesPointsAndLinesOutAndSaysSo) {
     EXPECT_NE(mesh.notes[1].find("animations"), std::string::npos);
 }
 
-TEST(GltfReader, ReadsNodesNestedAsDeepAsTheyLike) {
+TEST(GltfReader, ReadsNodesOfAnyNestingDepth) {
     constexpr std::size_t kDepth = 100'000;
     GltfFile file = test::gltf_of(kSquare, {0, 1, 2});
     Json nodes = Json::array();

@@ -1,4 +1,5 @@
-// glTF files that must be refused: each with one line that says where, in little memory, whatever they promise.
+// Tests of invalid glTF files. Each is refused with one line that gives the location, with little memory, whatever
+// sizes it declares.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -22,7 +23,7 @@ using test::Json;
 
 constexpr std::size_t kAllowedBytes = std::size_t{1} << 20;
 
-/// The message of what a reader refuses; empty where it does not.
+/// Returns the message of a refusal, or an empty text if the reader accepts the file.
 std::string refusal(const std::function<ImportedMesh()>& reader) {
     const test::AllocationGuard guard;
     std::string message;
@@ -40,16 +41,16 @@ std::string refusal(const std::string& name, const std::string& bytes) {
 }
 
 struct BadGltf {
-    const char* kind;                  // what is wrong, as a test name
-    std::function<void(Json&)> spoil;  // what is done to the document of the cube
-    const char* complaint;             // what the message must hold
+    const char* kind;                  // kind of error, as a test name
+    std::function<void(Json&)> spoil;  // makes the document of the cube invalid
+    const char* complaint;             // required part of the message
 };
 
 void PrintTo(const BadGltf& bad, std::ostream* out) { *out << bad.kind; }  // NOLINT(readability-identifier-naming)
 
 class MalformedGltf : public ::testing::TestWithParam<BadGltf> {};
 
-TEST_P(MalformedGltf, IsRefusedWithItsPlace) {
+TEST_P(MalformedGltf, IsRefusedWithItsLocation) {
     GltfFile file = test::gltf_cube();
     GetParam().spoil(file.document);
     const std::string message = refusal("m.glb", test::glb_of(file));
@@ -144,7 +145,7 @@ const std::vector<BadGltf>& bad_documents() {
 INSTANTIATE_TEST_SUITE_P(Kinds, MalformedGltf, ::testing::ValuesIn(bad_documents()),
                          [](const auto& test) { return std::string(test.param.kind); });
 
-TEST(MalformedGltfFile, IsRefusedWhereverItIsCutOff) {
+TEST(MalformedGltfFile, IsRefusedAtAnyTruncation) {
     const std::string glb = test::glb_of(test::gltf_cube());
     const std::string text = test::gltf_text(test::gltf_cube());
     for (std::size_t size = 1; size < glb.size(); size += 7) {
@@ -155,9 +156,9 @@ TEST(MalformedGltfFile, IsRefusedWhereverItIsCutOff) {
     }
 }
 
-TEST(MalformedGltfFile, IsRefusedWhereItsChunksReachBeyondIt) {
+TEST(MalformedGltfFile, IsRefusedIfItsChunksExceedIt) {
     std::string glb = test::glb_of(test::gltf_cube());
-    glb[15] = '\x7f';  // the first chunk has two billion bytes
+    glb[15] = '\x7f';  // the first chunk claims two billion bytes
     EXPECT_NE(refusal("m.glb", glb).find("byte 12: chunk of "), std::string::npos);
 }
 
@@ -169,8 +170,8 @@ TEST(MalformedGltfFile, IsRefusedWithPointsThatAreNotFinite) {
     }
 }
 
-// The parser's own stack, and that of whoever walks what it made, must not be the file's to fill.
-TEST(MalformedGltfFile, IsRefusedOrReadHoweverDeepItsJsonNests) {
+// Deep nesting in a file must not overflow the stack of the parser, nor of code that walks the parsed document.
+TEST(MalformedGltfFile, IsRefusedOrReadAtAnyNestingDepthOfItsJson) {
     constexpr std::size_t kDepth = 200'000;
     const std::string deep = std::string(kDepth, '[') + std::string(kDepth, ']');
     const std::string begin = R"({"asset": {"version": "2.0"}, )";
@@ -178,7 +179,7 @@ TEST(MalformedGltfFile, IsRefusedOrReadHoweverDeepItsJsonNests) {
     EXPECT_NE(refusal("m.gltf", begin + "\"extras\": " + deep + "}").find("no faces"), std::string::npos);
 }
 
-TEST(MalformedGltfFile, IsRefusedWhereItShowsOneMeshFarTooOften) {
+TEST(MalformedGltfFile, IsRefusedIfItInstancesAMeshTooOften) {
     constexpr std::size_t kCorners = 90'000;
     constexpr std::size_t kCopies = 1000;
     GltfFile file = test::gltf_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<std::uint32_t>(kCorners, 1));

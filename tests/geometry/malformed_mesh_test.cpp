@@ -1,4 +1,5 @@
-// Files that must be refused: each with the documented message, in little memory, whatever its header promises.
+// Tests of invalid files. Each is refused with the documented message, with little memory, whatever its header
+// declares.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -24,14 +25,14 @@ using test::BinaryText;
 constexpr std::size_t kAllowedBytes = std::size_t{1} << 20;
 
 struct BadFile {
-    const char* kind;       // what is wrong, as a test name
+    const char* kind;       // kind of error, as a test name
     const char* name;       // file name
     std::string bytes;      // contents
-    const char* position;   // what must follow the path in the message
-    const char* complaint;  // what the message must also hold
+    const char* position;   // required text after the path in the message
+    const char* complaint;  // another required part of the message
 };
 
-// How the test framework names a case in its report.
+// Prints a case in the test framework's report.
 void PrintTo(const BadFile& bad, std::ostream* out) { *out << bad.kind; }  // NOLINT(readability-identifier-naming)
 
 const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -301,7 +302,7 @@ TEST(MeshReader, DoesNotOpenAMaterialLibrary) {
     EXPECT_EQ(read_mesh(folder.write("a.obj", text)).mesh.triangles.size(), 4U);
 }
 
-TEST(MeshReader, RefusesEveryCutBinaryFileAndEveryCutAsciiStl) {
+TEST(MeshReader, RefusesEveryTruncatedBinaryFileAndAsciiStl) {
     const std::string files[] = {test::binary_ply_tetrahedron(false), test::binary_ply_tetrahedron(true),
                                  test::binary_stl_tetrahedron(), test::binary_stl_tetrahedron("solid part")};
     for (const std::string& file : files) {
@@ -318,8 +319,8 @@ TEST(MeshReader, RefusesEveryCutBinaryFileAndEveryCutAsciiStl) {
     }
 }
 
-// Text without an end mark can only be cut unnoticed inside its last line.
-TEST(MeshReader, RefusesCountedTextCutBeforeItsLastLine) {
+// Truncation of a text without an end mark can only be undetectable inside its last line.
+TEST(MeshReader, RefusesCountedTextTruncatedBeforeItsLastLine) {
     for (const std::string& file : {test::kAsciiPlyTetrahedron, test::kOffTetrahedron}) {
         const std::size_t last_line = file.rfind('\n', file.size() - 2);
         for (std::size_t size = 0; size <= last_line; ++size) {

@@ -18,8 +18,8 @@ void expect_near(const SymmetricMatrix& found, const SymmetricMatrix& expected, 
     EXPECT_NEAR(found.yz, expected.yz, within);
 }
 
-// m (b^2 + c^2) / 12 about the axes through the centre, wherever it is put.
-TEST(MassMoments, OfABoxAreThoseOfTheTextbook) {
+// The moments are m (b^2 + c^2) / 12 about the axes through the centre, for any position of the box.
+TEST(MassMoments, MatchTextbookValuesForABox) {
     const Placement placement{{3, -2, 7}};
     const MassMoments moments = moments_of(transformed(cuboid_mesh({1.0, 2.0, 0.5}), placement));
     EXPECT_NEAR(moments.volume, 1.0, 1e-14);
@@ -27,14 +27,14 @@ TEST(MassMoments, OfABoxAreThoseOfTheTextbook) {
     expect_near(moments.inertia(), {4.25 / 12.0, 1.25 / 12.0, 5.0 / 12.0, 0, 0, 0}, 1e-13);
 }
 
-// Turned by 90 degrees about z: x and y change places.
-TEST(MassMoments, TurnWithTheBody) {
+// A rotation by 90 degrees about z exchanges x and y.
+TEST(MassMoments, RotateWithTheBody) {
     const MassMoments moments = moments_of(transformed(cuboid_mesh({1.0, 2.0, 0.5}), {{}, {0, 0, 1}, 90.0}));
     expect_near(moments.inertia(), {1.25 / 12.0, 4.25 / 12.0, 5.0 / 12.0, 0, 0, 0}, 1e-14);
 }
 
-// The tetrahedron with corners at the origin and the three unit points: the integral of x y is 1/120.
-TEST(MassMoments, OfATetrahedronHaveItsProducts) {
+// For the tetrahedron with corners at the origin and the three unit points, the integral of x y is 1/120.
+TEST(MassMoments, MatchTheProductsOfATetrahedron) {
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
@@ -46,7 +46,7 @@ TEST(MassMoments, OfATetrahedronHaveItsProducts) {
     EXPECT_NEAR(moments_of(mesh).volume, -1.0 / 6.0, 1e-16);
 }
 
-TEST(MassMoments, OfBallsAndCylindersAreThoseOfTheTextbook) {
+TEST(MassMoments, MatchTextbookValuesForBallsAndCylinders) {
     AffineMap ball;
     ball.row_x *= 2.0, ball.row_y *= 2.0, ball.row_z *= 2.0;
     ball.translation = {1, 1, 0};
@@ -61,8 +61,8 @@ TEST(MassMoments, OfBallsAndCylindersAreThoseOfTheTextbook) {
                 {(3.0 + 36.0) / 12.0, (3.0 + 36.0) / 12.0, 0.5, 0, 0, 0}, 1e-13);
 }
 
-// Two halves of a box side by side are the box.
-TEST(MassMoments, OfPartsAddUp) {
+// Two halves of a box side by side equal the box.
+TEST(MassMoments, AddUpOverParts) {
     const MassMoments whole = moments_of(cuboid_mesh({2, 1, 1}));
     const MassMoments parts = moments_of(transformed(cuboid_mesh({1, 1, 1}), {{-0.5, 0, 0}})) +
                               moments_of(transformed(cuboid_mesh({1, 1, 1}), {{0.5, 0, 0}}));

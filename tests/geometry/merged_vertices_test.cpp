@@ -13,7 +13,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Gives each corner a vertex of its own, moved by at most so much along each axis.
+/// Gives each corner its own vertex, displaced by at most the given distance along each axis.
 TriangleMesh loosened(const TriangleMesh& mesh, double most, RandomSequence& random) {
     TriangleMesh loose;
     for (const Triangle& t : mesh.triangles) {
@@ -28,7 +28,7 @@ TriangleMesh loosened(const TriangleMesh& mesh, double most, RandomSequence& ran
     return loose;
 }
 
-TEST(MergedVertices, CloseWhatNearlyMeets) {
+TEST(MergedVertices, CloseNarrowGaps) {
     RandomSequence random(31, 0, 0);
     for (int variant = 0; variant < 12; ++variant) {
         SCOPED_TRACE(variant);
@@ -48,7 +48,7 @@ TEST(MergedVertices, CloseWhatNearlyMeets) {
     }
 }
 
-TEST(MergedVertices, OfAToleranceOfZeroAreEqualPositions) {
+TEST(MergedVertices, JoinEqualPositionsForAToleranceOfZero) {
     RandomSequence random(32, 0, 0);
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     const TriangleMesh merged = merged_within(loosened(box, 0.0, random), 0.0);
@@ -57,8 +57,8 @@ TEST(MergedVertices, OfAToleranceOfZeroAreEqualPositions) {
     EXPECT_EQ(merged_within(loosened(box, 1e-9, random), 0.0).vertices.size(), 36U);
 }
 
-TEST(MergedVertices, DoNotGatherAlongAChain) {
-    // 0, 0.6, 1.2, 1.8 with the tolerance 1: the second joins the first, the third is kept, the fourth joins it.
+TEST(MergedVertices, DoNotAccumulateAlongAChain) {
+    // 0, 0.6, 1.2, 1.8 with the tolerance 1: the second joins the first, the third is kept, the fourth joins the third.
     TriangleMesh chain;
     chain.vertices = {{0, 0, 0}, {0.6, 0, 0}, {1.2, 0, 0}, {1.8, 0, 0}, {0, 5, 0}};
     chain.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}};
@@ -67,7 +67,7 @@ TEST(MergedVertices, DoNotGatherAlongAChain) {
     EXPECT_EQ(merged.triangles, (std::vector<Triangle>{{0, 0, 1}, {0, 2, 1}, {2, 2, 1}}));
 }
 
-TEST(MergedVertices, RefuseAToleranceThatRoundingWouldDecide) {
+TEST(MergedVertices, RefuseAToleranceBelowRounding) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1000, 1, 1});
     for (const double wrong : {-1.0, 1e-14, std::numeric_limits<double>::infinity(),
                                std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::denorm_min()}) {
@@ -80,7 +80,7 @@ TEST(MergedVertices, RefuseAToleranceThatLeavesNoTriangle) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     EXPECT_THROW((void)merged_within(box, 10.0), InputError);
     EXPECT_EQ(merged_within(box, 1.9).vertices.size(), 8U);
-    // Triangles that had no area before say nothing of the tolerance.
+    // Triangles without area before the merge do not count against the tolerance.
     const TriangleMesh needle{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}};
     EXPECT_EQ(merged_within(needle, 10.0).vertices.size(), 1U);
 }

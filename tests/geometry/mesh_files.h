@@ -1,5 +1,4 @@
-/// \file
-/// Small mesh files made by tests.
+/// \file Small mesh files for tests.
 #pragma once
 
 #include <bit>
@@ -11,7 +10,7 @@
 
 namespace ricochet::test {
 
-/// Appends values as they are in little-endian memory.
+/// Text to which values are appended in little-endian byte order.
 class BinaryText {
 public:
     explicit BinaryText(std::string_view start = {}) : bytes_(start) {}
@@ -40,14 +39,14 @@ private:
     bool big_endian_ = false;
 };
 
-/// A PLY header of vertices (double) and faces (uchar, int).
+/// Returns a PLY header of vertices (double) and faces (uchar, int).
 inline std::string ply_header(std::string_view format, int vertices, int faces) {
     return "ply\nformat " + std::string(format) + " 1.0\nelement vertex " + std::to_string(vertices) +
            "\nproperty double x\nproperty double y\nproperty double z\nelement face " + std::to_string(faces) +
            "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-/// A binary STL file with a title of 80 bytes that begins as given. Every facet has 9 corner coordinates.
+/// Returns a binary STL file whose title of 80 bytes starts with the given text. Every facet has 9 corner coordinates.
 inline std::string binary_stl(std::string_view title, unsigned promised,
                               const std::vector<std::vector<float>>& facets) {
     std::string header(80, '\0');
@@ -62,7 +61,7 @@ inline std::string binary_stl(std::string_view title, unsigned promised,
     return file.bytes();
 }
 
-/// Tetrahedra in each format, all of the same shape.
+/// The same tetrahedron in each format.
 inline const std::string kObjTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 inline const std::string kOffTetrahedron =
     "OFF\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";

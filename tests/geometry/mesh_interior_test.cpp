@@ -18,7 +18,7 @@ std::shared_ptr<const TriangleMesh> shared(TriangleMesh mesh) {
     return std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
-TEST(MeshInterior, OfABoxIsItsInsideWithoutTheSurface) {
+TEST(MeshInterior, ExcludesTheSurfaceOfABox) {
     const MeshInterior box(shared(testing::box_mesh({0, 0, 0}, {2, 2, 2})));
     EXPECT_TRUE(box.contains({1, 1, 1}));
     EXPECT_TRUE(box.contains({1, 1, 0x1p-300}));  // below and above the diagonals of both caps
@@ -53,8 +53,8 @@ TEST(MeshInterior, AgreesWithAnIndependentOracleEverywhere) {
     }
 }
 
-// Rays through vertices, along edges and in the planes of faces: whole numbers in a mesh of whole numbers.
-TEST(MeshInterior, RaysThroughVerticesAndAlongEdgesAreCountedRight) {
+// Integer points in a mesh with integer vertices give rays through vertices, along edges and in the planes of faces.
+TEST(MeshInterior, CountsRaysThroughVerticesAndAlongEdgesCorrectly) {
     const TriangleMesh boxes =
         testing::merged(testing::box_mesh({0, 0, 0}, {4, 4, 4}), testing::box_mesh({4, 4, 5}, {8, 8, 8}));
     const MeshInterior interior(shared(boxes));
@@ -73,8 +73,8 @@ TEST(MeshInterior, RaysThroughVerticesAndAlongEdgesAreCountedRight) {
     }
 }
 
-// Each of large triangles one upon the other lies in every column. Both sides of a sheet count.
-TEST(MeshInterior, TakesMemoryInProportionToTheTriangles) {
+// Each of these large stacked triangles lies in every column. Both sides of a sheet count.
+TEST(MeshInterior, UsesMemoryInProportionToTheTriangles) {
     TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     for (std::uint32_t k = 0; k < 10000; ++k) {
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());

@@ -23,7 +23,7 @@ std::string refusal(std::vector<double> times, Positions positions, MeshEnds end
     return "";
 }
 
-TEST(MeshMotion, GoesOnLinesBetweenItsKeysAndStandsBeforeAndAfterThem) {
+TEST(MeshMotion, IsLinearBetweenItsKeysAndAtRestOutsideThem) {
     const MeshMotion motion({1.0, 2.0, 4.0}, {{{0, 0, 0}}, {{1, 2, 0}}, {{1, 2, 8}}});
     EXPECT_EQ(motion.at(0.5).position(0), Vec3(0, 0, 0));
     EXPECT_EQ(motion.at(0.5).velocity(0), Vec3());
@@ -40,7 +40,7 @@ TEST(MeshMotion, GoesOnLinesBetweenItsKeysAndStandsBeforeAndAfterThem) {
     EXPECT_EQ(motion.next_key(4.0), std::numeric_limits<double>::infinity());
 }
 
-TEST(MeshMotion, RepeatsItsRoundsBeforeAndAfter) {
+TEST(MeshMotion, RepeatsItsCycleBeforeAndAfter) {
     const MeshMotion motion({0.0, 1.0, 3.0}, {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 0, 0}}}, MeshEnds::repeat);
     for (const double round : {-6.0, -3.0, 0.0, 3.0, 300.0}) {
         EXPECT_EQ(motion.at(round).position(0), Vec3(0, 0, 0)) << round;
@@ -52,7 +52,7 @@ TEST(MeshMotion, RepeatsItsRoundsBeforeAndAfter) {
     }
 }
 
-// Keys that repeat, at times that are no sums of powers of two: each time is between its keys.
+// The keys repeat, at times that are not sums of powers of two. Each time must lie between its two keys.
 TEST(MeshMotion, FindsTheKeysAroundAnyTime) {
     const MeshMotion motion({0.1, 0.3, 0.7}, {{{0, 0, 0}}, {{1, 0, 0}}, {{0, 0, 0}}}, MeshEnds::repeat);
     RandomSequence random(5, 0, 0);
@@ -67,7 +67,7 @@ TEST(MeshMotion, FindsTheKeysAroundAnyTime) {
     }
 }
 
-TEST(MeshMotion, SaysWhatIsWrong) {
+TEST(MeshMotion, ReportsInvalidInput) {
     EXPECT_EQ(refusal({0.0}, {{{0, 0, 0}}}), "mesh that deforms: found 1 keys, expected at least 2");
     EXPECT_EQ(refusal({0.0, 1.0, 2.0}, {{{0, 0, 0}}, {{0, 0, 0}}}),
               "mesh that deforms: found 3 times for 2 sets of positions, expected one for each");
@@ -83,7 +83,7 @@ TEST(MeshMotion, SaysWhatIsWrong) {
               "mesh that deforms: it repeats, and its last positions are not the first, expected the same");
 }
 
-TEST(MeshMotion, IsSampledFromAFunctionAndMapped) {
+TEST(MeshMotion, CanBeSampledFromAFunctionAndTransformed) {
     const MeshMotion motion = sampled_motion(
         [](double time) {
             return std::vector<Vec3>{{time, time * time, 0}};

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A tube about z of a rectangle, open below and above.
+/// Returns a rectangular tube about z, open at the bottom and the top.
 TriangleMesh tube(double x, double y) {
     TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {x, y, 1});
     std::erase_if(mesh.triangles, [&](const Triangle& t) {
@@ -21,7 +21,7 @@ TriangleMesh tube(double x, double y) {
     return mesh;
 }
 
-TEST(MeshOpenings, OfATubeAreItsEnds) {
+TEST(MeshOpenings, AreTheEndsOfATube) {
     const auto openings = openings_of(tube(2.0, 0.5));
     ASSERT_EQ(openings.size(), 2U);
     for (const MeshOpening& opening : openings) {
@@ -30,9 +30,9 @@ TEST(MeshOpenings, OfATubeAreItsEnds) {
     }
 }
 
-TEST(MeshOpenings, OfAClosedMeshAreNone) { EXPECT_TRUE(openings_of(testing::sphere_mesh({}, 1.0, 2)).empty()); }
+TEST(MeshOpenings, AreAbsentInAClosedMesh) { EXPECT_TRUE(openings_of(testing::sphere_mesh({}, 1.0, 2)).empty()); }
 
-TEST(WindingNumber, IsOneInsideAndNoneOutsideOfAClosedMesh) {
+TEST(WindingNumber, IsOneInsideAndZeroOutsideAClosedMesh) {
     constexpr std::uint64_t kSeed = 3;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     const TriangleMesh ball = testing::sphere_mesh({1, 2, 3}, 1.0, 2);
@@ -45,8 +45,8 @@ TEST(WindingNumber, IsOneInsideAndNoneOutsideOfAClosedMesh) {
     EXPECT_NEAR(winding_number(testing::flipped(ball), {1, 2, 3}), -1.0, 1e-12);
 }
 
-// From its centre a cube without a face shows five sixths of itself.
-TEST(WindingNumber, IsThePartOfDirectionsThatAnOpenMeshCloses) {
+// From its centre, a cube without one face covers five sixths of all directions.
+TEST(WindingNumber, IsTheFractionOfDirectionsCoveredByAnOpenMesh) {
     TriangleMesh cube = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     std::erase_if(cube.triangles, [&](const Triangle& t) {
         return cube.vertices[t[0]].z + cube.vertices[t[1]].z + cube.vertices[t[2]].z == 3.0;

@@ -74,7 +74,7 @@ TEST(MeshReader, ReadsABinaryBodyAfterEveryLineEnd) {
     }
 }
 
-TEST(MeshReader, TakesAByteTenAfterACarriageReturnHeaderForData) {
+TEST(MeshReader, TreatsAByteTenAfterACarriageReturnHeaderAsData) {
     std::string header =
         "ply\rformat binary_little_endian 1.0\relement face 1\rproperty list uchar uchar vertex_indices\r"
         "element vertex 11\rproperty uchar x\rproperty uchar y\rproperty uchar z\rend_header\r";
@@ -97,7 +97,7 @@ TEST(MeshReader, KeepsEveryBitOfADouble) {
     EXPECT_EQ(mesh.mesh.vertices[2], (Vec3{1e5, 1e2, 1e-2}));
 }
 
-TEST(MeshReader, MakesNumbersTooSmallForThePredicatesZero) {
+TEST(MeshReader, ReplacesNumbersTooSmallForThePredicatesByZero) {
     const ImportedMesh mesh =
         read_mesh("a.obj", "v 1e-90 -1e-320 1e-99999999999999999999\nv 1 0 0.000e-400\nv 0 1 1e75\nf 1 2 3\n");
     EXPECT_EQ(mesh.mesh.vertices[0], Vec3{});
@@ -165,7 +165,7 @@ TEST(ObjReader, JoinsContinuedLines) {
     EXPECT_EQ(mesh.polygons.face_offsets, (std::vector<std::uint32_t>{0, 4, 7}));
 }
 
-TEST(ObjReader, IgnoresWhatParticlesCannotHit) {
+TEST(ObjReader, IgnoresElementsThatParticlesCannotHit) {
     const ImportedMesh mesh = read_mesh(
         "a.obj",
         "\xef\xbb\xbf# byte order mark\nmtllib a.mtl b.mtl\no thing # 1\nvt 0 0\nvn nan 0 0\nvp 0\ns off\n\t v 0 0 0 1 "
@@ -194,7 +194,7 @@ TEST(ObjReader, KeepsTheMaterialTheGroupAndTheObjectOfEveryFace) {
               (std::vector<FaceGroup>{{}, {0, 0, 1}, {0, 2, 1}, {3, 2, 1}, {3, 4, 1}, {0, 4, 1}}));
 }
 
-TEST(ObjReader, LeavesTheGroupsEmptyWhereThereAreNoNames) {
+TEST(ObjReader, LeavesTheGroupsEmptyWithoutNames) {
     const ImportedMesh mesh = read_mesh("a.obj", test::kObjTetrahedron);
     EXPECT_TRUE(mesh.polygons.group_names.empty());
     EXPECT_TRUE(mesh.polygons.groups.empty());
@@ -202,7 +202,8 @@ TEST(ObjReader, LeavesTheGroupsEmptyWhereThereAreNoNames) {
     EXPECT_TRUE(read_mesh("a.obj", kVertices + "g\nusemtl\nf 1 2 3\n").polygons.face_groups.empty());
 }
 
-// A long name in many combinations must not be stored in each: that would be quadratic in the file's size.
+// A long name in many combinations must be stored only once. One copy per combination would be quadratic in the size of
+// the file.
 TEST(ObjReader, StoresANameOnceHoweverManyGroupsShareIt) {
     const std::string name(1000, 'm');
     std::string text = kVertices + "usemtl " + name + "\n";
@@ -263,7 +264,7 @@ TEST(PlyReader, UnrollsTriangleStrips) {
         "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n"
         "element tristrips 1\nproperty list int int vertex_indices\nend_header\n"
         "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
-    // The second strip turns on a repeated corner, which keeps the winding of what follows.
+    // The second strip changes its orientation at a repeated corner, which keeps the winding of later triangles.
     const ImportedMesh mesh = read_mesh("a.ply", header + "11 0 1 2 3 4 -1 2 3 3 4 5\n");
     EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {3, 4, 5}}));
     for (const Triangle& t : mesh.mesh.triangles)
@@ -277,7 +278,7 @@ TEST(PlyReader, AllowsALineBreakAfterABinaryBody) {
     expect_tetrahedron(read_mesh("a.ply", test::binary_ply_tetrahedron(false) + "\r\n"));
 }
 
-TEST(StlReader, TakesABinaryFileThatStartsWithSolidForBinary) {
+TEST(StlReader, RecognizesABinaryFileThatStartsWithSolid) {
     const ImportedMesh mesh = read_mesh("a.stl", test::binary_stl_tetrahedron("solid facet normal"));
     EXPECT_EQ(mesh.format, "STL, binary");
     expect_tetrahedron(mesh);
@@ -286,7 +287,7 @@ TEST(StlReader, TakesABinaryFileThatStartsWithSolidForBinary) {
 TEST(StlReader, JoinsEqualCornersOnly) {
     std::string text = "solid a\n";
     text += test::ascii_facet("0 0 0", "1 0 0", "0 1 0");
-    text += test::ascii_facet("1.0000000000000002 0 0", "1 1 0", "0 1 0");  // one ulp beside
+    text += test::ascii_facet("1.0000000000000002 0 0", "1 1 0", "0 1 0");  // off by one ulp
     text += test::ascii_facet("-0 0 -0", "0 1 0", "1 0 0");
     text += "endsolid a\n";
     const ImportedMesh mesh = read_mesh("a.stl", text);
@@ -310,7 +311,7 @@ TEST(OffReader, ReadsCommentsCountsOnTheFirstLineAndColours) {
     EXPECT_EQ(mesh.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
 }
 
-TEST(OffReader, PassesOverValuesThatThePrefixesAnnounce) {
+TEST(OffReader, SkipsValuesAnnouncedByPrefixes) {
     const std::pair<std::string, std::string> variants[] = {{"COFF", " 255 0 0 255"},
                                                             {"NOFF", " 0 0 1"},
                                                             {"STOFF", " 0.5 0.5"},
@@ -343,7 +344,7 @@ TriangleMesh random_mesh(std::uint64_t seed) {
     return mesh;
 }
 
-TEST(MeshReader, ReadsBackWhatWasWrittenBitForBit) {
+TEST(MeshReader, ReadsWrittenMeshesBackBitForBit) {
     const test::TemporaryFolder folder;
     for (std::uint64_t seed = 0; seed < static_cast<std::uint64_t>(test::scaled(100)); ++seed) {
         SCOPED_TRACE(seed);
@@ -360,7 +361,7 @@ TEST(MeshReader, ReadsBackWhatWasWrittenBitForBit) {
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const Vec3& v = mesh.vertices[mesh.triangles[i][k]];
-                // GCC 12 without -fno-tree-slp-vectorize leaves this rounding out.
+                // GCC 12 without -fno-tree-slp-vectorize omits this rounding.
                 const Vec3 rounded{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
                 EXPECT_EQ(back.mesh.vertices[back.mesh.triangles[i][k]], rounded);
             }
@@ -420,7 +421,7 @@ std::string mutated(std::string bytes, std::mt19937_64& random) {
     return bytes;
 }
 
-TEST(MeshReader, GivesASoundMeshOrOneLineForAnyDamage) {
+TEST(MeshReader, ReturnsAValidMeshOrOneLineForAnyDamage) {
     const std::string originals[] = {test::kObjTetrahedron,
                                      test::kOffTetrahedron,
                                      test::kAsciiPlyTetrahedron,
@@ -451,7 +452,7 @@ TEST(MeshReader, GivesASoundMeshOrOneLineForAnyDamage) {
     EXPECT_GT(sound, 0);
 }
 
-// A sheet of unit squares in the plane of x and y, each cut in two.
+// Returns a sheet of unit squares in the xy plane, each cut into two triangles.
 TriangleMesh sheet(std::uint32_t cells) {
     TriangleMesh mesh;
     const std::uint32_t row = cells + 1;
@@ -467,7 +468,7 @@ TriangleMesh sheet(std::uint32_t cells) {
     return mesh;
 }
 
-TEST(MeshReader, KeepsTheSameTrianglesWhereNothingElseIsKept) {
+TEST(MeshReader, KeepsTheSameTrianglesIfOnlyTrianglesAreRequested) {
     const test::TemporaryFolder folder;
     for (const char* name : {"a.obj", "a.ply", "a.stl", "a.off"}) {
         write_mesh(sheet(20), folder.path(name));
@@ -487,8 +488,8 @@ TEST(MeshReader, KeepsTheSameTrianglesWhereNothingElseIsKept) {
     EXPECT_EQ(some.polygons.groups.size(), 2U);
 }
 
-// The most at any time, the file's own bytes included, over what is left at the end.
-TEST(MeshReader, TakesBoundedMemoryForMeshesOfTriangles) {
+// Peak memory, including the bytes of the file, relative to the memory of the result.
+TEST(MeshReader, UsesBoundedMemoryForMeshesOfTriangles) {
     const test::TemporaryFolder folder;
     const TriangleMesh mesh = sheet(150);
     const std::size_t arrays = mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(Triangle);

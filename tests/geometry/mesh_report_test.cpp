@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Counts that an independent checker found, see SOURCES.md beside the meshes.
+// Counts from an independent checker; see SOURCES.md in the folder of the meshes.
 struct KnownMesh {
     const char* file;
     std::size_t vertices;
@@ -26,10 +26,10 @@ struct KnownMesh {
     std::size_t inconsistent_edges;
     std::size_t shells;
     std::size_t unused_vertices;
-    // Equal positions are joined first: 403 vertices of teapot and 2 of suzanne, for which the checker, which counts by
-    // index, finds 1036 boundary edges and 19 shells, and no vertex that is not manifold.
-    // The independent checker splits vertices and edges that are not manifold before it counts, which adds the pairs
-    // that are in contact there: suzanne 163, teapot 4675, cow 101, cycloidal 64765.
+    // Equal positions are joined first: 403 vertices of teapot and 2 of suzanne. The independent checker counts by
+    // index. It therefore finds 1036 boundary edges, 19 shells and no non-manifold vertex there. It also splits
+    // non-manifold vertices and edges before it counts, which adds pairs in contact at them: suzanne 163, teapot 4675,
+    // cow 101, cycloidal 64765.
     std::size_t self_intersections;
 };
 
@@ -90,7 +90,7 @@ bool warns_of(const MeshReport& report, const std::string& words) {
 const std::string kTetrahedronVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
 const std::string kTetrahedron = kTetrahedronVertices + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-TEST(MeshReport, OfACleanClosedMeshHasNoWarnings) {
+TEST(MeshReport, HasNoWarningsForACleanClosedMesh) {
     const MeshReport report = report_on_text("t.obj", kTetrahedron);
     EXPECT_TRUE(report.topology.closed);
     EXPECT_TRUE(report.topology.consistently_oriented);
@@ -100,20 +100,20 @@ TEST(MeshReport, OfACleanClosedMeshHasNoWarnings) {
     EXPECT_TRUE(report.warnings.empty());
 }
 
-TEST(MeshReport, SaysThatParticlesPassThroughAnOpening) {
+TEST(MeshReport, WarnsThatParticlesPassThroughAnOpening) {
     const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 3 2\nf 1 2 4\nf 2 3 4\n");
     EXPECT_FALSE(report.volume);
     EXPECT_TRUE(warns_of(report, "open surface, 3 boundary edges in 1 loop: particles pass through"));
 }
 
-TEST(MeshReport, SaysThatNormalsPointInward) {
+TEST(MeshReport, WarnsThatNormalsPointInward) {
     const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n");
     EXPECT_TRUE(report.wound_inward);
     EXPECT_DOUBLE_EQ(*report.volume, 1.0 / 6.0);
     EXPECT_TRUE(warns_of(report, "inward"));
 }
 
-TEST(MeshReport, SaysThatOneFaceIsTurnedAround) {
+TEST(MeshReport, WarnsOfAReversedFace) {
     const MeshReport report = report_on_text("t.obj", kTetrahedronVertices + "f 1 2 3\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
     EXPECT_TRUE(report.topology.closed);
     EXPECT_EQ(report.topology.inconsistent_edges, 3U);
@@ -121,7 +121,7 @@ TEST(MeshReport, SaysThatOneFaceIsTurnedAround) {
     EXPECT_TRUE(warns_of(report, "inconsistent winding along 3 edges"));
 }
 
-TEST(MeshReport, WarnsOfNestedShellsThatAreWoundTheSameWay) {
+TEST(MeshReport, WarnsOfNestedShellsWithEqualWinding) {
     const TriangleMesh outer = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     const TriangleMesh inner = testing::box_mesh({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75});
     const TriangleMesh beside = testing::box_mesh({2, 0, 0}, {3, 1, 1});
@@ -147,7 +147,7 @@ TEST(MeshReport, WarnsOfNestedShellsThatAreWoundTheSameWay) {
 }
 
 TEST(MeshReport, CountsDegenerateTrianglesExactly) {
-    // 0.1 + 0.2 is not 0.3: the fourth vertex is next to the line, not on it.
+    // 0.1 + 0.2 is not 0.3: the fourth vertex is beside the line, not on it.
     const MeshReport report = report_on_text(
         "t.obj", "v 0.1 0.1 0\nv 0.2 0.2 0\nv 0.5 0.5 0\nv 0.30000000000000004 0.3 0\nf 1 2 3\nf 1 2 4\nf 1 1 4\n");
     EXPECT_EQ(report.triangles, 3U);
@@ -180,7 +180,7 @@ TEST(MeshReport, ShowsHowStlCornersWereJoined) {
     EXPECT_TRUE(warns_of(report, "joined only where their coordinates are equal"));
 }
 
-TEST(MeshReport, SaysThatAnOutlineCrossesItself) {
+TEST(MeshReport, WarnsOfAnOutlineThatCrossesItself) {
     const MeshReport report = report_on_text("t.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n");
     EXPECT_EQ(report.crossing_faces, 1U);
     EXPECT_TRUE(warns_of(report, "1 face has an outline that crosses itself"));

@@ -31,7 +31,7 @@ TopologyReport report_of(std::size_t vertices, const std::vector<std::vector<std
 const std::vector<std::vector<std::uint32_t>> kCube = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                                        {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
-TEST(MeshTopology, OfACubeOfQuadsIsClosedAndManifold) {
+TEST(MeshTopology, IsClosedAndManifoldForACubeOfQuads) {
     const TopologyReport report = report_of(8, kCube);
     EXPECT_TRUE(report.closed);
     EXPECT_TRUE(report.consistently_oriented);
@@ -46,13 +46,13 @@ TEST(MeshTopology, FindsTheLoopOfAMissingFace) {
     const MeshTopology topology(faces(8, open));
     EXPECT_EQ(topology.report().boundary_edges, 4U);
     ASSERT_EQ(topology.boundary_loops().size(), 1U);
-    // Against the direction of the faces around the hole, which is the direction of the missing face.
+    // The loop runs against the direction of the faces around the hole, which is the direction of the missing face.
     std::vector<std::uint32_t> loop = topology.boundary_loops()[0];
     std::rotate(loop.begin(), std::min_element(loop.begin(), loop.end()), loop.end());
     EXPECT_EQ(loop, (std::vector<std::uint32_t>{0, 3, 2, 1}));
 }
 
-TEST(MeshTopology, ListsEveryEdgeOnceWithTheCornersAcrossIt) {
+TEST(MeshTopology, ListsEveryEdgeOnceWithItsOppositeCorners) {
     const std::vector<MeshEdge> edges = MeshTopology(faces(4, {{0, 1, 2}, {2, 1, 3}})).edges();
     ASSERT_EQ(edges.size(), 5U);
     const auto is = [&](std::size_t i, std::uint32_t first, std::uint32_t second,
@@ -76,7 +76,7 @@ TEST(MeshTopology, ListsAnEdgeOfThreeFacesOnceAndWithoutNeighbours) {
     EXPECT_EQ(edges[0].opposite, (std::array<std::uint32_t, 2>{kNoVertex, kNoVertex}));
 }
 
-TEST(MeshTopology, EdgesOfQuadsHaveNoCornersAcross) {
+TEST(MeshTopology, EdgesOfQuadsHaveNoOppositeCorners) {
     const std::vector<MeshEdge> edges = MeshTopology(faces(8, kCube)).edges();
     EXPECT_EQ(edges.size(), 12U);
     for (const MeshEdge& edge : edges) {
@@ -85,7 +85,7 @@ TEST(MeshTopology, EdgesOfQuadsHaveNoCornersAcross) {
 }
 
 TEST(MeshTopology, SeparatesLoopsThatShareAVertex) {
-    // Two triangles that share only vertex 2.
+    // Two triangles share only vertex 2.
     const MeshTopology topology(faces(5, {{0, 1, 2}, {2, 3, 4}}));
     EXPECT_EQ(topology.report().nonmanifold_vertices, 1U);
     EXPECT_EQ(topology.report().shells, 2U);
@@ -104,7 +104,7 @@ TEST(MeshTopology, CountsAnEdgeOfThreeFaces) {
 
 TEST(MeshTopology, KeepsTwoCubesOnACommonEdgeClosed) {
     auto both = kCube;
-    // The second cube's vertices are 8 to 13 and the common edge 0-1.
+    // The second cube's own vertices are 8 to 13. The common edge is 0-1.
     const std::uint32_t renamed[] = {1, 0, 8, 9, 10, 11, 12, 13};
     for (const auto& face : kCube) {
         both.emplace_back();
@@ -126,7 +126,7 @@ TEST(MeshTopology, CountsNeighboursOfOppositeWinding) {
     EXPECT_FALSE(report.consistently_oriented);
 }
 
-TEST(MeshTopology, LeavesFacesWithoutThreeCornersOut) {
+TEST(MeshTopology, ExcludesFacesWithoutThreeCorners) {
     auto faces_and_more = kCube;
     faces_and_more.push_back({0, 0, 1});
     faces_and_more.push_back({2, 2, 2});
@@ -137,7 +137,7 @@ TEST(MeshTopology, LeavesFacesWithoutThreeCornersOut) {
     EXPECT_EQ(report.unused_vertices, 2U);
 }
 
-TEST(MeshTopology, OfAMeshWithoutFacesIsEmpty) {
+TEST(MeshTopology, IsEmptyForAMeshWithoutFaces) {
     const TopologyReport report = report_of(3, {});
     EXPECT_EQ(report.shells, 0U);
     EXPECT_EQ(report.unused_vertices, 3U);
@@ -166,7 +166,7 @@ TEST(CountDuplicateFaces, ComparesSetsOfVertices) {
               3U);
 }
 
-// Slow reference counts.
+// Reference counts from slow algorithms.
 struct Reference {
     std::size_t boundary = 0;
     std::size_t nonmanifold = 0;
@@ -175,7 +175,7 @@ struct Reference {
     std::size_t nonmanifold_vertices = 0;
 };
 
-// Number of groups in which things hang together, by repeated painting.
+// Returns the number of connected groups, by repeated painting.
 template <typename Linked>
 std::size_t count_groups(std::size_t count, Linked&& linked) {
     std::vector<std::size_t> paint(count);

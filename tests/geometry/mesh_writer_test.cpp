@@ -12,7 +12,7 @@ namespace RICOCHET_FILE {
 
 TriangleMesh one_triangle() { return {{{0, 0, 0}, {0.1, 0, 0}, {1.0 / 3.0, 2e-300, -1e20}}, {{0, 1, 2}}}; }
 
-TEST(MeshWriter, WritesObjWithTheDigitsThatBringBackEveryDouble) {
+TEST(MeshWriter, WritesObjWithEnoughDigitsForEveryDouble) {
     const test::TemporaryFolder folder;
     write_mesh(one_triangle(), folder.path("a.OBJ"));
     EXPECT_EQ(folder.read("a.OBJ"), "v 0 0 0\nv 0.1 0 0\nv 0.3333333333333333 2e-300 -1e+20\nf 1 2 3\n");
@@ -46,7 +46,7 @@ TEST(MeshWriter, WritesBinaryStlOfTheRightSize) {
     EXPECT_EQ(normal_z, 1.0F);
 }
 
-TEST(MeshWriter, RefusesWhatStlCannotHoldAndLeavesTheOldFile) {
+TEST(MeshWriter, RefusesValuesOutOfRangeOfStlAndKeepsTheOldFile) {
     const test::TemporaryFolder folder;
     (void)folder.write("a.stl", "old");
     EXPECT_THROW(write_mesh({{{0, 0, 0}, {1e39, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, folder.path("a.stl")), InputError);

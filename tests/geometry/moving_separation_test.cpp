@@ -1,4 +1,5 @@
-// Is what is certified really apart, and is what meets found, also where triangles turn next to a particle?
+// Tests that certified separations are correct and that impacts are found, also for triangles that turn beside a
+// particle.
 #include "ricochet/geometry/sweep/moving_separation.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +29,8 @@ MovingTriangle random_triangle(RandomSequence& random, double motion) {
     return triangle;
 }
 
-// The reference is first_contact() of moving_triangle.h, which misses nothing.
-TEST(MovingSeparation, ProvesWhatIsApartAndNothingElse) {
+// The reference is first_contact() of moving_triangle.h, which finds every contact.
+TEST(MovingSeparation, CertifiesSeparatedPairsAndNoOthers) {
     RandomSequence random(17, 0, 0);
     int apart = 0;
     int proved = 0;
@@ -45,11 +46,11 @@ TEST(MovingSeparation, ProvesWhatIsApartAndNothingElse) {
         proved += is_proved && !contact ? 1 : 0;
     }
     EXPECT_GT(apart, 0);
-    EXPECT_GE(proved, apart - apart / 100);  // what passes at rounding's distance is not proved
+    EXPECT_GE(proved, apart - apart / 100);  // pairs within rounding of each other are not certified
 }
 
-// What passes by the cheap proof meets nothing, on lines and on curves; and most of what is apart does.
-TEST(MovingSeparation, PassesAlongADirectionOnlyWhatMeetsNothing) {
+// A pair that passes the cheap test has no contact, on lines and on curves. Most separated pairs pass it.
+TEST(MovingSeparation, PassesAlongADirectionOnlyPairsWithoutContact) {
     RandomSequence random(41, 0, 0);
     int apart = 0;
     int passed = 0;
@@ -68,15 +69,15 @@ TEST(MovingSeparation, PassesAlongADirectionOnlyWhatMeetsNothing) {
         passed += passes ? 1 : 0;
     }
     EXPECT_GT(passed, apart / 2);
-    // A corner that the path goes through at its end.
+    // The path ends in this corner.
     const Vec3 corner{0.3, -0.2, 0.5};
     const MovingTriangle still{{{{corner, corner}, {{1, 0, 1}, {1, 0, 1}}, {{1, 1, 1}, {1, 1, 1}}}}};
     EXPECT_FALSE(pass_along_direction(hermite_path({}, {0, 0, 1}, corner, {0, 0, 1}, 1.0), 0.0, still));
 }
 
-// A point, or a sphere, that rides on a triangle which turns and grows: no one direction separates them for longer than
-// the gap over the speed of the corners.
-TEST(MovingSeparation, ProvesWhatRidesOnATriangleThatTurns) {
+// A point or sphere moves with a triangle that turns and grows. A single direction separates them only for the time of
+// the gap divided by the speed of the corners.
+TEST(MovingSeparation, CertifiesAParticleAttachedToATurningTriangle) {
     RandomSequence random(23, 0, 0);
     for (int k = 0; k < test::scaled(500); ++k) {
         const MovingTriangle triangle = random_triangle(random, 0.4);
@@ -85,21 +86,21 @@ TEST(MovingSeparation, ProvesWhatRidesOnATriangleThatTurns) {
         weights = weights / (weights.x + weights.y + weights.z);
         const double radius = k % 2 == 0 ? 0.0 : 0.05;
         const Vec3 first = unit_normal(a.from, b.from, c.from);
-        if (dot(first, unit_normal(a.to, b.to, c.to)) < 0.7) continue;  // chords of its normal lead through it
+        if (dot(first, unit_normal(a.to, b.to, c.to)) < 0.7) continue;  // chords of its normal pass through it
         MovingPoint point;
         for (const double end : {0.0, 1.0}) {
             const Vec3 foot = weights.x * a.at(end) + weights.y * b.at(end) + weights.z * c.at(end);
             const Vec3 normal = unit_normal(a.at(end), b.at(end), c.at(end));
             (end == 0.0 ? point.from : point.to) = foot + (radius + 1e-13) * normal;
         }
-        // Chords of the turning normal come nearer than its ends: a sphere of less is judged.
+        // Chords of the turning normal come closer than its ends. The test therefore uses a smaller sphere.
         const double least = radius == 0.0 ? 0.0 : 0.5 * radius;
         EXPECT_TRUE(stay_apart(point, least, triangle)) << k;
     }
 }
 
-TEST(MovingSeparation, FindsTheTimeOfAMeetingInClosedForm) {
-    // A plate that comes up at 1 m/s, and a point that falls from 2 m: 2 - g t^2 / 2 = t.
+TEST(MovingSeparation, FindsImpactTimesKnownInClosedForm) {
+    // A plate rises at 1 m/s while a point falls from 2 m: 2 - g t^2 / 2 = t.
     const MovingTriangle plate{{{{{-5, -5, 0}, {-5, -5, 1}}, {{5, -5, 0}, {5, -5, 1}}, {{0, 5, 0}, {0, 5, 1}}}}};
     constexpr double kG = 9.81;
     for (const double radius : {0.0, 0.25}) {
@@ -114,13 +115,13 @@ TEST(MovingSeparation, FindsTheTimeOfAMeetingInClosedForm) {
     EXPECT_FALSE(first_meeting(aside, 0.0, plate, 0.0, [](const Meeting&) { return true; }).has_value());
 }
 
-/// Where a sphere touches a triangle.
+/// Point of contact between a sphere and a triangle.
 struct Touched {
-    Vec3 place;      ///< m, on the triangle
-    Vec3 direction;  ///< unit, from there to the centre of a sphere that touches there
+    Vec3 place;      ///< on the triangle, in m
+    Vec3 direction;  ///< unit vector from there to the centre of a touching sphere
 };
 
-/// part: 0 within the face, 1 on an edge, 2 at a corner.
+/// part: 0 inside the face, 1 on an edge, 2 at a corner.
 Touched touched_place(const Vec3& a, const Vec3& b, const Vec3& c, int part, RandomSequence& random) {
     const Vec3 normal = unit_normal(a, b, c);
     const double along = 0.2 + 0.6 * random.uniform();
@@ -131,9 +132,9 @@ Touched touched_place(const Vec3& a, const Vec3& b, const Vec3& c, int part, Ran
     return {a, normalized(away + random.uniform_around(0, 1) * normal)};
 }
 
-// A ball enters what a triangle is thickened to by its radius once, since that is convex: where it touches it on its
-// way in is the first contact, however often the ball would pass through between two samples.
-TEST(MovingSeparation, FindsWhereASmallFastBallMeetsATriangle) {
+// The triangle thickened by the radius is convex, so a ball enters it only once. The touching point on entry is the
+// first contact, even if the ball passes through between two samples.
+TEST(MovingSeparation, FindsTheContactOfASmallFastBall) {
     RandomSequence random(57, 0, 0);
     for (int k = 0; k < test::scaled(1200); ++k) {
         const std::array<Vec3, 3> corners{in_cube(random), in_cube(random), in_cube(random)};
@@ -159,8 +160,8 @@ TEST(MovingSeparation, FindsWhereASmallFastBallMeetsATriangle) {
     }
 }
 
-// What does not count is passed over, and the next one is found.
-TEST(MovingSeparation, GoesOnAfterAMeetingThatDoesNotCount) {
+// A rejected impact is skipped, and the next one is found.
+TEST(MovingSeparation, ContinuesAfterARejectedImpact) {
     const MovingTriangle plate{{{{{-5, -5, 0}, {-5, -5, 0}}, {{5, -5, 0}, {5, -5, 0}}, {{0, 5, 0}, {0, 5, 0}}}}};
     const Path path = parabola_path({0, 0, 1.0}, {0, 0, -4.5}, {0, 0, 9.0}, 1.0);  // below from 1/3 to 2/3
     std::optional<Meeting> last;

@@ -51,14 +51,14 @@ Query random_query(RandomSequence& random) {
     return query;
 }
 
-/// Volume of the point and the three corners, times six.
+/// Returns the volume of the point and the three corners, times six.
 Real volume(const Query& query, const Real& s) {
     const auto& [a, b, c] = query.triangle.corners;
     const RealVec o = at(a, s);
     return dot(at(query.point, s) - o, cross(at(b, s) - o, at(c, s) - o));
 }
 
-/// The smallest barycentric coordinate of the point in the plane of the triangle.
+/// Returns the smallest barycentric coordinate of the point in the plane of the triangle.
 Real inside(const Query& query, const Real& s) {
     const auto& [a, b, c] = query.triangle.corners;
     const std::array corners{at(a, s), at(b, s), at(c, s)};
@@ -73,7 +73,7 @@ Real inside(const Query& query, const Real& s) {
     return least;
 }
 
-/// Roots of the volume, a cubic in time, by dense signs and bisection.
+/// Returns the roots of the volume, a cubic in time, from dense samples of its sign and bisection.
 std::vector<Real> coplanar_times(const Query& query) {
     constexpr int kParts = 256;
     std::vector<Real> roots;
@@ -91,14 +91,14 @@ std::vector<Real> coplanar_times(const Query& query) {
     return roots;
 }
 
-TEST(MovingTriangle, IsMetByAPointAtTheTimeOfFiftyDigits) {
+TEST(MovingTriangle, IsHitByAPointAtTheTimeFromFiftyDigits) {
     const int count = test::scaled(300) * test::case_factor(100);
     int met = 0;
     for (int k = 0; k < count; ++k) {
         RandomSequence random(31, 1, static_cast<std::uint64_t>(k));
         const Query query = random_query(random);
         std::optional<Real> expected;
-        bool is_doubtful = false;  // it passes an edge
+        bool is_doubtful = false;  // the point passes an edge
         for (const Real& root : coplanar_times(query)) {
             const Real least = inside(query, root);
             is_doubtful = is_doubtful || abs(least) < 1e-9;
@@ -117,8 +117,8 @@ TEST(MovingTriangle, IsMetByAPointAtTheTimeOfFiftyDigits) {
     EXPECT_GT(met, count / 20);
 }
 
-// Contacts that are there by construction, at time 1/2, in small whole numbers: also degenerate triangles, points on
-// edges and corners, motion in the triangle's plane, and what never moves.
+// Contacts at time 1/2 are constructed with small integers. They include degenerate triangles, points on edges and
+// corners, motion in the triangle's plane, and pairs at rest.
 TEST(MovingTriangle, IsNeverMissed) {
     const int count = test::scaled(10'000) * test::case_factor(100);
     for (int k = 0; k < count; ++k) {
@@ -129,12 +129,12 @@ TEST(MovingTriangle, IsNeverMissed) {
             corner.from = on_grid(random, half);
             corner.to = random.uniform() < 0.3 ? corner.from : on_grid(random, half);
         }
-        // Weights of the corners, quarters.
+        // Weights of the corners, in quarters.
         const double alpha = std::floor(random.uniform() * 5.0) / 4.0;
         const double beta = std::floor(random.uniform() * (4.0 * (1.0 - alpha) + 1.0)) / 4.0;
         const auto& [a, b, c] = query.triangle.corners;
         const Vec3 met = alpha * (a.from + a.to) + beta * (b.from + b.to) + (1.0 - alpha - beta) * (c.from + c.to);
-        query.point.to = met - query.point.from;  // exact: the middle of its way is there
+        query.point.to = met - query.point.from;  // exact: the middle of its path is at this point
         const auto found = first_contact(query.point, 0.0, query.triangle);
         ASSERT_TRUE(found) << "case " << k;
         EXPECT_LE(found->time, 0.5) << "case " << k;
@@ -143,13 +143,13 @@ TEST(MovingTriangle, IsNeverMissed) {
     }
 }
 
-/// The distance of the closed triangle in plain doubles.
+/// Returns the distance from the closed triangle in plain doubles.
 double distance_at(const Query& query, double s) {
     const auto& [a, b, c] = query.triangle.corners;
     return std::sqrt(closest_point_on_triangle(query.point.at(s), a.at(s), b.at(s), c.at(s)).distance_squared);
 }
 
-TEST(MovingTriangle, IsMetByASphereWhereTheDistanceIsItsRadius) {
+TEST(MovingTriangle, IsHitByASphereWhenTheDistanceIsItsRadius) {
     const int count = test::scaled(1000) * test::case_factor(20);
     int met = 0;
     for (int k = 0; k < count; ++k) {
@@ -175,7 +175,7 @@ TEST(MovingTriangle, IsMetByASphereWhereTheDistanceIsItsRadius) {
         if (time <= 1.0) {
             ++met;
             ASSERT_TRUE(found) << "case " << k;
-            // Beside a graze the time has half the digits.
+            // Near a graze the time has half the digits.
             EXPECT_LE(found->time, time + 1e-12) << "case " << k;
             EXPECT_NEAR(found->time, time, 1e-7) << "case " << k;
         } else if (least > 1e-6) {
@@ -187,7 +187,7 @@ TEST(MovingTriangle, IsMetByASphereWhereTheDistanceIsItsRadius) {
     EXPECT_GT(met, count / 5);
 }
 
-TEST(MovingTriangle, ThatOnlyTranslatesIsMetAsOneAtRestIs) {
+TEST(MovingTriangle, InPureTranslationIsHitLikeATriangleAtRest) {
     const MovingTriangle fixed{{{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}}}};
     const Vec3 way{3, -2, 5};
     MovingTriangle moving = fixed;
@@ -205,8 +205,8 @@ TEST(MovingTriangle, ThatOnlyTranslatesIsMetAsOneAtRestIs) {
     }
 }
 
-// A triangle that turns over by half a turn (its corners pass through its edge) meets points from both sides.
-TEST(MovingTriangle, HasItsNormalOnTheSideFromWhichThePointComes) {
+// A triangle flips by half a turn, with its corners passing through its edge. It hits points from both sides.
+TEST(MovingTriangle, HasItsNormalOnTheSideOfTheApproachingPoint) {
     const MovingTriangle flips{{{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{0, 1, -1}, {0, -1, 1}}}}};
     const int count = test::scaled(2000);
     for (int k = 0; k < count; ++k) {
@@ -214,7 +214,8 @@ TEST(MovingTriangle, HasItsNormalOnTheSideFromWhichThePointComes) {
         const MovingPoint point{in_cube(random), in_cube(random)};
         const auto met = first_contact(point, 0.0, flips);
         if (!met || met->time == 0.0 || met->time > 1.0 - 1e-3) continue;
-        // Just before, it is on the normal's side, seen from where the material of the triangle is then.
+        // Just before the impact, the point is on the normal's side, relative to the triangle's material point at that
+        // time.
         const double before = met->time - 1e-7;
         const Vec3 w = met->barycentric;
         const auto& [a, b, c] = flips.corners;
@@ -224,7 +225,7 @@ TEST(MovingTriangle, HasItsNormalOnTheSideFromWhichThePointComes) {
     }
 }
 
-TEST(MovingTriangle, RefusesWhatHasNoMeaning) {
+TEST(MovingTriangle, RefusesInvalidArguments) {
     RandomSequence random(34, 1, 0);
     const Query query = random_query(random);
     const double nan = std::nan("");
@@ -241,8 +242,8 @@ TEST(MovingTriangle, RefusesWhatHasNoMeaning) {
     }
 }
 
-TEST(MovingTriangle, IsPassedBesideAtAHairsBreadth) {
-    // A point that slides past an edge in the triangle's plane, which turns.
+TEST(MovingTriangle, IsMissedByTinyGaps) {
+    // A point slides past an edge in the plane of the turning triangle.
     for (const double gap : {1e-3, 1e-6, 1e-9, 1e-12}) {
         const MovingTriangle triangle{{{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, -0.1}, {1, 0, 0.1}}, {{0, 1, 0}, {0, 1, 0}}}}};
         const MovingPoint past{{-gap, 0.5, -1}, {-gap, 0.5, 1}};

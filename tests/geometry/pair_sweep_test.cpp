@@ -14,9 +14,9 @@ Vec3 in_cube(RandomSequence& random) {
     return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
 }
 
-// As after an impact without rebound: what is left of the approach is rounding, and so is the gap. A graze has a
-// discriminant of rounding, of which doubles do not know the sign.
-TEST(PairSweep, SpheresThatSlipPastEachOtherAfterAnImpactMeetOnlyWhereTheyTouch) {
+// After an impact without rebound, the remaining approach and the gap are only rounding errors. A graze has a
+// discriminant of the size of rounding, whose sign plain doubles cannot determine.
+TEST(PairSweep, SpheresThatSlipPastEachOtherCollideOnlyIfTheyTouch) {
     RandomSequence random(43, 0, 0);
     constexpr double kDistance = 0.06;
     const int count = test::scaled(20000);
@@ -38,8 +38,8 @@ TEST(PairSweep, SpheresThatSlipPastEachOtherAfterAnImpactMeetOnlyWhereTheyTouch)
     EXPECT_LT(meetings, count);
 }
 
-// Closed form: two that pass each other at a distance of a part of their radii, by rounding less or more than both.
-TEST(PairSweep, AGrazeIsMetOnItsSideOfTheLastPlace) {
+// Closed form: two spheres pass at the sum of their radii, or at one rounding unit less or more.
+TEST(PairSweep, AGrazeIsDecidedToTheLastBit) {
     const Path first = line_path({0, 0, 0}, {0, 0, 0}, 4.0);
     for (const double beside : {1.0 - 0x1p-53, 1.0, 1.0 + 0x1p-52}) {
         const Path second = line_path({-1.0, beside, 0.0}, {1.0, 0.0, 0.0}, 4.0);

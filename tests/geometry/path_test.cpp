@@ -46,13 +46,14 @@ TEST(Path, WithoutAccelerationIsALine) {
     EXPECT_EQ(path.sagitta(0.0, 0.5), 0.0);
 }
 
-TEST(Path, PositionAndVelocityAgreeWithHundredDigits) {
+TEST(Path, PositionAndVelocityMatchHundredDigits) {
     RandomSequence random(1, 0, 0);
     for (int i = 0; i < test::scaled(2000); ++i) {
         const Path path = cubic_path(random);
         const double s = 2.0 * random.uniform();
         const double step = 0x1p-100;
-        // Horner's rule errs by at most 6 roundings of the sum of the terms' magnitudes, 15 here (17 for the slope).
+        // The error of Horner's rule is at most 6 rounding units of the sum of the terms' magnitudes, which is 15 here
+        // (17 for the slope).
         for (int axis = 0; axis < 3; ++axis) {
             EXPECT_NEAR(path.position(s)[axis], static_cast<double>(component(path, axis, s)), 15 * 6 * 0x1p-53);
             const Digits slope = (component(path, axis, Digits(s) + step) - component(path, axis, s)) / step;
@@ -74,7 +75,7 @@ TEST(Path, NeverLeavesItsChordByMoreThanItsSagitta) {
     }
 }
 
-// For a parabola the bound is attained in the middle.
+// For a parabola, the middle attains the bound.
 TEST(Path, SagittaOfAParabolaIsExact) {
     const Path path = parabola_path({0, 0, 0}, {1, 0, 5}, {0, 0, -10}, 1.0);
     EXPECT_DOUBLE_EQ(path.sagitta(0.0, 1.0), 10.0 / 8.0);
@@ -117,7 +118,7 @@ TEST(HermitePath, ReproducesACubic) {
     EXPECT_EQ(path.position(1.5), Vec3(3.375, -1.25, 1.5));
 }
 
-TEST(HermitePath, OfParabolicOrStraightDataHasThatDegree) {
+TEST(HermitePath, HasTheDegreeOfParabolicOrStraightData) {
     EXPECT_EQ(hermite_path({0, 0, 0}, {1, 0, 0}, {2, 0, 4}, {1, 0, 4}, 2.0).degree, 2);
     EXPECT_EQ(hermite_path({0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 0, 0}, 2.0).degree, 1);
 }

@@ -51,7 +51,7 @@ TEST(PointCache, IsReadWithItsFrames) {
     EXPECT_EQ(cache.positions[2][1], Vec3(7.5, 8, 8.5));
 }
 
-TEST(PointCache, SaysWhatIsWrong) {
+TEST(PointCache, ReportsInvalidFiles) {
     EXPECT_EQ(refusal(""),
               "a.pc2: not a point cache, expected a file that begins with POINTCACHE2 and a header of 32 "
               "bytes");
@@ -76,8 +76,8 @@ TEST(PointCache, SaysWhatIsWrong) {
     EXPECT_EQ(refusal(not_finite), "a.pc2: byte 44: found a coordinate that is not finite");
 }
 
-// Their number of bytes modulo 2^64 is that of the file: whoever believes it reads beyond its end.
-TEST(PointCache, IsRefusedWhereItsSizeIsRightOnlyUpToAMultipleOf2To64) {
+// The declared size equals the size of the file modulo 2^64. A reader that trusts it would read beyond the end.
+TEST(PointCache, IsRefusedIfItsSizeIsRightOnlyModulo2To64) {
     std::string bytes = cache_of(0, 0, 1, 0) + std::string(32, '\0');
     const std::int32_t points = 842443544;
     const std::int32_t samples = 1824726041;
@@ -101,7 +101,7 @@ TEST(PointCache, IsReadBackAsItWasWritten) {
     EXPECT_EQ(cache.positions[1], samples[1]);
 }
 
-TEST(PointCache, IsNotWrittenOfWhatItCannotHold) {
+TEST(PointCache, IsNotWrittenForUnsuitableData) {
     const test::TemporaryFolder folder;
     EXPECT_THROW(PointCacheWriter(folder.path("a.pc2"), 0, 2), InputError);
     EXPECT_THROW(PointCacheWriter(folder.path("a.pc2"), 1, 1), InputError);

@@ -37,8 +37,9 @@ std::optional<Crossing> crossing_of(const Path& path, const SegmentTriangle& s) 
     return first_crossing(path, s.a, s.b, s.c);
 }
 
-// The time needs no terms for the shape and size of the triangle: the plane distances are exact to far below an ulp.
-TEST(LineSweep, DecidesExactlyAndTimesWithinAFewUlpWhateverTheTriangle) {
+// The error of the time does not depend on the shape and size of the triangle, because plane distances are exact to far
+// below one ulp.
+TEST(LineSweep, DecidesExactlyAndTimesWithinAFewUlpForAnyTriangle) {
     constexpr double kDuration = 0.75;
     int timed = 0;
     for (int i = 0; i < test::scaled(40000); ++i) {
@@ -85,7 +86,7 @@ TEST(LineSweep, TimesGrazingAndSlenderHitsToTheLastBits) {
     EXPECT_GT(hits, test::scaled(5000) / 2);
 }
 
-TEST(LineSweep, AnswersAlikeForBothWindingsButForTheSide) {
+TEST(LineSweep, GivesTheSameResultForBothWindingsExceptTheSide) {
     for (int i = 0; i < test::scaled(5000); ++i) {
         const SegmentTriangle s = testing::segment_triangle_case(43, static_cast<std::uint64_t>(i));
         if (are_collinear(s.a, s.b, s.c)) continue;
@@ -123,7 +124,7 @@ TEST(LineSweep, HitsATriangleThatThePathEndsOn) {
     }
 }
 
-TEST(LineSweep, AStartOnTheTriangleComesFromTheSideItDoesNotHeadFor) {
+TEST(LineSweep, AStartOnTheTriangleComesFromTheOppositeSideOfItsMotion) {
     const auto up = first_crossing(line_between({1, 1, 0}, {1, 1, 2}, 1.0), kA, kB, kC);
     ASSERT_TRUE(up);
     EXPECT_EQ(up->time, 0.0);
@@ -142,14 +143,14 @@ TEST(LineSweep, ASegmentInThePlaneEntersAtTheBoundary) {
     EXPECT_DOUBLE_EQ(corner->time, 1.0);
 }
 
-TEST(LineSweep, APathWithoutLengthHitsOnlyWhatItIsOn) {
+TEST(LineSweep, APathWithoutLengthHitsOnlyTrianglesThatContainIt) {
     EXPECT_TRUE(first_crossing(line_path({1, 1, 0}, {}, 1.0), kA, kB, kC));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1e-300}, {}, 1.0), kA, kB, {0, 4, -1e-200}));
     EXPECT_FALSE(first_crossing(line_path({1, 1, 1}, {}, 0.0), kA, kB, kC));
 }
 
-/// Times at which the exact parabola crosses the plane, in order, and how deep inside the triangle (negative: outside,
-/// in barycentric units) it does so.
+/// Times at which the exact parabola crosses the plane, in order, with the depth inside the triangle in barycentric
+/// units (negative if outside).
 struct ReferenceHit {
     Digits time;
     double inside;
@@ -198,7 +199,7 @@ std::vector<ReferenceHit> reference_hits(const Path& path, const Vec3& a, const 
     return hits;
 }
 
-/// A parabola that passes through a point near the triangle at some time, from anywhere.
+/// Returns a parabola from anywhere that passes through a point near the triangle at some time.
 Path random_parabola(const Vec3& target, RandomSequence& random) {
     const Vec3 a = testing::random_vector(random, 4.0);
     const double when = 0.05 + random.uniform();
@@ -207,7 +208,7 @@ Path random_parabola(const Vec3& target, RandomSequence& random) {
     return parabola_path(start, v, a, when * (0.5 + random.uniform()));
 }
 
-TEST(ParabolaSweep, FindsTheFirstHitAndItsTimeAsHundredDigitsDo) {
+TEST(ParabolaSweep, FindsTheFirstHitAndTimeFromHundredDigits) {
     RandomSequence random(11, 0, 0);
     int hits = 0;
     int second_root = 0;
@@ -218,7 +219,7 @@ TEST(ParabolaSweep, FindsTheFirstHitAndItsTimeAsHundredDigitsDo) {
         const Vec3 c = a + 0.5 * (b - a) + slenderness * random.unit_vector();
         const Path path = random_parabola(a + random.uniform() * 0.7 * (b - a) + 0.2 * (c - a), random);
         const auto reference = reference_hits(path, a, b, c);
-        // What rounding may decide is left out: the boundary, the ends, and touching the plane.
+        // Cases that rounding may decide are skipped: the boundary, the ends, and grazes of the plane.
         const bool unclear = std::any_of(reference.begin(), reference.end(), [&](const ReferenceHit& hit) {
             const auto s = static_cast<double>(hit.time);
             return std::fabs(hit.inside) < 1e-7 || s < 1e-9 || s > path.duration - 1e-9 || hit.normal_speed < 1e-6;
@@ -232,15 +233,16 @@ TEST(ParabolaSweep, FindsTheFirstHitAndItsTimeAsHundredDigitsDo) {
         second_root += first != reference.begin() ? 1 : 0;
         const double error = std::fabs(static_cast<double>(Digits(crossing->time) - first->time));
         const double size = max_abs(path.c[0]) + max_abs(path.end) + length(path.c[1]) * path.duration;
-        // The plane's distance is rounded to a few ulp of the coordinates; the normal speed turns that into time.
+        // The distance from the plane is rounded to a few ulp of the coordinates. Division by the normal speed gives
+        // the error of the time.
         EXPECT_LE(error, 8.0 * kRoundoff * (path.duration + size / first->normal_speed)) << i;
     }
     EXPECT_GT(hits, test::scaled(20000) / 20);
     EXPECT_GT(second_root, 0);
 }
 
-TEST(ParabolaSweep, FindsBothPassesThroughAPlane) {
-    // Up through z = 1 at s = 1 (x = 1, outside the triangle) and down again at s = 3 (x = 3, inside).
+TEST(ParabolaSweep, FindsBothCrossingsOfAPlane) {
+    // The path goes up through z = 1 at s = 1 (x = 1, outside the triangle) and down again at s = 3 (x = 3, inside).
     const Path path = parabola_path({0, 0, -0.5}, {1, 0, 2}, {0, 0, -1}, 4.0);
     const auto crossing = first_crossing(path, {2, -1, 1}, {5, -1, 1}, {2, 5, 1});
     ASSERT_TRUE(crossing);
@@ -252,7 +254,7 @@ TEST(ParabolaSweep, FindsBothPassesThroughAPlane) {
     EXPECT_EQ(up->side, -1);
 }
 
-TEST(ParabolaSweep, AThrowFromJustAboveThePlaneComesBackToIt) {
+TEST(ParabolaSweep, AThrowFromJustAboveThePlaneReturnsToIt) {
     const Path path = parabola_path({1, 1, 0x1p-48}, {0, 0, 1}, {0, 0, -2}, 2.0);
     const auto crossing = first_crossing(path, kA, kB, kC);
     ASSERT_TRUE(crossing);
@@ -260,7 +262,7 @@ TEST(ParabolaSweep, AThrowFromJustAboveThePlaneComesBackToIt) {
     EXPECT_FALSE(first_crossing(parabola_path({1, 1, 0x1p-48}, {0, 0, 1}, {0, 0, -2}, 0.999), kA, kB, kC));
 }
 
-TEST(ParabolaSweep, AStartInThePlaneHitsOnlyWhatItReturnsTo) {
+TEST(ParabolaSweep, AStartInThePlaneHitsOnlyOnItsReturn) {
     const auto returns = first_crossing(parabola_path({-1, 1, 0}, {2, 0, 1}, {0, 0, -2}, 2.0), kA, kB, kC);
     ASSERT_TRUE(returns);
     EXPECT_NEAR(returns->time, 1.0, 1e-15);
@@ -287,7 +289,7 @@ TEST(PlaneSweep, SideIsExact) {
     }
 }
 
-TEST(PlaneSweep, CrossesWhereTheClosedFormSays) {
+TEST(PlaneSweep, CrossesAtTheTimeOfTheClosedForm) {
     const Plane floor{{0, 0, 0}, {0, 0, 1}};
     const auto line = first_crossing(line_path({0, 0, 3}, {1, 0, -2}, 10.0), floor);
     ASSERT_TRUE(line);
@@ -297,7 +299,8 @@ TEST(PlaneSweep, CrossesWhereTheClosedFormSays) {
     EXPECT_DOUBLE_EQ(fall->time, 1.0);
     EXPECT_EQ(fall->side, 1);
     EXPECT_FALSE(first_crossing(parabola_path({0, 0, 5}, {}, {0, 0, -10}, 0.9), floor));
-    EXPECT_FALSE(first_crossing(parabola_path({0, 0, 5}, {0, 0, -9}, {0, 0, 10}, 10.0), floor));  // turns round above
+    // turns back above the plane
+    EXPECT_FALSE(first_crossing(parabola_path({0, 0, 5}, {0, 0, -9}, {0, 0, 10}, 10.0), floor));
 }
 
 TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
@@ -309,7 +312,7 @@ TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
             continue;
         const Path path = i % 2 == 0 ? line_between(s.p, s.q, 1.0)
                                      : parabola_path(s.p, s.q - s.p, length(s.q - s.p) * random.unit_vector(), 1.0);
-        // As in the query; the second part is for coordinates that safe positions replace by zero.
+        // The slack is that of the query. Its second term covers coordinates that safe positions replace by zero.
         const double slack = kCandidateSlack * std::max(max_abs(s.p), max_abs(s.q)) + 0x1p-228;
         if (!stays_on_one_side(path, TrianglePlane(s.a, s.b, s.c), slack)) continue;
         ++cleared;
@@ -323,7 +326,7 @@ TEST(StaysOnOneSide, NeverCullsATriangleNearThePath) {
     EXPECT_GT(cleared, 0);
 }
 
-TEST(TriangleExitTime, IsWhereThePathLeavesTheTriangle) {
+TEST(TriangleExitTime, IsTheTimeWhenThePathLeavesTheTriangle) {
     const Vec3 up{0, 0, 1};
     EXPECT_NEAR(triangle_exit_time(line_path({1, 1, 0}, {1, 0, 0}, 10.0), kA, kB, kC, up, 0.0), 2.0, 1e-13);
     EXPECT_DOUBLE_EQ(triangle_exit_time(line_path({1, 1, 0}, {-1, 0, 0}, 10.0), kA, kB, kC, -up, 0.5), 1.5);
@@ -333,8 +336,9 @@ TEST(TriangleExitTime, IsWhereThePathLeavesTheTriangle) {
     EXPECT_NEAR(triangle_exit_time(braking, kA, kB, kC, up, 0.0), 2.0, 1e-13);
 }
 
-// Next to the origin a point has far smaller coordinates than the corners, by whose rounding it was beyond both edges.
-TEST(TriangleExitTime, HasNoPlaceBetweenTheTrianglesOfASeam) {
+// Near the origin a point has far smaller coordinates than the corners. By the rounding of the corners it could lie
+// beyond both edges.
+TEST(TriangleExitTime, LeavesNoGapBetweenTheTrianglesOfASeam) {
     RandomSequence random(18, 0, 0);
     for (int i = 0; i < test::scaled(2000); ++i) {
         const Vec3 normal = random.unit_vector();
@@ -364,7 +368,7 @@ TEST(SignedDistance, HasTheRightSignAndSizeNextToThePlane) {
     }
 }
 
-TEST(PointSweep, APointFartherFromAPlaneThanADistanceIsSoCertainly) {
+TEST(PointSweep, ReportsPointsBeyondADistanceOfAPlaneReliably) {
     RandomSequence random(23, 0, 0);
     int told = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// sum |c_k| duration^k, in terms of which errors are stated.
+/// Returns sum |c_k| duration^k. Errors are relative to it.
 double magnitude(const Polynomial& p) {
     double sum = 0.0;
     for (int k = p.degree; k >= 0; --k) {
@@ -22,11 +22,11 @@ double magnitude(const Polynomial& p) {
 
 using testing::exact;
 using testing::Rational;
-using Coefficients = std::vector<Rational>;  // ascending
+using Coefficients = std::vector<Rational>;  // in ascending order
 
 constexpr std::uint64_t kSeed = 20240611;
 
-/// Numbers of one case.
+/// Random numbers of one case.
 class Draws {
 public:
     explicit Draws(std::uint64_t index) : random_(kSeed, 0, index) {}
@@ -51,7 +51,7 @@ Rational value_at(const Coefficients& p, const Rational& s) {
     return sum;
 }
 
-/// Nearest double-doubles.
+/// Rounds the coefficients to the nearest double-doubles.
 Polynomial rounded_polynomial(const Coefficients& p, double duration) {
     Polynomial result;
     result.degree = static_cast<int>(p.size()) - 1;
@@ -73,7 +73,7 @@ void trim(Coefficients& p) {
     while (!p.empty() && p.back() == 0) p.pop_back();
 }
 
-/// Number of distinct real roots in (from, to], for p not zero at both, by Sturm's theorem.
+/// Returns the number of distinct real roots in (from, to] by Sturm's theorem. p must not be zero at both ends.
 int sturm_count(Coefficients p, const Rational& from, const Rational& to) {
     trim(p);
     Coefficients derivative;
@@ -106,7 +106,7 @@ int sturm_count(Coefficients p, const Rational& from, const Rational& to) {
     return variations(from) - variations(to);
 }
 
-/// A polynomial of degree 1 to 6 with roots in and around [0, duration], clustered in some cases.
+/// Returns a polynomial of degree 1 to 6 with roots in and around [0, duration], clustered in some cases.
 Polynomial random_polynomial(std::uint64_t index, bool may_cluster = true) {
     Draws draw(index);
     const int degree = draw.whole(1, 6);
@@ -128,13 +128,13 @@ Polynomial random_polynomial(std::uint64_t index, bool may_cluster = true) {
     return rounded_polynomial(p, duration);
 }
 
-/// True when p has opposite signs (or a zero) within `ulps` on either side of s.
+/// Returns true if p has opposite signs (or a zero) within `ulps` on either side of s.
 bool brackets_a_root(const Coefficients& p, double s, double ulps) {
     const Rational margin = exact(ulps * (std::nextafter(s, 1e300) - s));
     return testing::sign_of(value_at(p, exact(s) - margin)) * testing::sign_of(value_at(p, exact(s) + margin)) <= 0;
 }
 
-TEST(PolynomialRoots, AreWithinTwoUlpOrWhereThePolynomialIsBelowItsRounding) {
+TEST(PolynomialRoots, AreWithinTwoUlpOrHaveValuesBelowRounding) {
     int roots = 0;
     for (std::uint64_t index = 0; index < 4000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
@@ -150,7 +150,7 @@ TEST(PolynomialRoots, AreWithinTwoUlpOrWhereThePolynomialIsBelowItsRounding) {
     EXPECT_GT(roots, 4000);
 }
 
-TEST(PolynomialRoots, BetweenThemThePolynomialKeepsItsSignUpToTheStatedBound) {
+TEST(PolynomialRoots, EncloseIntervalsOfConstantSignUpToTheStatedBound) {
     for (std::uint64_t index = 0; index < 2000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const Polynomial p = random_polynomial(index);
@@ -173,7 +173,7 @@ TEST(PolynomialRoots, BetweenThemThePolynomialKeepsItsSignUpToTheStatedBound) {
     }
 }
 
-TEST(PolynomialRoots, AreAsManyAsSturmsTheoremCountsWhereTheyAreApart) {
+TEST(PolynomialRoots, MatchTheCountOfSturmsTheoremIfTheyAreApart) {
     for (std::uint64_t index = 0; index < 4000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const Polynomial p = random_polynomial(index, /*may_cluster=*/false);
@@ -181,7 +181,7 @@ TEST(PolynomialRoots, AreAsManyAsSturmsTheoremCountsWhereTheyAreApart) {
     }
 }
 
-/// q(s) ((s - middle)^2 - depth) with q positive: a dip that gets shallower.
+/// q(s) ((s - middle)^2 - depth) with q positive: a dip that becomes shallower.
 Polynomial dipping_polynomial(std::uint64_t index, double depth) {
     Draws draw(index);
     const double middle = draw.uniform(0.1, 0.9);
@@ -194,7 +194,7 @@ Polynomial dipping_polynomial(std::uint64_t index, double depth) {
     return rounded_polynomial(p, 1.0);
 }
 
-TEST(PolynomialRoots, AreNotMissedWhereADipIsDeeperThanTheStatedBound) {
+TEST(PolynomialRoots, AreFoundInDipsDeeperThanTheStatedBound) {
     for (std::uint64_t index = 0; index < 400; ++index) {
         for (int exponent = 20; exponent <= 100; exponent += 4) {
             SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ", depth 2^-" << exponent);
@@ -210,7 +210,7 @@ TEST(PolynomialRoots, AreNotMissedWhereADipIsDeeperThanTheStatedBound) {
     }
 }
 
-TEST(PolynomialRoots, AreNotInventedWhereADipStopsShortOfZero) {
+TEST(PolynomialRoots, AreNotReportedForDipsThatStayAboveZero) {
     for (std::uint64_t index = 0; index < 400; ++index) {
         for (int exponent = 20; exponent <= 80; exponent += 4) {
             SCOPED_TRACE(::testing::Message()
@@ -222,7 +222,7 @@ TEST(PolynomialRoots, AreNotInventedWhereADipStopsShortOfZero) {
     }
 }
 
-TEST(PolynomialRoots, OfQuadraticsAreTheNearestDoublesAlsoWhereTheDiscriminantCancels) {
+TEST(PolynomialRoots, AreTheNearestDoublesForQuadraticsEvenIfTheDiscriminantCancels) {
     for (std::uint64_t index = 0; index < 2000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         Draws draw(index);
@@ -242,7 +242,7 @@ Polynomial polynomial(const std::vector<double>& coefficients, double duration) 
     return p;
 }
 
-TEST(SignChanges, LeaveOutDoubleRootsAndTheEnds) {
+TEST(SignChanges, ExcludeDoubleRootsAndTheEnds) {
     EXPECT_EQ(sign_changes(polynomial({1, -2, 1}, 2.0)).count, 0);             // (s - 1)^2
     EXPECT_EQ(sign_changes(polynomial({0, 1}, 1.0)).count, 0);                 // root at 0
     EXPECT_EQ(sign_changes(polynomial({-1, 1}, 1.0)).count, 0);                // root at the end
@@ -252,7 +252,7 @@ TEST(SignChanges, LeaveOutDoubleRootsAndTheEnds) {
     EXPECT_NEAR(triple[0], 1.0, 1e-9);
 }
 
-TEST(DownCrossings, CountDoubleRootsAndTheLastMomentButNotAStartAtZero) {
+TEST(DownCrossings, CountDoubleRootsAndTheEndButNotAStartAtZero) {
     const Times touch = down_crossings(polynomial({1, -2, 1}, 2.0), 0.0, 2.0);
     ASSERT_EQ(touch.count, 1);
     EXPECT_EQ(touch[0], 1.0);
@@ -263,7 +263,7 @@ TEST(DownCrossings, CountDoubleRootsAndTheLastMomentButNotAStartAtZero) {
     EXPECT_EQ(down_crossings(polynomial({1, -1}, 2.0), 1.0, 2.0).count, 0);  // it came down at `from`
 }
 
-TEST(DownCrossings, EndWithTheIntervalAlsoWhereTheRootRoundsToItsEnd) {
+TEST(DownCrossings, EndWithTheIntervalEvenIfTheRootRoundsToItsEnd) {
     const DoubleDouble just_after{1.0, 0x1p-80};
     const DoubleDouble just_before{1.0, -0x1p-80};
     Polynomial p = polynomial({1, -1}, 1.0);
@@ -279,7 +279,7 @@ TEST(DownCrossings, EndWithTheIntervalAlsoWhereTheRootRoundsToItsEnd) {
     EXPECT_EQ(down_crossings(p, 1.0, 2.0).count, 0);
 }
 
-TEST(DownCrossings, AreTheSameHoweverTheIntervalIsCut) {
+TEST(DownCrossings, DoNotDependOnTheSubdivisionOfTheInterval) {
     for (std::uint64_t index = 0; index < 2000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const Polynomial p = random_polynomial(index);
@@ -293,7 +293,7 @@ TEST(DownCrossings, AreTheSameHoweverTheIntervalIsCut) {
     }
 }
 
-TEST(CertainlyPositive, NeverHoldsForAPolynomialThatReachesZero) {
+TEST(CertainlyPositive, IsNeverTrueForAPolynomialThatReachesZero) {
     int certain = 0;
     for (std::uint64_t index = 0; index < 4000; ++index) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);

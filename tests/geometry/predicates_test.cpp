@@ -19,7 +19,7 @@ constexpr std::uint64_t kSeed = 20240607;
 const auto kCases = static_cast<std::uint64_t>(test::case_factor(100) * test::scaled(100000));
 const auto kSlowCases = static_cast<std::uint64_t>(test::case_factor(100) * test::scaled(20000));
 
-/// Calls check(case) for `count` cases and names the case that fails.
+/// Calls check(case) for `count` cases and names the failing case.
 template <typename Check>
 void for_cases(std::uint64_t count, const Check& check) {
     for (std::uint64_t index = 0; index < count; ++index) {
@@ -82,7 +82,7 @@ TEST(SegmentIntersectsTriangle, AgreesWithLinearEquationsAndInequalities) {
         ASSERT_EQ(segment_intersects_triangle(s.p, s.q, s.a, s.b, s.c), intersects);
         ++count[intersects ? 1U : 0U];
     });
-    // Both answers must be common, or the cases test nothing.
+    // Both results must be common, or the cases test nothing.
     EXPECT_GT(count[0], static_cast<int>(kCases / 5));
     EXPECT_GT(count[1], static_cast<int>(kCases / 5));
 }
@@ -176,7 +176,7 @@ TEST(UnitNormal, IsExactlyAnAxisForAnAxisAlignedTriangle) {
     EXPECT_EQ(unit_normal({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), (Vec3{0, 1, 0}));
 }
 
-TEST(FlushTiny, ReplacesOnlyWhatIsTooSmallForExactProducts) {
+TEST(FlushTiny, ReplacesOnlyValuesTooSmallForExactProducts) {
     const Vec3 p = flush_tiny({0x1p-288, -kSmallestExactCoordinate, 3.5});
     EXPECT_EQ(p, (Vec3{0.0, -kSmallestExactCoordinate, 3.5}));
     EXPECT_EQ(flush_tiny({-1e-300, 5e-324, -1e300}), (Vec3{0.0, 0.0, -1e300}));

@@ -29,7 +29,7 @@ constexpr std::array<TriangleFeature, 3> kEdges{TriangleFeature::kEdgeAB, Triang
 
 void expect_near(const Vec3& value, const Vec3& expected) { EXPECT_LE(max_abs(value - expected), 1e-15); }
 
-/// The same triangles, each with three vertices of its own.
+/// Returns the same triangles, each with three vertices of its own.
 TriangleMesh torn(const TriangleMesh& mesh) {
     TriangleMesh apart;
     for (const Triangle& t : mesh.triangles) {
@@ -52,8 +52,10 @@ std::vector<Vec3> all_of(const TriangleMesh& mesh) {
     return all;
 }
 
-/// A cube about the origin: the mean over three right angles points along the diagonal, however the squares are
-/// cut; an edge's is the mean of its squares' normals, a diagonal's the square's own.
+/// Expects the normals of a cube about the origin, for any cut of its squares:
+/// - A vertex normal, the mean over three right angles, points along the diagonal.
+/// - An edge normal is the mean of the normals of both squares.
+/// - The normal of a diagonal is the normal of its square.
 void expect_cube(const TriangleMesh& mesh) {
     const Pseudonormals normals(mesh.vertices, mesh.triangles);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -65,7 +67,8 @@ void expect_cube(const TriangleMesh& mesh) {
         for (std::size_t k = 0; k < 3; ++k) {
             const Vec3& from = mesh.vertices[triangle[k]];
             const Vec3 middle = 0.5 * (from + mesh.vertices[triangle[(k + 1) % 3]]);
-            const double faces = std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z);  // 2 edge, 1 diagonal
+            // 2 on an edge, 1 on a diagonal
+            const double faces = std::fabs(middle.x) + std::fabs(middle.y) + std::fabs(middle.z);
             expect_near(normals.of(t, kEdges[k]), middle / faces);
             expect_near(normals.of(t, kVertices[k]), from / 3.0);
             EXPECT_FALSE(normals.is_on_boundary(t, kEdges[k]) || normals.is_on_boundary(t, kVertices[k]));
@@ -73,15 +76,16 @@ void expect_cube(const TriangleMesh& mesh) {
     }
 }
 
-TEST(Pseudonormals, OfACubeAreTheMeansOfItsSquaresNormals) {
+TEST(Pseudonormals, AreMeansOfTheSquareNormalsOnACube) {
     const TriangleMesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
     expect_cube(cube);
     expect_cube(torn(cube));
     expect_cube(flipped(flipped(cube)));
 }
 
-// Edge midpoints as vertices and fans of slender triangles: the angles around a corner still sum to right angles.
-TEST(Pseudonormals, DoNotDependOnHowAFaceIsCut) {
+// The cube has edge midpoints as vertices and fans of slender triangles. The angles around a corner still sum to right
+// angles.
+TEST(Pseudonormals, DoNotDependOnTheTriangulationOfAFace) {
     const TriangleMesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
     TriangleMesh cut{cube.vertices, {}};
     RandomSequence random(1, 0, 0);
@@ -105,7 +109,7 @@ TEST(Pseudonormals, DoNotDependOnHowAFaceIsCut) {
     }
 }
 
-TEST(Pseudonormals, OfARegularTetrahedronPointAwayFromItsCentre) {
+TEST(Pseudonormals, PointAwayFromTheCentreOfARegularTetrahedron) {
     const TriangleMesh mesh{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
                             {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
     for (const TriangleMesh& tetrahedron : {mesh, torn(mesh)}) {
@@ -115,7 +119,8 @@ TEST(Pseudonormals, OfARegularTetrahedronPointAwayFromItsCentre) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const Vec3& from = tetrahedron.vertices[triangle[k]];
                 const Vec3& to = tetrahedron.vertices[triangle[(k + 1) % 3]];
-                // The faces' normals lean away from a vertex's axis by arccos(1/3), from an edge's by arccos(1/sqrt 3).
+                // The faces' normals are inclined to a vertex's axis by arccos(1/3), and to an edge's axis by
+                // arccos(1/sqrt 3).
                 expect_near(normals.of(t, kVertices[k]), normalized(from) / 3.0);
                 expect_near(normals.of(t, kEdges[k]), normalized(from + to) / std::numbers::sqrt3);
             }
@@ -123,7 +128,7 @@ TEST(Pseudonormals, OfARegularTetrahedronPointAwayFromItsCentre) {
     }
 }
 
-TEST(Pseudonormals, WeldVerticesByValueToTheBit) {
+TEST(Pseudonormals, WeldVerticesOfEqualBits) {
     TriangleMesh mesh = sphere_mesh({}, 1.0, 2);
     for (Vec3& v : mesh.vertices) {
         for (int axis = 0; axis < 3; ++axis) v[axis] = v[axis] == 0.0 ? -0.0 : v[axis];
@@ -133,8 +138,8 @@ TEST(Pseudonormals, WeldVerticesByValueToTheBit) {
     EXPECT_EQ(all_of(mesh), all_of(positive));
 }
 
-// Corner angles by the system's arc tangent in long double, summed at the tip of a fan.
-TEST(Pseudonormals, WeighByTheAnglesOfTheCorners) {
+// The reference computes corner angles with the system's arc tangent in long double, and sums them at the tip of a fan.
+TEST(Pseudonormals, AreWeightedByTheCornerAngles) {
     RandomSequence random(2, 0, 0);
     for (int i = 0; i < test::scaled(300); ++i) {
         TriangleMesh fan;
@@ -167,8 +172,8 @@ TEST(Pseudonormals, WeighByTheAnglesOfTheCorners) {
     }
 }
 
-TEST(Pseudonormals, SayWhereASurfaceEnds) {
-    // Two triangles over a square: the diagonal (0, 2) is inside, the four sides and all vertices are not.
+TEST(Pseudonormals, ReportTheBoundaryOfASurface) {
+    // Two triangles form a square. The diagonal (0, 2) is inside; the four sides and all vertices are on the boundary.
     const TriangleMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
     const Pseudonormals normals(square.vertices, square.triangles);
     EXPECT_TRUE(normals.is_on_boundary(0, TriangleFeature::kEdgeAB));
@@ -178,7 +183,8 @@ TEST(Pseudonormals, SayWhereASurfaceEnds) {
     EXPECT_FALSE(normals.is_on_boundary(1, TriangleFeature::kFace));
     for (const auto vertex : kVertices) EXPECT_TRUE(normals.is_on_boundary(1, vertex));
     EXPECT_EQ(normals.of(0, TriangleFeature::kEdgeAB), (Vec3{0, 0, 1}));
-    // A vertex in the middle of a fan is none, nor is an edge of four triangles; one of three is.
+    // A vertex in the middle of a fan and an edge of four triangles are not on the boundary. An edge of three triangles
+    // is.
     const TriangleMesh fan = sphere_mesh({}, 1.0, 0);
     const TriangleMesh half{fan.vertices, {fan.triangles[0], fan.triangles[1], fan.triangles[2], fan.triangles[3]}};
     const Pseudonormals cap(half.vertices, half.triangles);
@@ -209,7 +215,7 @@ TEST(Pseudonormals, VanishOnSheetsBackToBack) {
     }
 }
 
-TEST(Pseudonormals, TrianglesWithoutAreaTakeNoPart) {
+TEST(Pseudonormals, IgnoreTrianglesWithoutArea) {
     const TriangleMesh cube = box_mesh({-1, -1, -1}, {1, 1, 1});
     TriangleMesh with = cube;
     with.vertices.push_back({0, -1, -1});  // on the edge (0, 1)
@@ -232,21 +238,23 @@ TEST(Pseudonormals, KeepTheirDirectionsAtAnyScale) {
     }
 }
 
-TEST(Pseudonormals, TakeSomeThirtyBytesATriangle) {
+TEST(Pseudonormals, UseAboutThirtyBytesPerTriangle) {
     const TriangleMesh sphere = sphere_mesh({}, 1.0, 5);
     const Pseudonormals normals(sphere.vertices, sphere.triangles);
     EXPECT_LT(normals.memory_bytes(), 36 * sphere.triangles.size());
 }
 
-/// A wedge with its edge along y at the origin and an opening angle of about `opening` around +x, cut off at x = 1.
+/// Returns a wedge with its edge along y at the origin and an opening angle of about `opening` around +x, cut off at x
+/// = 1.
 TriangleMesh wedge(double opening) {
     const double h = 0.5 * opening;
     return {{{0, -1, 0}, {0, 1, 0}, {1, -1, -h}, {1, 1, -h}, {1, -1, h}, {1, 1, h}},
             {{0, 1, 3}, {0, 3, 2}, {0, 4, 5}, {0, 5, 1}, {2, 3, 5}, {2, 5, 4}, {0, 2, 4}, {1, 5, 3}}};
 }
 
-// All around the edge and as near to it as doubles go, the closest point tells the side, or nothing (next to knives).
-TEST(Pseudonormals, DecideTheSideNextToEdgesHoweverSharp) {
+// Tests points all around the edge, down to the smallest distances of doubles. The closest point gives the right side,
+// or no side beside very sharp edges.
+TEST(Pseudonormals, DecideTheSideNextToSharpEdges) {
     int decided = 0, queries = 0;
     for (const double opening : {3.1, 1.0, 1e-3, 1e-6}) {
         const TriangleMesh mesh = wedge(opening);

@@ -21,7 +21,7 @@ std::optional<RayMeeting> met(const Vec3& origin, const Vec3& direction, const C
     return meet(Ray(origin, direction), corners[0], corners[1], corners[2]);
 }
 
-TEST(RayTriangle, SaysInWhichPartOfTheTriangleTheRayMeetsIt) {
+TEST(RayTriangle, ReportsTheFeatureHitByTheRay) {
     const Vec3 down{0, 0, -2};
     EXPECT_EQ(met({1, 1, 3}, down)->feature, TriangleFeature::kFace);
     EXPECT_EQ(met({1, 0, 3}, down)->feature, TriangleFeature::kEdgeAB);
@@ -38,7 +38,7 @@ TEST(RayTriangle, SaysInWhichPartOfTheTriangleTheRayMeetsIt) {
     EXPECT_FALSE(met({3, 3, 3}, down).has_value());
 }
 
-TEST(RayTriangle, InItsPlaneMeetsTheTriangleWhereItEnters) {
+TEST(RayTriangle, HitsACoplanarTriangleAtItsEntryPoint) {
     const auto through = met({-1, 1, 0}, {1, 0, 0});
     ASSERT_TRUE(through.has_value());
     EXPECT_TRUE(through->in_plane);
@@ -55,7 +55,7 @@ TEST(RayTriangle, InItsPlaneMeetsTheTriangleWhereItEnters) {
     EXPECT_FALSE(met({-1, 1, 1e-80}, {1, 0, 0}).has_value());
 }
 
-TEST(RayTriangle, ATriangleWithoutAreaIsASegment) {
+TEST(RayTriangle, TreatsATriangleWithoutAreaAsASegment) {
     const Corners seam{Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{1, 0, 0}};
     const auto crossed = met({0.5, 0, 1}, {0, 0, -1}, seam);
     ASSERT_TRUE(crossed.has_value());
@@ -66,8 +66,8 @@ TEST(RayTriangle, ATriangleWithoutAreaIsASegment) {
     EXPECT_FALSE(met({0.5, 1e-80, 1}, {0, 0, -1}, seam).has_value());
 }
 
-// Coordinates of few bits, so that every special position comes up.
-TEST(RayTriangle, AgreesWithSegmentsThatReachFarInWholeNumbers) {
+// Coordinates have few bits, so that all special positions occur.
+TEST(RayTriangle, AgreesWithLongSegmentsInIntegers) {
     RandomSequence random(7, 0, 0);
     const auto place = [&] {
         const auto coordinate = [&] { return static_cast<double>(static_cast<int>(random.uniform() * 7.0)) - 3.0; };
@@ -79,7 +79,7 @@ TEST(RayTriangle, AgreesWithSegmentsThatReachFarInWholeNumbers) {
         const Vec3 origin = place();
         const Vec3 direction = place();
         if (direction == Vec3{}) continue;
-        // 64 directions on, every ray has left the cube; the end is exact.
+        // After 64 times the direction, every ray has left the cube. The end point is exact.
         const bool expected = testing::exact_segment_intersects_triangle(origin, origin + 64.0 * direction, corners[0],
                                                                          corners[1], corners[2]);
         SCOPED_TRACE(k);
@@ -89,7 +89,7 @@ TEST(RayTriangle, AgreesWithSegmentsThatReachFarInWholeNumbers) {
     EXPECT_GT(hits, 0);
 }
 
-TEST(RayTriangle, PlacesThatRoundingDoesNotSeparateAreOrdered) {
+TEST(RayTriangle, OrdersHitsThatRoundingCannotSeparate) {
     const Ray ray({0.1, 0.1, 3.0}, {0.01, 0.02, -1.0});
     const auto at_height = [&](double z, double tilt) {
         const Corners corners{Vec3{-9, -9, z}, Vec3{9, -9, z + tilt}, Vec3{0, 9, z}};

@@ -41,12 +41,12 @@ TEST(SelfIntersection, CountsACoincidentVertexWithAnotherIndex) {
     EXPECT_EQ(count({kA, kB, kC, {-1, 0, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 3, 4}}), 0U);
 }
 
-TEST(SelfIntersection, FindsWhatIsBeyondACommonVertex) {
+TEST(SelfIntersection, FindsIntersectionsBeyondACommonVertex) {
     EXPECT_EQ(count({kA, kB, kC, {2, 2, -1}, {1, 1, 1}}, {{0, 1, 2}, {0, 3, 4}}), 1U);
     EXPECT_EQ(count({kA, kB, kC, {2, 1, 0}, {1, 2, 0}}, {{0, 1, 2}, {3, 0, 4}}), 1U) << "in one plane";
 }
 
-TEST(SelfIntersection, FindsWhatIsBeyondACommonEdge) {
+TEST(SelfIntersection, FindsIntersectionsBeyondACommonEdge) {
     EXPECT_EQ(count({kA, kB, kC, {4, -4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 0U);
     EXPECT_EQ(count({kA, kB, kC, {4, 4, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, edges cross";
     EXPECT_EQ(count({kA, kB, kC, {1, 1, 0}}, {{0, 1, 2}, {1, 0, 3}}), 1U) << "folded back, one inside the other";
@@ -57,12 +57,12 @@ TEST(SelfIntersection, CountsTrianglesOfTheSameVertices) {
     EXPECT_EQ(count({kA, kB, kC}, {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}), 3U);
 }
 
-TEST(SelfIntersection, PassesOverDegenerateTriangles) {
+TEST(SelfIntersection, SkipsDegenerateTriangles) {
     EXPECT_EQ(count({kA, kB, kC, {1, 1, -1}, {1, 1, 1}, {1, 1, 3}}, {{0, 1, 2}, {3, 4, 5}, {3, 3, 4}}), 0U);
 }
 
-// By rational arithmetic, without trees: what two triangles have in common is more than the vertices they share when an
-// edge of one intersects the other after the shared vertices have been cut off far enough.
+// Tests a pair by rational arithmetic, without trees. The shared vertices are first cut off by a sufficient distance.
+// The triangles intersect if an edge of one still intersects the other.
 bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t) {
     std::vector<std::uint32_t> common;
     for (const std::uint32_t v : s) {
@@ -79,7 +79,7 @@ bool meet_exactly(const TriangleMesh& mesh, const Triangle& s, const Triangle& t
             const std::uint32_t p = from[k];
             const std::uint32_t q = from[(k + 1) % 3];
             if (is_common(p) && is_common(q)) continue;
-            // All coordinates are small integers: 2^-20 of an edge is less than any gap that is not zero.
+            // All coordinates are small integers, so 2^-20 of an edge is less than any nonzero gap.
             const Vec3 start = is_common(p) ? at(p) + 0x1p-20 * (at(q) - at(p)) : at(p);
             const Vec3 end = is_common(q) ? at(q) + 0x1p-20 * (at(p) - at(q)) : at(q);
             if (edge_meets(start, end, to)) return true;
@@ -118,7 +118,7 @@ TEST(SelfIntersection, AgreesWithRationalArithmeticOnRandomTriangles) {
 }
 
 TEST(SelfIntersection, IsFoundAcrossManyTriangles) {
-    // Two spheres: every crossing pair has a triangle of either.
+    // In two spheres, every crossing pair has a triangle of each.
     const TriangleMesh one = testing::sphere_mesh({0, 0, 0}, 1.0, 3);
     const TriangleMesh other = testing::sphere_mesh({0.7, 0.1, 0.2}, 1.0, 3);
     const TriangleMesh both = testing::merged(one, other);
@@ -137,8 +137,8 @@ TEST(SelfIntersection, IsFoundAcrossManyTriangles) {
     EXPECT_EQ(count_self_intersections(both), pairs);
 }
 
-// Triangles that all lie on each other: pairs grow with the square of their number, the search does not.
-TEST(SelfIntersection, EndsEarlyWhereNearlyAllPairsCross) {
+// All triangles lie on each other. The number of pairs is quadratic, but the work of the search is not.
+TEST(SelfIntersection, EndsEarlyIfNearlyAllPairsCross) {
     TriangleMesh mesh{{kA, kB, kC}, {}};
     mesh.triangles.assign(20000, {0, 1, 2});
     const SelfIntersections found = find_self_intersections(mesh);

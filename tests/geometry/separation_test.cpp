@@ -30,7 +30,7 @@ struct PointCase {
     bool is_plain = true;  ///< neither slender nor far from the origin
 };
 
-/// Plain triangles, slivers, needles and points, near and far, of any size.
+/// Returns plain triangles, slivers, needles and points, near and far, of any size.
 PointCase random_case(std::uint64_t index) {
     RandomSequence random(kSeed, 1, index);
     const Vec3 a = random_point(random);
@@ -55,7 +55,7 @@ PointCase random_case(std::uint64_t index) {
     return {point, triangle, kind > 2 && away > 1e-6};
 }
 
-TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles) {
+TEST(Separation, NeverExceedsTheTrueDistanceAndIsCloseToItForPlainTriangles) {
     int plain = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(4000)); ++index) {
         const auto [p, triangle, is_plain] = random_case(index);
@@ -74,7 +74,7 @@ TEST(Separation, NeverClaimsMoreThanTheTrueDistanceAndIsNearItForPlainTriangles)
     EXPECT_GT(plain, test::scaled(4000) / 5);
 }
 
-// All of a segment lies beyond the triangle by the smaller of its ends' bounds along one direction.
+// A whole segment lies beyond the triangle by at least the smaller bound of its ends along one direction.
 TEST(Separation, HoldsBetweenTwoPointsWithTheSameDirection) {
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(1000)); ++index) {
         const auto [p, triangle, is_plain] = random_case(index);
@@ -91,7 +91,7 @@ TEST(Separation, HoldsBetweenTwoPointsWithTheSameDirection) {
     }
 }
 
-TEST(Separation, ClaimsNothingWhereTheDirectionDoesNotSeparate) {
+TEST(Separation, IsZeroIfTheDirectionDoesNotSeparate) {
     const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, p{0.2, 0.2, 3.0};
     const double infinite = std::numeric_limits<double>::infinity();
     const double none = std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,7 @@ using testing::Triangle;
 
 constexpr std::uint64_t kSeed = 20240612;
 const auto kCases = static_cast<std::uint64_t>(test::case_factor(20) * 250);
-/// Of those that a hundred digits decide.
+/// Number of cases with a reference in a hundred digits.
 const auto kOracleCases = static_cast<std::uint64_t>(test::case_factor(20) * std::max(50, test::scaled(250)));
 
 struct SphereCase {
@@ -60,7 +60,7 @@ Vec3 grid_point(RandomSequence& random) {
     return Vec3(x, y, whole_between(random, -2, 2));
 }
 
-/// Generic, slender (1e-4 to 1e-8), axis-aligned, exactly degenerate.
+/// Returns a triangle: generic, slender (1e-4 to 1e-8), axis-aligned, or exactly degenerate.
 Triangle random_triangle(RandomSequence& random) {
     const Vec3 a = random_point(random);
     const Vec3 b = random_point(random);
@@ -83,7 +83,7 @@ Triangle random_triangle(RandomSequence& random) {
     }
 }
 
-/// A point on the triangle, on its boundary or at a corner, and a direction in which a sphere may be in contact there.
+/// Point on the triangle, on its boundary or at a corner, with a direction in which a sphere may touch there.
 struct Touch {
     Vec3 point;
     Vec3 direction;
@@ -101,7 +101,7 @@ Touch random_touch(RandomSequence& random, const Triangle& t) {
     return {t[static_cast<std::size_t>(whole_between(random, 0, 2))], direction};
 }
 
-/// A path that comes near contact at some time, often with little speed towards the surface.
+/// Returns a path that comes near contact at some time, often with little speed towards the surface.
 SphereCase random_case(std::uint64_t index) {
     RandomSequence random(kSeed, 1, index);
     SphereCase s;
@@ -167,10 +167,10 @@ struct Tally {
     int undecided = 0;
     std::array<int, 3> by_rank{};
     double worst_time_ulps = 0.0;
-    double worst_normal = 0.0;  // in units of rounding, see below
+    double worst_normal = 0.0;  // in rounding units, see below
 };
 
-/// Compares one contact with the oracle's.
+/// Compares one contact with the reference.
 void compare(const SphereCase& s, const SphereContact& found, const Digits& time, Tally& tally) {
     const double t = static_cast<double>(time);
     const double time_ulps = std::fabs(static_cast<double>(Digits(found.time - time))) / ulp(t);
@@ -228,7 +228,7 @@ std::optional<SphereContact> contact(const Path& path, double radius, const Vec3
     return SphereSweep(path, radius).first_contact(a, b, c);
 }
 
-TEST(SphereSweep, HitsFaceEdgeAndVertexWhereClosedFormsSay) {
+TEST(SphereSweep, HitsFaceEdgeAndVertexAtTheTimesOfClosedForms) {
     const auto face = contact(line_path({1, 1, 3}, {0, 0, -1}, 4.0), 0.5);
     ASSERT_TRUE(face);
     EXPECT_EQ(face->time, 2.5);
@@ -254,21 +254,21 @@ TEST(SphereSweep, HitsAFaceFromBelowToo) {
     EXPECT_EQ(below->normal, Vec3(0, 0, -1));
 }
 
-TEST(SphereSweep, FindsAParabolaThatComesBackToTheOtherSide) {
-    // Past the edge AB below the plane, then up under the face.
+TEST(SphereSweep, FindsAParabolaThatReturnsToTheOtherSide) {
+    // The path goes past the edge AB below the plane, then up to the face from below.
     const auto below = contact(parabola_path({1, -2, -3}, {0, 2, -1}, {0, 0, 4}, 5.0), 0.25);
     ASSERT_TRUE(below);
     EXPECT_EQ(below->normal, Vec3(0, 0, -1));
     EXPECT_NEAR(below->time, (1.0 + std::sqrt(1.0 + 8.0 * 2.75)) / 4.0, 1e-15);
 }
 
-TEST(SphereSweep, CountsContactAtTheLastMomentAndNotAfterIt) {
+TEST(SphereSweep, CountsContactAtTheEndAndNotAfterIt) {
     EXPECT_TRUE(contact(line_path({1, 1, 3}, {0, 0, -1}, 2.5), 0.5));
     EXPECT_FALSE(contact(line_path({1, 1, 3}, {0, 0, -1}, std::nextafter(2.5, 0.0)), 0.5));
 }
 
 TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastBit) {
-    // Heights above and below exact contact by one ulp; the parabola's lowest point is exact.
+    // Heights are one ulp above and below exact contact. The lowest point of the parabola is exact.
     for (const double sign : {-1.0, 1.0}) {
         const double lowest = 0.5 + sign * 0x1p-52;
         const Vec3 up{0, 0, 2};
@@ -282,7 +282,7 @@ TEST(SphereSweep, DecidesAGrazeOfTheFaceOfAnEdgeAndOfAVertexToTheLastBit) {
 }
 
 TEST(SphereSweep, DoesNotExtendTheTipOfASlenderTriangle) {
-    // A sphere that falls past the tip at a distance which plain doubles take for inside.
+    // A sphere falls past the tip at a distance that plain doubles classify as inside.
     const Vec3 a{0.1, 0.2, 0.3}, b = a + Vec3{0.7, 0.3, 0.1}, c = b + Vec3{1e-12, -1e-12, 0.5e-12};
     for (const double beyond : {1e-9, 1e-6, 1e-3, 0.1}) {
         const Vec3 n = unit_normal(a, b, c);
@@ -292,7 +292,7 @@ TEST(SphereSweep, DoesNotExtendTheTipOfASlenderTriangle) {
     }
 }
 
-TEST(SphereSweep, TakesADegenerateTriangleAsItsEdgesAndVertices) {
+TEST(SphereSweep, TreatsADegenerateTriangleAsItsEdgesAndVertices) {
     const auto segment = contact(line_path({2, 0, 3}, {0, 0, -1}, 4.0), 0.5, kA, kB, {1, 0, 0});
     ASSERT_TRUE(segment);
     EXPECT_EQ(segment->time, 2.5);
@@ -303,7 +303,7 @@ TEST(SphereSweep, TakesADegenerateTriangleAsItsEdgesAndVertices) {
     EXPECT_EQ(rank(point->feature), 2);
 }
 
-TEST(SphereSweep, DoesNotDependOnAPowerOfTwoInTheUnitOfLength) {
+TEST(SphereSweep, ScalesExactlyByPowersOfTwo) {
     for (const double factor : {0x1p-40, 0x1p40, 0x1p-120, 0x1p120}) {
         for (std::uint64_t index = 0; index < 4 * kCases; ++index) {
             SphereCase s = random_case(index);
@@ -323,7 +323,8 @@ TEST(SphereSweep, DoesNotDependOnAPowerOfTwoInTheUnitOfLength) {
     }
 }
 
-// Starts in overlap.
+// ---- starts in overlap
+// -----------------------------------------------------------------------------------------------
 
 TEST(SphereSweepInOverlap, StopsApproachAtOnce) {
     const auto face = contact(line_path({1, 1, 0.25}, {1, 0, -1}, 4.0), 0.5);
@@ -339,15 +340,15 @@ TEST(SphereSweepInOverlap, StopsApproachAtOnce) {
     EXPECT_EQ(touching->time, 0.0);
 }
 
-TEST(SphereSweepInOverlap, LetsSeparationAndMotionAlongTheSurfaceGo) {
+TEST(SphereSweepInOverlap, AllowsSeparationAndMotionAlongTheSurface) {
     EXPECT_FALSE(contact(line_path({1, 1, 0.25}, {0.5, 0.25, 0.125}, 4.0), 0.5));
     EXPECT_FALSE(contact(line_path({0.5, 0.5, 0.25}, {0.25, 0.25, 0}, 4.0), 0.5));
-    EXPECT_FALSE(contact(line_path({1, 1, 0}, {0, 0, -1}, 4.0), 0.5));  // the centre on the face
+    EXPECT_FALSE(contact(line_path({1, 1, 0}, {0, 0, -1}, 4.0), 0.5));  // the centre is on the face
     EXPECT_FALSE(contact(line_path({1, 1, 0.5}, {0.25, 0, 0}, 4.0), 0.5));
 }
 
-TEST(SphereSweepInOverlap, StopsAParabolaWhereItTurnsBackToTheSurface) {
-    // Height 0.25 + s / 4 - s^2 / 4 peaks at s = 1/2 below the radius.
+TEST(SphereSweepInOverlap, StopsAParabolaWhenItTurnsBackToTheSurface) {
+    // The height 0.25 + s / 4 - s^2 / 4 peaks at s = 1/2, below the radius.
     const auto turned = contact(parabola_path({1, 1, 0.25}, {0.5, 0, 0.25}, {0, 0, -0.5}, 4.0), 0.5);
     ASSERT_TRUE(turned);
     EXPECT_EQ(turned->time, 0.5);
@@ -355,13 +356,13 @@ TEST(SphereSweepInOverlap, StopsAParabolaWhereItTurnsBackToTheSurface) {
 }
 
 TEST(SphereSweepInOverlap, FindsTheReturnOfAParabolaThatLeaves) {
-    // Height 0.25 + s - s^2 / 4 is 0.5 again at s = 2 + sqrt(3).
+    // The height 0.25 + s - s^2 / 4 is 0.5 again at s = 2 + sqrt(3).
     const auto back = contact(parabola_path({1, 1, 0.25}, {0, 0, 1}, {0, 0, -0.5}, 8.0), 0.5);
     ASSERT_TRUE(back);
     EXPECT_NEAR(back->time, 2.0 + std::sqrt(3.0), 1e-15);
 }
 
-TEST(SphereSweepInOverlap, StopsExactlyWhereTheTrueDistanceStartsToShrink) {
+TEST(SphereSweepInOverlap, StopsExactlyWhenTheTrueDistanceStartsToDecrease) {
     int stopped = 0, free = 0;
     for (std::uint64_t index = 0; index < 40 * kCases; ++index) {
         SphereCase s = random_case(index);
@@ -370,7 +371,7 @@ TEST(SphereSweepInOverlap, StopsExactlyWhereTheTrueDistanceStartsToShrink) {
             return testing::distance(testing::position(s.path, time), s.triangle) - Digits(s.radius);
         };
         if (clearance(0.0) > 0) continue;
-        // A parabola that turns away may approach for a part in 10^9 of its duration only.
+        // A parabola that turns away may approach for only a 10^-9 part of its duration.
         const auto shrinks_soon_after = [&](double time, double step) {
             const Digits distance = clearance(time);
             for (int halvings = 10; halvings <= 40; ++halvings) {
@@ -383,7 +384,7 @@ TEST(SphereSweepInOverlap, StopsExactlyWhereTheTrueDistanceStartsToShrink) {
         const double end = found ? found->time : s.path.duration;
         const double step = s.path.duration * 0x1p-9;
         const Digits rounding = 1e-14 * largest_coordinate(s);
-        // Up to the contact the distance does not shrink while it is at most the radius.
+        // Up to the contact the distance does not decrease while it is at most the radius.
         for (double time = step; time <= end; time += end / 20 + step) {
             const Digits before = clearance(time - step);
             EXPECT_TRUE(before > 0 || clearance(time) >= before - rounding)
@@ -421,9 +422,10 @@ TEST(SphereSweepInOverlap, TreatsAPlaneLikeATriangleInIt) {
     EXPECT_NEAR(back->time, 2.0 + std::sqrt(3.0), 1e-15);
 }
 
-// Flat plates cut into triangles.
+// ---- flat plates of triangles
+// ----------------------------------------------------------------------------------------
 
-/// Corners of the triangles of a square of 2^level x 2^level cells on [0, 1]^2, in its own frame.
+/// Returns the triangles of a square of cells x cells on [0, 1]^2, in its own frame.
 template <class Position>
 std::vector<Triangle> plate(int cells, const Position& position) {
     std::vector<Triangle> triangles;
@@ -456,7 +458,7 @@ TEST(SphereOnAFlatPlate, RollsOverEverySeamWithoutAContact) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed);
         const double radius = std::pow(10.0, between(random, -4.0, 0.0));
         const double height = 2.0 + radius + 16.0 * ulp(2.0 + radius);
-        // Along the grid's own lines too, right above the seams.
+        // Some paths run along grid lines, right above the seams.
         const double z = whole_between(random, 0, 1) == 0 ? 0.25 : random.uniform();
         const Vec3 start{random.uniform(), height, z};
         const Vec3 velocity{between(random, -1, 1), 0.0,
@@ -467,7 +469,7 @@ TEST(SphereOnAFlatPlate, RollsOverEverySeamWithoutAContact) {
     }
 }
 
-TEST(SphereOnAFlatPlate, BouncesOffSeamsAndCornersAsOffAnAnalyticPlaneToTheLastBit) {
+TEST(SphereOnAFlatPlate, BouncesOffSeamsAndCornersLikeAPlaneToTheLastBit) {
     const auto coarse = plate(1, [](double x, double y) { return Vec3{8 * x, 2.0, 8 * y}; });
     const auto fine = plate(32, [](double x, double y) { return Vec3{8 * x, 2.0, 8 * y}; });
     const Plane plane{{0, 2.0, 0}, {0, 1, 0}};
@@ -497,7 +499,7 @@ TEST(SphereOnAFlatPlate, BouncesOffSeamsAndCornersAsOffAnAnalyticPlaneToTheLastB
     }
 }
 
-TEST(SphereOnAFlatPlate, GetsTheFacesNormalOnSeamsOfATiltedPlateToo) {
+TEST(SphereOnAFlatPlate, GetsTheFaceNormalOnSeamsOfATiltedPlate) {
     const Vec3 u = normalized(Vec3{0.7, 0.31, -0.2});
     const auto frame = tangent_frame(u);
     const auto tilted = plate(8, [&](double x, double y) {
@@ -542,7 +544,8 @@ TEST(SphereSweep, GivesASharedEdgeTheSameBitsInBothTriangles) {
     EXPECT_GT(shared, 300);
 }
 
-// Culling.
+// ---- culling
+// ---------------------------------------------------------------------------------------------------------
 
 TEST(SphereSweepCulling, NeverCullsATriangleThatIsHit) {
     int touched = 0;
@@ -556,14 +559,15 @@ TEST(SphereSweepCulling, NeverCullsATriangleThatIsHit) {
     EXPECT_GT(touched, static_cast<int>(kCases));
 }
 
-TEST(SphereSweepCulling, CullsWhatIsBeyondTheBoxOrThePlane) {
+TEST(SphereSweepCulling, CullsTrianglesBeyondTheBoxOrThePlane) {
     const SphereSweep sweep(line_path({1, 1, 3}, {0, 0, -1}, 2.0), 0.5);
     EXPECT_TRUE(sweep.can_cull(kA, kB, kC));
     EXPECT_TRUE(sweep.can_cull(kA + Vec3{2, 0, 0}, kB + Vec3{2, 0, 0}, kC + Vec3{2, 0, 0}));
     EXPECT_FALSE(SphereSweep(line_path({1, 1, 3}, {0, 0, -1}, 2.6), 0.5).can_cull(kA, kB, kC));
 }
 
-// Certificates.
+// ---- certificates
+// ----------------------------------------------------------------------------------------------------
 
 TEST(SphereSegmentCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     int clear = 0, blocked = 0;
@@ -574,7 +578,7 @@ TEST(SphereSegmentCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
         SCOPED_TRACE(::testing::Message() << "case " << index << " of seed " << kSeed << ": " << description(s));
         const double tolerance = sphere_tolerance(s.radius, largest_coordinate(s));
         const Path chord = line_path(p, q - p, 1.0);
-        // The distance is convex along the segment: thirds until it is known to a hundredth of the tolerance.
+        // The distance is convex along the segment. Ternary search finds it to a hundredth of the tolerance.
         double low = 0.0, high = 1.0;
         const auto distance_at = [&](double fraction) {
             return testing::distance(testing::position(chord, fraction), s.triangle);
@@ -600,7 +604,7 @@ TEST(SphereSegmentCertificate, AgreesWithTheTrueDistanceOfTheSegment) {
     EXPECT_GT(blocked, static_cast<int>(kCases / 10));
 }
 
-TEST(SphereSegmentCertificate, HoldsUpToTheContactAndNotBeyond) {
+TEST(SphereSegmentCertificate, IsValidUpToTheContactAndNotBeyond) {
     int segments = 0;
     for (std::uint64_t index = 0; index < 20 * kCases; ++index) {
         const SphereCase s = random_case(index);
@@ -616,14 +620,14 @@ TEST(SphereSegmentCertificate, HoldsUpToTheContactAndNotBeyond) {
     EXPECT_GT(segments, 500);
 }
 
-/// Every second path is straight.
+/// Returns a random case with a straight path for every second index.
 SphereCase often_straight_case(std::uint64_t index) {
     SphereCase s = random_case(index);
     if (index % 2 == 0) s.path = line_path(s.path.c[0], s.path.c[1], s.path.duration);
     return s;
 }
 
-TEST(SphereSweep, WhatItSeparatesFromAndWhatItStartsSeparatedFromIsNeverHitAndNeverOverlapped) {
+TEST(SphereSweep, NeverHitsOrOverlapsTrianglesThatItIsSeparatedFrom) {
     int receding = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
@@ -645,12 +649,12 @@ TEST(SphereSweep, WhatItSeparatesFromAndWhatItStartsSeparatedFromIsNeverHitAndNe
     EXPECT_GT(apart, test::scaled(20'000) / 10);
 }
 
-TEST(SphereSweep, WhatItLeavesBehindOrCullsAtItsEndIsNeverHitAndNeverOverlapped) {
+TEST(SphereSweep, NeverHitsOrOverlapsTrianglesLeftBehindOrCulledAtItsEnd) {
     int left = 0;
     int apart = 0;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
         SphereCase s = often_straight_case(index);
-        if (index % 6 == 0) {  // goes on from where the other path ends
+        if (index % 6 == 0) {  // continues from the end of the other path
             const Vec3 aside = (2.0 * s.radius) * RandomSequence(kSeed, 9, index).unit_vector();
             s.path = line_path(s.path.end + aside, s.path.c[1], s.path.duration);
         }
@@ -669,12 +673,12 @@ TEST(SphereSweep, WhatItLeavesBehindOrCullsAtItsEndIsNeverHitAndNeverOverlapped)
     EXPECT_GT(apart, test::scaled(20'000) / 40);
 }
 
-/// How often a contact was found by a shortened sweep, and how often one that comes later was not.
+/// Number of contacts found by a shortened sweep, and number of later contacts that it did not find.
 struct Shortened {
     int kept = 0;
     int dropped = 0;
 
-    /// latest: s, until which contacts matter.
+    /// latest: time in s until which contacts matter.
     void compare(const SphereCase& s, double latest) {
         const auto whole = contact_of(s);
         const auto& [a, b, c] = s.triangle;
@@ -714,8 +718,8 @@ TEST(SphereSweep, FindsTheSameBitsWhenShortenedAndNothingEarlier) {
     EXPECT_GT(shortened.dropped, test::scaled(20'000) / 10);
 }
 
-// Also one that forces would lead so far away that the slack of all of it is wider than what it comes near.
-TEST(SphereSweep, FindsTheSameBitsWhereItIsATinyPartOfItsPath) {
+// Includes a path that forces extend so far that its rounding slack exceeds the distance of approach.
+TEST(SphereSweep, FindsTheSameBitsOnATinyPartOfItsPath) {
     Shortened shortened;
     for (std::uint64_t index = 0; index < static_cast<std::uint64_t>(test::scaled(20'000)); ++index) {
         SphereCase s = random_case(index);

@@ -17,7 +17,7 @@ const KeyedCurve<Vec3>& growth() {
     return curve;
 }
 
-/// A frame that moves, and is scaled last.
+/// Returns a moving frame whose last motion is a scale.
 FrameTree tree_of(std::vector<FrameMotion> motions, const KeyedCurve<Vec3>& factors = growth()) {
     FrameDescription frame;
     frame.name = "frame";
@@ -27,7 +27,7 @@ FrameTree tree_of(std::vector<FrameMotion> motions, const KeyedCurve<Vec3>& fact
     return FrameTree({frame});
 }
 
-TEST(StretchedMotion, IsExactWithNoOtherKeysWhereTheFrameDoesNotTurn) {
+TEST(StretchedMotion, IsExactWithoutExtraKeysIfTheFrameDoesNotRotate) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 2, 1});
     const FrameTree frames = tree_of({KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {2.0, {4, 0, 0}}})}});
     const MeshMotion motion = stretched_motion(box.vertices, frames, 0, 0.0, 5.0);
@@ -45,7 +45,7 @@ TEST(StretchedMotion, IsExactWithNoOtherKeysWhereTheFrameDoesNotTurn) {
     }
 }
 
-TEST(StretchedMotion, KeepsWithinItsDeviationWhereTheFrameTurnsAndNotMuchBelow) {
+TEST(StretchedMotion, StaysWithinItsDeviationAndCloseToItIfTheFrameRotates) {
     const TriangleMesh mesh = testing::sphere_mesh({0.2, 0.1, 0}, 1.0, 1);
     const double diagonal = length(bounds(mesh).size());
     for (const FrameMotion& turning :
@@ -65,8 +65,8 @@ TEST(StretchedMotion, KeepsWithinItsDeviationWhereTheFrameTurnsAndNotMuchBelow) 
     }
 }
 
-// Two frames with scales that turn shear what stands in them.
-TEST(StretchedMotion, KeepsWithinItsDeviationAlongChains) {
+// Two rotating frames with scales shear their contents.
+TEST(StretchedMotion, StaysWithinItsDeviationAlongChains) {
     const TriangleMesh mesh = testing::sphere_mesh({0.2, 0.1, 0}, 1.0, 1);
     const KeyedCurve<Vec3> ease({{0.0, {1, 1, 1}}, {2.0, {0.6, 1.2, 2}}, {5.0, {1, 1, 1}}},
                                 Interpolation::cubic_spline);
@@ -94,10 +94,10 @@ std::string refusal(const FrameTree& frames, double begin, double end) {
     return "";
 }
 
-TEST(StretchedMotion, RefusesWhatItCannotDo) {
+TEST(StretchedMotion, RefusesUnsupportedMotions) {
     EXPECT_EQ(refusal(tree_of({}), 2.0, 2.0),
               "scale that changes in time: it ends before it begins, expected a later end");
-    // Above 0 at its keys, but not between them.
+    // The factor is above 0 at its keys, but not between them.
     const KeyedCurve<Vec3> dip({{0.0, {1, 1, 1}}, {1.0, {1, 0.01, 1}}, {1.5, {1, 0.01, 1}}, {2.0, {1, 2, 1}}},
                                Interpolation::cubic_spline);
     const std::string below = refusal(tree_of({}, dip), 0.0, 2.0);

@@ -28,7 +28,7 @@ std::vector<std::uint32_t> visited(const TriangleBvh& bvh, const Vec3& from, con
     return triangles;
 }
 
-/// Every triangle that the segment intersects exactly is visited.
+/// Expects that every triangle that the segment intersects exactly is visited.
 void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec3& from, const Vec3& to, int& hits) {
     const std::vector<std::uint32_t> seen = visited(bvh, from, to);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -39,7 +39,7 @@ void expect_complete(const TriangleMesh& mesh, const TriangleBvh& bvh, const Vec
     }
 }
 
-/// Slender, overlapping, of very different sizes.
+/// Returns slender, overlapping triangles of very different sizes.
 TriangleMesh soup(int count, std::uint64_t seed) {
     TriangleMesh mesh;
     RandomSequence random(seed, 0, 0);
@@ -57,8 +57,8 @@ TriangleMesh soup(int count, std::uint64_t seed) {
     return mesh;
 }
 
-/// Segments that are hard on boxes: aimed at corners and points of edges, along axes and box faces, starting far away,
-/// tiny, without length, ending on a triangle.
+/// Returns segments that are difficult for boxes. They aim at corners and points of edges, run along axes and box
+/// faces, start far away, end on a triangle, are tiny or have no length.
 std::array<Vec3, 2> hard_segment(const TriangleMesh& mesh, const Box3& box, int kind, RandomSequence& random) {
     const auto& t =
         mesh.triangles[static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()))];
@@ -129,14 +129,15 @@ TEST_P(TriangleBvhLocations, VisitsEveryTriangleThatASegmentIntersects) {
     }
 }
 
-/// Distance of triangle corners and edge points from a segment: a lower bound is not needed, samples suffice.
+/// Returns the distance of a point from a segment. Tests apply it to triangle corners and edge points, because samples
+/// suffice here.
 double distance(const Vec3& x, const Vec3& p, const Vec3& q) {
     const Vec3 d = q - p;
     const double s = length_squared(d) > 0.0 ? std::clamp(dot(x - p, d) / length_squared(d), 0.0, 1.0) : 0.0;
     return length(x - (p + s * d));
 }
 
-TEST(TriangleBvh, VisitsWhatIsWithinTheMarginAndTheSlack) {
+TEST(TriangleBvh, VisitsTrianglesWithinTheMarginAndTheSlack) {
     const TriangleMesh mesh = soup(500, 3);
     for (const double margin_of_boxes : {0.0, 1e-3, 0.1}) {
         SCOPED_TRACE(margin_of_boxes);
@@ -165,8 +166,8 @@ TEST(TriangleBvh, VisitsWhatIsWithinTheMarginAndTheSlack) {
     }
 }
 
-// Whatever the visitor narrows to, triangles up to there are still visited.
-TEST(TriangleBvh, NarrowingLosesNothingInFrontOfIt) {
+// All triangles up to the end that the visitor sets are still visited.
+TEST(TriangleBvh, NarrowingKeepsAllTrianglesUpToTheNewEnd) {
     const TriangleMesh mesh = testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({}, 0.5, 3));
     const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
     RandomSequence random(5, 0, 0);
@@ -189,7 +190,7 @@ TEST(TriangleBvh, NarrowingLosesNothingInFrontOfIt) {
     }
 }
 
-TEST(TriangleBvh, VisitsTheOneTriangleAndEveryDuplicate) {
+TEST(TriangleBvh, VisitsASingleTriangleAndEveryDuplicate) {
     const std::vector<Vec3> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const std::vector<Triangle> one{{0, 1, 2}};
     const TriangleBvh single(vertices, one, 0.0);
@@ -241,7 +242,8 @@ double distance_of(const TriangleMesh& mesh, std::uint32_t t, const Vec3& p) {
         closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]).distance_squared);
 }
 
-/// Points that are hard on boxes: corners, beside them, in the middle of nowhere, far away, very far away.
+/// Returns points that are difficult for boxes: corners, points beside them, points in empty space, far away and very
+/// far away.
 Vec3 hard_point(const TriangleMesh& mesh, const Box3& box, int kind, RandomSequence& random) {
     const auto& t =
         mesh.triangles[static_cast<std::size_t>(random.uniform() * static_cast<double>(mesh.triangles.size()))];
@@ -266,7 +268,8 @@ TEST_P(TriangleBvhLocations, VisitsEveryTriangleWithinADistanceOfAPoint) {
         for (int i = 0; i < test::scaled(400); ++i) {
             const Vec3 p = flush_tiny(hard_point(mesh, box, i % 8, random));
             for (std::uint32_t t = 0; t < distances.size(); ++t) distances[t] = distance_of(mesh, t, p);
-            // Just as far as one of them, so that the border itself is tested; nothing; everything.
+            // One distance equals that of a triangle, so that the limit itself is tested. Others find nothing or
+            // everything.
             const double one = distances[static_cast<std::size_t>(random.uniform() * 100.0)];
             for (const double within : {one, 0.0, 1e-3 * box.diagonal(), HUGE_VAL}) {
                 const auto seen = visited_near(bvh, p, within);
@@ -280,8 +283,8 @@ TEST_P(TriangleBvhLocations, VisitsEveryTriangleWithinADistanceOfAPoint) {
     }
 }
 
-// The ties at the smallest distance are all seen: the number of triangles that have it is that of brute force.
-TEST(TriangleBvh, NarrowingToTheNearestSoFarFindsTheNearestAndAllItsTies) {
+// All triangles at the smallest distance are visited. Their number must equal the number from brute force.
+TEST(TriangleBvh, NarrowingToTheNearestFindsTheNearestAndAllItsTies) {
     const TriangleMesh mesh = testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({}, 0.5, 3));
     const TriangleBvh bvh(mesh.vertices, mesh.triangles, 0.0);
     RandomSequence random(9, 0, 0);

@@ -16,7 +16,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Neighbouring triangles of all shapes: fair ones, needles, some without area, a hundred times smaller than the next.
+/// Returns neighbouring triangles of all shapes: regular ones, needles, and some without area. Their sizes differ by up
+/// to a hundred.
 TriangleMesh neighbours(RandomSequence& random, double scale, const Vec3& center) {
     TriangleMesh mesh;
     for (std::uint32_t k = 0; k < 4; ++k) {
@@ -32,7 +33,7 @@ TriangleMesh neighbours(RandomSequence& random, double scale, const Vec3& center
     return mesh;
 }
 
-/// A point of the triangle, a corner now and then.
+/// Returns a point of the triangle, sometimes a corner.
 Vec3 point_of(const TriangleMesh& mesh, const Triangle& triangle, RandomSequence& random) {
     const double u = random.uniform() < 0.2 ? 0.0 : random.uniform();
     const double v = random.uniform() < 0.2 ? 0.0 : (1.0 - u) * random.uniform();
@@ -40,7 +41,7 @@ Vec3 point_of(const TriangleMesh& mesh, const Triangle& triangle, RandomSequence
     return a + u * (mesh.vertices[triangle[1]] - a) + v * (mesh.vertices[triangle[2]] - a);
 }
 
-TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
+TEST(TriangleCluster, NoTriangleWithinTheMarginAndNoPartOfItsIntervalIsMissed) {
     int near_triangles = 0;
     for (int i = 0; i < test::scaled(20000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -56,7 +57,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
         const double after = scale * std::pow(10.0, 5.0 * random.uniform() - 2.0);
         const Vec3 from = target - before * direction;
         const Vec3 to = target + (random.uniform() < 0.2 ? 0.0 : after) * direction;
-        // Half of the paths are parabolas that still go through the target.
+        // Half of the paths are parabolas that also pass through the target.
         const double aimed = before / length(to - from);
         const double sag = i % 2 == 0 ? 0.0 : scale * std::pow(10.0, 3.0 * random.uniform() - 3.0);
         const Vec3 curve = sag * random.unit_vector();
@@ -69,7 +70,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
                 if (cluster.triangle[lane] == kNoTriangle) continue;
                 const auto& [a, b, c] = mesh.triangles[cluster.triangle[lane]];
                 for (int k = 0; k <= 64; ++k) {
-                    // Densest about the target.
+                    // The samples are densest about the target.
                     const double part = static_cast<double>(k - 32) / 32.0;
                     const double offset = part < 0.0 ? part * part * part * before : part * part * part * after;
                     const double fraction = (before + offset) / length(to - from);
@@ -90,7 +91,7 @@ TEST(TriangleCluster, NoTriangleWithinTheMarginIsMissedAndNoPartOfItsInterval) {
     EXPECT_GT(near_triangles, test::scaled(20000));
 }
 
-TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
+TEST(TriangleCluster, SegmentsWithUnderflowingSquaresAreNearTheirTriangle) {
     const std::vector<Vec3> vertices{{-1, -1, 0}, {1, -1, 0}, {0, 2, 0}};
     const TriangleClusters clusters = make_clusters(vertices, std::vector<Triangle>{{0, 1, 2}});
     for (const double size : {0.0, 1e-300, 1e-170, 1e-161, 1e-158, 1e-155, 1e-150, 1e-141, 1e-100}) {
@@ -101,7 +102,7 @@ TEST(TriangleCluster, SegmentsTooShortForTheirSquareAreNearWhatTheyAreOn) {
     }
 }
 
-TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
+TEST(TriangleCluster, FewTrianglesOutsideTheTubeAreNear) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 4);
     const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
     RandomSequence random(7, 0, 0);
@@ -130,7 +131,7 @@ TEST(TriangleCluster, FewTrianglesThatTheTubeMissesAreNear) {
     EXPECT_LE(wrong, right / 20 + 1);
 }
 
-TEST(TriangleClusters, HoldEveryTriangleOnceAndNearlyFull) {
+TEST(TriangleClusters, ContainEveryTriangleOnceAndAreNearlyFull) {
     const TriangleMesh mesh = testing::sphere_mesh({1, 2, 3}, 1.0, 4);
     const TriangleClusters clusters = make_clusters(mesh.vertices, mesh.triangles);
     std::set<std::uint32_t> seen;
@@ -144,7 +145,7 @@ TEST(TriangleClusters, HoldEveryTriangleOnceAndNearlyFull) {
     EXPECT_LT(clusters.size(), mesh.triangles.size() / 2);
 }
 
-TEST(TriangleClusters, BoxesHoldTheirTriangles) {
+TEST(TriangleClusters, BoxesContainTheirTriangles) {
     RandomSequence random(3, 0, 0);
     for (int i = 0; i < test::scaled(1000); ++i) {
         const TriangleMesh mesh =

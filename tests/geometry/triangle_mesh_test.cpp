@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(TriangleMesh, KnowsBoundsAreaAndVolumeOfABox) {
+TEST(TriangleMesh, HasTheBoundsAreaAndVolumeOfABox) {
     const TriangleMesh box = testing::box_mesh({-1, 0, 2}, {1, 3, 6});
     EXPECT_EQ(bounds(box).lower, (Vec3{-1, 0, 2}));
     EXPECT_EQ(bounds(box).upper, (Vec3{1, 3, 6}));
@@ -32,7 +32,7 @@ TEST(TriangleMesh, VolumeKeepsItsDigitsFarFromTheOrigin) {
     EXPECT_NEAR(signed_volume(testing::moved(box, {1e9, -1e9, 1e9})), 6.0, 1e-12);
 }
 
-TEST(TriangleMesh, BoundsLeaveOutUnusedVertices) {
+TEST(TriangleMesh, BoundsExcludeUnusedVertices) {
     TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     box.vertices.push_back({100, 100, 100});
     EXPECT_EQ(bounds(box).upper, (Vec3{1, 1, 1}));

@@ -29,7 +29,7 @@ void for_cases(std::uint64_t stream, int count, Claim&& claim) {
     }
 }
 
-TEST(TrianglePlane, DecidesAsTheExactOracleDoes) {
+TEST(TrianglePlane, MatchesTheExactReference) {
     for_cases(51, 10000, [](const SegmentTriangle& s) {
         const TrianglePlane plane(s.a, s.b, s.c);
         const int side = testing::sign_of(testing::exact_orient3d(s.a, s.b, s.c, s.p));
@@ -40,7 +40,7 @@ TEST(TrianglePlane, DecidesAsTheExactOracleDoes) {
     });
 }
 
-TEST(TrianglePlane, AnswersWithTheSameBitsInAnyOrderAndEveryTime) {
+TEST(TrianglePlane, ReturnsTheSameBitsInAnyOrderAndEveryTime) {
     for_cases(52, 10000, [](const SegmentTriangle& s) {
         const TrianglePlane triangle(s.a, s.b, s.c);
         const Vec3 normal = triangle.unit_normal();
@@ -56,7 +56,7 @@ TEST(TrianglePlane, AnswersWithTheSameBitsInAnyOrderAndEveryTime) {
     });
 }
 
-TEST(TrianglePlane, CrossingsAreLeftOutOnlyWhenTheyAreLater) {
+TEST(TrianglePlane, SkipsOnlyLaterCrossings) {
     int early = 0;
     int late = 0;
     for_cases(53, 10000, [&](const SegmentTriangle& s) {

@@ -33,7 +33,7 @@ double area_of(const PolygonMesh& mesh, const Triangulation& cut) {
     return surface_area({mesh.vertices, cut.triangles});
 }
 
-// Twice the signed area of an outline in the plane z = 0.
+// Returns twice the signed area of an outline in the plane z = 0.
 double twice_area(const Outline& outline) {
     double sum = 0.0;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -44,8 +44,8 @@ double twice_area(const Outline& outline) {
     return sum;
 }
 
-// The diagonals are cut into a disk: every edge of the outline once, in its direction, every diagonal once in each
-// direction.
+// Expects that the triangles form a disk. Every edge of the outline occurs once, in its direction, and every diagonal
+// once in each direction.
 void expect_disk(const PolygonMesh& mesh, const Triangulation& cut) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> uses;
     for (const Triangle& t : cut.triangles) {
@@ -59,8 +59,8 @@ void expect_disk(const PolygonMesh& mesh, const Triangulation& cut) {
     }
 }
 
-// For an outline in the plane z = 0: no triangle turns against the outline, and the areas add up. Together they say
-// that the triangles do not overlap.
+// Expects, for an outline in the plane z = 0, that no triangle is reversed and that the areas add up. Together these
+// imply that triangles do not overlap.
 void expect_exact_cover(const PolygonMesh& mesh, const Triangulation& cut, double relative_rounding) {
     ASSERT_EQ(cut.triangles.size(), mesh.corners.size() - 2);
     ASSERT_EQ(cut.crossing_faces, 0U);
@@ -79,7 +79,7 @@ Outline rotated(Outline outline, std::size_t by) {
 
 const Outline kLetterL = {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
 
-TEST(Triangulation, OfALetterLHasItsArea) {
+TEST(Triangulation, HasTheAreaOfALetterL) {
     for (std::size_t start = 0; start < kLetterL.size(); ++start) {
         SCOPED_TRACE(start);
         const PolygonMesh mesh = one_face(rotated(kLetterL, start));
@@ -140,7 +140,7 @@ TEST(Triangulation, CutsAQuadWithACollinearCornerIntoTwoTrianglesWithArea) {
 }
 
 TEST(Triangulation, MakesNoDegenerateTriangleFromCollinearCorners) {
-    // A square with four corners more on every side.
+    // A square with four extra corners on every side.
     Outline square;
     for (int i = 0; i < 5; ++i) square.emplace_back(i, 0, 0);
     for (int i = 0; i < 5; ++i) square.emplace_back(5, i, 0);
@@ -155,7 +155,8 @@ TEST(Triangulation, MakesNoDegenerateTriangleFromCollinearCorners) {
 }
 
 TEST(Triangulation, CutsAnOutlineWithABridgeToItsHole) {
-    // A square with a square hole, joined by a bridge that is walked in both directions (corners 0 and 4 twice).
+    // A square with a square hole. They are joined by a bridge that the outline follows in both directions (corners 0
+    // and 4 twice).
     PolygonMesh mesh;
     mesh.vertices = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}};
     const std::vector<std::uint32_t> outline = {0, 1, 2, 3, 0, 4, 5, 6, 7, 4};
@@ -193,8 +194,8 @@ TEST(Triangulation, KeepsAFaceOfTwoDifferentCornersAsOneDegenerateTriangle) {
     EXPECT_EQ(cut.triangle_face, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
-TEST(Triangulation, CoversAnOutlineThatCrossesItselfAndSaysSo) {
-    // A pentagram winds around its five tips once and around its middle twice.
+TEST(Triangulation, CoversAndReportsAnOutlineThatCrossesItself) {
+    // A pentagram winds once around its five tips and twice around its middle.
     Outline star;
     for (int i = 0; i < 5; ++i) {
         const double angle = 2 * i * 2 * std::numbers::pi / 5;
@@ -205,7 +206,7 @@ TEST(Triangulation, CoversAnOutlineThatCrossesItselfAndSaysSo) {
     EXPECT_EQ(cut.crossing_faces, 1U);
     EXPECT_EQ(cut.triangles.size(), 3U);
     expect_disk(mesh, cut);
-    // A point in every tip and the middle is covered.
+    // A sample point in every tip and in the middle must be covered.
     const auto covered = [&](const Point2& p) {
         return std::any_of(cut.triangles.begin(), cut.triangles.end(), [&](const Triangle& t) {
             const auto flat = [&](std::uint32_t v) { return Point2{mesh.vertices[v].x, mesh.vertices[v].y}; };
@@ -229,7 +230,7 @@ TEST(Triangulation, AcceptsAPolygonWithoutArea) {
     EXPECT_EQ(cut.crossing_faces, 0U);
 }
 
-TEST(Triangulation, CountsRepeatedCornersAlsoWhereEveryFaceIsATriangle) {
+TEST(Triangulation, CountsRepeatedCornersEvenIfEveryFaceIsATriangle) {
     const PolygonMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 3, 6, 9}, {0, 1, 2, 1, 1, 0, 2, 1, 2}, {}, {}, {}};
     const Triangulation cut = triangulate(mesh);
     EXPECT_EQ(cut.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 1, 0}, {2, 1, 2}}));
@@ -247,7 +248,7 @@ TEST(Triangulation, RefusesPolygonsOutsideItsLimits) {
     EXPECT_THROW((void)triangulate(mesh), InputError);
 }
 
-// A random simple polygon: corners at growing angles and random distances.
+// Returns a random simple polygon: corners at increasing angles and random distances.
 Outline random_star(std::mt19937_64& random, std::size_t corners) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     Outline outline;
@@ -260,7 +261,7 @@ Outline random_star(std::mt19937_64& random, std::size_t corners) {
     return outline;
 }
 
-// A random simple polygon that is not star-shaped: edges that cross are untangled until none does.
+// Returns a random simple polygon that is not star-shaped. Crossing edges are untangled until none is left.
 Outline random_tangle(std::mt19937_64& random, std::size_t corners) {
     std::uniform_int_distribution<int> grid(0, 60);
     Outline p;
@@ -340,7 +341,7 @@ TEST(Triangulation, CoversRandomPolygonsOnACoarseGridExactly) {
     EXPECT_GT(tried, 0);
 }
 
-TEST(Triangulation, OfAnythingAtAllIsADisk) {
+TEST(Triangulation, IsADiskForAnyOutline) {
     for (int seed = 0; seed < test::scaled(2000); ++seed) {
         SCOPED_TRACE(seed);
         std::mt19937_64 random(static_cast<std::uint64_t>(seed));
@@ -351,7 +352,7 @@ TEST(Triangulation, OfAnythingAtAllIsADisk) {
         const Triangulation cut = triangulate(mesh);
         ASSERT_EQ(cut.triangles.size(), outline.size() - 2);
         expect_disk(mesh, cut);
-        // The signed areas always add up to the outline's.
+        // The signed areas must add up to the area of the outline.
         double twice = 0.0;
         for (const Triangle& t : cut.triangles)
             twice += twice_area({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
@@ -360,7 +361,7 @@ TEST(Triangulation, OfAnythingAtAllIsADisk) {
     }
 }
 
-// A closed prism over a polygon: its faces share edges, and no cut may open it.
+// Tests a closed prism over a polygon. Its faces share edges, and no triangulation may open it.
 TEST(Triangulation, LeavesAClosedPolygonMeshClosed) {
     std::mt19937_64 random(7);
     const Outline base = random_star(random, 100);
@@ -387,8 +388,7 @@ TEST(Triangulation, LeavesAClosedPolygonMeshClosed) {
     EXPECT_NEAR(signed_volume({prism.vertices, cut.triangles}), twice_area(base) / 2, 1e-12);
 }
 
-// Shapes on which simple ear clipping takes quadratic time. No clock here: the time limit of a test would
-// catch it (10^10 steps).
+// Shapes on which simple ear clipping takes quadratic time (10^10 steps). The time limit of the test would detect that.
 Outline spiral(std::size_t corners) {
     Outline outline;
     const std::size_t half = corners / 2;

@@ -1,4 +1,5 @@
-// A collider that nothing can reach changes no bit, however it moves: what a particle does depends on what is near it.
+// A collider out of reach of all particles changes no bit, however it moves. A particle depends only on nearby
+// colliders.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +27,7 @@ namespace RICOCHET_FILE {
 
 const std::filesystem::path kScenes = std::filesystem::path(RICOCHET_SOURCE_DIR) / "scenes";
 
-/// All that is compared: the particles' bits, those of their impacts, and the counts.
+/// Compared results: hashes of the particles and their impacts, and the counts.
 struct Bits {
     std::uint64_t state = 0;
     std::uint64_t contacts = 0;
@@ -84,7 +85,7 @@ Bits bits_of(SimulationSetup setup) {
             s.unsimulated_time};
 }
 
-/// Ways in which a rock far away moves.
+/// Kinds of motion of a rock far away.
 enum class FarRock { turning, deforming, driven };
 constexpr std::array kFarRocks{FarRock::turning, FarRock::deforming, FarRock::driven};
 
@@ -101,7 +102,7 @@ std::string text_of(FarRock kind) {
            std::string(kMotions[static_cast<std::size_t>(kind)]) + "}]}";
 }
 
-/// Makes the frames anew, with others. To do so scales their axes once more, which rounds them.
+/// Rebuilds the frames together with others. The rebuild normalises their axes once more, which rounds them.
 void add_frames(SimulationSetup& setup, const FrameTree* others) {
     std::vector<FrameDescription> frames;
     for (const FrameTree* tree : {setup.frames.get(), others}) {
@@ -110,7 +111,7 @@ void add_frames(SimulationSetup& setup, const FrameTree* others) {
     if (!frames.empty()) setup.frames = std::make_shared<FrameTree>(std::move(frames));
 }
 
-/// Adds a rock that nothing reaches as the last collider, of a material of its own.
+/// Adds a rock that no particle reaches as the last collider, with its own material.
 void add_far_rock(SimulationSetup& setup, FarRock kind) {
     std::string text = text_of(kind);
     if (kind != FarRock::driven) {
@@ -126,7 +127,7 @@ void add_far_rock(SimulationSetup& setup, FarRock kind) {
     for (BodyDescription& body : rock.bodies) setup.bodies.push_back(std::move(body));
 }
 
-/// Whether a scene takes colliders that move so.
+/// Returns true if a scene supports colliders with this kind of motion.
 bool takes(const SimulationSetup& setup, FarRock kind) {
     if (setup.options.response != ResponseKind::exact || setup.options.flow) return false;
     if (setup.options.particle_contacts && kicks_first(setup.options.integrator.kind)) return false;
@@ -174,7 +175,8 @@ std::string name_of_scene(const ::testing::TestParamInfo<ShippedScene>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Of, ShippedSceneBesideAFarRock, ::testing::ValuesIn(kShippedScenes), name_of_scene);
 
-/// A random scene of the exact response; in every second one with spheres these meet each other.
+/// Returns a random scene of the exact response. In every second scene with spheres, the spheres collide with each
+/// other.
 SimulationSetup random_setup(int number) {
     // Scenes 0, 1 and 2 of each eight have this response and no flow.
     const int scene = 8 * (number / 3) + number % 3;
@@ -196,7 +198,7 @@ TEST(RandomSceneBesideAFarRock, EndsInTheSameBits) {
     }
 }
 
-/// Spheres on a floor, close to each other, for long enough to come to rest.
+/// Returns spheres close together on a floor. The run is long enough for them to come to rest.
 SimulationSetup pile() {
     return parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.005, "duration": 2.5},
         "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
@@ -217,7 +219,7 @@ TEST(PileBesideAFarRock, FallsAsleepInTheSameStep) {
     expect_same_bits_beside_a_far_rock(pile);
 }
 
-/// Energy of the only particle over what it began with, m^2/s^2; its floor is at the height 0.
+/// Returns the energy per unit mass of the first particle, in m^2/s^2. Its floor is at the height 0.
 double energy_of_first(const Simulation& simulation, double gravity) {
     const Particles& particles = simulation.particles();
     const double height = particles.position[0].z - particles.radius[0];
@@ -225,7 +227,7 @@ double energy_of_first(const Simulation& simulation, double gravity) {
 }
 
 TEST(ElasticBallBesideAFarRock, KeepsItsEnergyWithSymplecticEuler) {
-    // The method's own energy differs by at most g h v from the true one, however long it bounces.
+    // The energy error of the method is at most g h v, independent of the number of bounces.
     for (const double step : {0.02, 0.01, 0.005}) {
         SimulationSetup setup = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": )" + std::to_string(step) +
                                                 R"(, "duration": 20, "integrator": "symplectic_euler"},

@@ -1,9 +1,11 @@
-// Golden hashes: the final state, and every impact before it, of the shipped scenes (shortened) and of random
-// scenes, as hashes.csv holds them. They are the same for any number of threads, with every acceleration on or off, for
-// every compiler, instruction set and version of Embree. A change of a value needs a reason in its commit.
+// Golden hashes of shipped scenes (shortened) and of random scenes. They cover the final state and every earlier
+// impact. The committed values are in hashes.csv.
+// They are the same for any number of threads, with every acceleration on or off, for every compiler, instruction set
+// and version of Embree. The commit that changes a value must state the reason.
 //
-// To print the table as the code now is: RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Scene*' (the lines that
-// begin with "golden,"). Nothing writes it by itself.
+// This command prints the table for the current code, in the lines that begin with "golden,":
+//   RICOCHET_PRINT_GOLDEN=1 golden_tests --gtest_filter='*Scene*'
+// No program updates the table automatically.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +35,7 @@ namespace RICOCHET_FILE {
 
 const std::filesystem::path kRoot = RICOCHET_SOURCE_DIR;
 
-/// What a run has left behind.
+/// Hashes of the results of a run.
 struct Outcome {
     std::uint64_t state = 0;
     std::uint64_t contacts = 0;  ///< hash of all contact records
@@ -57,10 +59,10 @@ Outcome run(SimulationSetup setup, int threads) {
     return {simulation.state_hash(), contacts.value()};
 }
 
-/// The state alone, by the calls that make many steps at once.
+/// Returns the hash of the state alone, after one call that makes all steps.
 std::uint64_t advance(SimulationSetup setup, int threads) {
     const ThreadLimit limit(threads);
-    // What the random scenes' small budgets lose is theirs; shipped scenes lose nothing.
+    // Random scenes have small bounce budgets and may lose time. Shipped scenes must lose none.
     const bool may_lose_time = setup.options.bounce_budget == kRandomSceneBudget;
     Simulation simulation(std::move(setup));
     simulation.advance(simulation.step_count());
@@ -91,7 +93,7 @@ const std::map<std::string, Outcome>& table() {
     return rows;
 }
 
-/// Compares with the table, or prints the row for it where that was asked for.
+/// Compares with the table, or prints the row for the table if the environment requests it.
 void expect_golden(const std::string& name, const Outcome& outcome) {
     if (std::getenv("RICOCHET_PRINT_GOLDEN") != nullptr) {
         std::cout << "golden," << name << ',' << outcome << '\n';
@@ -125,7 +127,7 @@ TEST_P(GoldenShippedScene, EndsInTheSameBits) {
           [&] { return read_scene(kRoot / "scenes" / (std::string(scene.name) + ".json"), overrides).setup; });
 }
 
-/// All of a shipped scene: contact that lasts costs no budgets of bounces, so no particle loses time.
+/// Runs a shipped scene in full. Persistent contact must not consume the bounce budget, so no particle loses time.
 using ShippedSceneLong = GoldenShippedScene;
 
 TEST_P(ShippedSceneLong, LosesNoTime) {
@@ -136,8 +138,8 @@ TEST_P(ShippedSceneLong, LosesNoTime) {
     EXPECT_EQ(simulation.statistics().frozen, 0U);
 }
 
-/// Saved two fifths of the way, with one thread, and finished with several.
-TEST_P(ShippedSceneLong, GoesOnFromASavedStateWithOtherThreadsToTheSameBits) {
+/// Saves the state after two fifths of the run with one thread, and finishes with several threads.
+TEST_P(ShippedSceneLong, ResumesWithOtherThreadCountsToTheSameBits) {
     const auto make = [] { return read_scene(kRoot / "scenes" / (std::string(GetParam().name) + ".json")).setup; };
     std::vector<std::byte> saved;
     Simulation whole(make());
@@ -172,7 +174,7 @@ std::string shipped_name(const ::testing::TestParamInfo<ShippedScene>& info) {
 INSTANTIATE_TEST_SUITE_P(Of, GoldenShippedScene, ::testing::ValuesIn(kShippedScenes), shipped_name);
 INSTANTIATE_TEST_SUITE_P(Of, ShippedSceneLong, ::testing::ValuesIn(kShippedScenes), shipped_name);
 
-/// Random scenes, eight to a test.
+/// Random scenes, eight in each test.
 class GoldenRandomScenes : public ::testing::TestWithParam<int> {};
 
 TEST_P(GoldenRandomScenes, EndInTheSameBits) {
@@ -186,7 +188,7 @@ TEST_P(GoldenRandomScenes, EndInTheSameBits) {
 
 INSTANTIATE_TEST_SUITE_P(Of, GoldenRandomScenes, ::testing::Range(0, kRandomScenes / 8));
 
-/// Some of the random scenes, with Embree held to one instruction set.
+/// Some of the random scenes, with Embree limited to one instruction set.
 class GoldenInstructionSet : public ::testing::TestWithParam<const char*> {
 protected:
     void TearDown() override { set_embree_config(""); }

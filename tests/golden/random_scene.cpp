@@ -10,8 +10,8 @@
 namespace ricochet::golden {
 namespace RICOCHET_FILE {
 
-/// Random numbers whose bits the C++ standard fixes; distributions of the standard library would differ. An expression
-/// draws once at most: compilers evaluate operands and arguments in different orders.
+/// Random numbers whose bits the C++ standard fixes. Distributions of the standard library would differ between
+/// systems. An expression draws at most once, because compilers evaluate operands and arguments in different orders.
 class Numbers {
 public:
     explicit Numbers(int seed) : engine_(static_cast<std::uint64_t>(seed) + 1) {}
@@ -121,7 +121,7 @@ std::string material(const std::string& name, Numbers& numbers) {
     return out + "}";
 }
 
-/// Materials that draw random numbers go with the exact response only.
+/// Returns the materials. Materials that draw random numbers work with the exact response only.
 std::string materials(int number, Numbers& numbers) {
     const std::string body = material("body", numbers);
     const std::string wall = material("wall", numbers);
@@ -140,7 +140,7 @@ std::string placement(Numbers& numbers) {
     return out + R"(, "degrees": )" + text(numbers.between(0.0, 180.0)) + "}";
 }
 
-/// A closed room and, in its lower half, a body or two of different kinds.
+/// Returns a closed room with one or two bodies of different kinds in its lower half.
 std::string colliders(int number, Numbers& numbers) {
     std::string out = R"("colliders": [)";
     out += R"({"name": "room", "type": "mesh", "file": "../meshes/box.obj", "scale": [3, 3.2, 4], "material": "wall"})";
@@ -148,7 +148,7 @@ std::string colliders(int number, Numbers& numbers) {
            text(numbers.between(-0.1, 0.1)) + R"(, 0.05, 1], "material": "body"})";
     constexpr std::array kMeshes{"rock_1", "rock_3", "torus_knot", "gear", "rock_5"};
     const auto n = static_cast<std::size_t>(number);
-    const bool is_small = number % 8 == 5;  // the global rollback costs the square of what the others do
+    const bool is_small = number % 8 == 5;  // the global rollback costs the square of the other responses
     if (number % 3 == 0 && !is_small) {
         out += R"(, {"name": "mesh", "type": "mesh", "file": "../meshes/)" + std::string(kMeshes[n / 3 % 5]) +
                R"(.obj", "scale": 0.4, "material": "noisy", )" + placement(numbers) + "}";

@@ -4,10 +4,10 @@
 
 namespace ricochet::golden {
 
-/// A shipped scene and how much of it is run.
+/// Shipped scene and the simulated part of it.
 struct ShippedScene {
     const char* name;
-    const char* duration;  ///< s; empty: all of it
+    const char* duration;  ///< in s; empty for the whole scene
 };
 
 inline constexpr ShippedScene kShippedScenes[] = {

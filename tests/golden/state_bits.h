@@ -1,5 +1,4 @@
-/// \file
-/// Adds the contact records of a run to a hash of its bits.
+/// \file Function that adds the contact records of a run to a hash.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Scenes whose frames are bodies that particles push.
+// Scenes with frames that are rigid bodies moved by particles.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -23,7 +23,7 @@ std::string scene_of(const std::string& body, const std::string& collider = "", 
            R"("body": {)" + body + "}}}" + more + "}";
 }
 
-TEST(BodyScene, MassCentreAndInertiaAreThoseOfTheColliders) {
+TEST(BodyScene, MassCentreAndInertiaComeFromTheColliders) {
     for (const char* mass : {R"("density": 3)", R"("mass": 3)"}) {
         const SceneDescription scene = parse_scene(scene_of(mass), "s.json");
         ASSERT_EQ(scene.setup.bodies.size(), 1U);
@@ -37,7 +37,7 @@ TEST(BodyScene, MassCentreAndInertiaAreThoseOfTheColliders) {
     }
 }
 
-TEST(BodyScene, GivenNumbersComeFirst) {
+TEST(BodyScene, GivenNumbersTakePrecedence) {
     const SceneDescription scene = parse_scene(
         scene_of(R"("mass": 2, "center": [0, 0, 1], "inertia": [3, 4, 5], "inertia_products": [0.1, 0.2, 0.3],
                     "joint": "hinge", "axis": [0, 2, 0], "rate": 1.5, "spring": 7, "spring_rest": 0.5, "damping": 0.2,
@@ -59,7 +59,7 @@ TEST(BodyScene, GivenNumbersComeFirst) {
     EXPECT_FALSE(body.feels_forces);
 }
 
-TEST(BodyScene, SaysWhatCannotBeABody) {
+TEST(BodyScene, InvalidBodiesAreRefused) {
     EXPECT_EQ(errors_of(scene_of(R"("joint": "free")")),
               (Lines{"frames.wheel.body: found neither \"mass\" nor \"density\", expected one of them"}));
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "density": 1)")),
@@ -74,14 +74,14 @@ TEST(BodyScene, SaysWhatCannotBeABody) {
               (Lines{"frames.wheel.body.velocity: a body on a joint starts with its \"rate\""}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1)", "", R"("motions": [{"type": "spin", "axis": [0, 0, 1], "rate": 1}], )")),
-        (Lines{"frames.wheel.motions: a body moves by what acts on it, in the world; expected no such key"}));
+        (Lines{"frames.wheel.motions: forces and impulses move a body in the world; expected no such key"}));
     EXPECT_EQ(
         errors_of(scene_of(R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1], "inertia_products": [2, 0, 0])")),
         (Lines{"frames.wheel.body: body 'wheel': the inertia is impossible for a body with a volume (moments above "
                "0, none above the sum of the others, consistent products)"}));
 }
 
-TEST(BodyScene, RefusesAMotorThatHasNoForceAndNamesOnlyTheValueThatIsWrong) {
+TEST(BodyScene, MotorWithoutForceIsRefusedAndOnlyTheWrongValueIsNamed) {
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "joint": "hinge", "motor_rate": 2)")),
               (Lines{"frames.wheel.body.motor_rate: only goes together with the key \"motor_most\""}));
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1, "inertia_products": [0, 0, 0])")),
@@ -90,8 +90,8 @@ TEST(BodyScene, RefusesAMotorThatHasNoForceAndNamesOnlyTheValueThatIsWrong) {
               (Lines{"frames.wheel.body.mass: found 0, expected a number > 0 (kg)"}));
 }
 
-// What lies in two colliders would count twice.
-TEST(BodyScene, WarnsOfCollidersThatOverlapWhereTheirVolumeCounts) {
+// A volume inside two colliders would count twice.
+TEST(BodyScene, OverlappingCollidersGiveAWarningIfTheirVolumeCounts) {
     const auto boxes = [](double apart, const char* more) {
         const std::string box = R"({"type": "box", "size": [1, 1, 1], "frame": "wheel", "name": )";
         return parse_scene(
@@ -106,13 +106,13 @@ TEST(BodyScene, WarnsOfCollidersThatOverlapWhereTheirVolumeCounts) {
     ASSERT_EQ(overlapping.size(), 1U);
     EXPECT_NE(overlapping[0].find("frames.wheel.body: the colliders \"a\" and \"b\" overlap"), std::string::npos)
         << overlapping[0];
-    // Given numbers count no volume.
+    // With given numbers the volume is not used.
     const std::string given = R"("mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1])";
     const std::string ball = R"({"type": "sphere", "radius": 1, "frame": "wheel", "name": )";
     EXPECT_EQ(parse_scene(scene_of(given, ball + R"("a"}, )" + ball + R"("b"})"), "s.json").warnings, Lines{});
 }
 
-/// Two cubes of one mesh, the second moved along x.
+/// Returns two cubes in one mesh, the second moved along x.
 std::string two_cubes(double apart) {
     const std::string faces =
         "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
@@ -127,7 +127,7 @@ std::string two_cubes(double apart) {
     return text;
 }
 
-TEST(BodyScene, WarnsOfAMeshThatCrossesItselfWhereItsVolumeCounts) {
+TEST(BodyScene, SelfIntersectingMeshGivesAWarningIfItsVolumeCounts) {
     const test::TemporaryFolder folder;
     const auto warnings = [&](double apart) {
         static_cast<void>(folder.write("cubes.obj", two_cubes(apart)));
@@ -141,7 +141,7 @@ TEST(BodyScene, WarnsOfAMeshThatCrossesItselfWhereItsVolumeCounts) {
         << crossing[0];
 }
 
-TEST(BodyScene, GoesWithAnEmptyListOfSprings) {
+TEST(BodyScene, BodyIsAllowedWithAnEmptyListOfSprings) {
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "", R"(, "springs": [], "particle_forces": [])")), Lines{});
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
                                  R"(, "springs": [{"type": "rope", "from": [0, 0, 9], "to": [1, 0, 9], "nodes": 3,
@@ -150,7 +150,7 @@ TEST(BodyScene, GoesWithAnEmptyListOfSprings) {
                      "scene without the one or the other"}));
 }
 
-TEST(BodyScene, SaysWhatCannotBeTogetherWithOne) {
+TEST(BodyScene, IncompatibleFeaturesAreRefused) {
     EXPECT_EQ(errors_of(scene_of(R"("mass": 1)", "", "",
                                  R"(, "emitters": [{"type": "point", "frame": "wheel", "rate": 5}])")),
               (Lines{"emitters[0].frame: impulses of particles move this body, and where it will be within a step is "

@@ -1,4 +1,4 @@
-// The key "cloud" of emitters: what it says, and what is refused, in one line each.
+// The key "cloud" of emitters: its effect, and one-line errors for invalid values.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ std::string error_of(const std::string& text) {
     return "";
 }
 
-TEST(CloudScene, ItsKeysSetTheRuleAndTheShapeOfThePlaces) {
+TEST(CloudScene, KeysSetTheRuleAndTheShapeOfThePositions) {
     const auto scene = parse_scene(scene_with(R"("on": "birth", "count": 5, "cloud": {"type": "sphere", "radius": 0.5,
         "surface": true, "turning": [0, 0, 3], "pull": 80, "damping": 6, "parent_ends": "die"})"),
                                    "s.json");
@@ -48,12 +48,12 @@ TEST(CloudScene, ItsKeysSetTheRuleAndTheShapeOfThePlaces) {
     EXPECT_TRUE(std::get<SphereShape>(emitter.shape).surface);
 }
 
-TEST(CloudScene, ImpactsOfAParentThatGoesOnDoNotShareItOut) {
+TEST(CloudScene, ImpactsOfALivingParentDoNotShareIt) {
     const auto scene = parse_scene(scene_with(R"("on": "impact", "cloud": {"type": "point"})"), "s.json");
     EXPECT_FALSE(scene.setup.emitters[1].parent->share);
 }
 
-TEST(CloudScene, WhatCannotBeIsRefusedInOneLine) {
+TEST(CloudScene, InvalidCloudsAreRefusedInOneLine) {
     const std::string on = R"("on": "birth", )";
     const std::string point = on + R"("cloud": {"type": "point"})";
     const std::vector<std::pair<std::string, std::string>> wrongs = {
@@ -63,7 +63,7 @@ TEST(CloudScene, WhatCannotBeIsRefusedInOneLine) {
         {scene_with(on + R"("cloud": {"type": "point", "parent_ends": "stay"})"), R"(expected one of "free", "die")"},
         {scene_with(on + R"("cloud": true)"), "expected an object"},
         {scene_with(R"("on": "death", "cloud": {"type": "point"})"), "a parent that has ended leads no cloud"},
-        {scene_with(on + R"("inherit_velocity": 0.5, "cloud": {"type": "point"})"), "has all of its velocity"},
+        {scene_with(on + R"("inherit_velocity": 0.5, "cloud": {"type": "point"})"), "all of their parent's velocity"},
         {scene_with(on + R"("frame": "f", "cloud": {"type": "point"})"), R"(or a "cloud")"},
         {scene_with(on + R"("cloud": {"type": "point", "turning": [0, 0, 2000]})"), "take a shorter time step"},
         {scene_with(point, "", R"(, "response": "penalty")"), R"(the response "penalty")"},
@@ -79,7 +79,7 @@ TEST(CloudScene, WhatCannotBeIsRefusedInOneLine) {
     }
 }
 
-TEST(CloudScene, FramesSayWithWhomEachParticleGoes) {
+TEST(CloudScene, FramesStoreTheParentOfEachParticle) {
     Simulation simulation(
         parse_scene(scene_with(R"("on": "birth", "count": 2, "cloud": {"type": "point"})"), "s.json").setup);
     simulation.step();

@@ -56,8 +56,8 @@ ColliderDescription mesh_collider(const std::string& name, TriangleMesh mesh, co
     return {name, std::move(shape), 0};
 }
 
-// Points and small balls, of different masses, in a mirrored and turned box with a rough ball in it, above a plane
-// that the box's floor is cut by; nothing rubs, and every rebound loses a little.
+// Points and small balls of different masses in a mirrored and rotated box. The box contains a rough ball, and a plane
+// cuts its floor. There is no friction, and every rebound loses a little energy.
 SimulationSetup gas(int count) {
     SimulationSetup setup = logged_setup(0.02, 0.5);
     setup.materials[0].restitution = 0.95;
@@ -80,7 +80,7 @@ SimulationSetup gas(int count) {
     return setup;
 }
 
-// Steps to the end with a frame every `every` steps.
+// Runs to the end with a frame every `every` steps.
 void run_into(const std::filesystem::path& folder, SimulationSetup setup, std::uint64_t every = 4) {
     Simulation simulation(std::move(setup));
     RunWriter writer(folder, {}, simulation, {});
@@ -115,7 +115,7 @@ std::size_t count_of(const std::string& text, std::string_view word) {
     return count;
 }
 
-TEST(ContactLog, ADropIsLoggedAsItsClosedFormSays) {
+TEST(ContactLog, DropIsLoggedAsInItsClosedForm) {
     const TemporaryFolder folder;
     SimulationSetup setup = logged_setup(1.0, 1.0);
     setup.forces.push_back(make_gravity({0, 0, -10}));
@@ -143,8 +143,8 @@ TEST(ContactLog, ADropIsLoggedAsItsClosedFormSays) {
     EXPECT_EQ(column<double>(file, "radius")[0], 0.25);
 }
 
-// The second sphere stands; 0.3 m between the surfaces take 0.15 s. Then it falls back to the wall.
-TEST(ContactLog, NamesBothSpheresWhereTheyMeet) {
+// The second sphere is at rest. The gap of 0.3 m takes 0.15 s. Then it falls back to the wall.
+TEST(ContactLog, CollisionNamesBothSpheres) {
     const TemporaryFolder folder;
     SimulationSetup setup = logged_setup(1.0, 1.0);
     setup.options.particle_contacts.emplace();
@@ -172,7 +172,7 @@ TEST(ContactLog, NamesBothSpheresWhereTheyMeet) {
     EXPECT_EQ(find_array(contact_files(without).begin()->second.point_arrays, "other"), nullptr);
 }
 
-TEST(ContactLog, HasTheVelocityOfSurfacesWhereMaterialsMove) {
+TEST(ContactLog, SurfaceVelocityIsLoggedForMovingMaterials) {
     const TemporaryFolder folder;
     SimulationSetup setup = logged_setup(0.5, 1.0);
     setup.materials[0].friction = 0.1;
@@ -188,7 +188,7 @@ TEST(ContactLog, HasTheVelocityOfSurfacesWhereMaterialsMove) {
     EXPECT_LE(length(velocities[0] - Vec3(1 - 6, 2 + 4, 0)), 1e-13);
 }
 
-TEST(ContactLog, EveryFileHasAllColumnsAlsoWhenThereWasNoImpact) {
+TEST(ContactLog, EveryFileHasAllColumnsEvenWithoutImpacts) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(std::max(50, scaled(200))));
     const auto files = contact_files(folder);
@@ -211,7 +211,7 @@ TEST(ContactLog, EveryFileHasAllColumnsAlsoWhenThereWasNoImpact) {
     EXPECT_EQ(count_of(folder.read(kContactSeriesFile), "<DataSet"), files.size());
 }
 
-TEST(ContactLog, RowsAreInTheOrderOfTimeThenParticleAndEachBelongsToItsFile) {
+TEST(ContactLog, RowsAreSortedByTimeThenParticleAndBelongToTheirFile) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(scaled(2000)));
     double from = 0.0;
@@ -228,7 +228,7 @@ TEST(ContactLog, RowsAreInTheOrderOfTimeThenParticleAndEachBelongsToItsFile) {
     }
 }
 
-// Frictionless, and nothing ever rests: the totals per triangle hold impacts only.
+// There is no friction and nothing ever rests, so the totals per triangle contain impacts only.
 TEST(ContactLog, ImpulsesAndHitsAddUpToTheTotalsOfEveryTriangle) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(scaled(2000)));
@@ -264,7 +264,7 @@ TEST(ContactLog, ImpulsesAndHitsAddUpToTheTotalsOfEveryTriangle) {
     EXPECT_GE(hits_of_all, scaled(2000));
 }
 
-TEST(ContactLog, TheBarycentricCoordinatesLeadToThePointInTheCollidersFile) {
+TEST(ContactLog, BarycentricCoordinatesGiveThePointInTheCollidersFile) {
     const TemporaryFolder folder;
     run_into(folder.path(""), gas(scaled(2000)));
     const std::vector<VtkPolyData> colliders = {read_vtp(folder.path(collider_file_name(0, "box"))),
@@ -291,8 +291,8 @@ TEST(ContactLog, TheBarycentricCoordinatesLeadToThePointInTheCollidersFile) {
     EXPECT_GT(checked, static_cast<std::size_t>(scaled(1000)));
 }
 
-// The corner of a box turns a particle around: three reflections of one time, whose velocities join.
-TEST(ContactLog, AnImpactInACornerHasARowForEachReflection) {
+// The corner of a box reverses a particle: three reflections at one time, with consecutive velocities.
+TEST(ContactLog, ImpactInACornerHasARowForEachReflection) {
     const TemporaryFolder folder;
     SimulationSetup setup = logged_setup(1.0, 1.0);
     for (int axis = 0; axis < 3; ++axis) {
@@ -317,8 +317,8 @@ TEST(ContactLog, AnImpactInACornerHasARowForEachReflection) {
     EXPECT_TRUE(times[0] == times[1] && times[1] == times[2]);
 }
 
-// Both walls push at once; none of their impulses may be missing.
-TEST(ContactLog, ASharpWedgeLosesNoImpulse) {
+// Both walls give impulses at once, and none of them may be missing.
+TEST(ContactLog, SharpWedgeLosesNoImpulse) {
     SimulationSetup setup = logged_setup(1.0, 1.0);
     setup.colliders.push_back({"low", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0});
     setup.colliders.push_back({"high", PlaneShape{{0, 0, 0}, {0.5, 0, -1}}, 0});  // 27 degrees above the low one
@@ -370,7 +370,7 @@ std::map<std::string, std::string> contact_bytes(const TemporaryFolder& folder) 
     return bytes;
 }
 
-TEST(ContactLog, GivesTheSameBytesForAnyNumberOfThreads) {
+TEST(ContactLog, BytesDoNotDependOnTheNumberOfThreads) {
     std::map<std::string, std::string> reference;
     for (const int threads : {1, 2, 7}) {
         const TemporaryFolder folder;
@@ -383,7 +383,7 @@ TEST(ContactLog, GivesTheSameBytesForAnyNumberOfThreads) {
     }
 }
 
-TEST(ContactLog, WritesOutBetweenFramesWhenItsMemoryIsFullAndLosesNothing) {
+TEST(ContactLog, FullMemoryIsWrittenBetweenFramesWithoutLoss) {
     const TemporaryFolder small;
     const TemporaryFolder large;
     for (const TemporaryFolder* folder : {&small, &large}) {
@@ -410,7 +410,7 @@ TEST(ContactLog, WritesOutBetweenFramesWhenItsMemoryIsFullAndLosesNothing) {
     EXPECT_EQ(count_of(small.read(kContactSeriesFile), "<DataSet"), parts.size());
 }
 
-TEST(ContactLog, ARunThatIsCutOffLeavesCompleteFilesThatAreListed) {
+TEST(ContactLog, InterruptedRunLeavesCompleteListedFiles) {
     const TemporaryFolder folder;
     {
         Simulation simulation(gas(scaled(500)));
@@ -429,7 +429,7 @@ TEST(ContactLog, ARunThatIsCutOffLeavesCompleteFilesThatAreListed) {
     }
 }
 
-TEST(ContactLog, IsOnlyWrittenOnRequestAndRefusesToLeaveStepsOut) {
+TEST(ContactLog, LogIsWrittenOnRequestOnlyAndRefusesToSkipSteps) {
     const TemporaryFolder folder;
     SimulationSetup quiet = gas(10);
     quiet.options.record_contacts = false;

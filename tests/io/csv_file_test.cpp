@@ -46,7 +46,7 @@ TEST(CsvFile, NumbersReadBackAsTheSameDoubles) {
     }
 }
 
-TEST(CsvFile, FieldsAreQuotedWhereTheyNeedIt) {
+TEST(CsvFile, FieldsAreQuotedIfNecessary) {
     EXPECT_EQ(csv_field("plain name"), "plain name");
     EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
     EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
@@ -58,7 +58,7 @@ TEST(CsvFile, FieldsAreQuotedWhereTheyNeedIt) {
     file.add(std::uint8_t{7});
     file.add(std::int64_t{-1});
     file.end_row();
-    EXPECT_FALSE(std::filesystem::exists(folder.path("a.csv")));  // not before it is whole
+    EXPECT_FALSE(std::filesystem::exists(folder.path("a.csv")));  // not before it is complete
     file.commit();
     EXPECT_EQ(folder.read("a.csv"), "a,b,c,d,e\n\"x,y\",,,7,-1\n");
 }

@@ -12,7 +12,7 @@ namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
-// A curve of a JSON text, and what is said about it.
+// A curve from a JSON text, and its errors.
 struct Read {
     KeyedCurve<double> curve;
     Lines errors;
@@ -25,7 +25,7 @@ Read read(const std::string& text) {
     return {std::move(curve), diagnostics.errors()};
 }
 
-TEST(CurveKeys, ReadsWhatTheKeysSay) {
+TEST(CurveKeys, KeysSetTheCurve) {
     const Read spline = read(R"({"interpolation": "spline", "ends": "repeat",
                                  "keys": [{"time": 0, "value": 1}, {"time": 2, "value": 3}]})");
     EXPECT_EQ(spline.errors, Lines{});
@@ -47,7 +47,7 @@ TEST(CurveKeys, ReadsVectors) {
     EXPECT_EQ(curve.value(1.0), Vec3(1, 2, 3));
 }
 
-TEST(CurveKeys, RefusesWithThePathOfTheKey) {
+TEST(CurveKeys, ErrorsHaveThePathOfTheKey) {
     const Read backward = read(R"({"keys": [{"time": 1, "value": 1}, {"time": 1, "value": 3}]})");
     ASSERT_EQ(backward.errors.size(), 1U);
     EXPECT_NE(

@@ -1,4 +1,4 @@
-// Meshes that deform, from scene files: a numbered series, keys, a point cache.
+// Deforming meshes in scene files: a numbered series, keys, and a point cache.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -87,7 +87,7 @@ TEST_F(DeformationScene, ReadsANumberedSeries) {
     EXPECT_EQ(motion->positions(2)[1], Vec3(1, 0, 3));
 }
 
-TEST_F(DeformationScene, ClosesARoundThatRepeats) {
+TEST_F(DeformationScene, RepeatingSeriesIsClosed) {
     const auto motion = motion_of(R"({"type": "series", "files": "flag_*.obj", "frame_rate": 10, "ends": "repeat"})");
     ASSERT_NE(motion, nullptr);
     EXPECT_EQ(motion->key_count(), 4U);
@@ -106,13 +106,13 @@ TEST_F(DeformationScene, ReadsKeysAndCaches) {
     EXPECT_EQ(cache->positions(2)[2], Vec3(0, 1, 2));
 }
 
-// The run's fingerprint covers every file.
-TEST_F(DeformationScene, NamesAllFilesAmongThoseOfTheScene) {
+// The fingerprint of a run covers every file.
+TEST_F(DeformationScene, AllFilesBelongToTheScene) {
     EXPECT_EQ(load(R"({"type": "series", "files": "flag_*.obj"})").files.size(), 3U);
     EXPECT_EQ(load(R"({"type": "cache", "file": "flag.pc2"})").files.size(), 2U);
 }
 
-TEST_F(DeformationScene, SaysWhatIsWrongWithASeries) {
+TEST_F(DeformationScene, ErrorsOfASeriesAreNamed) {
     const std::string at = "colliders[0].deformation.files: ";
     EXPECT_EQ(errors_of(R"({"type": "series", "files": "flug_*.obj"})"),
               (Lines{at + "flug_*.obj: found 0 numbered files, expected at least 2"}));
@@ -135,7 +135,7 @@ TEST_F(DeformationScene, SaysWhatIsWrongWithASeries) {
               (Lines{at + "flag_11.obj: found 4 vertices, expected the 3 vertices of flag_08.obj"}));
 }
 
-TEST_F(DeformationScene, SaysWhichOfTheKeysIsWrong) {
+TEST_F(DeformationScene, ErrorNamesTheWrongKey) {
     const std::string at = "colliders[0].deformation.keys";
     const auto keys = [&](const std::string& second, const std::string& scene = "") {
         const std::string first = R"({"type": "keys", "keys": [{"time": 1, "file": "flag_08.obj"}, )";
@@ -152,7 +152,7 @@ TEST_F(DeformationScene, SaysWhichOfTheKeysIsWrong) {
     const Lines unreadable = keys(R"({"time": 2, "file": "bad.obj"})");
     ASSERT_EQ(unreadable.size(), 1U);
     EXPECT_TRUE(unreadable[0].starts_with(at + "[1].file: bad.obj:2: vertex coordinate is 'x'")) << unreadable[0];
-    // What is wrong elsewhere hides nothing, and what is missing is told once.
+    // Errors elsewhere do not hide these errors, and a missing value is reported once.
     EXPECT_EQ(keys(R"({"time": 0, "file": "flag_09.obj"})", R"(, "simulation": {"duration": -1})").size(), 2U);
     EXPECT_EQ(keys(R"({"file": "flag_09.obj"})").size(), 1U);
     EXPECT_EQ(keys(R"({"time": 2})").size(), 1U);
@@ -160,7 +160,7 @@ TEST_F(DeformationScene, SaysWhichOfTheKeysIsWrong) {
               (Lines{at + ": found a list of 1, expected a list [...] of objects, at least 2"}));
 }
 
-TEST_F(DeformationScene, SaysWhereInTheFileThatIs) {
+TEST_F(DeformationScene, ErrorHasItsLineAndColumn) {
     const std::string text = R"({"ricochet": 1, "colliders": [{"type": "mesh", "file": "flag_08.obj",
       "deformation": {"type": "keys", "keys": [
         {"time": 1, "file": "flag_08.obj"},
@@ -175,7 +175,7 @@ TEST_F(DeformationScene, SaysWhereInTheFileThatIs) {
     }
 }
 
-TEST_F(DeformationScene, SaysWhatIsWrongWithCachesAndWithTheMeshThatDeforms) {
+TEST_F(DeformationScene, ErrorsOfCachesAndOfTheDeformingMeshAreNamed) {
     const std::string at = "colliders[0].deformation.file: ";
     static_cast<void>(folder_.write("flag.pc2", cache_of(4, 3)));
     EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
@@ -186,14 +186,14 @@ TEST_F(DeformationScene, SaysWhatIsWrongWithCachesAndWithTheMeshThatDeforms) {
     static_cast<void>(folder_.write("flag.pc2", cache_of(3, 1)));
     EXPECT_EQ(errors_of(R"({"type": "cache", "file": "flag.pc2"})"),
               (Lines{at + "flag.pc2: found 1 sample, expected at least 2"}));
-    // Without the collider's own mesh nothing is to be said of the others.
+    // Without the collider's own mesh the others cannot be checked.
     static_cast<void>(folder_.write("flag_08.obj", "v 0 0\n"));
     const Lines errors = errors_of(R"({"type": "series", "files": "flag_*.obj"})");
     ASSERT_EQ(errors.size(), 1U);
     EXPECT_TRUE(errors[0].starts_with("colliders[0].file: flag_08.obj:1: ")) << errors[0];
 }
 
-TEST_F(DeformationScene, RefusesWhatDoesNotGoTogether) {
+TEST_F(DeformationScene, IncompatibleFeaturesAreRefused) {
     const std::string series = R"({"type": "series", "files": "flag_*.obj"})";
     EXPECT_EQ(errors_of(series, R"(, "motion": [{"time": 0}])"),
               (Lines{"colliders[0].motion: a mesh that deforms stands in the world, expected none"}));

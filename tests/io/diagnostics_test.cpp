@@ -20,11 +20,11 @@ TEST(EditDistance, CountsSingleEdits) {
     EXPECT_EQ(edit_distance("rate", "rote"), 1U);
     EXPECT_EQ(edit_distance("rate", "rtae"), 1U);
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-    // Optimal string alignment: no edit inside a swapped pair.
+    // In an optimal string alignment no edit is made inside a swapped pair.
     EXPECT_EQ(edit_distance("ca", "abc"), 3U);
 }
 
-// The recursive definition, without a table.
+// Returns the distance by its recursive definition, without a table.
 std::size_t distance_by_definition(std::string_view a, std::string_view b) {
     if (a.empty() || b.empty()) return a.size() + b.size();
     const std::string_view a_rest = a.substr(1);
@@ -59,12 +59,12 @@ TEST(NearestNames, FindsTheNearestOneOnly) {
     EXPECT_EQ(nearest_names("rame", {"name", "rate", "mass"}), (Names{"name", "rate"}));
 }
 
-TEST(NearestNames, LooksPastSpellingHabits) {
+TEST(NearestNames, SpellingConventionsAreIgnored) {
     EXPECT_EQ(nearest_names("TimeStep", {"time_step"}), (Names{"time_step"}));
     EXPECT_EQ(nearest_names("field-of-view", {"field_of_view"}), (Names{"field_of_view"}));
 }
 
-TEST(NearestNames, StaysSilentWhenNothingIsNear) {
+TEST(NearestNames, NoNameIsSuggestedIfNoneIsNear) {
     EXPECT_TRUE(nearest_names("wind", {"gravity", "drag"}).empty());
     EXPECT_TRUE(nearest_names("x", {"type", "file"}).empty());
     EXPECT_TRUE(nearest_names(std::string(1000000, 'a'), {"a"}).empty());

@@ -41,14 +41,14 @@ TEST(JsonParser, KeepsEveryKindOfValue) {
     EXPECT_TRUE(items[7].object()->empty());
 }
 
-TEST(JsonParser, AWholeNumberMayBeWrittenWithAFractionOrExponent) {
+TEST(JsonParser, WholeNumberMayHaveAFractionOrExponent) {
     EXPECT_EQ(parsed("2.0").whole_number(), 2U);
     EXPECT_EQ(parsed("1e6").whole_number(), 1000000U);
     EXPECT_FALSE(parsed("1.5").whole_number());
     EXPECT_FALSE(parsed("1e20").whole_number());
 }
 
-TEST(JsonParser, KnowsWhereEveryKeyAndValueStands) {
+TEST(JsonParser, LocationOfEveryKeyAndValueIsKnown) {
     const JsonNode root =
         parsed("// one, [two\n{\"a\": /* \"x\": 3 */ [1,\n  \"b,\\\"]\", -2.5e3],\n \"\xC3\xA4\": {\"c\" :true}}");
     EXPECT_EQ(location_of(root), "2:1");
@@ -64,9 +64,9 @@ TEST(JsonParser, KnowsWhereEveryKeyAndValueStands) {
     EXPECT_EQ(location_of(*root.find("\xC3\xA4")->find("c")), "4:13");
 }
 
-TEST(JsonParser, AByteOrderMarkIsAllowed) { EXPECT_EQ(location_of(parsed("\xEF\xBB\xBF[1]").array()->at(0)), "1:2"); }
+TEST(JsonParser, ByteOrderMarkIsAllowed) { EXPECT_EQ(location_of(parsed("\xEF\xBB\xBF[1]").array()->at(0)), "1:2"); }
 
-TEST(JsonParser, RefusesWhatIsNotTextInUtf8) {
+TEST(JsonParser, RefusesEverythingButUtf8Text) {
     using namespace std::string_view_literals;
     const std::string utf16 = "f:1:1: is UTF-16 or binary, expected text in UTF-8: save the file as UTF-8";
     EXPECT_EQ(only_error("\xFF\xFE{\0}\0"sv), utf16);
@@ -76,7 +76,7 @@ TEST(JsonParser, RefusesWhatIsNotTextInUtf8) {
     EXPECT_EQ(only_error("[1, 2]\0"sv), "f:1:7: found a NUL byte, expected text only");
 }
 
-TEST(JsonParser, SaysWhichCommaIsMissingOrTooMany) {
+TEST(JsonParser, ErrorNamesTheMissingOrExtraComma) {
     const auto error = [](const char* text) { return only_error(text); };
     EXPECT_EQ(error("{\"a\": 1\n \"b\": 2}"), "f:2:2: not valid JSON: a comma is missing before \"b\"");
     EXPECT_EQ(error("{\"a\": {} // one, two\n \"b\": 2}"), "f:2:2: not valid JSON: a comma is missing before \"b\"");
@@ -88,7 +88,7 @@ TEST(JsonParser, SaysWhichCommaIsMissingOrTooMany) {
     EXPECT_EQ(error("[1, /* , */\n]"), "f:1:3: not valid JSON: take the last comma before ']' away");
 }
 
-TEST(JsonParser, SaysWhatElseIsWrongInItsOwnWords) {
+TEST(JsonParser, OtherErrorsKeepTheLibrarysMessage) {
     for (const char* text : {"[1] 2", "{,}", "[1, 2", "{\"a\": tru \"b\": 1}", "{\"a\"b\": 1}", "[,]", "[1:2]"}) {
         EXPECT_NE(only_error(text).find("syntax error while parsing"), std::string::npos) << only_error(text);
     }
@@ -115,12 +115,12 @@ TEST(JsonParser, MessagesAreOneLineOfPrintableText) {
     EXPECT_LT(only_error("[\"" + std::string(100000, 'x')).size(), 400U);
 }
 
-TEST(JsonParser, AKeyThatAppearsTwiceIsNamedWithItsLocationAndPath) {
+TEST(JsonParser, DuplicateKeyIsNamedWithItsLocationAndPath) {
     EXPECT_EQ(only_error("{\"a\": [0, {\"b\": 1,\n  \"c\": 2, \"b\": 3}]}"),
               "f:2:11: a[1].b: the key appears twice in one object, keep one");
 }
 
-TEST(JsonParser, RefusesDeepNestingWithoutFollowingIt) {
+TEST(JsonParser, DeepNestingIsRefusedWithoutRecursion) {
     EXPECT_EQ(only_error(std::string(64, '[') + std::string(64, ']')), "not one error but 0");
     EXPECT_EQ(only_error(std::string(65, '[') + std::string(65, ']')),
               "f:1:65: nested deeper than 64 levels, no scene needs that");
@@ -130,7 +130,7 @@ TEST(JsonParser, RefusesDeepNestingWithoutFollowingIt) {
     EXPECT_NE(only_error(objects).find("nested deeper"), std::string::npos);
 }
 
-TEST(JsonParser, BoundsTheNumberOfValues) {
+TEST(JsonParser, NumberOfValuesIsBounded) {
     std::string text = "[";
     for (std::size_t i = 0; i < kMostValues; ++i) text += "0,";
     EXPECT_NE(only_error(text + "0]").find("more than 4000000 values"), std::string::npos);

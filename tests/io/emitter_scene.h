@@ -1,5 +1,5 @@
 /// \file
-/// A scene that uses every key of attributes, colours and sizes, rates and children.
+/// A scene with every key of attributes, colours and sizes, rates and children.
 #pragma once
 
 namespace ricochet::test {

@@ -26,7 +26,7 @@ std::string scene_with(std::string_view old_text, std::string_view new_text) {
     return scene.replace(at, old_text.size(), new_text);
 }
 
-// All errors in one text, each from its path on.
+// Returns all errors in one text, each beginning with its path.
 std::string errors_of(const SampleFolder& folder, const std::string& text) {
     try {
         (void)parse_scene(text, folder.path("s.json"));
@@ -157,14 +157,14 @@ TEST(EmitterScene, WrongValuesAreNamedByTheirPath) {
     }
 }
 
-TEST(EmitterScene, AnOpenMeshHasNoVolumeToEmitFrom) {
+TEST(EmitterScene, OpenMeshHasNoVolumeToEmitFrom) {
     const SampleFolder folder;
     (void)folder.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_NE(errors_of(folder, scene_with("rock.obj", "open.obj")).find("emitters[1].file: the mesh is not closed"),
               std::string::npos);
 }
 
-TEST(EmitterScene, FramesAndTablesCarryTheAttributes) {
+TEST(EmitterScene, FramesAndTablesContainTheAttributes) {
     const SampleFolder folder;
     Simulation simulation(parse_scene(kEmitterScene, folder.path("s.json")).setup);
     while (!simulation.finished()) simulation.step();
@@ -191,13 +191,13 @@ TEST(EmitterScene, FramesAndTablesCarryTheAttributes) {
     std::vector<AttributeDescription> declared(shown.columns().begin(), shown.columns().begin() + 3);
     const detail::ParticleTable table = detail::parse_particle_table(state, "state.csv", declared);
     EXPECT_TRUE(table.errors.empty()) << table.errors[0];
-    ASSERT_EQ(table.attributes.size(), 6U);  // those for colour and size are declared by the table
+    ASSERT_EQ(table.attributes.size(), 6U);  // the table declares those for colour and size
     ASSERT_EQ(table.particles.size(), simulation.particles().size());
     EXPECT_EQ(table.particles[0].attributes[1], (Vec3{7, 8, 9}));
     EXPECT_EQ(table.particles[0].attributes[0].x, 450.0);
 }
 
-TEST(EmitterScene, ColumnsThatNobodyDeclaredAndValuesBeyondTheRangeAreRefused) {
+TEST(EmitterScene, UndeclaredColumnsAndValuesOutOfRangeAreRefused) {
     const auto errors = [](const char* text) {
         const detail::ParticleTable table =
             detail::parse_particle_table(text, "t.csv", {{"heat", 1, {}}, {"wind", 3, {}}});

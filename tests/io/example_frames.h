@@ -13,7 +13,7 @@
 
 namespace ricochet::test {
 
-/// Particles with all attributes different, their entries not in the order of their ids.
+/// Returns particles with distinct attributes. Their entries are not sorted by id.
 inline Particles example_particles(std::uint64_t count) {
     Particles particles;
     RandomSequence random(11, 0, 0);
@@ -33,7 +33,7 @@ inline Particles example_particles(std::uint64_t count) {
     return particles;
 }
 
-/// Rows of the contact log with rising times.
+/// Returns rows of the contact log with increasing times.
 inline ContactColumns example_contacts(std::size_t rows) {
     ContactColumns columns;
     columns.resize(rows);
@@ -54,7 +54,7 @@ inline ContactColumns example_contacts(std::size_t rows) {
     return columns;
 }
 
-/// A tetrahedron.
+/// Returns a tetrahedron.
 inline TriangleMesh example_mesh() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
 }

@@ -1,4 +1,4 @@
-// Writes a small series, as a run does, for readers that are not ours: example_run FOLDER.
+// Writes a small series for third-party readers, in the same way as a run: example_run FOLDER.
 #include <cstdint>
 #include <string>
 #include <vector>

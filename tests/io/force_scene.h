@@ -1,5 +1,5 @@
 /// \file
-/// A scene with every force and flow of the format, for tests that spoil it.
+/// A scene with every force and flow of the format. Tests modify it to provoke errors.
 #pragma once
 
 #include "support/temporary_folder.h"

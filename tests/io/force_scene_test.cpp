@@ -31,7 +31,7 @@ FlowPointer storm() {
         0.5);
 }
 
-TEST(ForceScene, MakesEveryForceAsItsKeysSay) {
+TEST(ForceScene, KeysMakeEveryForce) {
     const ForceSceneFolder folder;
     const SceneDescription scene = parse_scene(kForceScene, folder.path("s.json"));
     EXPECT_EQ(scene.warnings, Lines{});
@@ -59,7 +59,7 @@ TEST(ForceScene, MakesEveryForceAsItsKeysSay) {
     }
 }
 
-TEST(ForceScene, AnAnchorHoldsTheParticlesThatItNames) {
+TEST(ForceScene, AnchorHoldsTheParticlesThatItNames) {
     SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
         "forces": [{"type": "anchor", "position": [0, 0, 0], "stiffness": 3, "particles": [1, 2]}],
         "particles": [{"position": [1, 0, 0]}, {"position": [1, 0, 0]}, {"position": [1, 0, 0]}]})",
@@ -72,7 +72,7 @@ TEST(ForceScene, AnAnchorHoldsTheParticlesThatItNames) {
     EXPECT_EQ(particles.position[2], particles.position[1]);
 }
 
-// All errors of a scene with these members, without the file's name.
+// Returns all errors of a scene with these members, without the file's name.
 Lines errors_of(const std::string& members) {
     const ForceSceneFolder folder;
     try {
@@ -89,7 +89,7 @@ Lines errors_of(const std::string& members) {
     }
 }
 
-TEST(ForceScene, NamesWrongValuesByTheirPath) {
+TEST(ForceScene, WrongValuesAreNamedByTheirPath) {
     EXPECT_EQ(errors_of(R"("forces": [{"type": "drag", "coefficient": 1, "flow": {"type": "sum", "parts": [
                   {"type": "vortex", "axis": [0, 0, 0], "circulation": 1, "core_radius": 0}]}}])"),
               (Lines{"forces[0].flow.parts[0].axis: found a vector of no length, expected [x, y, z], not all zero",
@@ -108,14 +108,14 @@ TEST(ForceScene, NamesWrongValuesByTheirPath) {
               (Lines{"forces[0].attractors[0].strength: missing, expected a number (m^3/s^2)"}));
 }
 
-TEST(ForceScene, NamesAFlowWhereNoneBelongs) {
+TEST(ForceScene, FlowInAForceWithoutOneIsNamed) {
     EXPECT_EQ(errors_of(R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81],
                              "flow": {"type": "uniform", "velocity": [1, 0, 0]}}])"),
               (Lines{"forces[0].flow: not a key of type \"gravity\", it belongs to \"drag\", \"quadratic_drag\", "
                      "\"stokes_drag\", \"schiller_naumann_drag\", \"field\""}));
 }
 
-TEST(ForceScene, NamesFlowsThatAreNotThere) {
+TEST(ForceScene, MissingFlowsAreNamed) {
     EXPECT_EQ(errors_of(R"("flows": {"breeze": {"type": "uniform", "velocity": [1, 0, 0]}},
                            "forces": [{"type": "drag", "coefficient": 1, "flow": "breze"}])"),
               (Lines{"forces[0].flow: there is no flow \"breze\"; did you mean \"breeze\"?"}));
@@ -123,7 +123,7 @@ TEST(ForceScene, NamesFlowsThatAreNotThere) {
               (Lines{"forces[0].flow: there is no flow \"wind\", the scene has none"}));
 }
 
-TEST(ForceScene, SaysWhatIsWrongWithAGridsFile) {
+TEST(ForceScene, ErrorsOfAGridsFileAreNamed) {
     const Lines missing = errors_of(R"("forces": [{"type": "field", "flow": {"type": "grid", "file": "winds.vti"}}])");
     ASSERT_EQ(missing.size(), 1U);
     EXPECT_EQ(missing[0].find("forces[0].flow.file: there is no file "), 0U) << missing[0];
@@ -134,7 +134,7 @@ TEST(ForceScene, SaysWhatIsWrongWithAGridsFile) {
     EXPECT_NE(unnamed[0].find("no array \"u\" in <PointData>"), std::string::npos) << unnamed[0];
 }
 
-TEST(ForceScene, TheExamplesOfTheDocumentAreRead) {
+TEST(ForceScene, ExamplesOfTheDocumentAreValid) {
     const ForceSceneFolder folder;
     std::ifstream page(RICOCHET_SOURCE_DIR "/docs/forces.md");
     std::string forces;
@@ -162,7 +162,7 @@ TEST(ForceScene, TheExamplesOfTheDocumentAreRead) {
     }
 }
 
-TEST(ForceScene, WarnsOfForcesThatNeedARadiusInASceneOfPoints) {
+TEST(ForceScene, ForcesThatNeedARadiusGiveAWarningForPoints) {
     const auto warnings = [](const char* radius) {
         return parse_scene(std::string(R"({"ricochet": 1, "forces": [{"type": "stokes_drag"}],
                                            "particles": [{"position": [0, 0, 0], "radius": )") +
@@ -175,7 +175,7 @@ TEST(ForceScene, WarnsOfForcesThatNeedARadiusInASceneOfPoints) {
     EXPECT_NE(warnings("0")[0].find("forces[0].type: "), std::string::npos);
 }
 
-TEST(ForceScene, WarnsOfIdsThatNoParticleHas) {
+TEST(ForceScene, IdsThatNoParticleHasGiveAWarning) {
     const auto warnings = [](const std::string& list, const std::string& ids, const std::string& more) {
         const std::string own = list == "forces" ? R"("acceleration": [0, 0, -1], )" : "";
         const std::string particles = R"("particles": [{"position": [0, 0, 0]}, {"position": [1, 0, 0]}])";

@@ -1,5 +1,5 @@
 /// \file
-/// A scene with every key of frames and curves, for tests that spoil it.
+/// A scene with every key of frames and curves. Tests modify it to provoke errors.
 #pragma once
 
 namespace ricochet::test {

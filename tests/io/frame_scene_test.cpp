@@ -14,7 +14,7 @@ namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
-// What is wrong with a scene, as path and sentence; the scene is the sample with one text replaced by another.
+// Returns the error of a scene as path and sentence. The scene is the sample with one text replaced by another.
 std::string error_of(const std::string& text, const std::string& replacement) {
     std::string scene = test::kFrameScene;
     const std::size_t at = scene.find(text);
@@ -30,7 +30,7 @@ std::string error_of(const std::string& text, const std::string& replacement) {
     return "";
 }
 
-TEST(FrameScene, MakesFramesAndLaunchesAsTheirKeysSay) {
+TEST(FrameScene, KeysMakeFramesAndLaunches) {
     const SceneDescription scene = parse_scene(test::kFrameScene, "s.json");
     EXPECT_EQ(scene.warnings, Lines{});
     ASSERT_EQ(scene.setup.emitters.size(), 1U);
@@ -49,7 +49,7 @@ TEST(FrameScene, MakesFramesAndLaunchesAsTheirKeysSay) {
     }
 }
 
-TEST(FrameScene, MakesMotionsWithoutKeys) {
+TEST(FrameScene, MotionsWithoutKeysAreMade) {
     const SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
         "frames": {"f": {"motions": [{"type": "spin", "axis": [0, 1, 0], "rate": 90},
             {"type": "swing", "axis": [1, 0, 0], "amplitude": 30, "frequency": 0.5, "phase": 20},
@@ -70,7 +70,7 @@ TEST(FrameScene, MakesMotionsWithoutKeys) {
     }
 }
 
-TEST(FrameScene, SaysWhatIsWrongAndWhere) {
+TEST(FrameScene, ErrorsNameTheFaultAndItsPath) {
     EXPECT_EQ(error_of(R"("parent": "arm")", R"("parent": "amr")"),
               "frames.hand.parent: there is no frame \"amr\"; did you mean \"arm\"?");
     EXPECT_EQ(error_of(R"("arm": {)", R"("arm": {"parent": "hand", )"),

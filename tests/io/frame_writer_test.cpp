@@ -27,7 +27,7 @@ using Mode = WriterThread::Mode;
 
 constexpr Mode kModes[] = {Mode::background, Mode::synchronous};
 
-TEST(WriterThread, DoesItsJobsInTheOrderTheyAreGiven) {
+TEST(WriterThread, JobsRunInTheOrderOfSubmission) {
     for (const Mode mode : kModes) {
         std::vector<int> done;
         WriterThread thread(mode);
@@ -39,7 +39,7 @@ TEST(WriterThread, DoesItsJobsInTheOrderTheyAreGiven) {
     }
 }
 
-TEST(WriterThread, DoesThemOnOneThreadThatIsNotTheCallersUnlessItIsTold) {
+TEST(WriterThread, JobsRunOnOneOtherThreadUnlessSynchronous) {
     for (const Mode mode : kModes) {
         std::vector<std::thread::id> threads;
         WriterThread thread(mode);
@@ -50,7 +50,7 @@ TEST(WriterThread, DoesThemOnOneThreadThatIsNotTheCallersUnlessItIsTold) {
     }
 }
 
-TEST(WriterThread, HoldsNoMoreThanTwoJobsAtATime) {
+TEST(WriterThread, AtMostTwoJobsAreInFlight) {
     constexpr int kInFlight = static_cast<int>(WriterThread::kMostInFlight);
     std::atomic<int> done = 0;
     WriterThread thread;
@@ -67,7 +67,7 @@ TEST(WriterThread, HoldsNoMoreThanTwoJobsAtATime) {
     EXPECT_EQ(done.load(), 300);
 }
 
-TEST(WriterThread, AJobIsGoneBeforeThereIsRoomForTheNext) {
+TEST(WriterThread, JobIsDestroyedBeforeTheNextIsAccepted) {
     const auto memory = std::make_shared<int>(0);
     WriterThread thread;
     for (int i = 0; i < 100; ++i) {
@@ -79,7 +79,7 @@ TEST(WriterThread, AJobIsGoneBeforeThereIsRoomForTheNext) {
     EXPECT_EQ(*memory, 100);
 }
 
-TEST(WriterThread, AfterAnErrorEveryCallThrowsItAndNothingMoreIsDone) {
+TEST(WriterThread, EveryCallAfterAnErrorThrowsItAndRunsNothing) {
     std::atomic<int> done = 0;
     WriterThread thread;
     thread.submit([] { throw std::runtime_error("no space"); });
@@ -91,7 +91,7 @@ TEST(WriterThread, AfterAnErrorEveryCallThrowsItAndNothingMoreIsDone) {
     EXPECT_EQ(done.load(), 0);
 }
 
-TEST(WriterThread, AJobThatWaitsBehindAnErrorIsNotDone) {
+TEST(WriterThread, JobBehindAnErrorDoesNotRun) {
     for (int repeat = 0; repeat < 50; ++repeat) {
         std::atomic<bool> go = false;
         std::atomic<int> done = 0;
@@ -107,14 +107,14 @@ TEST(WriterThread, AJobThatWaitsBehindAnErrorIsNotDone) {
     }
 }
 
-TEST(WriterThread, TheSynchronousOneThrowsAtOnceAndFromThenOn) {
+TEST(WriterThread, SynchronousWriterThrowsAtOnceAndFromThenOn) {
     WriterThread thread(Mode::synchronous);
     EXPECT_THROW(thread.submit([] { throw std::runtime_error("no space"); }), std::runtime_error);
     EXPECT_THROW(thread.check(), std::runtime_error);
     EXPECT_THROW(thread.submit([] {}), std::runtime_error);
 }
 
-TEST(WriterThread, GoesWithoutWaitingForJobsThatHaveNotBegun) {
+TEST(WriterThread, DestructorDoesNotWaitForJobsThatHaveNotBegun) {
     std::atomic<bool> go = false;
     std::atomic<int> done = 0;
     {
@@ -126,7 +126,7 @@ TEST(WriterThread, GoesWithoutWaitingForJobsThatHaveNotBegun) {
         thread.check();
         go = true;
     }
-    EXPECT_LE(done.load(), 1);  // done, or given up before it began
+    EXPECT_LE(done.load(), 1);  // done, or dropped before it began
 }
 
 }  // namespace RICOCHET_FILE
@@ -144,7 +144,7 @@ std::size_t listed_frames(const TemporaryFolder& folder) {
     return count;
 }
 
-TEST(FrameWriter, WritesEveryFrameAndListsItWithItsTime) {
+TEST(FrameWriter, EveryFrameIsWrittenAndListedWithItsTime) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(""));
     for (std::uint64_t step = 0; step < 10; ++step) writer.submit(3 * step, frame_at(0.1 * static_cast<double>(step)));
@@ -156,7 +156,7 @@ TEST(FrameWriter, WritesEveryFrameAndListsItWithItsTime) {
     }
 }
 
-TEST(FrameWriter, ARunThatEndsWithoutFinishingLeavesOnlyCompleteFilesThatAreListed) {
+TEST(FrameWriter, UnfinishedRunLeavesOnlyCompleteListedFiles) {
     const TemporaryFolder folder;
     {
         FrameWriter writer(folder.path(""));
@@ -175,7 +175,7 @@ TEST(FrameWriter, ARunThatEndsWithoutFinishingLeavesOnlyCompleteFilesThatAreList
     EXPECT_EQ(listed_frames(folder), frames);
 }
 
-TEST(FrameWriter, LongSeriesAreListedInFullAtTheEnd) {
+TEST(FrameWriter, LongSeriesAreListedCompletelyAtTheEnd) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(""));
     for (std::uint64_t step = 0; step < 1100; ++step) writer.submit(step, particle_frame(Particles{}, 0.0));
@@ -183,7 +183,7 @@ TEST(FrameWriter, LongSeriesAreListedInFullAtTheEnd) {
     EXPECT_EQ(listed_frames(folder), 1100U);
 }
 
-TEST(FrameWriter, AnErrorInTheBackgroundComesOutInTheRun) {
+TEST(FrameWriter, BackgroundErrorIsThrownInTheRun) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path("missing"));
     writer.submit(0, frame_at(0.0));
@@ -196,7 +196,7 @@ TEST(FrameWriter, AnErrorInTheBackgroundComesOutInTheRun) {
         RunError);
 }
 
-TEST(FrameWriter, AFilledFrameIsTheSameWhateverItsMemoryHeldBefore) {
+TEST(FrameWriter, ReusedMemoryDoesNotChangeAFrame) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(""));
     for (const std::uint64_t count : {50U, 3U, 0U, 80U}) {
@@ -207,7 +207,7 @@ TEST(FrameWriter, AFilledFrameIsTheSameWhateverItsMemoryHeldBefore) {
         (void)write_vtp(folder.path("filled.vtp"), frame);
         (void)write_vtp(folder.path("new.vtp"), particle_frame(particles, none, 0.5, count == 3));
         EXPECT_EQ(folder.read("filled.vtp"), folder.read("new.vtp")) << count;
-        if (count > 0) frame.lines.assign(2, {0, 0});  // none of this may come back in a later one
+        if (count > 0) frame.lines.assign(2, {0, 0});  // none of this may appear in a later frame
         frame.fields = {{"mark", {1.0}}};
         frame.cell_arrays = {{"cell", std::vector<double>(frame.cell_count())}};
         writer.submit(count, std::move(frame));
@@ -215,7 +215,7 @@ TEST(FrameWriter, AFilledFrameIsTheSameWhateverItsMemoryHeldBefore) {
     }
 }
 
-TEST(FrameWriter, UsesTheMemoryOfFramesThatAreWritten) {
+TEST(FrameWriter, MemoryOfWrittenFramesIsReused) {
     const TemporaryFolder folder;
     FrameWriter writer(folder.path(""));
     VtkPolyData frame = writer.blank_frame();
@@ -228,7 +228,7 @@ TEST(FrameWriter, UsesTheMemoryOfFramesThatAreWritten) {
     EXPECT_EQ(frame.points.data(), memory);
 }
 
-TEST(FrameWriter, SeriesThatShareAThreadAreBothCompleteAndShareItsErrors) {
+TEST(FrameWriter, SeriesOnOneThreadAreBothCompleteAndShareItsErrors) {
     const TemporaryFolder folder;
     const auto thread = std::make_shared<WriterThread>();
     FrameWriter frames(folder.path(""), kParticleSeries, {}, thread);
@@ -246,7 +246,7 @@ TEST(FrameWriter, SeriesThatShareAThreadAreBothCompleteAndShareItsErrors) {
     EXPECT_THROW(frames.check(), RunError);
 }
 
-TEST(FrameWriter, ASeriesMayGoBeforeTheThreadThatStillWritesIt) {
+TEST(FrameWriter, SeriesMayBeDestroyedBeforeTheThreadThatWritesIt) {
     const TemporaryFolder folder;
     const auto thread = std::make_shared<WriterThread>();
     for (std::uint64_t step = 0; step < 20; ++step) {

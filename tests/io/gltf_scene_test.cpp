@@ -1,4 +1,4 @@
-// Meshes of glTF files in scenes: which way is up, materials by name, and the same run as with any other format.
+// Meshes of glTF files in scenes: the up axis, materials by name, and runs with the same bits as with other formats.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// The cube of gltf_cube() as an OBJ file: vertices in the order in which its triangles name them.
+/// Returns the cube of gltf_cube() as an OBJ file. The vertices are in the order of their use by the triangles.
 std::string obj_cube() {
     std::string vertices;
     std::string faces;
@@ -40,7 +40,7 @@ std::string obj_cube() {
     return vertices + faces;
 }
 
-/// Spheres that fall on the mesh of a file.
+/// Returns a scene of spheres that fall on the mesh of a file.
 std::string scene_of(const std::string& file, const std::string& more = "", const std::string& materials = "") {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1.5},
   "forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
@@ -68,7 +68,7 @@ const TriangleMesh& mesh_of(const SceneDescription& scene) {
     return *std::get<MeshShape>(scene.setup.colliders[0].shape).mesh;
 }
 
-TEST(GltfScene, RunsToTheBitsOfTheSameCubeInAnObjFile) {
+TEST(GltfScene, RunHasTheBitsOfTheSameCubeInAnObjFile) {
     const test::TemporaryFolder folder;
     (void)folder.write("cube.glb", test::glb_of(test::gltf_cube()));
     (void)folder.write("cube.obj", obj_cube());
@@ -83,7 +83,7 @@ TEST(GltfScene, RunsToTheBitsOfTheSameCubeInAnObjFile) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(GltfScene, StandsUprightUnlessTheSceneSaysWhichAxisIsUp) {
+TEST(GltfScene, MeshIsUprightUnlessTheSceneNamesTheUpAxis) {
     const test::TemporaryFolder folder;
     (void)folder.write("cube.glb", test::glb_of(test::gltf_cube()));
     const SceneDescription plain = read(folder, scene_of("cube.glb"));
@@ -103,7 +103,7 @@ TEST(GltfScene, StandsUprightUnlessTheSceneSaysWhichAxisIsUp) {
     }
 }
 
-TEST(GltfScene, TurnsMeshesOfOtherFormatsOnlyWhereItIsAsked) {
+TEST(GltfScene, MeshesOfOtherFormatsAreRotatedOnRequestOnly) {
     const test::TemporaryFolder folder;
     (void)folder.write("t.obj", "v 1 2 3\nv 5 2 3\nv 1 7 3\nf 1 2 3\n");
     EXPECT_EQ(mesh_of(read(folder, scene_of("t.obj"))).vertices[0], Vec3(1, 2, 3));
@@ -121,7 +121,7 @@ TEST(GltfScene, TurnsMeshesOfOtherFormatsOnlyWhereItIsAsked) {
     })) << errors.front();
 }
 
-TEST(GltfScene, TurnsTheKeysOfAMeshThatDeformsToo) {
+TEST(GltfScene, KeysOfADeformingMeshAreRotatedToo) {
     const test::TemporaryFolder folder;
     (void)folder.write("t_1.obj", "v 1 2 3\nv 5 2 3\nv 1 7 3\nf 1 2 3\n");
     (void)folder.write("t_2.obj", "v 1 2 4\nv 5 2 4\nv 1 7 4\nf 1 2 3\n");
@@ -131,7 +131,7 @@ TEST(GltfScene, TurnsTheKeysOfAMeshThatDeformsToo) {
     EXPECT_EQ(motion.positions(1)[0], Vec3(1, -4, 2));
 }
 
-TEST(GltfScene, GivesMaterialsToTheNamesOfMaterialsMeshesAndNodes) {
+TEST(GltfScene, NamesOfMaterialsMeshesAndNodesSelectMaterials) {
     const test::TemporaryFolder folder;
     test::GltfFile file = test::gltf_cube();
     auto& primitives = file.document["meshes"][0]["primitives"];
@@ -149,8 +149,8 @@ TEST(GltfScene, GivesMaterialsToTheNamesOfMaterialsMeshesAndNodes) {
     }
 }
 
-// JSON says them in both files by the same escapes.
-TEST(GltfScene, GivesMaterialsToNamesWithControlCharacters) {
+// JSON writes these names with the same escapes in both files.
+TEST(GltfScene, NamesWithControlCharactersSelectMaterials) {
     const test::TemporaryFolder folder;
     test::GltfFile file = test::gltf_cube();
     const std::string name = R"("steel\u0007\u0000\u007f\n\"\u00e9\"")";
@@ -163,7 +163,7 @@ TEST(GltfScene, GivesMaterialsToNamesWithControlCharacters) {
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     const auto& materials = std::get<MeshShape>(scene.setup.colliders[0].shape).triangle_materials;
     EXPECT_EQ(std::count(materials.begin(), materials.end(), 1U), 12);
-    // One that is not there is told without obeying it, and the material's own name stays plain.
+    // A missing name is printed escaped, and the material's own name is plain.
     const test::Lines errors = errors_in(
         folder, scene_of("cube.gltf", R"(, "group_materials": {"\u0007": "ice", "crate": "i\u0007ce"})", ice));
     ASSERT_EQ(errors.size(), 2U);
@@ -171,7 +171,7 @@ TEST(GltfScene, GivesMaterialsToNamesWithControlCharacters) {
     EXPECT_NE(errors[1].find("\"i\\x07ce\" contains a control character"), std::string::npos) << errors[1];
 }
 
-TEST(GltfScene, CountsTheFilesOfItsBuffersAmongItsOwn) {
+TEST(GltfScene, FilesOfBuffersBelongToTheScene) {
     const test::TemporaryFolder folder;
     test::GltfFile file = test::gltf_cube();
     (void)folder.write("cube.gltf", test::gltf_text(file, "cube.bin"));
@@ -184,7 +184,7 @@ TEST(GltfScene, CountsTheFilesOfItsBuffersAmongItsOwn) {
     EXPECT_NE(read(folder, scene_of("cube.gltf")).fingerprint, scene.fingerprint);
 }
 
-TEST(GltfScene, EmitsFromAMeshOfAGltfFileAndMakesClothOfIt) {
+TEST(GltfScene, GltfMeshIsUsableForEmittersAndCloth) {
     const test::TemporaryFolder folder;
     (void)folder.write("cube.glb", test::glb_of(test::gltf_cube()));
     const std::string scene = R"({"ricochet": 1, "simulation": {"time_step": 1e-6, "duration": 1e-6},

@@ -1,5 +1,5 @@
 /// \file
-/// A scene with all that changes temperatures.
+/// A scene with all keys that change temperatures.
 #pragma once
 
 namespace ricochet::test {

@@ -1,4 +1,4 @@
-// What a scene says of heat: what each key makes, and what is refused with a line.
+// Heat in scenes: the effect of each key, and one-line errors for invalid values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,14 +17,14 @@ using test::errors_of;
 using test::kHeatScene;
 using test::Lines;
 
-/// A scene of one ball with this heat and more members.
+/// Returns a scene of one ball with this heat and further members.
 std::string scene_with(const std::string& heat, const std::string& more = "",
                        const std::string& attributes = R"("temperature": {})") {
     return R"({"ricochet": 1, "attributes": {)" + attributes + R"(}, "heat": {)" + heat + "}, " + more +
            R"("particles": [{"position": [0, 0, 1], "radius": 0.01}]})";
 }
 
-TEST(HeatScene, SetsWhatItsKeysSay) {
+TEST(HeatScene, KeysSetTheHeat) {
     const SimulationSetup setup = parse_scene(kHeatScene, "s.json").setup;
     ASSERT_TRUE(setup.heat.has_value());
     EXPECT_EQ(setup.heat->specific_heat, 460.0);
@@ -43,7 +43,7 @@ TEST(HeatScene, SetsWhatItsKeysSay) {
     EXPECT_EQ(convection.flow->velocity({}, 0.0), (Vec3{1, 0, 0}));
 }
 
-TEST(HeatScene, RunsAndTakesAFlowByItsName) {
+TEST(HeatScene, SceneRunsAndFindsAFlowByItsName) {
     SceneDescription scene = parse_scene(scene_with(R"("specific_heat": 460, "convection": {"flow": "breeze"})",
                                                     R"("flows": {"breeze": {"type": "uniform", "velocity": [1, 0, 0]}},
                       "simulation": {"time_step": 0.1, "duration": 1},)",
@@ -58,7 +58,7 @@ TEST(HeatScene, RunsAndTakesAFlowByItsName) {
     EXPECT_NEAR(simulation.particles().attributes.value(0, 0).x, 293.15 + 106.85 * std::exp(-rate), 1e-10);
 }
 
-TEST(HeatScene, IsRefusedInOneLineWhereItCannotWork) {
+TEST(HeatScene, InvalidHeatIsRefusedInOneLine) {
     const std::string radiates = R"("specific_heat": 460, "emissivity": 1)";
     EXPECT_EQ(errors_of(scene_with(R"("emissivity": 1)")),
               (Lines{"heat.specific_heat: missing, expected a number >= 0.001 and <= 1000000000000 (J/(kg K))"}));
@@ -81,7 +81,7 @@ TEST(HeatScene, IsRefusedInOneLineWhereItCannotWork) {
                      "which `heat` has, go by a particle's surface"}));
 }
 
-TEST(HeatScene, IsRefusedWhereNobodyKnowsWhatSurfacesTake) {
+TEST(HeatScene, HeatIsRefusedIfTheSurfacesShareIsUnknown) {
     const std::string rubs = R"("specific_heat": 460, "friction_fraction": 1)";
     const auto refusal = [&](const std::string& more) {
         const Lines lines = errors_of(scene_with(rubs, more));
@@ -96,7 +96,7 @@ TEST(HeatScene, IsRefusedWhereNobodyKnowsWhatSurfacesTake) {
               std::string::npos);
 }
 
-TEST(HeatScene, LiftsByTemperatureWhereTheAttributeIsDeclared) {
+TEST(HeatScene, BuoyancyUsesADeclaredTemperature) {
     const std::string forces =
         R"("forces": [{"type": "thermal_buoyancy", "ambient_temperature": 250, "gravity": [0, 0, -10]}], )";
     const auto scene = [&](const std::string& attributes, const std::string& more = "") {

@@ -1,6 +1,6 @@
 /// \file
-/// A validator for the part of JSON Schema (draft 2020-12) that the scene schema uses. A keyword it does not know is a
-/// failure of its own, so that nothing is passed over.
+/// A validator for the part of JSON Schema (draft 2020-12) that the scene schema uses. An unknown keyword is an error,
+/// so that no keyword is ignored.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace ricochet::test {
 
-/// What of the value the schema does not allow, as "/path: keyword"; empty when it conforms.
+/// Returns the violations of the schema as "/path: keyword"; empty if the value conforms.
 /// Throws std::logic_error at an unknown keyword.
 [[nodiscard]] std::vector<std::string> schema_errors(const nlohmann::json& schema, const nlohmann::json& value);
 

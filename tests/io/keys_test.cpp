@@ -72,7 +72,7 @@ Sample read(const std::string& text) {
     return ObjectView(node, sample_spec(), "").read<Sample>();
 }
 
-/// Calls visit(path, key) for every key of an object and of the objects in it, each kind of object once.
+/// Calls visit(path, key) for every key of an object and of its nested objects. Each type of object is visited once.
 template <class Visit>
 void visit_keys(const ObjectSpec& spec, const std::string& path, std::set<const ObjectSpec*>& seen,
                 const Visit& visit) {
@@ -92,7 +92,7 @@ TEST(Keys, EveryLengthOfASceneIsAtMostTheLargestCoordinate) {
     std::set<const ObjectSpec*> seen;
     int lengths = 0;
     visit_keys(scene_spec(), "scene", seen, [&](const std::string& path, const KeySpec& key) {
-        // What is made of other keys has no range of its own.
+        // Keys of object type have no range of their own.
         if (key.unit != "m" || key.type == ValueType::object) return;
         ++lengths;
         EXPECT_LE(key.range.upper, kLargestCoordinate) << path;
@@ -101,7 +101,7 @@ TEST(Keys, EveryLengthOfASceneIsAtMostTheLargestCoordinate) {
     EXPECT_GT(lengths, 40);
 }
 
-TEST(Keys, TakeTypeAndDefaultFromTheMember) {
+TEST(Keys, TypeAndDefaultComeFromTheMember) {
     EXPECT_EQ(key("number").type, ValueType::number);
     EXPECT_EQ(key("number").default_value, "1e-9");
     EXPECT_EQ(key("endless").default_value, "");
@@ -125,7 +125,7 @@ TEST(Keys, TakeTypeAndDefaultFromTheMember) {
     EXPECT_EQ(key("weight").default_value, "2.5");
 }
 
-TEST(Keys, SetTheirMembersAndLeaveTheOthers) {
+TEST(Keys, KeysSetTheirMembersAndNoOthers) {
     const Sample all = read(R"({"number": 2, "count": 3, "flag": false, "word": "b", "vector": [4, 5, 6], "scale": 2,
         "pair": [1, 0.5], "maybe": 8, "color": "red", "part": {"weight": 9}, "parts": [{"weight": 1}, {}],
         "ids": [4, 2]})");
@@ -148,11 +148,11 @@ TEST(Keys, SetTheirMembersAndLeaveTheOthers) {
     EXPECT_EQ(none.maybe, std::nullopt);
 }
 
-TEST(Keys, ReachMembersOfMembersByAFunction) { EXPECT_EQ(read(R"({"weight": 3})").part.weight, 3.0); }
+TEST(Keys, FunctionReachesNestedMembers) { EXPECT_EQ(read(R"({"weight": 3})").part.weight, 3.0); }
 
-TEST(Keys, AValueThatWasRefusedCountsAsAbsent) { EXPECT_EQ(read(R"({"number": null, "count": 3})").number, 1e-9); }
+TEST(Keys, RefusedValueCountsAsAbsent) { EXPECT_EQ(read(R"({"number": null, "count": 3})").number, 1e-9); }
 
-TEST(Keys, AStructOfAnotherTableCannotBeRead) {
+TEST(Keys, StructOfAnotherTableCannotBeRead) {
     const JsonNode node = parse_json_value("{}", {}).value();
     EXPECT_THROW((void)ObjectView(node, sample_spec(), "").read<Part>(), std::logic_error);
 }

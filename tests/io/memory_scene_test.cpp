@@ -1,4 +1,5 @@
-// Scenes that ask for more memory than there is are refused by the key that asks, before anything of that size is made.
+// Scenes that request more memory than there is are refused before allocation. The error names the key that requests
+// it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -49,7 +50,7 @@ TEST(MemoryOfScenes, RopesChainsAndSheetsAreRefusedByTheirNumbers) {
         "springs[0].cells_u: with its 81018001 particles");
 }
 
-TEST(MemoryOfScenes, BodiesThatFitOneByOneAreRefusedWhereTheyDoNotFitTogether) {
+TEST(MemoryOfScenes, BodiesThatFitAloneAreRefusedIfTheyDoNotFitTogether) {
     const std::string rope = std::string(kRope) + "120000}";
     EXPECT_EQ(refusal_of("\"springs\": [" + rope + "]"), "it was taken");
     expect_refused("\"springs\": [" + rope + ", " + rope + "]", "springs[1].nodes: with its 120000 particles");
@@ -74,7 +75,7 @@ TEST(MemoryOfScenes, EmittersAreRefusedByTheirBurstOrTheirRate) {
         "it was taken");
 }
 
-/// A file of that many zero bytes, which takes no room on the disk.
+/// Makes a sparse file of this many zero bytes, which takes no space on the disk.
 void make_hollow(const std::filesystem::path& path, std::uintmax_t bytes) { std::filesystem::resize_file(path, bytes); }
 
 TEST(MemoryOfScenes, FilesLargerThanTheMemoryAreNotRead) {
@@ -92,7 +93,7 @@ TEST(MemoryOfScenes, FilesLargerThanTheMemoryAreNotRead) {
                    "flows.grid.file: " + path + "big.vti: asks for about 5 GB");
 }
 
-TEST(MemoryOfScenes, ATableIsRefusedByItsLines) {
+TEST(MemoryOfScenes, TableIsRefusedByItsLines) {
     const TemporaryFolder folder;
     std::string table = "x,y,z\n";
     for (int k = 0; k < 2'000'000; ++k) table += "0,0,0\n";
@@ -100,9 +101,9 @@ TEST(MemoryOfScenes, ATableIsRefusedByItsLines) {
     expect_refused(R"("particles": {"file": ")" + path + "\"}", "many.csv: 2000001 lines: asks for about ");
 }
 
-TEST(MemoryOfScenes, AGridIsRefusedByItsPoints) {
+TEST(MemoryOfScenes, GridIsRefusedByItsPoints) {
     const TemporaryFolder folder;
-    // 3 300 000 points, for which there are bytes enough in the file.
+    // A grid of 3 300 000 points. The file has enough bytes for them.
     std::string grid = R"(<VTKFile type="ImageData"><ImageData WholeExtent="0 329 0 99 0 99">
 <Piece Extent="0 329 0 99 0 99"><PointData><DataArray type="Float32" Name="v" NumberOfComponents="3" format="ascii">)";
     grid.append(4'000'000, ' ');
@@ -112,7 +113,7 @@ TEST(MemoryOfScenes, AGridIsRefusedByItsPoints) {
                    "grid.vti: asks for about 238 MB");
 }
 
-TEST(MemoryOfScenes, ABurstBeyondMostParticlesIsWarnedOf) {
+TEST(MemoryOfScenes, BurstBeyondMostParticlesGivesAWarning) {
     const auto scene = parse_scene(
         R"({"ricochet": 1, "emitters": [{"type": "point", "burst": 11}], "simulation": {"most_particles": 10}})",
         "s.json");
@@ -122,7 +123,7 @@ TEST(MemoryOfScenes, ABurstBeyondMostParticlesIsWarnedOf) {
               "not born");
 }
 
-TEST(MemoryOfScenes, TheEstimateIsPartOfTheScene) {
+TEST(MemoryOfScenes, EstimateIsPartOfTheScene) {
     const auto bytes_of = [](const std::string& burst) {
         return parse_scene(R"({"ricochet": 1, "emitters": [{"type": "point", "burst": )" + burst + "}]}", "s.json")
             .memory_bytes;

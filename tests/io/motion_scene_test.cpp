@@ -1,4 +1,4 @@
-// Scenes whose particles are carried by a flow.
+// Scenes with particles in a flow.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -20,7 +20,7 @@ std::string scene_of(const std::string& simulation, const std::string& more = ""
            simulation + "}" + more + "}";
 }
 
-TEST(MotionScene, AFlowByNameOrInlineCarriesTheParticles) {
+TEST(MotionScene, FlowByNameOrInlineMovesTheParticles) {
     for (const char* flow : {R"("stream")", R"({"type": "uniform", "velocity": [1, 2, 3]})"}) {
         const SceneDescription scene =
             parse_scene(scene_of(std::string(R"("motion": "flow", "flow": )") + flow), "s.json");
@@ -28,7 +28,7 @@ TEST(MotionScene, AFlowByNameOrInlineCarriesTheParticles) {
         ASSERT_NE(options.flow, nullptr);
         EXPECT_EQ(options.flow->velocity({}, 0.0), Vec3(1, 2, 3));
         EXPECT_EQ(options.walls, WallRule::slide);
-        EXPECT_EQ(options.integrator.kind, IntegratorKind::rk4);  // where none is named
+        EXPECT_EQ(options.integrator.kind, IntegratorKind::rk4);  // the default
         EXPECT_NO_THROW(Simulation(parse_scene(scene_of(R"("motion": "flow", "flow": "stream")"), "s.json").setup));
     }
     const SceneDescription stop = parse_scene(
@@ -37,7 +37,7 @@ TEST(MotionScene, AFlowByNameOrInlineCarriesTheParticles) {
     EXPECT_EQ(stop.setup.options.integrator.kind, IntegratorKind::midpoint);
 }
 
-TEST(MotionScene, ForcesMoveTheParticlesUnlessToldOtherwise) {
+TEST(MotionScene, ForcesMoveTheParticlesByDefault) {
     for (const char* simulation : {"", R"("motion": "forces")"}) {
         const SceneDescription scene = parse_scene(scene_of(simulation), "s.json");
         EXPECT_EQ(scene.setup.options.flow, nullptr);
@@ -45,7 +45,7 @@ TEST(MotionScene, ForcesMoveTheParticlesUnlessToldOtherwise) {
     }
 }
 
-TEST(MotionScene, SaysWhatDoesNotGoWithAFlow) {
+TEST(MotionScene, FeaturesIncompatibleWithAFlowAreRefused) {
     const std::string carried = R"("motion": "flow", "flow": "stream")";
     EXPECT_EQ(errors_of(scene_of(R"("motion": "flow")")),
               (Lines{"simulation.flow: missing, expected the flow that carries the particles"}));
@@ -69,7 +69,7 @@ TEST(MotionScene, SaysWhatDoesNotGoWithAFlow) {
               (Lines{"simulation.flow: only goes together with \"motion\": \"flow\""}));
 }
 
-TEST(MotionScene, WarnsOfWallsThatCannotSwallowOrShatterWhatAFlowCarries) {
+TEST(MotionScene, WallsThatCannotAbsorbOrShatterParticlesInAFlowGiveAWarning) {
     const std::string parents = R"("emitters": [{"name": "a", "type": "point", "center": [0, 0, 1], "burst": 1},)";
     const std::string walls = R"(, "materials": {"sink": {"absorption": 0.5}}, "colliders": [{"type": "plane",
         "normal": [0, 0, 1], "material": "sink"}], )" +

@@ -1,4 +1,4 @@
-// Colliders that move, as a scene says it: what comes of it, and what is wrong and where.
+// Moving colliders in scenes: their result, and errors with their location.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ std::string scene_of(const std::string& collider, const std::string& simulation 
            more + "}";
 }
 
-/// The same of the sample with one text replaced by another.
+/// Returns the errors of the sample with one text replaced by another.
 Lines errors_with(const std::string& text, const std::string& replacement) {
     std::string scene = scene_of(kCollider);
     const std::size_t at = scene.find(text);
@@ -39,7 +39,7 @@ Lines errors_with(const std::string& text, const std::string& replacement) {
     return errors_of(scene.replace(at, text.size(), replacement));
 }
 
-TEST(MovingScene, StandsCollidersInTheirFramesAndThroughTheirPoses) {
+TEST(MovingScene, CollidersAreInTheirFramesAndFollowTheirPoses) {
     const SceneDescription scene = parse_scene(scene_of(kCollider), "s.json");
     const SimulationSetup& setup = scene.setup;
     EXPECT_EQ(setup.colliders[0].frame, "");
@@ -53,13 +53,13 @@ TEST(MovingScene, StandsCollidersInTheirFramesAndThroughTheirPoses) {
                                motions_through({{0.0, {0, 0, 1}}, {2.0, {0, 0, 0.5}, {0, 1, 0}, 90.0}})}});
     const std::size_t frame = setup.frames->find("motion of press").value();
     EXPECT_EQ(setup.frames->hash(frame), expected.hash(1));
-    // Its own place is within that.
+    // The collider's own placement is inside that frame.
     const auto& box = std::get<CuboidShape>(setup.colliders[1].shape);
     EXPECT_EQ(box.placement.position, Vec3(3, 0, 0));
     EXPECT_LT(length(setup.frames->at(frame, 1.0).point({3, 0, 0}) - expected.at(1, 1.0).point({3, 0, 0})), 1e-15);
 }
 
-TEST(MovingScene, ReadsKeysInAnyOrder) {
+TEST(MovingScene, KeysMayHaveAnyOrder) {
     const char* reordered = R"("motion": [
     {"position": [0, 0, 1], "time": 0},
     {"rotation": {"degrees": 90, "axis": [0, 1, 0]}, "position": [0, 0, 0.5], "time": 2}], "frame": "arm")";
@@ -71,7 +71,7 @@ TEST(MovingScene, ReadsKeysInAnyOrder) {
     EXPECT_EQ(hash(a), hash(b));
 }
 
-TEST(MovingScene, GivesPosesAFrameOfTheirOwnWhateverItsNeighboursAreCalled) {
+TEST(MovingScene, FrameOfPosesIsUniqueForAnyNamesOfNeighbours) {
     const SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
   "frames": {"motion of ball": {}},
   "colliders": [{"name": "ball", "type": "sphere", "radius": 1, "motion": [{"time": 0}, {"time": 1, "position": [1, 0, 0]}]},
@@ -87,7 +87,7 @@ TEST(MovingScene, GivesPosesAFrameOfTheirOwnWhateverItsNeighboursAreCalled) {
     EXPECT_NO_THROW(Simulation(parse_scene(scene_of(kCollider), "s.json").setup));
 }
 
-TEST(MovingScene, SaysWhatIsWrongAndWhere) {
+TEST(MovingScene, ErrorsNameTheFaultAndItsPath) {
     EXPECT_EQ(errors_with(R"("frame": "arm")", R"("frame": "amr")"),
               (Lines{"colliders[1].frame: there is no frame \"amr\"; did you mean \"arm\"?"}));
     EXPECT_EQ(errors_with(R"("frame": "arm")", R"("frame": 7)"),
@@ -113,14 +113,14 @@ TEST(MovingScene, SaysWhatIsWrongAndWhere) {
               (Lines{"colliders[1].motion[0]: keys 0 and 1 of a curve are too near in time for their values"}));
 }
 
-TEST(MovingScene, MakesWhatItsPosesScaleAMeshThatDeforms) {
+TEST(MovingScene, PosesWithScaleMakeADeformingMesh) {
     const char* growing = R"("motion": [{"time": 0.5}, {"time": 1.5, "scale": [2, 1, 3], "position": [0, 0, 1]}])";
     const SimulationSetup setup = parse_scene(scene_of(growing), "s.json").setup;
     EXPECT_EQ(setup.colliders[1].frame, "");
     const auto& mesh = std::get<MeshShape>(setup.colliders[1].shape);
     ASSERT_NE(mesh.motion, nullptr);
-    EXPECT_EQ(mesh.motion->key_count(), 2U);  // nothing turns
-    // A box of 1 m about (3, 0, 0) of the frame that is scaled about its origin.
+    EXPECT_EQ(mesh.motion->key_count(), 2U);  // no rotation
+    // A box of 1 m about (3, 0, 0) in the frame, which is scaled about its origin.
     for (std::size_t v = 0; v < mesh.mesh->vertices.size(); ++v) {
         const Vec3 p = mesh.mesh->vertices[v];
         EXPECT_EQ(mesh.motion->at(0.5).position(v), p);
@@ -128,7 +128,7 @@ TEST(MovingScene, MakesWhatItsPosesScaleAMeshThatDeforms) {
         EXPECT_LT(length(mesh.motion->at(1.0).position(v) - Vec3(1.5 * p.x, p.y, 2 * p.z + 0.5)), 1e-15);
         EXPECT_EQ(std::fabs(p.x - 3.0), 0.5);
     }
-    // In a frame that turns it goes with that, until the end of the run.
+    // In a rotating frame the mesh rotates with it until the end of the run.
     const SimulationSetup turning = parse_scene(scene_of(std::string(R"("frame": "arm", )") + growing), "s.json").setup;
     const auto& turned = std::get<MeshShape>(turning.colliders[1].shape);
     EXPECT_GT(turned.motion->key_count(), 20U);
@@ -137,7 +137,7 @@ TEST(MovingScene, MakesWhatItsPosesScaleAMeshThatDeforms) {
     EXPECT_NO_THROW(Simulation(parse_scene(scene_of(growing), "s.json").setup));
 }
 
-/// Two frames, the lower of which is scaled; `more` is what stands in the upper one.
+/// Returns two frames, the lower of which is scaled. `more` adds the objects of the upper one.
 std::string scaled_frames(const std::string& more) {
     return R"({"ricochet": 1, "simulation": {"time_step": 0.01, "duration": 1},
   "frames": {
@@ -148,7 +148,7 @@ std::string scaled_frames(const std::string& more) {
            "}";
 }
 
-TEST(MovingScene, MakesWhatStandsInScaledFramesAMeshThatDeforms) {
+TEST(MovingScene, CollidersInScaledFramesBecomeDeformingMeshes) {
     const SimulationSetup setup = parse_scene(scaled_frames(R"("colliders": [
       {"name": "box", "type": "box", "size": [1, 1, 1], "frame": "hand"},
       {"name": "press", "type": "box", "size": [1, 1, 1], "frame": "hand",
@@ -173,7 +173,7 @@ TEST(MovingScene, MakesWhatStandsInScaledFramesAMeshThatDeforms) {
     }
 }
 
-TEST(MovingScene, StandsACameraWhereThePointsOfAScaledFrameAre) {
+TEST(MovingScene, CameraInAScaledFrameFollowsItsPoints) {
     SceneDescription scene = parse_scene(scaled_frames(R"("particles": [{"position": [0, 0, 9]}],
       "camera": {"position": [1, 0, 0], "target": [0, 0, 0], "frame": "hand"})"),
                                          "s.json");
@@ -184,7 +184,7 @@ TEST(MovingScene, StandsACameraWhereThePointsOfAScaledFrameAre) {
     EXPECT_LT(length(place.target - Vec3(2, 0, 1)), 1e-15);
 }
 
-TEST(MovingScene, SaysWhatCannotStandInScaledFrames) {
+TEST(MovingScene, ObjectsThatCannotBeInScaledFramesAreRefused) {
     for (const auto& [type, measures] : {std::pair{"sphere", R"("radius": 1)"},
                                          {"cylinder", R"("radius": 1, "height": 1)"},
                                          {"plane", R"("normal": [0, 0, 1])"}}) {
@@ -196,8 +196,8 @@ TEST(MovingScene, SaysWhatCannotStandInScaledFrames) {
                         "expected one of these, or a frame without a \"scale\""});
     }
     EXPECT_EQ(errors_of(scaled_frames(R"("emitters": [{"type": "point", "rate": 1, "frame": "hand"}])")),
-              Lines{"emitters[0].frame: the frame is scaled, and what is born in it keeps its size; expected a frame "
-                    "without a \"scale\", its own or of one that it stands on"});
+              Lines{"emitters[0].frame: the frame is scaled, but particles keep their size; expected a frame without a "
+                    "\"scale\", also in the frames that it stands on"});
     EXPECT_EQ(errors_of(scaled_frames(R"("colliders": [{"name": "box", "type": "box", "size": [1, 1, 1],
                                           "frame": "hand"}],
                                          "emitters": [{"type": "mesh", "collider": "box", "rate": 1}])")),
@@ -216,7 +216,7 @@ TEST(MovingScene, SaysWhatCannotStandInScaledFrames) {
                     "[x, y, z]"});
 }
 
-TEST(MovingScene, SaysWhatCannotBeScaledInTime) {
+TEST(MovingScene, ObjectsThatCannotBeScaledInTimeAreRefused) {
     const auto with_scale = [](const std::string& scale) {
         return errors_of(scene_of(R"("motion": [{"time": 0}, {"time": 1, "scale": )" + scale + "}]"));
     };
@@ -240,7 +240,7 @@ TEST(MovingScene, SaysWhatCannotBeScaledInTime) {
                "\"exact\""}));
 }
 
-TEST(MovingScene, SaysWhichResponsesKnowNoCollidersThatMove) {
+TEST(MovingScene, ResponsesWithoutMovingCollidersAreRefused) {
     for (const std::string response : {"rollback", "project", "penalty"}) {
         const std::string option = R"(, "response": ")" + response + "\"";
         const std::string sentence =

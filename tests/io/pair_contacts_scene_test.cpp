@@ -1,4 +1,4 @@
-// What a scene says of spheres that meet and their materials: what each key makes, and what is refused with a line.
+// Contacts between spheres and their materials in scenes: the effect of each key, and one-line errors.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -24,7 +24,7 @@ const char* const kMaterials = R"("restitution": 0.6, "friction": 0.2,
     "materials": {"steel": {"restitution": 0.9}, "glass": {}},
     "pairs": [{"first": "glass", "second": "steel", "friction": 0.4, "rolling_friction": 0.01}])";
 
-TEST(PairContactsScene, WhatAPairLeavesOutIsThatOfAllSpheres) {
+TEST(PairContactsScene, PairInheritsMissingKeysFromAllSpheres) {
     const SimulationSetup setup = parse_scene(scene_with(kMaterials, R"(, "material": "glass")"), "s.json").setup;
     const PairContactSettings& contacts = setup.options.particle_contacts.value();
     EXPECT_EQ(contacts.materials, (std::vector<std::string>{"steel", "glass"}));
@@ -42,7 +42,7 @@ TEST(PairContactsScene, WhatAPairLeavesOutIsThatOfAllSpheres) {
     EXPECT_EQ(setup.particles[0].attributes[0].x, 1.0);
 }
 
-TEST(PairContactsScene, EmittersNameTheMaterialOfWhatTheyEmit) {
+TEST(PairContactsScene, EmittersNameTheMaterialOfTheirParticles) {
     SimulationSetup setup = parse_scene(scene_with(kMaterials, "",
                                                    R"("emitters": [{"type": "point", "rate": 1, "particle_radius": 0.01,
                                                 "material": "glass"}],)"),
@@ -54,20 +54,20 @@ TEST(PairContactsScene, EmittersNameTheMaterialOfWhatTheyEmit) {
     EXPECT_NO_THROW(Simulation{std::move(setup)});
 }
 
-TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
+TEST(PairContactsScene, UnknownMaterialsAreRefusedAtTheirLocation) {
     EXPECT_EQ(errors_of(scene_with(kMaterials, R"(, "material": "stel")")),
               (Lines{"particles[0].material: there is no material among particle_contacts.materials \"stel\"; did you "
                      "mean \"steel\"?"}));
     EXPECT_EQ(errors_of(scene_with("", R"(, "material": "steel")")),
-              (Lines{"particles[0].material: only goes together with particle_contacts.materials, which declares what "
-                     "it names; what walls are made of is said at the walls"}));
+              (Lines{"particles[0].material: only goes together with particle_contacts.materials, which declares the "
+                     "names; materials of walls are set at the walls"}));
     EXPECT_EQ(errors_of(scene_with(R"("materials": {"a": {}}, "pairs": [{"first": "a", "second": "b"}])")),
               (Lines{"particle_contacts.pairs[0].second: there is no material among particle_contacts.materials \"b\"; "
                      "did you mean \"a\"?"}));
     EXPECT_EQ(
         errors_of(scene_with(R"("materials": {"a": {"friction": 1}}, "pairs": [{"first": "a", "second": "a"}])")),
-        (Lines{"particle_contacts.pairs[0].second: found \"a\" twice, expected two materials: what one does to itself "
-               "is said at it in `materials`"}));
+        (Lines{"particle_contacts.pairs[0].second: found \"a\" twice, expected two materials: contacts within one "
+               "material are set in `materials`"}));
     EXPECT_EQ(
         errors_of(scene_with(kMaterials, R"(, "material": "steel", "attributes": {"material": 1})")),
         (Lines{"particles[0].material: found beside the attribute \"material\", which is its number: expected one "
@@ -77,7 +77,7 @@ TEST(PairContactsScene, NamesThatAreNoMaterialsAreRefusedWhereTheyStand) {
                      "here, expected another name"}));
 }
 
-TEST(PairContactsScene, APairThatNamesNothingIsRefusedForThatAlone) {
+TEST(PairContactsScene, PairWithoutNamesIsRefusedForThatAlone) {
     const auto refused = [](const std::string& pair) {
         return errors_of(scene_with(R"("materials": {"steel": {}, "glass": {}}, "pairs": [)" + pair + "]"));
     };
@@ -92,8 +92,8 @@ TEST(PairContactsScene, APairThatNamesNothingIsRefusedForThatAlone) {
                                                               second + "found 2, expected a text that is not empty"}));
 }
 
-// Forty materials whose order is not that of their names, all pairs of them in an order of their own.
-TEST(PairContactsScene, EachOfManyPairsStaysWhereItStandsAndCountsOnce) {
+// Forty materials that are not sorted by name, and all their pairs in another order.
+TEST(PairContactsScene, EachOfManyPairsKeepsItsPositionAndCountsOnce) {
     constexpr std::size_t kMany = 40;
     std::vector<std::string> names;
     std::string materials;

@@ -2,8 +2,8 @@
 
 paraview_reader_test.py FOLDER [--killed] [--attribute NAME]...
 
---attribute: the frames also hold this attribute of one component.
---killed: the run was ended without warning, so its last frame may not be listed yet.
+--attribute: the frames also contain this attribute of one component.
+--killed: the run was killed, so its last frame may not be listed yet.
 """
 
 import os
@@ -41,12 +41,12 @@ CONTACT_ARRAYS = {
     "impulse": ("double", 3),
     "radius": ("double", 1),
 }
-MOVING_CONTACT_ARRAYS = {"surface_velocity": ("double", 3)}  # where a surface moves
+MOVING_CONTACT_ARRAYS = {"surface_velocity": ("double", 3)}  # only with moving surfaces
 MOVING_ARRAYS = {"collider": ("unsigned int", 1)}
 CELL_ARRAYS = {"hits": ("long long", 1), "impulse": ("double", 3)}
 RUN_CELL_ARRAYS = {"lasting_impulse": ("double", 3), "material": ("unsigned int", 1), "group": ("unsigned int", 1)}
 EXAMPLE_GROUPS = ["", 'a "b" <&>', "x" * 3000]
-LONG_NAMES = {"long": "long long"}  # the same 64 bits
+LONG_NAMES = {"long": "long long"}  # both have 64 bits
 
 
 def check(condition, message):
@@ -90,7 +90,7 @@ def read_points(folder, time, name, arrays):
     check_arrays(data.GetPointData(), arrays, points, path)
     if points:
         check(data.GetPoints().GetData().GetDataTypeAsString() == "double", f"{path}: points are not double")
-        check(data.GetCell(0).GetNumberOfPoints() == points, f"{path}: the cell does not hold every point")
+        check(data.GetCell(0).GetNumberOfPoints() == points, f"{path}: the cell does not contain every point")
     return data, points, path
 
 
@@ -132,7 +132,7 @@ def check_groups(data, path):
     check(max(numbers) < len(names), f"{path}: {len(names)} names for group {max(numbers)}")
     if "tetrahedron" in path:
         check(names == EXAMPLE_GROUPS and numbers == [0, 2, 1, 1], f"{path}: groups {numbers} of {names}")
-        check(data.GetFieldData().GetAbstractArray("none").GetNumberOfValues() == 0, f"{path}: texts of no one")
+        check(data.GetFieldData().GetAbstractArray("none").GetNumberOfValues() == 0, f"{path}: a text without values")
 
 
 def check_moving(folder, time, name):

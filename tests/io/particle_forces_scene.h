@@ -1,5 +1,5 @@
 /// \file
-/// A scene with every force between particles that the format has.
+/// A scene with every force between particles of the format.
 #pragma once
 
 namespace ricochet::test {

@@ -1,4 +1,4 @@
-// The scene's forces between particles: what each key makes, and what is refused with a line.
+// Forces between particles in scenes: the effect of each key, and one-line errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,8 @@ using test::errors_of;
 using test::kParticleForcesScene;
 using test::Lines;
 
-/// A scene of two particles 2 m apart, of 3 kg and 1 kg with charges 2 C and -1 C, and these forces.
+/// Returns a scene of two particles 2 m apart with these forces. Their masses are 3 kg and 1 kg, their charges 2 C and
+/// -1 C.
 std::string scene_with(const std::string& forces, const std::string& more = "") {
     return R"({"ricochet": 1, "attributes": {"charge": {"default": 0}, "wind": {"components": 3}},
   "particles": [{"position": [0, 0, 0], "mass": 3, "radius": 0.95, "attributes": {"charge": 2}},
@@ -26,7 +27,7 @@ std::string scene_with(const std::string& forces, const std::string& more = "") 
            more + R"("particle_forces": [)" + forces + "]}";
 }
 
-/// What a force does to the second particle along z, m/s^2.
+/// Returns the acceleration of the second particle along z, in m/s^2.
 double pull(const std::string& force) {
     SimulationSetup setup = parse_scene(scene_with(force), "s.json").setup;
     const std::vector<std::uint64_t> ids{0, 1};
@@ -43,7 +44,7 @@ double pull(const std::string& force) {
     return result[1].z;
 }
 
-TEST(ParticleForcesScene, MakesTheForcesThatItNames) {
+TEST(ParticleForcesScene, NamedForcesAreMade) {
     EXPECT_NEAR(pull(R"({"type": "gravity"})"), -6.6743e-11 * 3.0 / 4.0, 1e-24);
     EXPECT_NEAR(pull(R"({"type": "gravity", "constant": 2, "softening": 1.5})"), -2.0 * 3.0 * 2.0 / 15.625, 1e-14);
     EXPECT_NEAR(pull(R"({"type": "charge"})"), -8.9875517862e9 * 2.0 / 4.0, 1e-5);
@@ -52,7 +53,7 @@ TEST(ParticleForcesScene, MakesTheForcesThatItNames) {
     EXPECT_NEAR(pull(R"({"type": "cohesion", "stiffness": 90, "range": 0.3})"), -90.0 * 0.1 * 4.0 / 9.0, 1e-12);
 }
 
-TEST(ParticleForcesScene, SaysWhoTakesPart) {
+TEST(ParticleForcesScene, ParticlesAndEmittersSelectTheParticipants) {
     const auto setup =
         parse_scene(scene_with(R"({"type": "gravity", "particles": [1], "emitter": "tap"}, {"type": "gravity"})"),
                     "s.json")
@@ -64,7 +65,7 @@ TEST(ParticleForcesScene, SaysWhoTakesPart) {
     EXPECT_TRUE(setup.particles_forces[1].emitters.empty());
 }
 
-TEST(ParticleForcesScene, RunsTheSample) {
+TEST(ParticleForcesScene, SampleRuns) {
     SimulationSetup setup = parse_scene(kParticleForcesScene, "s.json").setup;
     ASSERT_EQ(setup.particles_forces.size(), 4U);
     Simulation simulation(std::move(setup));
@@ -73,7 +74,7 @@ TEST(ParticleForcesScene, RunsTheSample) {
     EXPECT_NE(simulation.particles().velocity[0], (Vec3{}));
 }
 
-TEST(ParticleForcesScene, RefusesWhatCannotBeWithOneLine) {
+TEST(ParticleForcesScene, InvalidForcesAreRefusedInOneLine) {
     struct Case {
         const char* force;
         const char* message;
@@ -104,7 +105,7 @@ TEST(ParticleForcesScene, RefusesWhatCannotBeWithOneLine) {
     }
 }
 
-TEST(ParticleForcesScene, RefusesWhatDoesNotGoTogether) {
+TEST(ParticleForcesScene, IncompatibleFeaturesAreRefused) {
     const auto error_of = [](const std::string& more) {
         const Lines errors = errors_of(scene_with(R"({"type": "gravity"})", more));
         return errors.size() == 1 ? errors[0] : "not one error";

@@ -13,7 +13,7 @@ namespace RICOCHET_FILE {
 
 using Lines = std::vector<std::string>;
 
-TEST(ParticleTable, ReadsColumnsInAnyOrder) {
+TEST(ParticleTable, ColumnsMayHaveAnyOrder) {
     const ParticleTable table = parse_particle_table("mass,z,x,y,vy\n2,3,1, 2 ,-0.5\r\n\n1,6e-1,4,5,0", "t.csv");
     EXPECT_EQ(table.errors, Lines{});
     ASSERT_EQ(table.particles.size(), 2U);
@@ -23,7 +23,7 @@ TEST(ParticleTable, ReadsColumnsInAnyOrder) {
     EXPECT_EQ(table.particles[1].position, (Vec3{4, 5, 0.6}));
 }
 
-TEST(ParticleTable, RefusesWhatIsNotTextInOneLine) {
+TEST(ParticleTable, RefusesEverythingButTextInOneLine) {
     using namespace std::string_literals;
     const std::string utf16 = "\xFF\xFEx\0,\0y\0,\0z\0\n\0"s + "1\0,\0002\0,\0003\0"s;
     EXPECT_EQ(parse_particle_table(utf16, "t.csv").errors,
@@ -32,14 +32,14 @@ TEST(ParticleTable, RefusesWhatIsNotTextInOneLine) {
               Lines{"t.csv:3: found a NUL byte, expected text only"});
 }
 
-TEST(ParticleTable, BringsBackEveryBitOfSeventeenDigits) {
+TEST(ParticleTable, SeventeenDigitsRestoreEveryBit) {
     const ParticleTable table =
         parse_particle_table("x,y,z\n0.10000000000000001,3.3333333333333335,-1.7976931348623157e-308\n", "t.csv");
     ASSERT_EQ(table.particles.size(), 1U);
     EXPECT_EQ(table.particles[0].position, (Vec3{0.1, 10.0 / 3.0, -1.7976931348623157e-308}));
 }
 
-TEST(ParticleTable, ReadsTheFinalStateOfARunAndSaysWhatItDoesNotUse) {
+TEST(ParticleTable, FinalStateOfARunIsReadAndUnusedColumnsAreNamed) {
     const ParticleTable table = parse_particle_table(
         "id,x,y,z,vx,vy,vz,radius,mass,age,contacts,resting,unsimulated_time\n7,1,2,3,4,5,6,0,1,0.5,3,1,0\n", "t.csv");
     EXPECT_EQ(table.errors, Lines{});
@@ -49,7 +49,7 @@ TEST(ParticleTable, ReadsTheFinalStateOfARunAndSaysWhatItDoesNotUse) {
     EXPECT_EQ(table.unused_columns, (Lines{"id", "age", "contacts", "resting", "unsimulated_time"}));
 }
 
-TEST(ParticleTable, BringsBackSpinAndLifetimeOfAFinalState) {
+TEST(ParticleTable, SpinAndLifetimeOfAFinalStateAreRestored) {
     const test::TemporaryFolder folder;
     Particle ball;
     ball.position = {1, 2, 3};
@@ -77,7 +77,7 @@ TEST(ParticleTable, RefusesASpinOfAPointAndALifetimeBelowZero) {
               (Lines{"t.csv:2: found \"-1\" in column \"lifetime\", expected a number >= 0 (s)"}));
 }
 
-TEST(ParticleTable, NamesFileLineAndColumnOfEveryError) {
+TEST(ParticleTable, ErrorsNameFileLineAndColumn) {
     const auto errors = [](std::string_view text) { return parse_particle_table(text, "t.csv").errors; };
     EXPECT_EQ(errors("x,y,z\n1,2,3\n1,two,3\n1,2,nan\n"),
               (Lines{"t.csv:3: found \"two\" in column \"y\", expected a number (m)",
@@ -100,7 +100,7 @@ TEST(ParticleTable, ReadsRadii) {
               std::string::npos);
 }
 
-TEST(ParticleTable, RefusesByNameWhatItDoesNotKnow) {
+TEST(ParticleTable, UnknownColumnsAreRefusedByName) {
     const auto errors = [](std::string_view text) { return parse_particle_table(text, "t.csv").errors.at(0); };
     EXPECT_NE(errors("x,y,z,temperature\n").find("unknown column \"temperature\""), std::string::npos);
     EXPECT_NE(errors("x,y,z,mas\n").find("did you mean \"mass\"?"), std::string::npos);

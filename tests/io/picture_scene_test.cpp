@@ -37,7 +37,7 @@ std::string error_of(const std::string& keys) {
     return "";
 }
 
-TEST(PictureScene, AFocalLengthSetsTheFieldOfViewOfAFilm24MillimetresHigh) {
+TEST(PictureScene, FocalLengthSetsTheFieldOfViewOfAFilm24MillimetresHigh) {
     const auto scene = parsed(R"("camera": {"position": [0, -9, 0], "target": [0, 0, 0], "focal_length": 50,
                                             "aperture": 0.1, "focus_distance": 4})");
     EXPECT_NEAR(scene.camera->field_of_view_degrees, 2.0 * std::atan(12.0 / 50.0) * 180.0 / 3.14159265358979, 1e-9);
@@ -46,8 +46,8 @@ TEST(PictureScene, AFocalLengthSetsTheFieldOfViewOfAFilm24MillimetresHigh) {
     EXPECT_FALSE(scene.camera->moves());
 }
 
-// After 1 s the frame has turned by 90 degrees about z.
-TEST(PictureScene, ACameraGoesAlongItsPathInItsFrame) {
+// After 1 s the frame has rotated by 90 degrees about z.
+TEST(PictureScene, CameraFollowsItsPathInItsFrame) {
     auto scene = parsed(R"("camera": {"path": {"keys": [{"time": 0, "value": [4, 0, 0]},
         {"time": 2, "value": [8, 0, 2]}]}, "target": [1, 0, 0], "frame": "f"})");
     ASSERT_TRUE(scene.camera && scene.camera->moves());
@@ -66,7 +66,7 @@ TEST(PictureScene, ACameraGoesAlongItsPathInItsFrame) {
     EXPECT_EQ(camera_of_frame(frame)->target, place.target);
 }
 
-TEST(PictureScene, RefusesCamerasThatContradictThemselves) {
+TEST(PictureScene, ContradictoryCamerasAreRefused) {
     EXPECT_EQ(error_of(R"("camera": {"target": [0, 0, 0]})"),
               R"(camera.position: missing, expected this key or "path")");
     EXPECT_EQ(error_of(R"("camera": {"position": [1, 0, 0], "target": [0, 0, 0], "target_path":
@@ -79,7 +79,7 @@ TEST(PictureScene, RefusesCamerasThatContradictThemselves) {
               std::string::npos);
 }
 
-TEST(PictureScene, LooksAndLightPassThroughTheRunsOwnDescription) {
+TEST(PictureScene, LooksAndLightAreStoredInTheRunsDescription) {
     const auto scene = parsed(R"("colliders": [{"name": "a", "type": "plane", "normal": [0, 0, 1],
             "looks": {"color": [0.1, 0.2, 0.3], "roughness": 0.25, "glass": true}},
             {"name": "b", "type": "plane", "normal": [0, 0, 1], "looks": {"hidden": true, "pattern": false}}],
@@ -114,14 +114,14 @@ TEST(PictureScene, OnlyPlanesHaveAPattern) {
         "colliders[0].looks.pattern: only planes have one, expected the collider to be a \"plane\" or no such key");
 }
 
-// What only says how it is shown changes neither the run nor whether it may be resumed.
-TEST(PictureScene, ThePictureIsNoPartOfTheFingerprint) {
+// Keys that only affect the picture change neither the run nor the permission to resume it.
+TEST(PictureScene, PictureIsNotPartOfTheFingerprint) {
     EXPECT_EQ(parsed(R"("picture": {"light": "night"})").fingerprint,
               parsed(R"("picture": {"light": "noon"})").fingerprint);
     EXPECT_EQ(error_of(R"("picture": {"light": "dawn"})").substr(0, 14), "picture.light:");
 }
 
-// What particles are drawn with lies beside the scene.
+// The files for drawing particles are beside the scene.
 class DrawnParticles : public testing::Test {
 protected:
     [[nodiscard]] SceneDescription read(const std::string& keys) const {
@@ -145,7 +145,7 @@ protected:
     std::filesystem::path text_ = folder_.write("a.txt", "words");
 };
 
-TEST_F(DrawnParticles, TheRunsFolderKeepsTheFilesAndNamesThem) {
+TEST_F(DrawnParticles, RunsFolderKeepsTheFilesAndNamesThem) {
     RunInfo info = run_info_of(read(R"("picture": {"particles": "sprites", "sprite": "a.png", "turn": "velocity",
                                                     "turning": [2, 1]})"));
     EXPECT_EQ(info.picture->sprite, sprite_.string());
@@ -160,7 +160,7 @@ TEST_F(DrawnParticles, TheRunsFolderKeepsTheFilesAndNamesThem) {
     EXPECT_TRUE(is_run_file(kParticleSpriteFile) && is_run_file(kParticleMeshFile));
 }
 
-TEST_F(DrawnParticles, AMeshIsKeptToTheBit) {
+TEST_F(DrawnParticles, MeshIsKeptToTheBit) {
     RunInfo info = run_info_of(read(R"("picture": {"particles": "meshes", "mesh": "a.obj", "stretch": {"speed": 0.5,
                                                     "time": 0.25, "most": 3}})"));
     const test::TemporaryFolder run;
@@ -184,7 +184,7 @@ TEST_F(DrawnParticles, RefusesFilesThatAreMissingOrOfAnotherKind) {
               std::string::npos);
 }
 
-TEST_F(DrawnParticles, RefusesKeysThatWouldDoNothing) {
+TEST_F(DrawnParticles, KeysWithoutEffectAreRefused) {
     EXPECT_NE(error(R"("picture": {"turn": "random"})").find("picture.turn: only goes together"), std::string::npos);
     EXPECT_NE(error(R"("picture": {"turning": 3})").find("picture.turning: only goes together"), std::string::npos);
     EXPECT_NE(error(R"("picture": {"particles": "glow", "stretch": {"speed": 1}})").find("picture.stretch: "),
@@ -204,15 +204,15 @@ TEST_F(DrawnParticles, BlackBodiesNeedATemperature) {
               std::string::npos);
 }
 
-// Neither which files they are nor what is in them.
-TEST_F(DrawnParticles, FilesOfPicturesAreNoPartOfTheFingerprint) {
+// Neither the names of these files nor their contents count.
+TEST_F(DrawnParticles, FilesOfPicturesAreNotPartOfTheFingerprint) {
     const std::uint64_t plain = read(R"("picture": {"light": "night"})").fingerprint;
     EXPECT_EQ(read(R"("picture": {"particles": "meshes", "mesh": "a.obj"})").fingerprint, plain);
 }
 
 std::string emitting(const std::string& keys) { return R"("emitters": [{"type": "point", "rate": 1, )" + keys + "}]"; }
 
-TEST(PictureScene, AnEmittersDrawingIsAnAttributeOfItsParticles) {
+TEST(PictureScene, DrawingOfAnEmitterIsAnAttributeOfItsParticles) {
     const auto scene = parsed(R"("emitters": [{"name": "a", "type": "point", "rate": 1},
         {"name": "b", "type": "point", "rate": 1, "drawing": {"particles": "soft"}},
         {"name": "c", "type": "point", "rate": 1, "drawing": {"particles": "glow"}}])");
@@ -225,7 +225,7 @@ TEST(PictureScene, AnEmittersDrawingIsAnAttributeOfItsParticles) {
     EXPECT_TRUE(parsed(emitting(R"("name": "d")")).setup.attributes.empty());
 }
 
-TEST(PictureScene, ADrawingThatCannotBeIsRefusedInOneLine) {
+TEST(PictureScene, InvalidDrawingIsRefusedInOneLine) {
     const std::vector<std::pair<std::string, std::string>> wrongs = {
         {R"("drawing": {})", "emitters[0].drawing.particles: missing"},
         {R"("drawing": {"particles": "mesh"})", R"(found "mesh")"},
@@ -243,7 +243,7 @@ TEST(PictureScene, ADrawingThatCannotBeIsRefusedInOneLine) {
     EXPECT_NE(error_of(taken).find("expected another name"), std::string::npos);
 }
 
-TEST(PictureScene, StreaksWithoutAnOpenShutterAreWarnedOf) {
+TEST(PictureScene, StreaksWithoutAnOpenShutterGiveAWarning) {
     const std::string streaks = emitting(R"("drawing": {"particles": "streaks"})");
     EXPECT_EQ(parsed(streaks).warnings.size(), 1U);
     EXPECT_TRUE(parsed(streaks + R"(, "picture": {"shutter": 0.1})").warnings.empty());

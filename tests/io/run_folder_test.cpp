@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace RICOCHET_FILE {
 
-TEST(RunFiles, FrameNamesCarryTheStepWithSixDigitsOrMore) {
+TEST(RunFiles, FrameNamesContainTheStepWithSixDigitsOrMore) {
     EXPECT_EQ(frame_file_name(0), "particles_000000.vtp");
     EXPECT_EQ(frame_file_name(1234567), "particles_1234567.vtp");
     EXPECT_EQ(step_of_frame_file("particles_000042.vtp"), 42U);
@@ -33,7 +33,7 @@ TEST(RunFiles, ContactFilesAreNamedLikeFramesAndNotTakenForThem) {
     EXPECT_FALSE(step_of_frame_file(contact_file_name(42)));
 }
 
-TEST(RunFiles, NamesOfPiecesAndPartsSayWhatTheyAreOf) {
+TEST(RunFiles, NamesOfPiecesAndPartsIdentifyThem) {
     EXPECT_EQ(frame_index_name(42), "particles_000042.pvtp");
     EXPECT_EQ(piece_file_name(42, 3), "particles_000042_p3.vtp");
     EXPECT_EQ(step_of_frame_index(frame_index_name(1234567)), 1234567U);
@@ -46,7 +46,7 @@ TEST(RunFiles, NamesOfPiecesAndPartsSayWhatTheyAreOf) {
     EXPECT_FALSE(set_of_checkpoint_part("checkpoint.bin"));
 }
 
-TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
+TEST(RunFiles, ColliderNamesContainPlainCharactersOnly) {
     EXPECT_EQ(collider_file_name(3, "bunny"), "collider_03_bunny.vtp");
     EXPECT_EQ(collider_file_name(0, "../a b"), "collider_00____a_b.vtp");
     EXPECT_EQ(collider_file_name(112, ""), "collider_112.vtp");
@@ -60,7 +60,7 @@ TEST(RunFiles, ColliderNamesHoldPlainCharactersOnly) {
     }
 }
 
-TEST(RunFiles, KnowsItsOwnFilesAndTheirUnfinishedForms) {
+TEST(RunFiles, OwnFilesAndTheirUnfinishedFormsAreRecognised) {
     for (const char* own :
          {"run.json", "summary.json", "particles.pvd", "colliders.pvd", "particles_000001.vtp", "collider_00_a.vtp",
           "contacts.pvd", "contacts_000001.vtp", "particles_000001.vtp.123-4.partial",
@@ -84,18 +84,18 @@ namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
-TEST(OutputDirectory, IsCreatedWithItsParentsAndMarked) {
+TEST(OutputDirectory, FolderIsCreatedWithItsParentsAndMarked) {
     const TemporaryFolder folder;
     const OutputDirectory directory(folder.path("a/b/c"));
     EXPECT_TRUE(std::filesystem::exists(folder.path("a/b/c") / kRunMarkerFile));
 }
 
-TEST(OutputDirectory, TakesAnEmptyFolder) {
+TEST(OutputDirectory, EmptyFolderIsAccepted) {
     const TemporaryFolder folder;
     EXPECT_NO_THROW(OutputDirectory{folder.path("")});
 }
 
-TEST(OutputDirectory, RefusesAFolderWithForeignFilesAndLeavesItAlone) {
+TEST(OutputDirectory, FolderWithForeignFilesIsRefusedAndLeftUnchanged) {
     const TemporaryFolder folder;
     (void)folder.write("summary.json", "mine");
     EXPECT_THROW(OutputDirectory{folder.path("")}, InputError);
@@ -110,7 +110,7 @@ TEST(OutputDirectory, RefusesAFile) {
     EXPECT_EQ(folder.read("file"), "x");
 }
 
-TEST(OutputDirectory, ReplacesAnEarlierRunsFilesAndNothingElse) {
+TEST(OutputDirectory, FilesOfAnEarlierRunAreReplacedAndNothingElse) {
     const TemporaryFolder folder;
     { const OutputDirectory first(folder.path("")); }
     for (const char* name : {"summary.json", "particles_000003.vtp", "collider_00_a.vtp", "run.json", "notes.txt",
@@ -128,7 +128,7 @@ TEST(OutputDirectory, ReplacesAnEarlierRunsFilesAndNothingElse) {
     }
 }
 
-TEST(OutputDirectory, KeepsForAResumedRunWhatWasFinishedUpToItsStep) {
+TEST(OutputDirectory, ResumedRunKeepsTheFilesUpToItsStep) {
     const TemporaryFolder folder;
     { const OutputDirectory first(folder.path("")); }
     const std::vector<std::string> kept{"particles_000010.vtp", "summary.json",          "checkpoint.bin",
@@ -147,7 +147,7 @@ TEST(OutputDirectory, KeepsForAResumedRunWhatWasFinishedUpToItsStep) {
     for (const std::string& name : removed) EXPECT_FALSE(std::filesystem::exists(folder.path(name))) << name;
 }
 
-TEST(OutputDirectory, StaysLockedWhileAnyOfThoseThatShareItLives) {
+TEST(OutputDirectory, FolderStaysLockedWhileAnySharerExists) {
     const TemporaryFolder folder;
     auto first = std::make_unique<OutputDirectory>(folder.path("run"));
     (void)folder.write("run/summary.json", "x");
@@ -166,7 +166,7 @@ TEST(OutputDirectory, StaysLockedWhileAnyOfThoseThatShareItLives) {
     EXPECT_NO_THROW(OutputDirectory{folder.path("run")});
 }
 
-TEST(OutputDirectory, RemovesThePartsOfCheckpointsThatNobodyNames) {
+TEST(OutputDirectory, UnusedPartsOfCheckpointsAreRemoved) {
     const TemporaryFolder folder;
     const OutputDirectory directory(folder.path(""));
     for (const char* name : {"checkpoint.bin", "checkpoint_0_p0.bin", "checkpoint_1_p0.bin", "checkpoint_1_p1.bin"}) {
@@ -179,7 +179,7 @@ TEST(OutputDirectory, RemovesThePartsOfCheckpointsThatNobodyNames) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("checkpoint_1_p1.bin")));
 }
 
-TEST(OutputDirectory, RemovesALinkAndNotWhatItPointsTo) {
+TEST(OutputDirectory, LinkIsRemovedAndNotItsTarget) {
     const TemporaryFolder folder;
     const TemporaryFolder elsewhere;
     { const OutputDirectory first(folder.path("")); }
@@ -189,7 +189,7 @@ TEST(OutputDirectory, RemovesALinkAndNotWhatItPointsTo) {
     EXPECT_EQ(elsewhere.read("precious"), "x");
 }
 
-TEST(OutputDirectory, RefusesAMarkerThatIsNotOurs) {
+TEST(OutputDirectory, ForeignMarkerIsRefused) {
     const TemporaryFolder folder;
     (void)folder.write(kRunMarkerFile, "something else entirely");
     (void)folder.write("summary.json", "mine");
@@ -198,7 +198,7 @@ TEST(OutputDirectory, RefusesAMarkerThatIsNotOurs) {
     EXPECT_EQ(folder.read(kRunMarkerFile), "something else entirely");
 }
 
-TEST(OutputDirectory, BelongsToOneRunAtATime) {
+TEST(OutputDirectory, FolderBelongsToOneRunAtATime) {
     const TemporaryFolder folder;
     {
         const OutputDirectory first(folder.path(""));
@@ -209,7 +209,7 @@ TEST(OutputDirectory, BelongsToOneRunAtATime) {
     EXPECT_NO_THROW(OutputDirectory{folder.path("")});
 }
 
-TEST(OutputDirectory, SaysWhyItCannotBeWritten) {
+TEST(OutputDirectory, ErrorHasTheReasonWhyTheFolderCannotBeWritten) {
     if (::geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
     const TemporaryFolder folder;
     std::filesystem::permissions(folder.path(""),
@@ -229,7 +229,7 @@ namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
-TEST(RunInfo, ReadsBackWhatWasWritten) {
+TEST(RunInfo, WrittenInfoIsReadBack) {
     const TemporaryFolder folder;
     RunInfo info;
     info.version = "0.1.0";
@@ -250,7 +250,7 @@ TEST(RunInfo, ReadsBackWhatWasWritten) {
     EXPECT_EQ(read.colliders[0].material, 3U);
 }
 
-TEST(RunInfo, RefusesAnythingElse) {
+TEST(RunInfo, AnythingElseIsRefused) {
     const TemporaryFolder folder;
     for (const char* text : {"", "{}", "[1, 2", R"({"version": 1})",
                              R"({"version": "1", "scene": "s", "up": [0, 1], "camera": null, "colliders": []})"}) {
@@ -259,7 +259,7 @@ TEST(RunInfo, RefusesAnythingElse) {
     EXPECT_THROW((void)read_run_info(folder.path("none.json")), InputError);
 }
 
-TEST(RunFolder, ListsFramesByStepAndCollidersByIndex) {
+TEST(RunFolder, FramesAreListedByStepAndCollidersByIndex) {
     const TemporaryFolder folder;
     for (const char* name :
          {"particles_000010.vtp", "particles_000002.vtp", "particles_1000000.vtp", "collider_10_b.vtp",
@@ -284,7 +284,7 @@ std::string refusal_of(const std::filesystem::path& folder) {
     return "it was opened";
 }
 
-/// A run.json with a picture whose key names a file.
+/// Returns a run.json with a picture that has a file under this key.
 std::string with_picture(const std::string& key, const std::string& file) {
     RunInfo info;
     info.picture.emplace();
@@ -292,8 +292,8 @@ std::string with_picture(const std::string& key, const std::string& file) {
     return run_info_text(info);
 }
 
-// A stranger's folder opens nothing outside of itself.
-TEST(RunFolder, RefusesPicturesFilesWithOtherNamesThanItsOwn) {
+// A folder from an untrusted source must not make the reader open files outside of it.
+TEST(RunFolder, FilesOfPicturesWithOtherNamesAreRefused) {
     const test::TemporaryFolder folder;
     (void)folder.write(frame_file_name(1), "");
     for (const char* key : {"sprite", "mesh"}) {
@@ -312,7 +312,7 @@ TEST(RunFolder, RefusesPicturesFilesWithOtherNamesThanItsOwn) {
     }
 }
 
-TEST(RunFolder, RefusesLinksOutOfItAndPipesInPlaceOfItsFiles) {
+TEST(RunFolder, LinksOutOfTheFolderAndPipesAreRefused) {
     const test::TemporaryFolder elsewhere;
     (void)elsewhere.write("file", "");
     const std::string with_sprite = with_picture("sprite", "particle_sprite.png");
@@ -332,14 +332,14 @@ TEST(RunFolder, RefusesLinksOutOfItAndPipesInPlaceOfItsFiles) {
     }
 }
 
-TEST(RunFolder, FollowsLinksWithinIt) {
+TEST(RunFolder, LinksWithinTheFolderAreFollowed) {
     const test::TemporaryFolder folder;
     (void)folder.write(frame_file_name(1), "");
     std::filesystem::create_symlink(frame_file_name(1), folder.path(frame_file_name(2)));
     EXPECT_EQ(open_run_folder(folder.path("")).frames.size(), 2U);
 }
 
-TEST(RunFolder, RefusesAFolderWithoutFramesAndNoFolder) {
+TEST(RunFolder, FolderWithoutFramesAndMissingFolderAreRefused) {
     const TemporaryFolder folder;
     EXPECT_THROW((void)open_run_folder(folder.path("")), InputError);
     EXPECT_THROW((void)open_run_folder(folder.path("none")), InputError);

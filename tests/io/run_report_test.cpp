@@ -20,7 +20,7 @@ namespace RICOCHET_FILE {
 
 nlohmann::json parsed(const RunSummary& summary) { return nlohmann::json::parse(summary_text(summary)); }
 
-TEST(Summary, HoldsEveryKeyOfTheContract) {
+TEST(Summary, EveryKeyOfTheContractIsPresent) {
     const nlohmann::json json = parsed(RunSummary{});
     for (const char* key : {"version",
                             "scene",
@@ -82,7 +82,7 @@ TEST(Summary, LeaksAreANumberOnceTheRunHasBeenVerified) {
     EXPECT_EQ(of_verified.energy_violations, 0U);
 }
 
-TEST(Summary, SpeaksOfSpheresOnEachOtherOnlyWhereTheyMeet) {
+TEST(Summary, SphereContactsAppearOnlyIfTheyAreEnabled) {
     RunSummary summary;
     EXPECT_FALSE(parsed(summary).contains("pair_impacts"));
     EXPECT_FALSE(parsed(summary).contains("pair_violations"));
@@ -117,7 +117,7 @@ TEST(Summary, NumbersThatAreNotFiniteBecomeNull) {
     EXPECT_TRUE(parsed(summary)["kinetic_energy"].is_null());
 }
 
-TEST(Summary, NamesThatAreNoUtf8DoNotLoseTheRun) {
+TEST(Summary, NamesThatAreNotUtf8DoNotLoseTheRun) {
     RunSummary summary;
     summary.scene = "caf\xe9.json";
     summary.colliders = {{"floor", "plane", "collider_00_floor.vtp", 2, 7, {0, 0, -1.5}}};
@@ -149,7 +149,7 @@ TEST(StateCsv, ReadsBackToTheSameBitsInTheOrderOfTheIds) {
     ASSERT_EQ(rows.size(), 2001U);
     EXPECT_EQ(rows[0][1], "x");
     for (std::size_t row = 1; row < rows.size(); ++row) {
-        const std::size_t i = particles.size() - row;  // ids run against the order of the entries
+        const std::size_t i = particles.size() - row;  // ids are in reverse order of the entries
         ASSERT_EQ(rows[row].size(), rows[0].size());
         EXPECT_EQ(std::stoull(rows[row][0]), particles.id[i]);
         EXPECT_EQ(std::strtod(rows[row][1].c_str(), nullptr), particles.position[i].x);
@@ -158,7 +158,7 @@ TEST(StateCsv, ReadsBackToTheSameBitsInTheOrderOfTheIds) {
     }
 }
 
-TEST(StateCsv, FailsWithoutLeavingAnythingWhenTheFolderIsMissing) {
+TEST(StateCsv, MissingFolderFailsWithoutLeavingFiles) {
     const test::TemporaryFolder folder;
     EXPECT_THROW(write_state_csv(folder.path("none") / "state.csv", Particles{}, 0.0), RunError);
 }

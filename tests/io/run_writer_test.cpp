@@ -48,7 +48,7 @@ std::int64_t hits_of(const VtkPolyData& collider) {
     return std::accumulate(hits.begin(), hits.end(), std::int64_t{0});
 }
 
-TEST(RunWriter, LeavesFramesCollidersInfoAndSummary) {
+TEST(RunWriter, RunLeavesFramesCollidersInfoAndSummary) {
     const TemporaryFolder folder;
     SimulationSetup setup = falling_particles();
     const Box3 region = particle_region(setup);
@@ -80,7 +80,7 @@ TEST(RunWriter, LeavesFramesCollidersInfoAndSummary) {
     EXPECT_EQ(json["steps"], 10);
 }
 
-TEST(RunWriter, ARunThatJustBeganCanBeOpened) {
+TEST(RunWriter, RunThatJustBeganCanBeOpened) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles());
     RunWriter writer(folder.path(""), {}, simulation, {});
@@ -90,7 +90,7 @@ TEST(RunWriter, ARunThatJustBeganCanBeOpened) {
     EXPECT_FALSE(std::filesystem::exists(folder.path(kSummaryFile)));
 }
 
-TEST(RunWriter, TheFinalStateIsOneFrameEvenWhenItWasJustWritten) {
+TEST(RunWriter, FinalStateIsOneFrameEvenIfItWasJustWritten) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles());
     RunWriter writer(folder.path(""), {}, simulation, {});
@@ -99,7 +99,7 @@ TEST(RunWriter, TheFinalStateIsOneFrameEvenWhenItWasJustWritten) {
     EXPECT_EQ(writer.finish(simulation).frames, 1U);
 }
 
-TEST(RunWriter, CollidersHaveNoTotalsWhenTheSimulationKeepsNone) {
+TEST(RunWriter, CollidersHaveNoTotalsIfTheSimulationKeepsNone) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles(false));
     RunWriter writer(folder.path(""), {}, simulation, {});
@@ -113,7 +113,7 @@ TEST(RunWriter, CollidersHaveNoTotalsWhenTheSimulationKeepsNone) {
     }
 }
 
-// All files of a folder by their names.
+// Returns the contents of all files of a folder by name.
 std::map<std::string, std::string> files_of(const TemporaryFolder& folder) {
     std::map<std::string, std::string> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder.path(""))) {
@@ -123,7 +123,7 @@ std::map<std::string, std::string> files_of(const TemporaryFolder& folder) {
     return files;
 }
 
-TEST(RunWriter, WritesTheSameBytesInTheBackgroundAndAtOnce) {
+TEST(RunWriter, BackgroundAndSynchronousModesWriteTheSameBytes) {
     std::map<std::string, std::string> files[2];
     for (const auto mode : {WriterThread::Mode::background, WriterThread::Mode::synchronous}) {
         const TemporaryFolder folder;
@@ -147,7 +147,7 @@ TEST(RunWriter, WritesTheSameBytesInTheBackgroundAndAtOnce) {
     for (const auto& [name, bytes] : files[0]) EXPECT_EQ(bytes, files[1][name]) << name;
 }
 
-TEST(RunWriter, AFrameThatCannotBeWrittenEndsTheRunWithOneLineAlsoWhereNoFrameFollows) {
+TEST(RunWriter, FailedFrameEndsTheRunWithOneLineEvenWithoutLaterFrames) {
     for (const auto mode : {WriterThread::Mode::background, WriterThread::Mode::synchronous}) {
         const TemporaryFolder folder;
         Simulation simulation(falling_particles());
@@ -156,7 +156,7 @@ TEST(RunWriter, AFrameThatCannotBeWrittenEndsTheRunWithOneLineAlsoWhereNoFrameFo
         std::string message;
         try {
             writer.write_frame(simulation);
-            // However late the thread is with the frame: some step finds out.
+            // The thread may write the frame late, but some step reports the error.
             for (;;) writer.add_step(simulation);
         } catch (const RunError& error) {
             message = error.what();
@@ -168,7 +168,7 @@ TEST(RunWriter, AFrameThatCannotBeWrittenEndsTheRunWithOneLineAlsoWhereNoFrameFo
     }
 }
 
-TEST(RunWriter, ACheckpointNamesOnlyFramesThatAreCompleteOnDisk) {
+TEST(RunWriter, CheckpointNamesOnlyFramesThatAreCompleteOnDisk) {
     const TemporaryFolder folder;
     SimulationSetup setup = falling_particles();
     setup.options.record_contacts = true;
@@ -194,7 +194,7 @@ TEST(RunWriter, ACheckpointNamesOnlyFramesThatAreCompleteOnDisk) {
     }
 }
 
-TEST(RunWriter, AResumedRunCountsTheOutputBefore) {
+TEST(RunWriter, ResumedRunCountsTheEarlierOutput) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles());
     Checkpoint earlier;
@@ -203,8 +203,8 @@ TEST(RunWriter, AResumedRunCountsTheOutputBefore) {
     EXPECT_GT(writer.output_seconds(), 1000.0);
 }
 
-// A force that breaks down for one particle, one born with a velocity that is none, and one that is absurdly fast.
-TEST(RunWriter, AFrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
+// One particle has a force that fails, one is born with an invalid velocity, and one is extremely fast.
+TEST(RunWriter, FrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
     const TemporaryFolder folder;
     SimulationSetup setup = falling_particles();
     setup.particles.resize(4);
@@ -224,7 +224,7 @@ TEST(RunWriter, AFrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
     const RunSummary summary = writer.finish(simulation);
     writer.write_summary(summary);
     EXPECT_EQ(summary.statistics.frozen, 3U);
-    EXPECT_EQ(summary.kinetic_energy, 2.0);  // of the one particle that still flies
+    EXPECT_EQ(summary.kinetic_energy, 2.0);  // energy of the only flying particle
     const auto json = nlohmann::json::parse(folder.read(kSummaryFile));
     EXPECT_EQ(json["frozen"], 3);
     EXPECT_EQ(json["kinetic_energy"], 2.0);
@@ -236,7 +236,7 @@ TEST(RunWriter, AFrozenParticleIsCountedMarkedAndLeftOutOfTheEnergy) {
     EXPECT_EQ(frozen_in(10), (std::vector<std::uint8_t>{0, 1, 1, 1}));
 }
 
-TEST(RunWriter, EveryFrameOfASceneWithSpheresHasTheirSpinAlsoBeforeTheFirstIsBorn) {
+TEST(RunWriter, FramesOfASceneWithSpheresAlwaysHaveTheirSpin) {
     for (const double radius : {0.0, 0.05}) {
         const TemporaryFolder folder;
         SimulationSetup setup = falling_particles();
@@ -261,7 +261,7 @@ TEST(RunWriter, EveryFrameOfASceneWithSpheresHasTheirSpinAlsoBeforeTheFirstIsBor
     }
 }
 
-TEST(ParticleRegion, HoldsParticlesEmittersAndBounds) {
+TEST(ParticleRegion, RegionContainsParticlesEmittersAndBounds) {
     SimulationSetup setup;
     EXPECT_TRUE(particle_region(setup).empty());
     Particle particle;
@@ -290,7 +290,7 @@ TEST(RunInfo, UpIsAgainstGravityAlongTheNearestAxis) {
     EXPECT_EQ(run_info_of(scene).camera->field_of_view_degrees, 40.0);
 }
 
-// A plate that falls, and an infinite floor, which is drawn as large as the scene is at its begin.
+// Returns a falling plate and an infinite floor. The floor is drawn as large as the scene is at the start.
 SimulationSetup falling_plate() {
     SimulationSetup setup = falling_particles();
     FrameDescription frame;
@@ -306,7 +306,7 @@ SimulationSetup falling_plate() {
     return setup;
 }
 
-TEST(RunWriter, AResumedRunDrawsPlanesAsLargeAsOneThatWasNeverInterrupted) {
+TEST(RunWriter, ResumedRunDrawsPlanesAsLargeAsAnUninterruptedOne) {
     const TemporaryFolder whole;
     const TemporaryFolder resumed;
     SimulationSetup setup = falling_plate();
@@ -331,8 +331,8 @@ TEST(RunWriter, AResumedRunDrawsPlanesAsLargeAsOneThatWasNeverInterrupted) {
     EXPECT_EQ(read_vtp(resumed.path(floor)).points, read_vtp(whole.path(floor)).points);
 }
 
-// Whoever is killed right after the files behind a checkpoint were removed leaves lists without them.
-TEST(RunWriter, ListsTheFilesThatAreKeptBeforeOthersAreRemoved) {
+// A run that is killed right after removing the files after a checkpoint must leave lists without them.
+TEST(RunWriter, KeptFilesAreListedBeforeOthersAreRemoved) {
     const TemporaryFolder folder;
     (void)folder.write(kParticleSeriesFile, pvd_text({{0.0, 0, frame_file_name(0)}, {1.0, 0, frame_file_name(10)}}));
     Checkpoint checkpoint;
@@ -342,7 +342,7 @@ TEST(RunWriter, ListsTheFilesThatAreKeptBeforeOthersAreRemoved) {
     EXPECT_FALSE(std::filesystem::exists(folder.path(kContactSeriesFile)));
 }
 
-TEST(Checkpoint, DoesNotWaitForAPipeInPlaceOfAPart) {
+TEST(Checkpoint, PipeInPlaceOfAPartDoesNotBlock) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles());
     Checkpoint checkpoint;
@@ -358,7 +358,7 @@ TEST(Checkpoint, DoesNotWaitForAPipeInPlaceOfAPart) {
     }
 }
 
-TEST(Checkpoint, ListsFilesOfARunOnly) {
+TEST(Checkpoint, OnlyFilesOfARunAreListed) {
     const TemporaryFolder folder;
     Simulation simulation(falling_particles());
     for (const char* name : {"../particles_000001.vtp", "/etc/passwd", "contacts_000001.vtp"}) {

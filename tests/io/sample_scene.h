@@ -1,5 +1,5 @@
 /// \file
-/// A scene that uses every key of the format, for tests that spoil it.
+/// A scene with every key of the format. Tests modify it to provoke errors.
 #pragma once
 
 #include <string>

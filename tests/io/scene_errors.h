@@ -1,5 +1,5 @@
 /// \file
-/// What a scene's text is refused for.
+/// Errors of a scene's text.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace ricochet::test {
 
 using Lines = std::vector<std::string>;
 
-/// The errors of a scene, as path and sentence; empty for a good one.
+/// Returns the errors of a scene, as path and sentence; empty for a valid one.
 [[nodiscard]] inline Lines errors_of(const std::string& scene) {
     try {
         (void)parse_scene(scene, "s.json");

@@ -14,7 +14,7 @@ std::uint64_t of(const std::string& text, const std::vector<std::string>& overri
     return forces_fingerprint(text, overrides);
 }
 
-TEST(ForcesFingerprint, IsThatOfTheForcesAloneHoweverTheyAreWritten) {
+TEST(ForcesFingerprint, FingerprintDependsOnTheForcesAndNotOnTheirSpelling) {
     const std::uint64_t gravity = of(R"({"forces": [{"type": "gravity", "acceleration": [0, 0, -9]}]})");
     EXPECT_EQ(of(R"({"simulation": {"duration": 7},
                      "forces": [{"acceleration": [0.0, 0, -9e0], "type": "gravity"}], "flows": {}})"),
@@ -22,7 +22,7 @@ TEST(ForcesFingerprint, IsThatOfTheForcesAloneHoweverTheyAreWritten) {
     EXPECT_EQ(of("{}"), of(R"({"forces": [], "particle_forces": []})"));
 }
 
-TEST(ForcesFingerprint, DiffersWhereAForceOrAFlowDoes) {
+TEST(ForcesFingerprint, FingerprintChangesWithAForceOrAFlow) {
     const std::string one = R"({"forces": [{"type": "gravity", "acceleration": [0, 0, -9]}]})";
     EXPECT_NE(of(one), of("{}"));
     EXPECT_NE(of(one), of(one, {"forces[0].acceleration=[0, 0, -8]"}));
@@ -32,7 +32,7 @@ TEST(ForcesFingerprint, DiffersWhereAForceOrAFlowDoes) {
               of(R"({"flows": {"wind": {"type": "uniform", "velocity": [2, 0, 0]}}})"));
 }
 
-TEST(ForcesFingerprint, RefusesWhatIsNoJson) { EXPECT_THROW((void)of("{"), InputError); }
+TEST(ForcesFingerprint, InvalidJsonIsRefused) { EXPECT_THROW((void)of("{"), InputError); }
 
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// The schema, the reference and the reader say the same.
+// Checks that the schema, the reference and the reader agree.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ const Json& schema() {
     return parsed;
 }
 
-// What the reader's table of keys finds wrong (files and names are not checked).
+// Returns the errors that the reader's table of keys finds. Files and names are not checked.
 Lines reader_errors(const Json& scene) {
     detail::Diagnostics diagnostics("s.json", {});
     auto root = detail::parse_json(scene.dump(), diagnostics);
@@ -47,7 +47,7 @@ Lines reader_errors(const Json& scene) {
     return diagnostics.errors();
 }
 
-// The one rule that a schema cannot state: mean - spread has a range of its own.
+// Returns true if the errors are only about mean - spread, whose own range is the one rule that a schema cannot state.
 bool only_about_low_ends(const Lines& errors) {
     return std::all_of(errors.begin(), errors.end(),
                        [](const std::string& line) { return line.find(", so down to ") != std::string::npos; });
@@ -63,18 +63,18 @@ void expect_agreement(const Json& document) {
                                                    << scene.dump();
 }
 
-TEST(SceneSchema, TheCommittedFileIsWhatTheReadersTableGives) {
+TEST(SceneSchema, CommittedFileMatchesTheReadersTable) {
     EXPECT_TRUE(file_text("docs/scene.schema.json") == scene_schema())
         << "ricochet schema > docs/scene.schema.json brings it up to date";
 }
 
-TEST(SceneSchema, TheCommittedReferenceIsWhatTheReadersTableGives) {
+TEST(SceneSchema, CommittedReferenceMatchesTheReadersTable) {
     EXPECT_TRUE(file_text("docs/scene-format.md") == scene_reference())
         << "ricochet schema --markdown > docs/scene-format.md brings it up to date";
 }
 
-// Every key of the format stands in one of these. Each force and each flow has a scene of its own: the schema checks
-// all of a scene for every value that is spoiled in it.
+// Returns scenes that together contain every key of the format. Each force and each flow has its own scene, because the
+// schema checks the whole scene for every modified value.
 std::vector<Json> samples() {
     std::vector<Json> scenes = {Json::parse(test::kSampleScene), Json::parse(test::kFrameScene)};
     scenes.push_back(Json::parse(R"({"ricochet": 1, "simulation": {"motion": "flow", "walls": "stop",
@@ -103,7 +103,7 @@ std::vector<Json> samples() {
     return scenes;
 }
 
-TEST(SceneSchema, TheSamplesConform) {
+TEST(SceneSchema, SamplesConform) {
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kEmitterScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kForceScene)), Lines{});
     EXPECT_EQ(schema_errors(schema(), Json::parse(test::kParticleForcesScene)), Lines{});
@@ -111,7 +111,7 @@ TEST(SceneSchema, TheSamplesConform) {
     for (const Json& sample : samples()) EXPECT_EQ(schema_errors(schema(), sample), Lines{});
 }
 
-TEST(SceneSchema, TheExampleOfTheReferenceConformsAndIsRead) {
+TEST(SceneSchema, ExampleOfTheReferenceConformsAndIsRead) {
     const std::string page = scene_reference();
     const std::size_t begin = page.find("    {\n");
     const std::size_t end = page.find("    }\n", begin) + 6;
@@ -151,7 +151,7 @@ TEST(SceneSchema, EveryDefaultConformsToItsOwnKey) {
     EXPECT_GT(defaults, 20);
 }
 
-// Pointers to every value of a document.
+// Returns pointers to every value of a document.
 std::vector<Json::json_pointer> pointers_in(const Json& document) {
     std::vector<Json::json_pointer> pointers;
     const Json flat = document.flatten();
@@ -165,7 +165,7 @@ std::vector<Json::json_pointer> pointers_in(const Json& document) {
 }
 
 void expect_agreement_on_replaced_values(const Json& sample, const std::vector<Json>& values) {
-    // All of them, or every so many where each one costs more.
+    // Tries all values, or every n-th one in slow builds.
     const auto stride = static_cast<std::size_t>(50 / scaled(50));
     std::size_t tried = 0;
     for (const Json::json_pointer& pointer : pointers_in(sample)) {
@@ -220,11 +220,11 @@ const std::vector<Json>& spoiling_values() {
     return values;
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValue) {
+TEST(SceneSchema, SchemaAgreesWithTheReaderOnEveryReplacedValue) {
     expect_agreement_on_replaced_values(samples().front(), spoiling_values());
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryReplacedValueOfForcesAndFlows) {
+TEST(SceneSchema, SchemaAgreesWithTheReaderOnEveryReplacedValueOfForcesAndFlows) {
     const std::vector<Json> scenes = samples();
     for (std::size_t i = 1; i < scenes.size(); ++i) expect_agreement_on_replaced_values(scenes[i], spoiling_values());
 }
@@ -250,7 +250,7 @@ void expect_agreement_on_changed_keys(const Json& sample) {
     }
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnEveryRemovedOrRenamedOrAddedKey) {
+TEST(SceneSchema, SchemaAgreesWithTheReaderOnEveryRemovedRenamedOrAddedKey) {
     for (const Json& sample : samples()) expect_agreement_on_changed_keys(sample);
 }
 
@@ -273,13 +273,13 @@ void expect_agreement_on_random_changes(const Json& sample) {
     }
 }
 
-TEST(SceneSchema, AgreesWithTheReaderOnRandomlySpoiledScenes) {
+TEST(SceneSchema, SchemaAgreesWithTheReaderOnRandomlyModifiedScenes) {
     for (const char* sample : {test::kSampleScene, test::kForceScene, test::kEmitterScene, test::kSpringScene}) {
         expect_agreement_on_random_changes(Json::parse(sample));
     }
 }
 
-TEST(SchemaValidator, SeesWhatItIsThereFor) {
+TEST(SchemaValidator, EveryKeywordIsChecked) {
     const Json rules = Json::parse(R"({"type": "object", "properties": {"a": {"type": "integer", "minimum": 1}},
                                        "required": ["a"], "additionalProperties": false})");
     EXPECT_EQ(schema_errors(rules, {{"a", 1}}), Lines{});

@@ -20,7 +20,7 @@ using test::SampleFolder;
 using test::scaled;
 using Lines = std::vector<std::string>;
 
-// All errors of a scene text, without the folder's name.
+// Returns all errors of a scene text, without the folder's name.
 Lines errors_of(const SampleFolder& folder, std::string_view text, const Lines& overrides = {}) {
     try {
         (void)parse_scene(text, folder.path("s.json"), overrides);
@@ -38,7 +38,7 @@ Lines errors_of(const SampleFolder& folder, std::string_view text, const Lines& 
     }
 }
 
-// The sample with one text replaced; the text must be there.
+// Returns the sample with one text replaced. The text must be present.
 std::string sample_with(std::string_view old_text, std::string_view new_text) {
     std::string scene = kSampleScene;
     const std::size_t at = scene.find(old_text);
@@ -46,7 +46,7 @@ std::string sample_with(std::string_view old_text, std::string_view new_text) {
     return scene.replace(at, old_text.size(), new_text);
 }
 
-// A scene of one line with the given members after the version.
+// Returns a scene of one line with the given members after the version.
 std::string scene_of(const std::string& members) {
     return "{\"ricochet\": 1" + (members.empty() ? "" : ", " + members) + "}";
 }
@@ -127,7 +127,7 @@ TEST(Scene, ReadsEmittersAndParticles) {
     EXPECT_EQ(scene.setup.particles[1].position, (Vec3{0, 0, 2}));
 }
 
-TEST(Scene, AMeshEmitterStandsExactlyWhereItsColliderStands) {
+TEST(Scene, MeshEmitterIsExactlyAtItsCollidersPosition) {
     const SampleFolder folder;
     SceneDescription scene = parse_scene(kSampleScene, folder.path("s.json"));
     const auto emitter = std::get<MeshSurfaceShape>(scene.setup.emitters[4].shape).mesh;
@@ -138,7 +138,7 @@ TEST(Scene, AMeshEmitterStandsExactlyWhereItsColliderStands) {
     EXPECT_EQ(emitter->triangles, collider->triangles);
 }
 
-TEST(Scene, AMeshThatIsUsedTwiceIsReadOnce) {
+TEST(Scene, MeshThatIsUsedTwiceIsReadOnce) {
     const SampleFolder folder;
     const SceneDescription scene = parse_scene(
         scene_of(R"("colliders": [{"type": "mesh", "file": "rock.obj"}, {"type": "mesh", "file": "./x/../rock.obj"}],
@@ -148,7 +148,7 @@ TEST(Scene, AMeshThatIsUsedTwiceIsReadOnce) {
               std::get<MeshShape>(scene.setup.colliders[1].shape).mesh);
 }
 
-TEST(Scene, DefaultsAreTheLibrarys) {
+TEST(Scene, DefaultsMatchTheLibrary) {
     const SampleFolder folder;
     const SceneDescription scene =
         parse_scene(scene_of(R"("emitters": [{"type": "point"}], "particles": [{"position": [1, 2, 3]}],
@@ -185,7 +185,7 @@ TEST(Scene, DefaultsAreTheLibrarys) {
     EXPECT_FALSE(scene.camera->up.has_value());
 }
 
-TEST(Scene, ReadsHowTheMaterialOfASurfaceMoves) {
+TEST(Scene, SurfaceMotionOfAMaterialIsRead) {
     const auto scene = [](const std::string& material) {
         return parse_scene(scene_of(R"("materials": {"belt": )" + material + R"(},
             "particles": [{"position": [0, 0, 1]}],
@@ -205,7 +205,7 @@ TEST(Scene, ReadsHowTheMaterialOfASurfaceMoves) {
     EXPECT_THROW((void)scene(R"({"friction": 1, "surface_motion": {"velocity": [3e8, 0, 0]}})"), InputError);
 }
 
-TEST(Scene, ACollidersWithoutAMaterialIsPerfectlyElastic) {
+TEST(Scene, ColliderWithoutAMaterialIsPerfectlyElastic) {
     const SampleFolder folder;
     const SceneDescription scene = parse_scene(scene_of(R"("materials": {"rubber": {"restitution": 0.5}},
                     "colliders": [{"type": "plane", "normal": [0, 0, 1]}, {"type": "plane", "normal": [0, 0, 1]},
@@ -234,8 +234,8 @@ TEST(Scene, ReadsParticlesFromATable) {
               (Lines{"s.json:1:39: particles.file: start.csv:2: found \"a\" in column \"z\", expected a number (m)"}));
 }
 
-// A run may be resumed where its fingerprint is the same.
-TEST(Scene, HasAFingerprintOfEverythingThatDecidesTheRun) {
+// A run may be resumed if its fingerprint is unchanged.
+TEST(Scene, FingerprintCoversEverythingThatAffectsTheRun) {
     const SampleFolder folder;
     (void)folder.write("start.csv", "x,y,z\n1,2,3\n");
     const std::string members = R"("colliders": [{"type": "mesh", "file": "rock.obj"}],
@@ -264,7 +264,7 @@ struct Spoiled {
     const char* error;
 };
 
-// What is wrong, and the one line that says so.
+// A wrong member, and the one line that reports it.
 const std::vector<Spoiled> kSpoiled = {
     // types
     {R"("simulation": [])", "s.json:1:31: simulation: found an empty list, expected an object {...} (simulation)"},
@@ -381,13 +381,13 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:57: simulation.penalty.stiffness: found 0, expected a number > 0 (N/m)"},
     {R"("simulation": {"rollback": {"time_tolerance": -1e-9}})",
      "s.json:1:63: simulation.rollback.time_tolerance: found -1e-09, expected a number > 0 (s)"},
-    // part of the format, not built
+    // part of the format, but not built
     {R"("particles": {"file": "a.vtp"})",
      "s.json:1:39: particles.file: a .vtp file of particles is part of the scene format but not built in this "
      "version, expected a .csv file"},
 };
 
-TEST(Scene, SaysWhatIsWrongWhereAndWhatWasExpected) {
+TEST(Scene, ErrorNamesTheFaultItsLocationAndTheExpectation) {
     const SampleFolder folder;
     for (const Spoiled& spoiled : kSpoiled) {
         EXPECT_EQ(errors_of(folder, scene_of(spoiled.members)), (Lines{spoiled.error})) << spoiled.members;
@@ -399,7 +399,7 @@ constexpr const char* kGroupedMesh =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\ng left side\nf 2 3 4\nusemtl rubber part\nf 3 1 4\ng lid\n"
     "f 1 2 3\n";
 
-// The grouped mesh as a collider with the given members.
+// Returns a scene with the grouped mesh as a collider with the given members.
 std::string grouped_scene(const std::string& members) {
     return scene_of(R"("materials": {"rubber": {}, "steel": {}, "ice": {}},
         "colliders": [{"type": "mesh", "file": "grouped.obj", "material": "steel", )" +
@@ -414,7 +414,7 @@ Lines material_names(const SceneDescription& scene) {
     return names;
 }
 
-TEST(SceneGroupMaterials, GiveEveryTriangleTheMaterialOfItsGroup) {
+TEST(SceneGroupMaterials, EveryTriangleHasTheMaterialOfItsGroup) {
     const SampleFolder folder;
     (void)folder.write("grouped.obj", kGroupedMesh);
     const auto names = [&](const std::string& members, const Lines& overrides = {}) {
@@ -422,7 +422,7 @@ TEST(SceneGroupMaterials, GiveEveryTriangleTheMaterialOfItsGroup) {
     };
     EXPECT_EQ(names(R"("group_materials": {"rubber part": "rubber"})"),
               (Lines{"steel", "steel", "steel", "rubber", "rubber"}));
-    // usemtl comes before g, a whole line before its words
+    // usemtl takes precedence over g, and a whole line over its words
     EXPECT_EQ(names(R"("group_materials": {"rubber part": "rubber", "lid": "ice", "side": "ice"})"),
               (Lines{"steel", "steel", "ice", "rubber", "rubber"}));
     EXPECT_EQ(names(R"("group_materials": {"lid": "ice", "left side": "rubber", "left": "ice"})"),
@@ -434,8 +434,8 @@ TEST(SceneGroupMaterials, GiveEveryTriangleTheMaterialOfItsGroup) {
               (Lines{"steel", "steel", "steel", "steel", "ice"}));
 }
 
-// Two balls fall on the two halves of a plate: one half gives everything back, the other nothing.
-TEST(SceneGroupMaterials, DecideHowParticlesBounceOffThatPart) {
+// Two balls fall on the two halves of a plate. One half has restitution 1, the other 0.
+TEST(SceneGroupMaterials, ParticlesBounceByTheMaterialOfThePart) {
     const SampleFolder folder;
     (void)folder.write("plate.obj",
                        "v -1 -1 0\nv 0 -1 0\nv 0 1 0\nv -1 1 0\nv 1 -1 0\nv 1 1 0\n"
@@ -454,19 +454,19 @@ TEST(SceneGroupMaterials, DecideHowParticlesBounceOffThatPart) {
     EXPECT_NEAR(simulation.particles().position[1].z, 0.0, 1e-14);
 }
 
-TEST(SceneGroupMaterials, CountAsUseOfAMaterialAndAnEntryWithoutEffectIsAWarning) {
+TEST(SceneGroupMaterials, GroupsCountAsUseOfAMaterialAndUnusedEntriesGiveAWarning) {
     const SampleFolder folder;
     (void)folder.write("grouped.obj", kGroupedMesh);
     const SceneDescription scene = parse_scene(
         grouped_scene(R"("group_materials": {"rubber part": "rubber", "lid": "ice"})"), folder.path("s.json"));
-    ASSERT_EQ(scene.warnings.size(), 2U);  // the other one: nothing will move
+    ASSERT_EQ(scene.warnings.size(), 2U);  // the other warning: nothing will move
     EXPECT_TRUE(scene.warnings[1].ends_with(
         "s.json:2:129: colliders[0].group_materials.lid: no triangle takes this material: all faces of the group also "
         "have a name that comes before (material before group before object)"))
         << scene.warnings[1];
 }
 
-TEST(SceneGroupMaterials, RefuseNamesThatAreNotThereWithTheNearest) {
+TEST(SceneGroupMaterials, MissingNamesAreRefusedWithTheNearest) {
     const SampleFolder folder;
     (void)folder.write("grouped.obj", kGroupedMesh);
     const auto error = [&](const std::string& members) {
@@ -487,7 +487,7 @@ TEST(SceneGroupMaterials, RefuseNamesThatAreNotThereWithTheNearest) {
               "colliders[0].group_materials: found \"lid\", expected an object {\"name\": \"text\"}");
 }
 
-TEST(SceneGroupMaterials, RefuseMeshesThatHaveNoGroups) {
+TEST(SceneGroupMaterials, MeshesWithoutGroupsAreRefused) {
     const SampleFolder folder;
     (void)folder.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     (void)folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
@@ -505,13 +505,13 @@ TEST(SceneGroupMaterials, RefuseMeshesThatHaveNoGroups) {
     EXPECT_EQ(error("none.obj").size(), 1U);
 }
 
-TEST(Scene, TheVersionMustBeThereAndKnown) {
+TEST(Scene, VersionMustBePresentAndKnown) {
     const SampleFolder folder;
     EXPECT_EQ(errors_of(folder, "{}"), (Lines{"s.json:1:1: ricochet: missing, expected 1"}));
     EXPECT_EQ(errors_of(folder, "{\"ricochet\": 2}"), (Lines{"s.json:1:14: ricochet: found 2, expected 1"}));
 }
 
-TEST(Scene, ReportsAllErrorsOfASceneAtOnceInTheOrderOfTheirLocations) {
+TEST(Scene, AllErrorsOfASceneAreReportedInTheOrderOfTheirLocations) {
     const SampleFolder folder;
     const Lines errors = errors_of(folder, R"({"ricochet": 1,
         "simulation": {"time_step": -1, "durtion": "x"},
@@ -533,7 +533,7 @@ TEST(Scene, ReportsAllErrorsOfASceneAtOnceInTheOrderOfTheirLocations) {
                       }));
 }
 
-TEST(Scene, AMeshErrorKeepsTheReadersFileAndLine) {
+TEST(Scene, MeshErrorKeepsTheReadersFileAndLine) {
     const SampleFolder folder;
     (void)folder.write("bad.obj", "v 0 0 0\nv 1 0 0\nf 1 2 7\n");
     const Lines errors = errors_of(folder, scene_of(R"("colliders": [{"type": "mesh", "file": "bad.obj"}])"));
@@ -541,7 +541,7 @@ TEST(Scene, AMeshErrorKeepsTheReadersFileAndLine) {
     EXPECT_EQ(errors[0].rfind("s.json:1:56: colliders[0].file: bad.obj:3: ", 0), 0U) << errors[0];
 }
 
-TEST(Scene, TenErrorsAreEnough) {
+TEST(Scene, ErrorsEndAfterTen) {
     const SampleFolder folder;
     std::string text;
     for (int i = 0; i < 1000; ++i) text += (i == 0 ? "\"k" : ",\"k") + std::to_string(1000000 + i) + "\": 0";
@@ -550,7 +550,7 @@ TEST(Scene, TenErrorsAreEnough) {
     EXPECT_EQ(errors.back(), "... and 990 more of this file");
 }
 
-// One edit of a word: a swap of neighbours, a letter more, less or another.
+// Makes one edit of a word: swaps neighbours, or adds, removes or replaces a letter.
 std::string misspelt(const std::string& word, RandomSequence& random) {
     const auto below = [&](std::size_t n) {
         return static_cast<std::size_t>(random.uniform() * static_cast<double>(n));
@@ -574,7 +574,7 @@ std::string misspelt(const std::string& word, RandomSequence& random) {
     return result;
 }
 
-// Every key of the sample, but not the names that the user chooses.
+// Returns every key of the sample, except the names that the user chooses.
 std::vector<std::pair<std::size_t, std::string>> keys_of_the_sample() {
     const std::string scene = kSampleScene;
     std::vector<std::pair<std::size_t, std::string>> keys;
@@ -586,7 +586,7 @@ std::vector<std::pair<std::size_t, std::string>> keys_of_the_sample() {
     return keys;
 }
 
-TEST(Scene, AnyMisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
+TEST(Scene, MisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
     const SampleFolder folder;
     const auto keys = keys_of_the_sample();
     ASSERT_GT(keys.size(), 60U);
@@ -610,7 +610,7 @@ TEST(Scene, AnyMisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
     EXPECT_GT(tried, scaled(2000) * 3 / 4 - 5);
 }
 
-TEST(Scene, WarnsAboutWhatDoesNothing) {
+TEST(Scene, KeysWithoutEffectGiveAWarning) {
     const SampleFolder folder;
     const auto warnings = [&](const std::string& members) {
         Lines lines = parse_scene(scene_of(members), folder.path("s.json")).warnings;
@@ -628,7 +628,7 @@ TEST(Scene, WarnsAboutWhatDoesNothing) {
               (Lines{"s.json:1:82: particles: 1 of 1 start outside the bounds and are retired at once"}));
 }
 
-TEST(SceneOverride, ChangesValuesBeforeAnythingIsChecked) {
+TEST(SceneOverride, ValuesAreChangedBeforeAnythingIsChecked) {
     const SampleFolder folder;
     const SceneDescription scene =
         parse_scene(sample_with("\"time_step\": 0.01", "\"time_step\": -1"), folder.path("s.json"),
@@ -643,7 +643,7 @@ TEST(SceneOverride, ChangesValuesBeforeAnythingIsChecked) {
     EXPECT_EQ(scene.output.every, 7U);
 }
 
-TEST(SceneOverride, AddsKeysThatAreNotThere) {
+TEST(SceneOverride, MissingKeysAreAdded) {
     const SampleFolder folder;
     const SceneDescription scene = parse_scene(scene_of(""), folder.path("s.json"), {"simulation.seed=5"});
     EXPECT_EQ(scene.setup.options.seed, 5U);
@@ -682,7 +682,7 @@ TEST(SceneOverride, ErrorsNameTheArgumentAndThePath) {
     }
 }
 
-TEST(Scene, DamagedBytesAreReadOrRefusedInGoodOrder) {
+TEST(Scene, DamagedBytesAreReadOrRefusedCleanly) {
     const SampleFolder folder;
     RandomSequence random(9, 0, 0);
     const auto below = [&](std::size_t n) {
@@ -715,7 +715,7 @@ TEST(Scene, DamagedBytesAreReadOrRefusedInGoodOrder) {
     EXPECT_GT(refused, scaled(1000) / 2);
 }
 
-TEST(SceneFile, RefusesWhatIsNoSceneFile) {
+TEST(SceneFile, RefusesEverythingButSceneFiles) {
     const SampleFolder folder;
     const auto message = [](const std::filesystem::path& path) -> std::string {
         try {

@@ -25,7 +25,7 @@ std::string sample_with(std::string_view old_text, std::string_view new_text) {
     return scene.replace(at, old_text.size(), new_text);
 }
 
-// The only error, from its path on.
+// Returns the only error, beginning with its path.
 std::string error_of(const std::string& text) {
     try {
         (void)scene_of(text);
@@ -44,7 +44,7 @@ constexpr std::size_t kChain = 7;
 constexpr std::size_t kCloth = 11;
 constexpr std::size_t kSheet = 15;
 
-TEST(SpringScene, PutsTheParticlesOfBodiesBehindTheExplicitOnes) {
+TEST(SpringScene, ParticlesOfBodiesFollowTheExplicitOnes) {
     const auto setup = scene_of().setup;
     ASSERT_EQ(setup.particles.size(), 21U);
     EXPECT_TRUE(setup.particles[0].pinned);
@@ -53,19 +53,20 @@ TEST(SpringScene, PutsTheParticlesOfBodiesBehindTheExplicitOnes) {
     EXPECT_EQ(setup.particles[kRope].position, (Vec3{0, 0, 1}));
     EXPECT_EQ(setup.particles[kChain].position, (Vec3{0, 5, 1}));
     EXPECT_EQ(setup.particles[kSheet].position, (Vec3{9, 0, 0}));
-    // Rope 4, chain 3, cloth 5 edges and one across, sheet 9, and two single ones at the end.
+    // The rope has 4 springs, the chain 3, the cloth 5 edges and one diagonal, the sheet 9. Two single ones follow at
+    // the end.
     ASSERT_EQ(setup.springs.size(), 24U);
     EXPECT_EQ(setup.springs[0].first, kRope);
     EXPECT_EQ(setup.springs[4].first, kChain);
     EXPECT_EQ(setup.spring_faces.size(), 6U);
 }
 
-TEST(SpringScene, SingleSpringsJoinAnyParticles) {
+TEST(SpringScene, SingleSpringsMayJoinAnyParticles) {
     const auto setup = scene_of().setup;
     const Spring& first = setup.springs[22];
     EXPECT_EQ(first.first, 0U);
     EXPECT_EQ(first.second, 1U);
-    EXPECT_EQ(first.rest_length, 2.0);  // as they stand
+    EXPECT_EQ(first.rest_length, 2.0);  // the initial distance
     EXPECT_EQ(first.stiffness, 30.0);
     EXPECT_EQ(first.damping, 0.0);
     EXPECT_TRUE(std::isinf(first.breaking_stretch));
@@ -76,7 +77,7 @@ TEST(SpringScene, SingleSpringsJoinAnyParticles) {
     EXPECT_EQ(second.breaking_stretch, 2.0);
 }
 
-TEST(SpringScene, RopesHangWithTheForcesUnlessToldOtherwise) {
+TEST(SpringScene, RopesHangWithTheForcesByDefault) {
     const auto setup = scene_of().setup;
     EXPECT_EQ(setup.springs[0].rest_length, 1.5);
     EXPECT_EQ(setup.springs[0].stiffness, 100.0);
@@ -91,7 +92,7 @@ TEST(SpringScene, RopesHangWithTheForcesUnlessToldOtherwise) {
     EXPECT_GT(upward.particles[kRope + 2].position.z, 2.0);
 }
 
-TEST(SpringScene, ChainsAreGivenByTheirLinks) {
+TEST(SpringScene, LinksDefineChains) {
     const auto setup = scene_of().setup;
     for (std::size_t i = 4; i < 7; ++i) {
         EXPECT_EQ(setup.springs[i].rest_length, 1.0);
@@ -101,7 +102,7 @@ TEST(SpringScene, ChainsAreGivenByTheirLinks) {
     EXPECT_FALSE(setup.particles[kChain + 3].pinned);
 }
 
-TEST(SpringScene, ClothStandsWhereItIsPlacedWithItsMassByArea) {
+TEST(SpringScene, ClothIsAtItsPlacementWithItsMassByArea) {
     const auto setup = scene_of().setup;
     double mass = 0.0;
     for (std::size_t i = 0; i < 4; ++i) mass += setup.particles[kCloth + i].mass;
@@ -111,7 +112,7 @@ TEST(SpringScene, ClothStandsWhereItIsPlacedWithItsMassByArea) {
     EXPECT_EQ(setup.springs[7].stiffness, 70.0);
     EXPECT_EQ(setup.springs[7].rest_length, 2.0);
     EXPECT_EQ(setup.springs[12].stiffness, 7.0);
-    // 0 and 3 by number, 1 by the box.
+    // Vertices 0 and 3 are pinned by number, 1 by the box.
     EXPECT_TRUE(setup.particles[kCloth].pinned);
     EXPECT_TRUE(setup.particles[kCloth + 1].pinned);
     EXPECT_FALSE(setup.particles[kCloth + 2].pinned);
@@ -126,7 +127,7 @@ TEST(SpringScene, SheetsNeedNoFile) {
     EXPECT_EQ(setup.particles[20].position, (Vec3{11, 1, 0}));
 }
 
-TEST(SpringScene, SimulationsGetTheNetworkBoundToTheirParticles) {
+TEST(SpringScene, SimulationBindsTheNetworkToItsParticles) {
     const Simulation simulation(std::move(scene_of().setup));
     EXPECT_EQ(simulation.springs().bonds().size(), 24U);
     EXPECT_EQ(simulation.springs().lost(), 0U);
@@ -134,7 +135,7 @@ TEST(SpringScene, SimulationsGetTheNetworkBoundToTheirParticles) {
     EXPECT_EQ(simulation.spring_faces().size(), 6U);
 }
 
-TEST(SpringScene, NamesWhatIsWrongByItsPath) {
+TEST(SpringScene, ErrorsHaveTheirPath) {
     EXPECT_EQ(error_of(sample_with("\"second\": 2", "\"second\": 99")),
               "springs[0].springs[1].second: there is no particle 99, the scene has 21 from the start (numbered from "
               "0)");
@@ -162,7 +163,7 @@ TEST(SpringScene, NamesWhatIsWrongByItsPath) {
     EXPECT_NE(error_of(sample_with("\"mass_per_area\": 3, ", "")).find("springs[4]"), std::string::npos);
 }
 
-TEST(SpringScene, RefusesClothWithVerticesThatHangOnNothing) {
+TEST(SpringScene, ClothWithUnconnectedVerticesIsRefused) {
     const SpringSceneFolder folder;
     (void)folder.write("flag.obj", std::string(test::kFlag) + "v 7 7 7\n");
     try {

@@ -21,7 +21,7 @@ namespace RICOCHET_FILE {
 using test::TemporaryFolder;
 using Names = std::vector<std::string>;
 
-/// Two squares at height 0, a left one of x < 0 and a right one of x > 0, and a triangle far away that has no group.
+/// Two squares at height 0, a left one with x < 0 and a right one with x > 0, and a distant triangle without a group.
 constexpr const char* kTwoSquares = R"(v -1 -1 0
 v 0 -1 0
 v 0 1 0
@@ -43,7 +43,7 @@ f 2 5 6
 f 2 6 3
 )";
 
-// Three points fall on the left square, two on the right one; nothing slows them, and all rebound.
+// Three points fall on the left square, two on the right one. No force slows them, and all rebound.
 constexpr const char* kScene = R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
     "materials": {"ice": {"restitution": 1}, "rubber": {"restitution": 0.5}},
     "colliders": [
@@ -80,7 +80,7 @@ std::vector<Value> cells(const VtkPolyData& data, const char* name) {
     return array == nullptr ? std::vector<Value>{} : std::get<std::vector<Value>>(array->values);
 }
 
-TEST(SurfaceGroups, AreThoseOfTheMeshFile) {
+TEST(SurfaceGroups, GroupsComeFromTheMeshFile) {
     const TemporaryFolder folder;
     const SceneDescription scene = two_squares(folder);
     ASSERT_EQ(scene.groups.size(), 3U);
@@ -90,7 +90,7 @@ TEST(SurfaceGroups, AreThoseOfTheMeshFile) {
     EXPECT_TRUE(scene.groups[2].empty());
 }
 
-TEST(SurfaceGroups, StandInTheFilesOfColliders) {
+TEST(SurfaceGroups, FilesOfCollidersContainTheGroups) {
     const TemporaryFolder folder;
     (void)run(two_squares(folder), folder.path(""));
     const RunFolder written = open_run_folder(folder.path(""));
@@ -99,14 +99,14 @@ TEST(SurfaceGroups, StandInTheFilesOfColliders) {
     EXPECT_EQ(*find_texts(plates, "group_names"), (Names{"", R"(plate/left, "half" <&>/steel)", "plate/right"}));
     EXPECT_EQ(*find_texts(plates, "material_names"), (Names{"ice", "rubber", "default"}));
     EXPECT_EQ(cells<std::uint32_t>(plates, "material"), (std::vector<std::uint32_t>{2, 1, 1, 2, 2}));
-    EXPECT_EQ(find_texts(plates, "note"), nullptr);  // no contact has lasted
+    EXPECT_EQ(find_texts(plates, "note"), nullptr);  // no lasting contact
     const VtkPolyData floor = read_vtp(written.colliders[1]);
     EXPECT_EQ(find_array(floor.cell_arrays, "group"), nullptr);
     EXPECT_EQ(cells<std::uint32_t>(floor, "material"), (std::vector<std::uint32_t>{0, 0}));
     EXPECT_EQ(cells<std::uint32_t>(read_vtp(written.colliders[2]), "material"), std::vector<std::uint32_t>(12, 1));
 }
 
-TEST(SurfaceGroups, AreCountedInTheSummary) {
+TEST(SurfaceGroups, SummaryCountsTheGroups) {
     const TemporaryFolder folder;
     const RunSummary summary = run(two_squares(folder), folder.path(""));
     const auto json = nlohmann::json::parse(folder.read(kSummaryFile));
@@ -117,7 +117,7 @@ TEST(SurfaceGroups, AreCountedInTheSummary) {
     EXPECT_EQ(groups[1]["name"], R"(plate/left, "half" <&>/steel)");
     EXPECT_EQ(groups[1]["hits"], 3);
     EXPECT_EQ(groups[2]["hits"], 2);
-    // 3 kg that come with 2 m/s leave with half of that, or all of it.
+    // Each 3 kg particle arrives at 2 m/s and leaves with half that speed, or all of it.
     EXPECT_NEAR(groups[1]["impulse"][2].get<double>(), -3 * 3.0 * 3.0, 1e-9);
     EXPECT_NEAR(groups[2]["impulse"][2].get<double>(), -2 * 3.0 * 4.0, 1e-9);
     EXPECT_EQ(groups[1]["lasting_impulse"][2], 0.0);
@@ -126,14 +126,14 @@ TEST(SurfaceGroups, AreCountedInTheSummary) {
     EXPECT_EQ(json["impact_share"], 1.0);
     EXPECT_TRUE(json["colliders"][2]["impact_share"].is_null());
     EXPECT_FALSE(json["colliders"][1].contains("groups"));
-    // Groups take nothing from the collider's own sums, and add nothing.
+    // Groups do not change the collider's own sums.
     Vec3 sum;
     for (const GroupTotals& group : summary.colliders[0].groups) sum += group.impulse;
     EXPECT_NEAR(length(sum - summary.colliders[0].impulse), 0.0, 1e-12);
 }
 
-// A sphere that lies on a floor presses on it for a second.
-TEST(SurfaceGroups, FilesAndSummarySayWhatHitsLeaveOut) {
+// A sphere rests on a floor and presses on it for a second.
+TEST(SurfaceGroups, FilesAndSummaryContainLastingContactWithoutHits) {
     const TemporaryFolder folder;
     SceneDescription scene = parse_scene(R"({"ricochet": 1, "simulation": {"time_step": 0.1, "duration": 1},
         "forces": [{"type": "gravity", "acceleration": [0, 0, -10]}], "materials": {"m": {"restitution": 0}},
@@ -143,7 +143,7 @@ TEST(SurfaceGroups, FilesAndSummarySayWhatHitsLeaveOut) {
     (void)run(std::move(scene), folder.path(""));
     const VtkPolyData floor = read_vtp(open_run_folder(folder.path("")).colliders[0]);
     const auto lasting = cells<Vec3>(floor, "lasting_impulse");
-    ASSERT_EQ(lasting.size(), 2U);  // both triangles of the square carry the plane's total
+    ASSERT_EQ(lasting.size(), 2U);  // both triangles of the square have the plane's total
     EXPECT_NEAR(lasting[1].z, -20.0, 1e-9);
     ASSERT_NE(find_texts(floor, "note"), nullptr);
     EXPECT_NE(find_texts(floor, "note")->at(0).find("0 % of the impulse"), std::string::npos)
@@ -168,7 +168,7 @@ TEST(SurfaceGroups, TotalsOfGroupsAreSumsOverTheirTriangles) {
     EXPECT_TRUE(totals_by_group({{0}, {"a"}}, totals).empty());  // of another mesh
 }
 
-TEST(SurfaceGroups, SharesAreBySizesOfImpulses) {
+TEST(SurfaceGroups, SharesUseTheMagnitudesOfImpulses) {
     ImpulseSizes sizes;
     EXPECT_FALSE(sizes.any());
     sizes.add(Vec3{0, 0, -4}, Vec3{0, 0, -1});

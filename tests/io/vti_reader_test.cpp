@@ -14,7 +14,7 @@ namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
-// 2 x 1 x 3 points with the values (n, n + 1/2, -n).
+// Returns 2 x 1 x 3 points with the values (n, n + 1/2, -n).
 std::vector<Vec3> expected_values() {
     std::vector<Vec3> values;
     for (int n = 0; n < 6; ++n) values.emplace_back(n, n + 0.5, -n);
@@ -90,7 +90,7 @@ VectorGrid read(const Parts& parts, std::string_view array = {}) {
     return read_vti(folder.write("wind.vti", text_of(parts)), array);
 }
 
-// The message without the folder; empty where the file is read.
+// Returns the message without the folder; empty if the file is read.
 std::string refusal(const Parts& parts, std::string_view array = {}) {
     try {
         (void)read(parts, array);
@@ -101,28 +101,28 @@ std::string refusal(const Parts& parts, std::string_view array = {}) {
     }
 }
 
-TEST(VtiReader, ReadsNumbersAsText) {
+TEST(VtiReader, NumbersAreReadAsText) {
     expect_grid(read({}));
     expect_grid(read({}, "velocity"));
 }
 
-TEST(VtiReader, ReadsInlineBase64WithEitherSizeAndType) {
+TEST(VtiReader, InlineBase64IsReadWithEitherSizeAndType) {
     Parts parts;
     parts.format = R"(format="binary")";
     parts.data = "\n  " + base64(raw_size<std::uint64_t>(144) + raw_values<double>()) + "\n";
     expect_grid(read(parts));
-    // The size encoded by itself, as some writers do.
+    // Some writers encode the size separately.
     parts.data = base64(raw_size<std::uint64_t>(144)) + base64(raw_values<double>());
     expect_grid(read(parts));
     parts.type = "Float32";
     parts.data = base64(raw_size<std::uint64_t>(72) + raw_values<float>());
     expect_grid(read(parts));
-    parts.file = R"(type="ImageData")";  // 32-bit sizes unless told otherwise
+    parts.file = R"(type="ImageData")";  // sizes have 32 bits by default
     parts.data = base64(raw_size<std::uint32_t>(72) + raw_values<float>());
     expect_grid(read(parts));
 }
 
-TEST(VtiReader, ReadsAppendedData) {
+TEST(VtiReader, AppendedDataIsRead) {
     Parts parts;
     parts.format = R"(format="appended" offset="3")";
     parts.data = "";
@@ -135,7 +135,7 @@ TEST(VtiReader, ReadsAppendedData) {
     expect_grid(read(parts));
 }
 
-TEST(VtiReader, SaysWhatIsWrongAndWhere) {
+TEST(VtiReader, ErrorsNameTheFaultAndItsLine) {
     const auto with = [](auto change) {
         Parts parts;
         change(parts);
@@ -164,7 +164,7 @@ TEST(VtiReader, SaysWhatIsWrongAndWhere) {
               "wind.vti: line 8: found type=\"Int32\", expected \"Float32\", \"Float64\"" + expected);
 }
 
-TEST(VtiReader, RefusesDataThatDoNotFit) {
+TEST(VtiReader, DataThatDoNotFitAreRefused) {
     Parts parts;
     parts.format = R"(format="binary")";
     parts.data = base64(raw_size<std::uint64_t>(143) + raw_values<double>());
@@ -181,14 +181,14 @@ TEST(VtiReader, RefusesDataThatDoNotFit) {
     EXPECT_NE(refusal(huge).find("line 5: more points than the file has bytes"), std::string::npos);
 }
 
-TEST(VtiReader, ChoosesArraysByName) {
+TEST(VtiReader, ArraysAreChosenByName) {
     EXPECT_NE(refusal({}, "p").find("the array \"p\" has 1 components instead of 3"), std::string::npos);
     EXPECT_NE(refusal({}, "cells").find("the array \"cells\" stands in <CellData> instead of <PointData>"),
               std::string::npos);
     EXPECT_NE(refusal({}, "wind").find("no array \"wind\" in <PointData>, which has \"velocity\""), std::string::npos);
 }
 
-TEST(VtiReader, RefusesWhatIsNoSuchFileAtAll) {
+TEST(VtiReader, RefusesEverythingButVtiFiles) {
     const TemporaryFolder folder;
     EXPECT_THROW((void)read_vti(folder.path("none.vti")), InputError);
     EXPECT_THROW((void)read_vti(folder.path("")), InputError);
@@ -197,7 +197,7 @@ TEST(VtiReader, RefusesWhatIsNoSuchFileAtAll) {
     EXPECT_THROW((void)read_vti(folder.write("tag.vti", "<VTKFile type=\"ImageData\"")), InputError);
 }
 
-TEST(VtiReader, EveryCutOfAFileIsRefused) {
+TEST(VtiReader, EveryTruncatedFileIsRefused) {
     const TemporaryFolder folder;
     Parts parts;
     parts.format = R"(format="appended" offset="0")";

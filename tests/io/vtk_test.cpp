@@ -54,8 +54,8 @@ TEST(Vtk, FramesListParticlesInTheOrderOfTheirIds) {
     EXPECT_EQ(ages.front(), 2.0 - particles.birth_time.back());
 }
 
-// So many that they are copied in several blocks; with attributes, and in no order at all.
-TEST(Vtk, FramesOfParticlesStoredInAnyOrderAreThoseOfSortedOnes) {
+// The particles fill several blocks of the copy, have attributes, and are in arbitrary order.
+TEST(Vtk, FramesDoNotDependOnTheOrderOfParticles) {
     constexpr std::uint64_t kCount = 40'000;
     const auto attributes = [] { return AttributeTable({{"charge", 1, {1.5, 0, 0}}, {"wind", 3, {1, 2, 3}}}); };
     Particles sorted;
@@ -94,7 +94,7 @@ TEST(Vtk, FramesOfParticlesStoredInAnyOrderAreThoseOfSortedOnes) {
     EXPECT_EQ(std::get<std::vector<double>>(find_array(b.point_arrays, "charge")->values)[777], 2331.0);
 }
 
-TEST(Vtk, AFrameWithoutParticlesIsAValidFile) {
+TEST(Vtk, FrameWithoutParticlesIsAValidFile) {
     const VtkPolyData read = written_and_read(particle_frame(Particles{}, 4.0));
     EXPECT_EQ(read.time, 4.0);
     EXPECT_TRUE(read.points.empty());
@@ -116,7 +116,7 @@ TEST(Vtk, SixtyFourBitConnectivityOfPointsReadsBack) {
     EXPECT_TRUE(written_and_read(frame, VtkIndexWidth::bits64).points == frame.points);
 }
 
-/// A rope of three particles, one triangle of cloth and a loose particle, in an order that is not that of ids.
+/// A rope of three particles, one triangle of cloth and a loose particle. They are not sorted by id.
 struct SpringFrame {
     SpringFrame() {
         const std::vector<Vec3> places{{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {0, 5, 0}, {1, 5, 0}, {0, 6, 0}, {9, 9, 9}};
@@ -161,7 +161,7 @@ TEST(Vtk, SpringsAreLinesAndClothIsTrianglesBetweenTheParticles) {
     }
 }
 
-TEST(Vtk, WhatIsLeftOfTornClothIsLines) {
+TEST(Vtk, RemainsOfTornClothAreLines) {
     SpringFrame scene;
     auto places = scene.particles.position;
     places[2] = {1, 50, 0};  // the particle with the id 4
@@ -213,7 +213,7 @@ TEST(Vtk, NamesWithMarkupReadBack) {
     expect_same_arrays(written_and_read(data).point_arrays, data.point_arrays);
 }
 
-TEST(Vtk, AnEarlierFileStaysWhenTheNewOneCannotBeWritten) {
+TEST(Vtk, EarlierFileStaysIfTheNewOneCannotBeWritten) {
     const TemporaryFolder folder;
     std::filesystem::create_directory(folder.path("a.vtp"));
     EXPECT_THROW(write_vtp(folder.path("a.vtp"), VtkPolyData{}), InputError);
@@ -226,12 +226,12 @@ TEST(Pvd, ListsTimesWithAllTheirDigits) {
     EXPECT_NE(text.find(R"(timestep="0.33333333333333331" part="2" file="b.vtp")"), std::string::npos) << text;
 }
 
-TEST(ScalarValues, TakesTheLengthOfVectors) {
+TEST(ScalarValues, VectorsCountByTheirLength) {
     EXPECT_EQ(scalar_values({"v", std::vector<Vec3>{{3, 4, 0}}}), std::vector<double>{5.0});
     EXPECT_EQ(scalar_values({"n", std::vector<std::uint8_t>{200}}), std::vector<double>{200.0});
 }
 
-// Malformed files: each is a good file with one change.
+// Malformed files: each is a valid file with one change.
 struct Damage {
     const char* name;
     std::function<void(std::string&)> apply;
@@ -288,7 +288,7 @@ std::vector<Damage> damages() {
     };
 }
 
-TEST(VtkReader, RefusesEveryKindOfDamageWithOneLineThatNamesTheFile) {
+TEST(VtkReader, EveryKindOfDamageIsRefusedWithOneLineThatNamesTheFile) {
     const TemporaryFolder folder;
     write_vtp(folder.path("good.vtp"), mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0));
     for (const Damage& damage : damages()) {
@@ -307,7 +307,7 @@ TEST(VtkReader, RefusesEveryKindOfDamageWithOneLineThatNamesTheFile) {
     }
 }
 
-/// The file's bytes with another corner 1 of triangle 2; its corners have 64 bits.
+/// Returns the bytes of the file with another corner 1 in triangle 2. Its corners have 64 bits.
 std::string with_corner(std::string bytes, const std::vector<Triangle>& triangles, std::int64_t corner) {
     std::vector<std::int64_t> corners;
     for (const Triangle& t : triangles) corners.insert(corners.end(), t.begin(), t.end());
@@ -318,7 +318,7 @@ std::string with_corner(std::string bytes, const std::vector<Triangle>& triangle
     return bytes;
 }
 
-TEST(VtkReader, RefusesCornersThatNameNoPoint) {
+TEST(VtkReader, CornersThatNameNoPointAreRefused) {
     for (const std::uint32_t corner : {4U, 4294967295U}) {
         VtkPolyData data = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
         const TemporaryFolder folder;
@@ -329,10 +329,10 @@ TEST(VtkReader, RefusesCornersThatNameNoPoint) {
     }
 }
 
-TEST(Vtk, KeepsTexts) {
+TEST(Vtk, TextsAreKept) {
     VtkPolyData frame = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
     frame.texts = {{"names <&>", {"", "two words", "\"a\" <b> & c", "\xc3\xa4\xff"}}, {"none", {}}, {"many", {}}};
-    frame.texts[2].values.assign(200000, std::string(20, 'x'));  // more than a header may hold
+    frame.texts[2].values.assign(200000, std::string(20, 'x'));  // more than a header may contain
     const VtkPolyData read = written_and_read(frame);
     ASSERT_EQ(read.texts.size(), 3U);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -344,7 +344,7 @@ TEST(Vtk, KeepsTexts) {
     expect_same_arrays(read.cell_arrays, frame.cell_arrays);
 }
 
-TEST(VtkReader, RefusesTextsThatAreNotThere) {
+TEST(VtkReader, MissingTextsAreRefused) {
     const TemporaryFolder folder;
     VtkPolyData frame = mesh_collider_frame(test::example_mesh(), test::example_totals(), 0.0);
     frame.texts = {{"names", {"left", "right"}}};
@@ -375,8 +375,8 @@ TEST(VtkReader, RefusesTextsThatAreNotThere) {
     }
 }
 
-// Each of them would take its own memory.
-TEST(VtkReader, RefusesArraysThatShareTheirBytes) {
+// Each of the arrays would take its own memory.
+TEST(VtkReader, ArraysThatShareTheirBytesAreRefused) {
     const TemporaryFolder folder;
     write_vtp(folder.path("good.vtp"), particle_frame(test::example_particles(1000), 0.0));
     std::string bytes = folder.read("good.vtp");
@@ -393,13 +393,13 @@ TEST(VtkReader, RefusesArraysThatShareTheirBytes) {
     }
 }
 
-TEST(VtkReader, RefusesAFolderAndAMissingFile) {
+TEST(VtkReader, FolderAndMissingFileAreRefused) {
     const TemporaryFolder folder;
     EXPECT_THROW((void)read_vtp(folder.path("")), InputError);
     EXPECT_THROW((void)read_vtp(folder.path("none.vtp")), InputError);
 }
 
-TEST(VtkReader, NeverCrashesOnAnyCutOrChangedByte) {
+TEST(VtkReader, TruncatedOrChangedFileNeverCrashes) {
     const TemporaryFolder folder;
     write_vtp(folder.path("good.vtp"), particle_frame(test::example_particles(3), 0.5));
     const std::string good = folder.read("good.vtp");
@@ -409,7 +409,7 @@ TEST(VtkReader, NeverCrashesOnAnyCutOrChangedByte) {
         for (const std::string& bytes : {changed, good.substr(0, i)}) {
             try {
                 const VtkPolyData data = read_vtp(folder.write("bad.vtp", bytes));
-                EXPECT_EQ(data.points.size(), 3U) << i;  // a change of a value or a name goes unnoticed
+                EXPECT_EQ(data.points.size(), 3U) << i;  // a changed value or name is not detected
             } catch (const InputError&) {
             }
         }

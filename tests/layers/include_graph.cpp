@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 const std::string kUmbrella = "src/ricochet/ricochet.h";
 const std::string kLibrary = "src/ricochet/";
 
-/// What each layer of the library may include besides itself.
+/// Returns the layers that each layer of the library may include besides itself.
 const std::map<std::string, std::set<std::string>>& allowed_layers() {
     static const std::map<std::string, std::set<std::string>> table = {
         {"core", {}},
@@ -24,7 +24,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"collision", {"core", "geometry"}},
         {"dynamics", {"core", "geometry"}},
         {"response", {"core", "geometry", "collision", "dynamics"}},
-        {"verify", {"core", "geometry"}},  // and of these only what may_verify() names
+        {"verify", {"core", "geometry"}},  // limited further by may_verify()
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
         // view: pictures, files of other formats, pages
@@ -33,7 +33,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"page", {"core", "geometry", "dynamics", "io", "render", "export"}},
         // lab: measurements
         {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
-        {"generators", {"core", "geometry"}},  // the mesh generator's library
+        {"generators", {"core", "geometry"}},  // the library of the mesh generator
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"mpi", {"core"}},
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
@@ -44,8 +44,8 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
     return table;
 }
 
-/// The verifier checks the sweep, so it must not compute with the sweep's code: plain data only, and what a scene says
-/// of where its frames are.
+/// Returns true if the verifier may include the header. The verifier checks the sweep, so it must not compute with the
+/// sweep's code. It may include plain data only, and the headers that describe the frames of a scene.
 bool may_verify(const std::string& header) {
     static const std::set<std::string> plain = {
         "core/box3.h",
@@ -63,13 +63,13 @@ bool may_verify(const std::string& header) {
     return plain.contains(header.substr(kLibrary.size()));
 }
 
-/// A third-party library: how its headers begin, and the files (as a regular expression) that may include them.
+/// A third-party library: the start of its headers, and a regular expression for the files that may include them.
 struct Door {
     const char* headers;
     const char* files;
 };
 
-/// Everything that is not ours and not the C++ standard library.
+/// All libraries besides our own and the C++ standard library.
 constexpr std::array kDoors = {
     Door{"embree[34]/", "src/ricochet/geometry/acceleration/embree\\.h"},
     Door{"ricochet/geometry/acceleration/embree\\.h",
@@ -82,7 +82,7 @@ constexpr std::array kDoors = {
          "src/(ricochet/io|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
          ".*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
-    Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // its print() checks formats as fmt does
+    Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // the print() of this header checks formats as fmt does
     Door{"stb/", "src/view/render/image\\.cpp|tests/view/render/image_test\\.cpp"},
     Door{"zlib\\.h", "src/view/page/packing\\.cpp|tests/view/page/.*\\.cpp"},
     Door{"(mpi|sched)\\.h", "src/mpi/mpi_ranks\\.cpp"},
@@ -99,7 +99,7 @@ bool matches(const std::string& text, const std::string& pattern) {
     return std::regex_match(text, std::regex(pattern));
 }
 
-/// The layer of a file of the library, the tool or what the tool alone is made of; nothing for other files and the
+/// Returns the layer of a file of the library, the tool, or the parts of the tool; nothing for other files and the
 /// umbrella header.
 std::optional<std::string> layer_of(const std::string& path) {
     if (path == kUmbrella) return std::nullopt;
@@ -119,15 +119,15 @@ std::optional<std::string> layer_of(const std::string& path) {
 
 bool is_header(const std::string& path) { return path.ends_with(".h"); }
 
-/// A header that an installation contains.
+/// Returns true if an installation contains the header.
 bool is_public_header(const SourceTree& tree, const std::string& path) { return tree.public_headers.contains(path); }
 
-/// One of the library's other headers.
+/// Returns true if the path is a private header of the library.
 bool is_private(const SourceTree& tree, const std::string& path) {
     return is_header(path) && path.starts_with(kLibrary) && !is_public_header(tree, path);
 }
 
-/// The file of the tree that an include line names; nothing when it is somebody else's.
+/// Returns the file of the tree that an include line names; nothing for third-party headers.
 std::optional<std::string> resolve(const std::set<std::string>& paths, const SourceFile& from,
                                    const std::string& name) {
     const std::string beside = from.path.substr(0, from.path.rfind('/') + 1) + name;
@@ -159,7 +159,7 @@ std::set<std::string> read_public_headers(const fs::path& root) {
     return headers;
 }
 
-/// What is wrong with an include of one of our own files; nothing when it is allowed.
+/// Returns the reason why a file must not include one of our own files; nothing if it may.
 std::optional<std::string> wrong_layer(const SourceTree& tree, const SourceFile& from, const std::string& target) {
     const auto layer = layer_of(from.path);
     if (is_public_header(tree, from.path) && is_private(tree, target)) {
@@ -177,7 +177,7 @@ std::optional<std::string> wrong_layer(const SourceTree& tree, const SourceFile&
     return *layer + " must not include " + *below + " (" + target + ")";
 }
 
-/// What is wrong with an include of a library's header.
+/// Returns the reason why a file must not include a third-party header; nothing if it may.
 std::optional<std::string> wrong_door(const SourceTree& tree, const SourceFile& from, const std::string& name) {
     const auto door = std::find_if(kDoors.begin(), kDoors.end(),
                                    [&](const Door& d) { return matches(name, std::string("(") + d.headers + ").*"); });

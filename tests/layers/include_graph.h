@@ -1,6 +1,6 @@
 /// \file
-/// The include graph of the source tree and the rules it has to keep. What may include what is in rules() and kDoors
-/// of the .cpp file: ARCHITECTURE.md tells the same in words.
+/// The include graph of the source tree and the rules for it. The tables allowed_layers() and kDoors of the .cpp file
+/// list the allowed includes; ARCHITECTURE.md describes them in words.
 #pragma once
 
 #include <filesystem>
@@ -18,25 +18,27 @@ struct Include {
 
 /// One header or source file.
 struct SourceFile {
-    std::string path;  ///< below the repository's root, with forward slashes
+    std::string path;  ///< relative to the repository's root, with forward slashes
     std::vector<Include> includes;
 };
 
-/// The files to check, and which headers of the library are public (installed).
+/// The files to check, and the set of public (installed) headers of the library.
 struct SourceTree {
-    std::vector<SourceFile> files;         ///< in the order of their paths
-    std::set<std::string> public_headers;  ///< paths below the root
+    std::vector<SourceFile> files;         ///< sorted by path
+    std::set<std::string> public_headers;  ///< paths relative to the root
 };
 
-/// The .h and .cpp files in src, tests, meshes and bench below root, and src/ricochet/public_headers.txt.
+/// Reads the .h and .cpp files in src, tests, meshes and bench below root, and src/ricochet/public_headers.txt.
 [[nodiscard]] SourceTree read_source_tree(const std::filesystem::path& root);
 
-/// Every broken rule as "file:line: what is wrong", in the order of the files. Empty when the tree keeps them all:
-/// no include goes to a higher layer or a sibling, third-party headers stand only in their door files, no public header
-/// includes a third-party or a private one, every quoted include names a file.
+/// Returns every broken rule as "file:line: reason", in the order of the files; empty if all rules are kept. The rules:
+/// - No include goes to a higher layer or a sibling.
+/// - Third-party headers are included only by their door files.
+/// - No public header includes a third-party or a private header.
+/// - Every quoted include names a file.
 [[nodiscard]] std::vector<std::string> broken_rules(const SourceTree& tree);
 
-/// Public headers that the umbrella header ricochet.h does not include.
+/// Returns the public headers that the umbrella header ricochet.h does not include.
 [[nodiscard]] std::vector<std::string> missing_from_umbrella(const SourceTree& tree);
 
 }  // namespace ricochet::layers

@@ -9,7 +9,7 @@
 namespace ricochet::layers {
 namespace RICOCHET_FILE {
 
-/// A tree of two files: `path` with the one include line `name`, and, when it is ours, the file that the line names.
+/// Returns a tree with `path`, whose one include line is `name`. The included file is added if it is ours.
 SourceTree planted(const std::string& path, const std::string& name) {
     SourceTree tree;
     tree.files.push_back({path, {{7, name}}});
@@ -18,7 +18,7 @@ SourceTree planted(const std::string& path, const std::string& name) {
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
-    // Planted headers are public, but for what is behind doors or in a folder `private`.
+    // Planted headers are public, except for door headers and those in a folder `private`.
     for (const SourceFile& file : tree.files) {
         const bool is_library = file.path.starts_with("src/ricochet/") && file.path.ends_with(".h");
         if (is_library && file.path.find("/private/") == std::string::npos && !file.path.ends_with("/embree.h")) {
@@ -35,13 +35,13 @@ struct Case {
     std::string include;
 };
 
-TEST(IncludeGraph, OfThisRepositoryKeepsTheLayers) {
+TEST(IncludeGraph, RepositoryKeepsTheLayers) {
     const SourceTree tree = read_source_tree(RICOCHET_SOURCE_DIR);
     EXPECT_GT(tree.files.size(), 20U);
     EXPECT_EQ(broken_rules(tree), std::vector<std::string>{});
 }
 
-TEST(IncludeGraph, OfThisRepositoryHasEveryPublicHeaderInTheUmbrella) {
+TEST(IncludeGraph, UmbrellaIncludesEveryPublicHeader) {
     EXPECT_EQ(missing_from_umbrella(read_source_tree(RICOCHET_SOURCE_DIR)), std::vector<std::string>{})
         << "add them to src/ricochet/ricochet.h or, when they are private, take them out of "
            "src/ricochet/public_headers.txt";
@@ -56,20 +56,20 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/io/x.cpp", "view/render/image.h"},                             // the engine knows no product
         {"src/ricochet/response/x.cpp", "ricochet/simulation.h"},                     // upward to the library's top
         {"src/ricochet/simulation.cpp", "ricochet/io/scene.h"},                       // upward
-        {"src/ricochet/simulation.cpp", "cli/run.h"},                                 // the library knows no tool
+        {"src/ricochet/simulation.cpp", "cli/run.h"},                                 // the library includes no tool
         {"src/ricochet/core/error.cpp", "ricochet/ricochet.h"},                       // the umbrella is for users
-        {"src/ricochet/core/error.cpp", "support/counts.h"},                          // the library knows no test
+        {"src/ricochet/core/error.cpp", "support/counts.h"},                          // the library includes no test
         {"src/ricochet/geometry/sweep/path.cpp", "OpenMesh/Core/IO/MeshIO.hh"},       // outside the door
         {"src/ricochet/geometry/acceleration/triangle_bvh.cpp", "embree4/rtcore.h"},  // the door is embree.h
         {"src/ricochet/geometry/sweep/path.cpp",
-         "ricochet/geometry/acceleration/embree.h"},                                     // and only two files open it
-        {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},                           // outside the door
-        {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},                    // by its other name
-        {"src/ricochet/verify/x.cpp", "ricochet/geometry/predicates/predicates.h"},      // the sweep's own arithmetic
-        {"src/ricochet/verify/x.cpp", "ricochet/geometry/acceleration/triangle_bvh.h"},  // and its tree
-        {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},                  // and its numbers
+         "ricochet/geometry/acceleration/embree.h"},                                 // only two files may include it
+        {"src/ricochet/simulation.cpp", "tbb/parallel_for.h"},                       // outside the door
+        {"src/ricochet/simulation.cpp", "oneapi/tbb/parallel_for.h"},                // by its other path
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/predicates/predicates.h"},  // the arithmetic of the sweep
+        {"src/ricochet/verify/x.cpp", "ricochet/geometry/acceleration/triangle_bvh.h"},  // the tree of the sweep
+        {"src/ricochet/verify/x.cpp", "ricochet/core/double_double.h"},                  // the numbers of the sweep
         {"src/ricochet/verify/x.cpp", "ricochet/response/exact.h"},                      // upward
-        {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},  // the sweep must not lean on its judge
+        {"src/ricochet/response/exact.cpp", "ricochet/verify/verifier.h"},        // the sweep must not use its verifier
         {"src/ricochet/response/exact.cpp", "boost/multiprecision/cpp_int.hpp"},  // outside the door
         {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
         {"src/ricochet/simulation.cpp", "view/export/run_export.h"},             // the engine knows no product
@@ -77,18 +77,18 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/view/render/image.cpp", "lab/compare/plan.h"},                     // products do not know each other
         {"src/view/render/image.cpp", "ricochet/io/scene.h"},                    // pictures are drawn without files
         {"src/lab/compare/comparison.cpp", "lab/bench/cases.h"},                 // siblings
-        {"src/lab/bench/cases.cpp", "ricochet/io/scene.h"},                      // whose cases are no scene files
-        {"src/lab/bench/cases.cpp", "cli/run.h"},                                // and which knows no tool
+        {"src/lab/bench/cases.cpp", "ricochet/io/scene.h"},                      // benchmark cases are no scene files
+        {"src/lab/bench/cases.cpp", "cli/run.h"},                                // benchmarks include no tool
         {"src/lab/bench/cases.cpp", "ricochet/geometry/acceleration/embree.h"},  // only the reference rays open it
         {"src/ricochet/io/scene.h", "nlohmann/json.hpp"},                        // in a public header
         {"src/ricochet/core/parallel.h", "tbb/parallel_for.h"},  // in a public header, of the right layer
         {"src/ricochet/geometry/acceleration/triangle_bvh.h",
-         "ricochet/geometry/acceleration/embree.h"},                     // public includes private
-        {"src/ricochet/io/scene.h", "ricochet/io/private/json_node.h"},  // the same, by its folder
+         "ricochet/geometry/acceleration/embree.h"},                     // a public header includes a private one
+        {"src/ricochet/io/scene.h", "ricochet/io/private/json_node.h"},  // as before, in a folder `private`
         {"src/ricochet/core/error.h", "fmt/core.h"},                     // in a public header
-        {"src/ricochet/core/error.cpp", "Eigen/Core"},                   // a library nobody has declared
+        {"src/ricochet/core/error.cpp", "Eigen/Core"},                   // an undeclared library
         {"src/ricochet/core/error.cpp", "core/missing.h"},               // names no file
-        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},           // a folder that is no layer
+        {"src/ricochet/extras/x.cpp", "ricochet/core/vec3.h"},           // a folder without a layer
         {"src/cli/main.cpp", "gtest/gtest.h"},                           // tests only
     };
     for (const Case& c : cases) {
@@ -99,7 +99,7 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
     }
 }
 
-TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
+TEST(IncludeGraph, AllowedIncludesPass) {
     const std::vector<Case> cases = {
         {"src/ricochet/core/vec3.h", "cmath"},
         {"src/ricochet/geometry/sweep/path.h", "ricochet/core/vec3.h"},
@@ -133,13 +133,13 @@ TEST(IncludeGraph, AllowsWhatTheLayersAllow) {
     }
 }
 
-TEST(IncludeGraph, MissesAHeaderThatTheUmbrellaLeavesOut) {
+TEST(IncludeGraph, UmbrellaThatMissesAHeaderIsReported) {
     SourceTree tree = planted("src/ricochet/core/vec3.h", "cmath");
     tree.files.push_back({"src/ricochet/ricochet.h", {{1, "ricochet/core/box3.h"}}});
     EXPECT_EQ(missing_from_umbrella(tree), std::vector<std::string>{"src/ricochet/core/vec3.h"});
 }
 
-TEST(IncludeGraph, IsReadFromFilesWithLineNumbersAndWithoutComments) {
+TEST(IncludeGraph, LineNumbersAreReadAndCommentsIgnored) {
     const std::filesystem::path root = std::filesystem::path(testing::TempDir()) / "ricochet_include_graph";
     std::filesystem::create_directories(root / "src/ricochet/core");
     std::ofstream(root / "src/ricochet/core/a.h")

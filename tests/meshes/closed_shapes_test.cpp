@@ -1,4 +1,5 @@
-// Every closed shape, coarse and fine: closed, wound outward, of the right topology, without degenerate triangles.
+// Checks every closed shape, coarse and fine: closed, wound outward, of the right topology, without degenerate
+// triangles.
 #include <functional>
 #include <ostream>
 #include <string>
@@ -83,7 +84,7 @@ TerrainShape terrain_block() {
 
 std::size_t galton_shells(const GaltonBoardShape& shape) {
     const auto rows = static_cast<std::size_t>(shape.rows);
-    const std::size_t pegs = rows * (rows + 1) + (rows + 1) / 2;  // every other row has one more
+    const std::size_t pegs = rows * (rows + 1) + (rows + 1) / 2;  // every other row has one peg more
     return pegs + 1 + 2 + 1;                                      // frame, sides of the hopper, plate
 }
 

@@ -62,7 +62,7 @@ TEST(FractalNoises, ChangeWithTheSeed) {
     EXPECT_NE(fractal_noise(p, {}, 1), fractal_noise(p, {}, 2));
 }
 
-// The committed meshes come from these bits: a change here changes every terrain and rock.
+// The committed meshes depend on these bits: a change here changes every terrain and rock.
 TEST(FractalNoises, KeepTheirBits) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(fractal_noise({0.3, -4.7, 2.25}, {}, 7)), 0xBFC5432F939F1514ULL);
     EXPECT_EQ(std::bit_cast<std::uint64_t>(ridged_noise({0.3, -4.7, 2.25}, {}, 7)), 0x3FE1FD4D3C18E98FULL);

@@ -9,7 +9,7 @@
 namespace ricochet::meshes {
 namespace RICOCHET_FILE {
 
-TEST(Extrusion, OfAUnitSquareIsACubeOfTwelveTriangles) {
+TEST(Extrusion, UnitSquareBecomesACubeOfTwelveTriangles) {
     const TriangleMesh cube = extrusion(rectangle_region(1.0, 1.0, 2.0), 1.0, 2.0);
     EXPECT_EQ(cube.vertices.size(), 8U);
     EXPECT_EQ(cube.triangles.size(), 12U);
@@ -17,7 +17,7 @@ TEST(Extrusion, OfAUnitSquareIsACubeOfTwelveTriangles) {
     EXPECT_DOUBLE_EQ(signed_volume(cube), 1.0);
 }
 
-// A square ring: the band between two squares whose corners lie on the same rays.
+// Returns a square ring: the band between two squares whose corners lie on the same rays.
 PlanarRegion square_target() {
     const std::vector<Point2> square{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
     std::vector<Point2> outer = square;
@@ -26,7 +26,7 @@ PlanarRegion square_target() {
     return nested_region({square, outer}, bands, 0);
 }
 
-TEST(LayeredExtrusion, LeavesOutThePartsThatASlabDoesNotName) {
+TEST(LayeredExtrusion, SlabsLeaveOutThePartsTheyDoNotName) {
     const std::array cup{Slab{0.5, 0b11, 1}, Slab{3.0, 0b10, 4}};
     const TriangleMesh mesh = layered_extrusion(square_target(), cup);
     EXPECT_EQ(unpaired_edges(mesh), 0U);
@@ -34,7 +34,7 @@ TEST(LayeredExtrusion, LeavesOutThePartsThatASlabDoesNotName) {
     EXPECT_DOUBLE_EQ(signed_volume(mesh), 16.0 * 0.5 + 12.0 * 3.0);
 }
 
-TEST(LayeredExtrusion, MakesATunnelWhereNoSlabNamesAPart) {
+TEST(LayeredExtrusion, PartInNoSlabBecomesATunnel) {
     const std::array tube{Slab{1.0, 0b10, 2}};
     const TriangleMesh mesh = layered_extrusion(square_target(), tube);
     EXPECT_EQ(unpaired_edges(mesh), 0U);
@@ -42,7 +42,7 @@ TEST(LayeredExtrusion, MakesATunnelWhereNoSlabNamesAPart) {
     EXPECT_DOUBLE_EQ(signed_volume(mesh), 12.0);
 }
 
-TEST(LayeredExtrusion, MakesAnInnerShellWhereAPartIsLeftOutBetweenLids) {
+TEST(LayeredExtrusion, PartLeftOutBetweenLidsBecomesAnInnerShell) {
     const std::array can{Slab{1.0, 0b11, 1}, Slab{2.0, 0b10, 2}, Slab{1.0, 0b11, 1}};
     const TriangleMesh mesh = layered_extrusion(square_target(), can);
     EXPECT_EQ(unpaired_edges(mesh), 0U);

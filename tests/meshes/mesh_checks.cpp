@@ -41,7 +41,7 @@ bool apart(const Box3& a, const Box3& b) {
 
 bool uses(const Triangle& t, std::uint32_t vertex) { return std::find(t.begin(), t.end(), vertex) != t.end(); }
 
-/// An edge of `from` that shares no vertex with `other` intersects it.
+/// Returns true if an edge of `from` that shares no vertex with `other` intersects it.
 bool edge_meets(const TriangleMesh& mesh, const Triangle& from, const Triangle& other) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
         const std::uint32_t a = from[corner];

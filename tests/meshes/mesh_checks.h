@@ -1,5 +1,5 @@
 /// \file
-/// What a sound closed mesh must satisfy, decided on the index list alone and with exact predicates.
+/// Checks for a sound closed mesh. They use the index list and exact predicates only.
 #pragma once
 
 #include <cstddef>
@@ -8,24 +8,24 @@
 
 namespace ricochet::meshes {
 
-/// Directed edges that do not occur exactly once together with exactly one opposite: 0 for a closed, edge-manifold,
-/// consistently wound mesh.
+/// Returns the number of directed edges without exactly one opposite, or that occur more than once. The number is 0 for
+/// a closed, edge-manifold, consistently wound mesh.
 [[nodiscard]] std::size_t unpaired_edges(const TriangleMesh& mesh);
 
-/// Vertices minus edges plus triangles; twice the number of shells minus twice the number of handles for a closed mesh.
+/// Returns vertices minus edges plus triangles. For a closed mesh this is twice the shells minus twice the handles.
 [[nodiscard]] long euler_characteristic(const TriangleMesh& mesh);
 
-/// Connected parts, joined through shared vertices.
+/// Returns the number of connected components. Triangles are connected by shared vertices.
 [[nodiscard]] std::size_t shells(const TriangleMesh& mesh);
 
-/// Triangles with collinear corners, decided exactly.
+/// Returns the number of triangles with collinear corners, decided exactly.
 [[nodiscard]] std::size_t degenerate_triangles(const TriangleMesh& mesh);
 
-/// Vertices that no triangle uses.
+/// Returns the number of vertices that no triangle uses.
 [[nodiscard]] std::size_t unused_vertices(const TriangleMesh& mesh);
 
-/// Pairs of triangles that intersect anywhere but in the vertices they share, decided exactly by brute force over pairs
-/// with overlapping boxes. Pairs that share an edge are left out.
+/// Returns the number of pairs of triangles that intersect outside their shared vertices. The test is exact and tries
+/// all pairs with overlapping boxes. Pairs that share an edge are skipped.
 [[nodiscard]] std::size_t self_intersections(const TriangleMesh& mesh);
 
 }  // namespace ricochet::meshes

@@ -1,4 +1,4 @@
-// The program as a user runs it.
+// Runs the program as a user does.
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -65,7 +65,7 @@ TEST_F(RicochetMesh, WritesEveryFormat) {
     }
 }
 
-TEST_F(RicochetMesh, WritesTheSameBytesTwiceAndOthersForAnotherSeed) {
+TEST_F(RicochetMesh, SameSeedWritesTheSameBytesAndAnotherSeedOthers) {
     for (const char* kind : {"rock", "terrain", "cavity"}) {
         const auto make = [&](const std::string& name, int seed) {
             const std::filesystem::path file = folder_ / name;
@@ -80,7 +80,7 @@ TEST_F(RicochetMesh, WritesTheSameBytesTwiceAndOthersForAnotherSeed) {
     }
 }
 
-TEST_F(RicochetMesh, MakesTheCommittedMeshesBitByBit) {
+TEST_F(RicochetMesh, CommittedMeshesAreReproducedBitForBit) {
     const std::filesystem::path meshes = std::filesystem::path(RICOCHET_SOURCE_DIR) / "meshes";
     std::ifstream recipes(meshes / "recipes.txt");
     int checked = 0;
@@ -93,13 +93,13 @@ TEST_F(RicochetMesh, MakesTheCommittedMeshesBitByBit) {
         std::filesystem::create_directories(made.parent_path());
         const Outcome outcome = run(line.substr(split + 1) + " --output " + made.string());
         ASSERT_EQ(outcome.exit_code, 0) << line << '\n' << outcome.text;
-        EXPECT_TRUE(content(made) == content(meshes / name)) << name << " differs from what its recipe makes";
+        EXPECT_TRUE(content(made) == content(meshes / name)) << name << " differs from the mesh that its recipe makes";
         ++checked;
     }
     EXPECT_GE(checked, 9);
 }
 
-TEST_F(RicochetMesh, HasEveryRecipeInTheReadme) {
+TEST_F(RicochetMesh, ReadmeListsEveryRecipe) {
     const std::filesystem::path meshes = std::filesystem::path(RICOCHET_SOURCE_DIR) / "meshes";
     const std::string readme = content(meshes / "README.md");
     std::ifstream recipes(meshes / "recipes.txt");
@@ -134,7 +134,7 @@ TEST_F(RicochetMesh, RefusesWrongArgumentsInOneLine) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "x.obj"));
 }
 
-TEST_F(RicochetMesh, FailsWithOneLineWhereItCannotWrite) {
+TEST_F(RicochetMesh, UnwritableFileFailsWithOneLine) {
     const Outcome outcome = run("box --output " + (folder_ / "missing" / "x.obj").string());
     EXPECT_EQ(outcome.exit_code, 1) << outcome.text;
     EXPECT_EQ(outcome.text.find('\n'), outcome.text.size() - 1) << outcome.text;

@@ -1,4 +1,4 @@
-// Closed forms for sizes and volumes, and what each shape promises.
+// Closed forms for sizes and volumes, and the documented properties of each shape.
 #include <cmath>
 #include <numbers>
 
@@ -58,14 +58,14 @@ TEST(Fish, HasTheSameFacesAtAllPhasesAndSwimsOnceInAPeriod) {
         EXPECT_EQ(at(phase).triangles, begin.triangles);
         EXPECT_NEAR(signed_volume(at(phase)), signed_volume(begin), 0.04 * signed_volume(begin));
     }
-    // Half a period later it is its mirror image, and its tail has gone from one side to the other.
+    // After half a period the fish is its mirror image, and its tail is on the other side.
     const TriangleMesh half = at(0.5);
     const Vec3 tail = begin.vertices.back();
     EXPECT_NEAR(half.vertices.back().y, -tail.y, 1e-12);
     EXPECT_NEAR(at(0.75).vertices.back().y, 2.0 * 0.12, 1e-12);
 }
 
-TEST(Icosphere, HasTwentyTimesTheSquareOfItsDivisionsAndAllVerticesOnTheSphere) {
+TEST(Icosphere, HasTwentyTrianglesPerSquaredDivisionAndAllVerticesOnTheSphere) {
     for (const int divisions : {1, 2, 3, 7, 20}) {
         const TriangleMesh mesh = unit_icosphere(divisions);
         const auto n = static_cast<std::size_t>(divisions);
@@ -76,13 +76,13 @@ TEST(Icosphere, HasTwentyTimesTheSquareOfItsDivisionsAndAllVerticesOnTheSphere) 
     EXPECT_NEAR(signed_volume(make_icosphere({2.0}, 0.02)), 4.0 / 3.0 * kPi * 8.0, 5e-3);
 }
 
-TEST(Bowl, HoldsTheVolumeOfAHalfShell) {
+TEST(Bowl, HasTheVolumeOfAHalfShell) {
     const TriangleMesh mesh = make_bowl({1.0, 0.1, 90.0}, 0.01);
     EXPECT_NEAR(signed_volume(mesh), 2.0 / 3.0 * kPi * (1.331 - 1.0), 1e-4);
     expect_size(mesh, {2.2, 2.2, 1.1}, 1e-4);
 }
 
-TEST(Funnel, HoldsTheVolumeOfItsWall) {
+TEST(Funnel, HasTheVolumeOfItsWall) {
     const FunnelShape shape{1.0, 0.2, 1.5, 0.5, 0.1};
     const auto cone = [](double a, double b, double height) { return kPi * height / 3.0 * (a * a + a * b + b * b); };
     const double wall = cone(1.1, 0.3, 1.5) - cone(1.0, 0.2, 1.5) + cone(0.3, 0.3, 0.5) - cone(0.2, 0.2, 0.5);
@@ -93,14 +93,14 @@ TEST(Funnel, RefusesAThroatWiderThanItsTop) {
     EXPECT_THROW((void)make_funnel({0.1, 0.2, 1.0, 1.0, 0.05}, 0.1), InputError);
 }
 
-TEST(Staircase, HoldsTheVolumeOfItsSteps) {
+TEST(Staircase, HasTheVolumeOfItsSteps) {
     const TriangleMesh mesh = make_staircase({5, 0.3, 0.2, 1.5}, 0.07);
     EXPECT_NEAR(signed_volume(mesh), 15.0 * 0.3 * 0.2 * 1.5, 1e-12);
     expect_size(mesh, {1.5, 1.5, 1.0}, 1e-15);
 }
 
-// Pappus: a tube's volume is its cross-section times the length of its centre line, however that line bends.
-TEST(TorusKnot, HoldsCrossSectionTimesLength) {
+// Pappus' theorem: the volume of a tube is its cross-section times the length of its centre line, straight or bent.
+TEST(TorusKnot, VolumeIsCrossSectionTimesLength) {
     TorusKnotShape circle;
     circle.p = 1;
     circle.q = 1;
@@ -112,7 +112,7 @@ TEST(TorusKnot, HoldsCrossSectionTimesLength) {
 
 TEST(TorusKnot, RefusesATubeThatWouldCrossItself) {
     TorusKnotShape shape;
-    EXPECT_NEAR(torus_knot_thickness(shape), shape.winding, 1e-3);  // two strands on opposite sides of the torus' tube
+    EXPECT_NEAR(torus_knot_thickness(shape), shape.winding, 1e-3);  // two strands on opposite sides of the torus
     shape.tube_radius = 0.42;
     EXPECT_THROW((void)make_torus_knot(shape, 0.1), InputError);
     shape.tube_radius = 0.1;
@@ -121,13 +121,13 @@ TEST(TorusKnot, RefusesATubeThatWouldCrossItself) {
     EXPECT_THROW((void)make_torus_knot(shape, 0.1), InputError);
 }
 
-TEST(Gear, ReachesFromRootToTipAndWeighsAboutItsPitchDisk) {
+TEST(Gear, ReachesFromRootToTipAndFillsAboutItsPitchDisk) {
     const GearShape shape{30, 1.0, 0.2, 0.4, 0.0};
     const TriangleMesh mesh = make_gear(shape, 0.02);
     double farthest = 0.0;
     for (const Vec3& p : mesh.vertices) farthest = std::max(farthest, std::hypot(p.x, p.y));
     EXPECT_NEAR(farthest, 1.0 + 2.0 / 30.0, 1e-12);
-    // Teeth and gaps are equally wide on the pitch circle; the longer dedendum makes the gear a little lighter.
+    // Teeth and gaps are equally wide on the pitch circle. The longer dedendum makes the volume slightly smaller.
     const double disk = kPi * (1.0 - 0.04) * 0.4;
     EXPECT_NEAR(signed_volume(mesh), disk, 0.05 * disk);
     EXPECT_LT(signed_volume(mesh), disk);
@@ -135,7 +135,7 @@ TEST(Gear, ReachesFromRootToTipAndWeighsAboutItsPitchDisk) {
 
 TEST(Gear, RefusesABoreThatLeavesNoRim) { EXPECT_THROW((void)make_gear({18, 0.9, 0.8, 0.3, 0.2}, 0.1), InputError); }
 
-TEST(GaltonBoard, KeepsEverySideButTheFrontsParallelToY) {
+TEST(GaltonBoard, AllSidesButTheFrontAreParallelToY) {
     const TriangleMesh mesh = make_galton_board({}, 0.4);
     for (const Triangle& t : mesh.triangles) {
         const Vec3 a = mesh.vertices[t[0]];
@@ -145,14 +145,14 @@ TEST(GaltonBoard, KeepsEverySideButTheFrontsParallelToY) {
     }
 }
 
-TEST(GaltonBoard, MirrorsItselfInX) {
+TEST(GaltonBoard, IsSymmetricInX) {
     const Box3 box = bounds(make_galton_board({}, 0.4));
     EXPECT_DOUBLE_EQ(box.lower.x, -box.upper.x);
     EXPECT_EQ(box.lower.z, 0.0);
     EXPECT_GT(box.upper.z, galton_board_entry({}));
 }
 
-TEST(Drum, LosesTheLiftersFromItsCavity) {
+TEST(Drum, LiftersTakeVolumeFromTheCavity) {
     const DrumShape shape{1.0, 2.0, 0.1, 8, 0.2, 0.0};
     const double barrel = kPi * (1.21 - 1.0) * 2.0 + 2.0 * kPi * 1.21 * 0.1;
     const double steel = signed_volume(make_drum(shape, 0.02));
@@ -208,7 +208,7 @@ TEST(Terrain, FallsByItsDropFromTopToFoot) {
     }
 }
 
-TEST(Shapes, RefuseParametersOutOfRangeByTheirOptionName) {
+TEST(Shapes, ParametersOutOfRangeAreRefusedByTheirOptionName) {
     try {
         (void)make_rock({-1.0}, 0.1);
         FAIL() << "a negative radius was accepted";

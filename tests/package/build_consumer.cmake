@@ -9,7 +9,7 @@ endfunction()
 set(prefix "${work_dir}/installed tree")
 file(REMOVE_RECURSE ${prefix} ${work_dir}/consumer)
 
-# The build at hand serves for its own kind; the other kind is built beside it, unoptimised.
+# The current build is used for its own kind. The other kind is built beside it, without optimisation.
 if((kind STREQUAL "shared" AND build_shared) OR (kind STREQUAL "static" AND NOT build_shared))
   set(library_build ${build_dir})
 else()
@@ -26,7 +26,7 @@ else()
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${library_build} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-# The public headers and no others; documents, the schema and scenes.
+# Check that only public headers are installed, and that documents, the schema and scenes are.
 file(GLOB_RECURSE header_files RELATIVE "${prefix}/include/ricochet" "${prefix}/include/*.h")
 file(STRINGS ${source_dir}/src/ricochet/public_headers.txt public_headers REGEX "^[^#]")
 list(SORT header_files)
@@ -44,7 +44,7 @@ endforeach()
 run(${CMAKE_COMMAND} -D root=${prefix}/share/doc/ricochet -D installed=ON
   -P ${source_dir}/tests/documents/check_documents.cmake)
 
-# The consumer runs a scene.
+# Check that the consumer runs a scene.
 function(check_output program)
   execute_process(COMMAND ${program} "${prefix}/share/ricochet/scenes/bouncing_ball.json"
     OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
@@ -54,7 +54,7 @@ function(check_output program)
   message(STATUS "${program}: ${output}")
 endfunction()
 
-# By find_package.
+# Build with find_package.
 run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${work_dir}/consumer -G ${generator}
   -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_BUILD_TYPE=${build_type} -D CMAKE_PREFIX_PATH=${prefix})
 file(STRINGS ${work_dir}/consumer/CMakeCache.txt found REGEX "^ricochet_DIR:")
@@ -74,7 +74,7 @@ if(position EQUAL -1)
   message(FATAL_ERROR "the walkthrough printed '${output}', which is not what docs/library.md shows")
 endif()
 
-# By pkg-config.
+# Build with pkg-config.
 if(NOT pkg_config)
   message(STATUS "pkg-config is not installed: not tried")
   return()

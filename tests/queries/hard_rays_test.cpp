@@ -1,5 +1,5 @@
-// Rays at corners, at edges, along faces and a last bit beside, on balls far from the origin, tiny and huge: every
-// answer against whole numbers of any length.
+// Rays through corners, along edges and faces, and one ulp beside them, on balls that are far from the origin, tiny or
+// huge. Every result is compared with an oracle in arbitrary-precision integers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ protected:
         mesh_ = testing::lattice_ball({shift, -shift, 0.5 * shift}, scale, 2);
         unit_ = scale / 1024.0;
     }
-    /// How many rays.
+    /// Returns the number of rays.
     static std::size_t count() {
         return test::is_long_run() ? 25'000'000 : static_cast<std::size_t>(test::scaled(20'000));
     }
@@ -55,14 +55,14 @@ protected:
 };
 
 struct Errors {
-    std::size_t first = 0;  ///< hit for miss, miss for hit, or another triangle than the first one
+    std::size_t first = 0;  ///< rays with a wrong first triangle, a false hit or a missed hit
     std::size_t occluded = 0;
     std::size_t count = 0;
-    std::size_t winding = 0;  ///< crossings do not add up to inside or outside
+    std::size_t winding = 0;  ///< rays whose crossings do not add up to inside or outside
     std::string example;
 };
 
-TEST_P(HardRays, AreAllAnsweredAsWholeNumbersDo) {
+TEST_P(HardRays, ResultsAgreeWithArbitraryPrecisionIntegers) {
     const MeshQueries queries(mesh_);
     const testing::RayOracle oracle(mesh_);
     std::vector<Errors> errors((count() + kBatch - 1) / kBatch);
@@ -116,7 +116,7 @@ TEST_P(HardRays, AreAllAnsweredAsWholeNumbersDo) {
     EXPECT_GT(along, count() / 100);
 }
 
-TEST_P(HardRays, HaveTheSameAnswersForAnyThreadsAndAnyOrder) {
+TEST_P(HardRays, ResultsDoNotDependOnThreadsOrOrder) {
     const MeshQueries queries(mesh_);
     draw(1, static_cast<std::size_t>(test::scaled(20'000)));
     const MeshHits first = queries.first_hits(rays());

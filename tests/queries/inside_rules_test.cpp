@@ -1,4 +1,4 @@
-// Inside by parity and by winding number, where shells nest and overlap.
+// Inside tests by parity and by winding number, for nested and overlapping shells.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -31,7 +31,7 @@ Points drawn_points(RandomSequence& random) {
     return points;
 }
 
-/// A shell about a point of the box of side 2: a box or a ball.
+/// Returns a box or a ball around a random point of the box of side 2.
 TriangleMesh drawn_shell(RandomSequence& random) {
     const Vec3 center = drawn({-1, -1, -1}, {1, 1, 1}, random);
     if (random.uniform() < 0.5) return testing::sphere_mesh(center, 0.3 + random.uniform(), 2);
@@ -50,7 +50,7 @@ TEST(InsideRules, AgreeForOneShell) {
     }
 }
 
-TEST(InsideRules, WindingJoinsShellsAndParityTakesTheirOverlapsOut) {
+TEST(InsideRules, WindingJoinsShellsAndParityExcludesTheirOverlaps) {
     RandomSequence random(22, 0, 0);
     for (int variant = 0; variant < kVariants; ++variant) {
         SCOPED_TRACE(variant);
@@ -75,7 +75,7 @@ TEST(InsideRules, WindingJoinsShellsAndParityTakesTheirOverlapsOut) {
     }
 }
 
-TEST(InsideRules, AShellWithinAnotherIsAHoleByItsWindingOrAlways) {
+TEST(InsideRules, InnerShellIsAHoleByParityAndIfFlippedByWinding) {
     const TriangleMesh outer = testing::sphere_mesh({0, 0, 0}, 2.0, 2);
     const TriangleMesh inner = testing::sphere_mesh({0.2, 0, 0}, 1.0, 2);
     const Points points{{0, 0, 0}, {1.7, 0, 0}, {3, 0, 0}};
@@ -87,7 +87,7 @@ TEST(InsideRules, AShellWithinAnotherIsAHoleByItsWindingOrAlways) {
     EXPECT_EQ(hollow.inside(points, InsideRule::parity), (Flags{0, 1, 0}));
 }
 
-TEST(InsideRules, WindingIsRefusedWhereTheWindingChanges) {
+TEST(InsideRules, WindingRuleRefusesInconsistentlyWoundMeshes) {
     TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     std::swap(box.triangles[3][0], box.triangles[3][1]);
     const MeshQueries mesh(box);
@@ -102,7 +102,7 @@ TEST(InsideRules, WindingIsRefusedWhereTheWindingChanges) {
     }
 }
 
-TEST(InsideRules, ARepeatedTriangleChangesNeither) {
+TEST(InsideRules, RepeatedTriangleChangesNeitherRule) {
     TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     box.triangles.push_back(box.triangles[5]);
     std::swap(box.triangles.back()[0], box.triangles.back()[1]);
@@ -135,15 +135,15 @@ TEST(InsideRules, CrossingsAddUpToTheWindingNumber) {
         sum(testing::merged(box, testing::flipped(testing::box_mesh({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}))), {1, 1, 1}), 0);
 }
 
-TEST(ShellsOverlap, OnlyWhereAPointIsWithinTwoOfThem) {
+TEST(ShellsOverlap, AreFoundOnlyIfAPointIsWithinTwoOfThem) {
     const auto box = [](const Vec3& lower, const Vec3& upper) { return testing::box_mesh(lower, upper); };
     const TriangleMesh unit = box({0, 0, 0}, {1, 1, 1});
     const std::vector<TriangleMesh> overlapping = {
         box({0.5, 0.25, 0.125}, {1.5, 1.25, 1.125}),  // corner in corner
-        box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}),        // edges through the diagonals of sides
-        box({0.5, 0, 0}, {1.5, 1, 1}),                // edges in faces, sides in one plane
+        box({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}),        // edges through the diagonals of faces
+        box({0.5, 0, 0}, {1.5, 1, 1}),                // edges in faces, faces in one plane
         box({0.5, 0, 0}, {1.5, 1, 2}),
-        box({-1, 0.25, 0.25}, {2, 0.75, 0.75}),  // a rod through it
+        box({-1, 0.25, 0.25}, {2, 0.75, 0.75}),  // a rod through the box
         box({-1, 0, 0.25}, {2, 1, 0.75}),
         box({0, 0, 0.5}, {1, 1, 1.5}),
         box({-1, -1, 0.5}, {2, 2, 0.75}),
@@ -156,16 +156,16 @@ TEST(ShellsOverlap, OnlyWhereAPointIsWithinTwoOfThem) {
         EXPECT_TRUE(shells_overlap(testing::merged(testing::flipped(overlapping[k]), unit))) << k;
     }
     const std::vector<TriangleMesh> apart = {
-        box({2, 0, 0}, {3, 1, 1}),                      // beside it
-        box({1, 0, 0}, {2, 1, 1}),                      // a common side
-        box({1, 0.25, 0.25}, {2, 0.75, 0.75}),          // a part of a side
-        box({1, 0.5, 0.5}, {2, 2, 2}),                  // parts of sides
+        box({2, 0, 0}, {3, 1, 1}),                      // beside the box
+        box({1, 0, 0}, {2, 1, 1}),                      // a common face
+        box({1, 0.25, 0.25}, {2, 0.75, 0.75}),          // a part of a face
+        box({1, 0.5, 0.5}, {2, 2, 2}),                  // parts of faces
         box({1, 1, 0}, {2, 2, 1}),                      // a common edge
         box({1, 1, 1}, {2, 2, 2}),                      // a common corner
-        box({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}),    // within it
-        box({-1, -1, -1}, {2, 2, 2}),                   // about it
-        box({0.25, 0.25, 1}, {0.75, 0.75, 1.5}),        // standing on it
-        testing::sphere_mesh({0.5, 0.5, 1.5}, 0.5, 1),  // a vertex on a side
+        box({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}),    // inside the box
+        box({-1, -1, -1}, {2, 2, 2}),                   // around the box
+        box({0.25, 0.25, 1}, {0.75, 0.75, 1.5}),        // standing on the box
+        testing::sphere_mesh({0.5, 0.5, 1.5}, 0.5, 1),  // a vertex on a face
         testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 2),
     };
     for (std::size_t k = 0; k < apart.size(); ++k) {

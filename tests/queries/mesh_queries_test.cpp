@@ -34,13 +34,13 @@ TEST(MeshQueries, ARayThroughABoxEntersAndLeaves) {
     EXPECT_EQ(unit_box().occluded({origins, directions}), (std::vector<std::uint8_t>{1, 1, 0}));
 }
 
-// Through the diagonal that two triangles share, through corners, along an edge, along a face, and past an edge.
-TEST(MeshQueries, WhatTrianglesShareIsHitOnce) {
+// Rays through the diagonal that two triangles share, through corners, along an edge, along a face, and past an edge.
+TEST(MeshQueries, SharedVerticesAndEdgesAreHitOnce) {
     const Points origins{{-1, 0.5, 0.5}, {-1, -1, -1}, {-1, 0, 0}, {-1, 0.5, 0}, {0.5, -1, 1}, {-1, 1, 0}};
     const Points directions{{1, 0, 0}, {1, 1, 1}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, -1, 0}};
     const AllMeshHits all = unit_box().all_hits({origins, directions});
     EXPECT_EQ(unit_box().count_hits({origins, directions}), (std::vector<std::uint64_t>{2, 2, 1, 1, 1, 1}));
-    EXPECT_EQ(all.hits.distance[4], 1.0);  // a way along the surface is where it begins
+    EXPECT_EQ(all.hits.distance[4], 1.0);  // a ray along the surface hits at its start
     std::vector<int> winding(origins.size(), 0);
     for (std::size_t i = 0; i < origins.size(); ++i) {
         for (std::size_t k = all.first[i]; k < all.first[i + 1]; ++k) winding[i] += all.crossing[k];
@@ -48,10 +48,10 @@ TEST(MeshQueries, WhatTrianglesShareIsHitOnce) {
     EXPECT_EQ(winding, std::vector<int>(origins.size(), 0));
 }
 
-TEST(MeshQueries, ATriangleWithoutAreaJoinsWhatItLiesBetween) {
+TEST(MeshQueries, TriangleWithoutAreaJoinsItsNeighbours) {
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 2, 0}, {1, -2, 0}};
-    mesh.triangles = {{0, 1, 3}, {0, 2, 1}, {0, 4, 2}, {2, 4, 1}};  // the second is the seam of the others
+    mesh.triangles = {{0, 1, 3}, {0, 2, 1}, {0, 4, 2}, {2, 4, 1}};  // the second triangle is the seam of the others
     const MeshQueries seam(mesh);
     const Points origins{{0.5, 0, 1}, {1, 0, 1}, {1.5, 0, 1}};
     const Points directions(3, Vec3{0, 0, -1});
@@ -59,7 +59,7 @@ TEST(MeshQueries, ATriangleWithoutAreaJoinsWhatItLiesBetween) {
     EXPECT_EQ(seam.first_hits({origins, directions}).triangle, (std::vector<std::int64_t>{0, 0, 0}));
 }
 
-TEST(MeshQueries, ARayReachesAsFarAsItIsAllowed) {
+TEST(MeshQueries, RayEndsAtItsLargestDistance) {
     const Points origins(3, Vec3{-1, 0.25, 0.5});
     const Points directions(3, Vec3{2, 0, 0});
     const std::vector<double> most{0.5, 1.0, kInfinity};
@@ -71,7 +71,7 @@ TEST(MeshQueries, ARayReachesAsFarAsItIsAllowed) {
     EXPECT_TRUE(std::isnan(hits.point[0].x));
 }
 
-TEST(MeshQueries, DistancesOfABallAreThoseOfItsFormula) {
+TEST(MeshQueries, DistancesOfABallMatchItsFormula) {
     const MeshQueries ball(testing::sphere_mesh({1, 2, 3}, 2.0, 5));
     RandomSequence random(3, 0, 0);
     Points points;
@@ -94,7 +94,7 @@ TEST(MeshQueries, DistancesOfABallAreThoseOfItsFormula) {
     }
 }
 
-TEST(MeshQueries, AfterVerticesHaveMovedAnswersAreThoseOfANewMesh) {
+TEST(MeshQueries, MovedVerticesGiveTheResultsOfANewMesh) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
     MeshQueries moved(mesh);
     const MeshQueries before = moved;
@@ -112,11 +112,11 @@ TEST(MeshQueries, AfterVerticesHaveMovedAnswersAreThoseOfANewMesh) {
     EXPECT_EQ(moved.first_hits({origins, directions}).distance, fresh.first_hits({origins, directions}).distance);
     EXPECT_EQ(moved.signed_distances(origins), fresh.signed_distances(origins));
     const Points at_center{{0, 0, 0}};
-    EXPECT_EQ(before.inside(at_center)[0], 1);  // copies keep the old place
+    EXPECT_EQ(before.inside(at_center)[0], 1);  // copies keep the old vertices
     EXPECT_EQ(moved.inside(at_center)[0], 0);
 }
 
-TEST(MeshQueries, SenselessArgumentsAreRefusedByName) {
+TEST(MeshQueries, InvalidArgumentsAreRefusedByName) {
     const MeshQueries box = unit_box();
     const Points good{{0, 0, 0}};
     const auto refusal = [](const auto& call) -> std::string {
@@ -158,7 +158,7 @@ TEST(MeshQueries, DirectionsOfAnyLengthAreTheSameRay) {
     EXPECT_EQ(unit_box().first_hits({origins, directions}).distance, std::vector<double>(4, 1.0));
 }
 
-TEST(MeshQueries, AnswerAtEverySizeOrRefuseItByName) {
+TEST(MeshQueries, EverySizeIsHandledOrRefusedByName) {
     for (const double size : {1e75, 1.0, 1e-40, 1e-59, 1e-61, 1e-90, 1e-200, 1e-300}) {
         SCOPED_TRACE(size);
         const TriangleMesh box = testing::box_mesh({}, Vec3{size, size, size});
@@ -190,7 +190,7 @@ TEST(MeshQueries, SeamsAndRepeatedTrianglesLeaveAMeshClosed) {
     const Points points{{0.1, 0.2, 0.3}, {2, 0, 0}, {0, 0, -0.9}, {0, 0, -1.1}};
     EXPECT_EQ(mesh.inside(points), (std::vector<std::uint8_t>{1, 0, 1, 0}));
     EXPECT_EQ(mesh.signed_distances(points), MeshQueries(sphere).signed_distances(points));
-    // Moved vertices are joined anew.
+    // Moved vertices are merged anew.
     seamed.vertices[0] = 1.5 * seamed.vertices[0];
     mesh.set_vertices(seamed.vertices);
     EXPECT_FALSE(mesh.is_closed());

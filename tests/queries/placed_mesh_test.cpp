@@ -16,7 +16,7 @@ namespace RICOCHET_FILE {
 
 using Points = std::vector<Vec3>;
 
-/// A rotation by a random angle about a random axis, perhaps a reflection, times a scale, and a translation.
+/// Returns a rotation by a random angle about a random axis, perhaps a reflection, times a scale, and a translation.
 AffineMap drawn_similarity(RandomSequence& random) {
     Placement placement;
     placement.rotation_axis = random.unit_vector();
@@ -59,7 +59,7 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& kn
     }
 }
 
-TEST(PlacedMesh, AnswersAsACopyOfTheMeshThere) {
+TEST(PlacedMesh, ResultsMatchATransformedCopy) {
     RandomSequence random(41, 0, 0);
     const MeshQueries mesh(testing::sphere_mesh({0, 0, 0}, 1.0, 2));
     for (int variant = 0; variant < 12; ++variant) {
@@ -87,7 +87,7 @@ TEST(PlacedMesh, AnswersAsACopyOfTheMeshThere) {
     }
 }
 
-TEST(PlacedMesh, HasTheWindingNumbersOfACopyThere) {
+TEST(PlacedMesh, WindingNumbersMatchATransformedCopy) {
     RandomSequence random(42, 0, 0);
     TriangleMesh sphere = testing::sphere_mesh({0, 0, 0}, 1.0, 2);
     for (const bool is_open : {false, true}) {
@@ -103,7 +103,7 @@ TEST(PlacedMesh, HasTheWindingNumbersOfACopyThere) {
     }
 }
 
-TEST(PlacedMesh, RefusesMapsThatAreNoSimilarity) {
+TEST(PlacedMesh, MapsThatAreNoSimilarityAreRefused) {
     const MeshQueries mesh(testing::box_mesh({0, 0, 0}, {1, 1, 1}));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
@@ -116,7 +116,7 @@ TEST(PlacedMesh, RefusesMapsThatAreNoSimilarity) {
     for (const AffineMap& map : wrong) EXPECT_THROW(PlacedMesh(mesh, map), InputError);
 }
 
-TEST(PlacedMesh, NamesTheQuestionThatCannotBeAsked) {
+TEST(PlacedMesh, ErrorNamesTheInvalidQuery) {
     const PlacedMesh placed(MeshQueries(testing::box_mesh({0, 0, 0}, {1, 1, 1})), AffineMap{});
     const Points points{{0, 0, 0}, {0, std::numeric_limits<double>::infinity(), 0}};
     try {

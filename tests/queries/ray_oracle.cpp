@@ -42,7 +42,7 @@ RayOracle::Point RayOracle::whole(const Vec3& p, int exponent) const {
     return result;
 }
 
-/// In plain doubles, where a generous bound of their error leaves no doubt.
+/// Returns true if the ray certainly misses the triangle. Computed in doubles with a generous error bound.
 bool RayOracle::certainly_misses(const Vec3& origin, const Vec3& direction, std::uint32_t triangle) const {
     bool left = false;
     bool right = false;
@@ -57,8 +57,8 @@ bool RayOracle::certainly_misses(const Vec3& origin, const Vec3& direction, std:
     return left && right;
 }
 
-/// Keeps of the ray the part with t in [begin, end], and cuts it by the half spaces value + t change >= 0 that bound
-/// the triangle's prism; in the plane itself that is what is left of the triangle.
+/// Intersects a ray with a triangle. Clips the range [begin, end] of t by the half spaces value + t change >= 0 that
+/// bound the triangle's prism. For a ray in the triangle's plane, the remaining range is the intersection.
 bool RayOracle::meets(const Point& origin, const Point& direction, const std::array<Point, 3>& corners,
                       Meeting& meeting) const {
     const Point normal = cross_of(minus(corners[1], corners[0]), minus(corners[2], corners[0]));
@@ -140,9 +140,9 @@ HardRay hard_ray(const TriangleMesh& mesh, double unit, RandomSequence& random) 
     };
     switch (below(8)) {
         case 0:
-            return {aim, p[0] - aim};  // at a corner
+            return {aim, p[0] - aim};  // through a corner
         case 1:
-            return {aim, 0.5 * (p[0] + p[1]) - aim};  // at the middle of an edge
+            return {aim, 0.5 * (p[0] + p[1]) - aim};  // through the middle of an edge
         case 2:
             return {aim, p[0] + random.uniform() * (p[1] - p[0]) - aim};
         case 3: {  // in the plane of a face
@@ -159,11 +159,11 @@ HardRay hard_ray(const TriangleMesh& mesh, double unit, RandomSequence& random) 
         }
         case 5:
             return {0.5 * (p[0] + p[1]), aim - p[2]};  // from an edge
-        case 6: {                                      // a last bit beside a corner
+        case 6: {                                      // one ulp beside a corner
             const Vec3 d = p[0] - aim;
             return {aim, {nudged(d.x), nudged(d.y), nudged(d.z)}};
         }
-        default: {  // from afar
+        default: {  // from far away
             const Vec3 far = p[0] + 1000.0 * lattice_step(4000);
             return {far, 0.5 * (p[1] + p[2]) - far};
         }

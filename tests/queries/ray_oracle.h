@@ -1,6 +1,7 @@
 /// \file
-/// What a ray hits, in whole numbers of any length: every triangle is asked, by clipping the ray against its plane and
-/// the sides of a prism (no orientation of the library's is used). Slow. And rays that are hard to answer.
+/// Exact hits of a ray in arbitrary-precision integers, and rays that are numerically hard. The oracle tests every
+/// triangle. It clips the ray against the triangle's plane and the sides of a prism, and uses no orientation predicate
+/// of the library. It is slow.
 #pragma once
 
 #include <array>
@@ -14,11 +15,11 @@
 
 namespace ricochet::testing {
 
-/// The truth about one ray.
+/// The exact result for one ray.
 struct TrueHits {
     std::vector<std::uint32_t> first;  ///< all triangles that contain the first common point, ascending
-    std::size_t places = 0;            ///< distinct points in which the ray meets the surface
-    bool runs_along = false;           ///< the ray meets a triangle in whose plane it runs: places mean nothing
+    std::size_t places = 0;            ///< number of distinct points in which the ray meets the surface
+    bool runs_along = false;           ///< the ray meets a triangle in whose plane it lies; `places` is meaningless
     bool begins_on = false;            ///< the first common point is the ray's origin
 };
 
@@ -30,7 +31,7 @@ public:
 private:
     using Integer = boost::multiprecision::cpp_int;
     using Point = std::array<Integer, 3>;
-    /// numerator / denominator, the denominator above 0.
+    /// The number numerator / denominator, with a positive denominator.
     struct Fraction {
         Integer numerator;
         Integer denominator;
@@ -48,15 +49,15 @@ private:
     const TriangleMesh& mesh_;
 };
 
-/// A ray of a kind that is hard: at a corner, an edge, along a face, from the surface, and a last bit beside. All
-/// coordinates of the mesh are multiples of `unit`, so that many rays hit exactly what they are aimed at.
+/// A numerically hard ray: through a corner, along an edge or a face, from the surface, or one ulp beside. All
+/// coordinates of the mesh are multiples of `unit`, so that many rays hit their target exactly.
 struct HardRay {
     Vec3 origin;
     Vec3 direction;
 };
 [[nodiscard]] HardRay hard_ray(const TriangleMesh& mesh, double unit, RandomSequence& random);
 
-/// A ball of triangles whose coordinates are multiples of 2^-10 times `scale`, about a centre that is too.
+/// Returns a ball of triangles around a centre. All its coordinates are multiples of 2^-10 times `scale`.
 [[nodiscard]] TriangleMesh lattice_ball(const Vec3& center, double scale, int levels);
 
 }  // namespace ricochet::testing

@@ -23,7 +23,7 @@ Points random_points(std::uint64_t seed, int count) {
     return points;
 }
 
-TEST(MeshSweep, PointsAreStoppedByWhatTheirSegmentMeets) {
+TEST(MeshSweep, PointsStopAtTheTrianglesTheirSegmentMeets) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 3);
     const int count = test::scaled(2000);
     const Points from = random_points(1, count);
@@ -44,7 +44,7 @@ Points shifted(Points points, const Vec3& by) {
     return points;
 }
 
-TEST(MeshSweep, ASphereIsStoppedARadiusBeforeAWall) {
+TEST(MeshSweep, SphereStopsARadiusBeforeAWall) {
     const MeshQueries box(testing::box_mesh({0, -4, -4}, {1, 4, 4}));
     const Points from(3, Vec3{-4, 0, 0});
     const Points to(3, Vec3{4, 0, 0});
@@ -53,8 +53,8 @@ TEST(MeshSweep, ASphereIsStoppedARadiusBeforeAWall) {
     EXPECT_EQ(box.sweep(from, from, radii).triangle, std::vector<std::int64_t>(3, kNoHit));
 }
 
-// In the frame of a mesh that moves as a whole, the sphere moves the other way and the mesh rests.
-TEST(MeshSweep, AMeshThatMovesIsMetWhereASphereThatMovesTheOtherWayMeetsIt) {
+// In the frame of a translating mesh, the sphere moves the opposite way and the mesh rests.
+TEST(MeshSweep, SweepAgainstAMovingMeshMatchesTheSweepInItsFrame) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     const MeshQueries queries(mesh);
     const Vec3 shift{0.75, -0.5, 0.25};
@@ -70,7 +70,7 @@ TEST(MeshSweep, AMeshThatMovesIsMetWhereASphereThatMovesTheOtherWayMeetsIt) {
         const NearestPoints nearest = queries.closest_points(from);
         int met = 0;
         for (std::size_t i = 0; i < from.size(); ++i) {
-            if (nearest.distance[i] <= radius + 1e-9) continue;  // in contact from the start
+            if (nearest.distance[i] <= radius + 1e-9) continue;  // overlaps from the start
             if (moving.triangle[i] == kNoHit) {
                 EXPECT_EQ(resting.triangle[i], kNoHit) << i;
             } else if (resting.triangle[i] != kNoHit) {
@@ -82,8 +82,8 @@ TEST(MeshSweep, AMeshThatMovesIsMetWhereASphereThatMovesTheOtherWayMeetsIt) {
     }
 }
 
-// Where both begin in overlap, too: one rule for meshes at rest and moved as a whole.
-TEST(MeshSweep, SpheresInOverlapAreStoppedBesideAMovedMeshWhereTheyAreBesideOneAtRest) {
+// Spheres that overlap at the start follow the same rule for static and translating meshes.
+TEST(MeshSweep, OverlappingSpheresStopAlikeAtMovedAndStaticMeshes) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     const MeshQueries queries(mesh);
     const Vec3 shift{0.75, -0.5, 0.25};
@@ -112,7 +112,7 @@ TEST(MeshSweep, SpheresInOverlapAreStoppedBesideAMovedMeshWhereTheyAreBesideOneA
     EXPECT_GT(free, count / 50);
 }
 
-/// A wall at height 0 that goes to a height.
+/// Sweeps a sphere against a wall that moves from height 0 to the given height.
 MeshHits beside_a_wall(const Vec3& from, const Vec3& to, double height, double radius) {
     const TriangleMesh wall{{{-8, -8, 0}, {8, -8, 0}, {0, 8, 0}}, {{0, 1, 2}}};
     Points after = wall.vertices;
@@ -121,23 +121,23 @@ MeshHits beside_a_wall(const Vec3& from, const Vec3& to, double height, double r
     return MeshQueries(wall).sweep_moving(std::span(&from, 1), std::span(&to, 1), radii, after);
 }
 
-TEST(MeshSweep, ASphereInOverlapIsFreeWhereTheDistanceDoesNotShrink) {
+TEST(MeshSweep, OverlappingSphereIsFreeUnlessTheDistanceShrinks) {
     const Vec3 inside{0, 0, 0.5};
     EXPECT_EQ(beside_a_wall(inside, inside, 0.0, 1.0).triangle[0], kNoHit);             // both rest
-    EXPECT_EQ(beside_a_wall(inside, {1, 0, 0.5}, 0.0, 1.0).triangle[0], kNoHit);        // along it
+    EXPECT_EQ(beside_a_wall(inside, {1, 0, 0.5}, 0.0, 1.0).triangle[0], kNoHit);        // along the wall
     EXPECT_EQ(beside_a_wall(inside, {1, 0, 2.5}, 2.0, 1.0).triangle[0], kNoHit);        // carried along
-    EXPECT_EQ(beside_a_wall(inside, inside, -1.0, 1.0).triangle[0], kNoHit);            // it recedes
-    EXPECT_EQ(beside_a_wall(inside, {0, 0, 4}, 3.0, 1.0).triangle[0], kNoHit);          // it follows, slower
-    EXPECT_EQ(beside_a_wall(inside, {0, 0, -4}, 0.0, 1.0).distance[0], 0.0);            // it sinks in
-    EXPECT_EQ(beside_a_wall(inside, inside, 0.25, 1.0).distance[0], 0.0);               // the wall comes
-    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 0.5, 1.0).triangle[0], kNoHit);       // only touches, and leaves
-    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 1.5, 1.0).distance[0], 0.0);          // and is caught up with
-    EXPECT_EQ(beside_a_wall({0, 0, 0.5}, {0, 0, 0.5}, 0.25, 0.0).triangle[0], kNoHit);  // a point beside it
-    EXPECT_EQ(beside_a_wall({0, 0, 0}, {0, 0, 1}, 0.0, 0.0).distance[0], 0.0);          // one that begins on it
+    EXPECT_EQ(beside_a_wall(inside, inside, -1.0, 1.0).triangle[0], kNoHit);            // the wall recedes
+    EXPECT_EQ(beside_a_wall(inside, {0, 0, 4}, 3.0, 1.0).triangle[0], kNoHit);          // the wall follows, but slower
+    EXPECT_EQ(beside_a_wall(inside, {0, 0, -4}, 0.0, 1.0).distance[0], 0.0);            // the sphere sinks in
+    EXPECT_EQ(beside_a_wall(inside, inside, 0.25, 1.0).distance[0], 0.0);               // the wall approaches
+    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 0.5, 1.0).triangle[0], kNoHit);       // touches and separates
+    EXPECT_EQ(beside_a_wall({0, 0, 1}, {0, 0, 2}, 1.5, 1.0).distance[0], 0.0);          // the wall catches up
+    EXPECT_EQ(beside_a_wall({0, 0, 0.5}, {0, 0, 0.5}, 0.25, 0.0).triangle[0], kNoHit);  // a point beside the wall
+    EXPECT_EQ(beside_a_wall({0, 0, 0}, {0, 0, 1}, 0.0, 0.0).distance[0], 0.0);  // a point that starts on the wall
 }
 
-// A seesaw whose height at x is x t: a sphere under the side that rises goes over to the one that falls.
-TEST(MeshSweep, ASphereThatHasLeftAMovingTriangleOrSinksDeeperThanAtTheStartIsStopped) {
+// A seesaw whose height at x is x t. A sphere below it moves from the rising side to the falling side.
+TEST(MeshSweep, SphereStopsAtRecontactAndAtTheOverlapOfItsStart) {
     const MeshQueries seesaw({{{-4, -9, 0}, {-4, 9, 0}, {4, 0, 0}}, {{0, 1, 2}}});
     const Points after{{-4, -9, -4}, {-4, 9, -4}, {4, 0, 4}};
     const std::vector<double> radii{0.5};

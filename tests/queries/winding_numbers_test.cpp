@@ -19,13 +19,13 @@ namespace RICOCHET_FILE {
 using Points = std::vector<Vec3>;
 using Numbers = std::vector<double>;
 
-/// The first direction of the rays that the answers go by: points against it from a vertex are the hard ones.
+/// First direction of the library's rays. Points that lie opposite to it from a vertex are the hard ones.
 constexpr Vec3 kDirection{0.4375, 0.6171875, 1.0};
 
-/// Rounding of a solid angle beside a vertex, for up to some hundred edges.
+/// Rounding error of a solid angle beside a vertex, for up to some hundred edges.
 constexpr double kRounding = 1e-7;
 
-/// A patch of a grid whose heights are whole numbers.
+/// Returns a patch of a grid whose heights are integers.
 TriangleMesh terrain(std::uint32_t size) {
     TriangleMesh mesh;
     for (std::uint32_t x = 0; x <= size; ++x) {
@@ -44,28 +44,28 @@ TriangleMesh terrain(std::uint32_t size) {
     return mesh;
 }
 
-TEST(WindingNumbers, OfClosedMeshesAreWhole) {
+TEST(WindingNumbers, ClosedMeshesHaveIntegerNumbers) {
     const TriangleMesh box = testing::box_mesh({0, 0, 0}, {4, 4, 4});
     const Points points{{2, 2, 2}, {1, 1, 1}, {-1, 2, 2}, {2, 2, 9}, {0.5, 3.5, 0.25}};
     EXPECT_EQ(MeshQueries(box).winding_numbers(points), (Numbers{1, 1, 0, 0, 1}));
     EXPECT_EQ(MeshQueries(testing::flipped(box)).winding_numbers(points), (Numbers{-1, -1, 0, 0, -1}));
 }
 
-TEST(WindingNumbers, AddUpWhereShellsOverlap) {
+TEST(WindingNumbers, OverlappingShellsAddUp) {
     const MeshQueries mesh(
         testing::merged(testing::box_mesh({0, 0, 0}, {2, 2, 2}), testing::box_mesh({1, 1, 1}, {3, 3, 3})));
     EXPECT_EQ(mesh.winding_numbers(Points{{0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, {2.5, 2.5, 2.5}, {0.5, 0.5, 2.5}}),
               (Numbers{1, 2, 1, 0}));
 }
 
-TEST(WindingNumbers, OfACavityAreZero) {
+TEST(WindingNumbers, CavityHasNumberZero) {
     const MeshQueries mesh(testing::merged(testing::box_mesh({0, 0, 0}, {4, 4, 4}),
                                            testing::flipped(testing::box_mesh({1, 1, 1}, {3, 3, 3}))));
     EXPECT_EQ(mesh.winding_numbers(Points{{2, 2, 2}, {0.5, 2, 2}}), (Numbers{0, 1}));
 }
 
-// Half the sides of a square are a and b, the point is h above its middle.
-TEST(WindingNumbers, OfARectangleAreItsSolidAngle) {
+// A square with half sides a and b, and a point at height h above its centre.
+TEST(WindingNumbers, RectangleHasTheNumberOfItsSolidAngle) {
     const double a = 1.5;
     const double b = 0.75;
     TriangleMesh plate;
@@ -80,7 +80,7 @@ TEST(WindingNumbers, OfARectangleAreItsSolidAngle) {
     }
 }
 
-TEST(WindingNumbers, OfTrianglesOfAnyKindAreThoseOfAllSolidAngles) {
+TEST(WindingNumbers, RandomTrianglesMatchTheSumOfSolidAngles) {
     const std::uint64_t seed = 20;
     RandomSequence draws(seed, 1, 0);
     const auto point = [&](double size) {
@@ -102,7 +102,7 @@ TEST(WindingNumbers, OfTrianglesOfAnyKindAreThoseOfAllSolidAngles) {
     }
 }
 
-TEST(WindingNumbers, AreRightWhereRaysPassThroughVerticesAndEdgesOfTheBoundary) {
+TEST(WindingNumbers, RaysThroughVerticesAndEdgesOfTheBoundaryGiveTheRightNumber) {
     const TriangleMesh mesh = terrain(4);
     const MeshQueries queries(mesh);
     for (const Triangle& t : mesh.triangles) {
@@ -120,7 +120,7 @@ TEST(WindingNumbers, AreRightWhereRaysPassThroughVerticesAndEdgesOfTheBoundary) 
     }
 }
 
-TEST(WindingNumbers, DoNotDependOnVerticesThatAreListedTwice) {
+TEST(WindingNumbers, VerticesListedTwiceChangeNothing) {
     const TriangleMesh sphere = testing::sphere_mesh({0, 0, 0}, 1.0, 3);
     TriangleMesh apart;
     for (const Triangle& t : sphere.triangles) {
@@ -131,7 +131,7 @@ TEST(WindingNumbers, DoNotDependOnVerticesThatAreListedTwice) {
     EXPECT_EQ(MeshQueries(apart).winding_numbers(Points{{0.1, 0.2, 0.3}, {0.9, 0.9, 0.9}}), (Numbers{1, 0}));
 }
 
-TEST(WindingNumbers, OfHalfASphereInItsMiddleAreOneHalf) {
+TEST(WindingNumbers, HalfASphereHasNumberOneHalfAtItsCentre) {
     TriangleMesh half = testing::sphere_mesh({0, 0, 0}, 1.0, 4);
     std::erase_if(half.triangles, [&](const Triangle& t) {
         return half.vertices[t[0]].z + half.vertices[t[1]].z + half.vertices[t[2]].z < 0.0;
@@ -139,7 +139,7 @@ TEST(WindingNumbers, OfHalfASphereInItsMiddleAreOneHalf) {
     EXPECT_NEAR(MeshQueries(half).winding_numbers(Points{{0, 0, 0}})[0], 0.5, 1e-13);
 }
 
-TEST(WindingNumbers, RefusePointsThatAreNotFinite) {
+TEST(WindingNumbers, PointsThatAreNotFiniteAreRefused) {
     EXPECT_THROW((void)MeshQueries(terrain(1)).winding_numbers(Points{{0, std::nan(""), 0}}), InputError);
 }
 

@@ -32,7 +32,7 @@ using testing::sphere_mesh;
 
 constexpr double kPi = 3.14159265358979323846;
 
-TEST(Advect, CarriesRoundACircleAndStoresTheFlowsVelocity) {
+TEST(Advect, ParticleFollowsACircleAndStoresTheFlowsVelocity) {
     SimulationSetup setup = carried(make_rotation({}, {0, 0, 2.0 * kPi}), {}, {at({1, 0, 0.5})});
     setup.options.time_step = 0.01;
     Simulation simulation(std::move(setup));
@@ -41,8 +41,8 @@ TEST(Advect, CarriesRoundACircleAndStoresTheFlowsVelocity) {
     EXPECT_LT(length(simulation.particles().velocity[0] - Vec3(0, 2.0 * kPi, 0)), 1e-5);
 }
 
-// The time of impact on the plane x = 0 of a circle about the origin that starts at an angle of 45 degrees is 1/8.
-TEST(Advect, HitsAWallAtTheTimeThatTheMethodsOrderAllows) {
+// A circle about the origin that starts at an angle of 45 degrees reaches the plane x = 0 at the time 1/8.
+TEST(Advect, TimeOfImpactHasTheMethodsOrder) {
     for (const auto& [kind, order] : {std::pair{IntegratorKind::forward_euler, 1.0},
                                       std::pair{IntegratorKind::midpoint, 2.0}, std::pair{IntegratorKind::rk4, 4.0}}) {
         std::vector<double> errors;
@@ -81,8 +81,8 @@ TEST(Advect, DormandPrinceKeepsItsToleranceWithAWallInThePath) {
     EXPECT_NEAR(simulation.particles().position[0].y, 1.0, 1e-8);
 }
 
-// On the floor z = 0 the flow (-y, x, -1) is the rotation: a circle on the floor from where it lands on.
-TEST(Advect, SlidesAlongAPlaneAndAFineMeshAsTheTangentialFlowGoes) {
+// On the floor z = 0 the tangential part of the flow (-y, x, -1) is a rotation, so the path after landing is a circle.
+TEST(Advect, ParticleSlidesAlongAPlaneAndAFineMeshWithTheTangentialFlow) {
     const FlowPointer flow = make_flow_sum({make_rotation({}, {0, 0, 1}), make_wind({0, 0, -1})});
     for (const double radius : {0.0, 0.05}) {
         for (const bool mesh : {false, true}) {
@@ -100,8 +100,8 @@ TEST(Advect, SlidesAlongAPlaneAndAFineMeshAsTheTangentialFlowGoes) {
     }
 }
 
-// What lands at the very end of a step has no time left to go along the wall: it has landed once all the same.
-TEST(Advect, LandsOnceAtTheEndOfAStep) {
+// A particle that lands at the very end of a step has no time left to slide. It must still land exactly once.
+TEST(Advect, ParticleLandsOnceAtTheEndOfAStep) {
     for (const WallRule rule : {WallRule::slide, WallRule::stop}) {
         std::vector<Particle> particles;
         for (int k = 5; k < 40; ++k) particles.push_back(at({0, 0, 0.02 * k}));
@@ -116,7 +116,7 @@ TEST(Advect, LandsOnceAtTheEndOfAStep) {
     }
 }
 
-TEST(Advect, SlidesIntoAnEdgeAndAlongItAndStaysInACorner) {
+TEST(Advect, ParticleSlidesIntoAnEdgeAndAlongItAndStaysInACorner) {
     const FlowPointer flow = make_wind({1, 0.5, -1});
     SimulationSetup setup =
         carried(flow, {plane_collider({}, {0, 0, 1}), plane_collider({1, 0, 0}, {-1, 0, 0})}, {at({0.5, 0, 0.25})});
@@ -139,8 +139,8 @@ TEST(Advect, SlidesIntoAnEdgeAndAlongItAndStaysInACorner) {
     EXPECT_EQ(corner.statistics().asleep, 2U);
 }
 
-TEST(Advect, StopsWhereItHitsUntilTheFlowReverses) {
-    // Down until t = 1, up afterwards: x' = cos(pi t / 2) downward.
+TEST(Advect, ParticleStopsAtItsImpactUntilTheFlowReverses) {
+    // The flow points down until t = 1 and up afterwards. The downward speed is cos(pi t / 2).
     const FlowPointer flow = make_flow([](const Vec3&, double t) { return Vec3{0.5, 0, -std::cos(0.5 * kPi * t)}; });
     SimulationSetup setup =
         carried(flow, {plane_collider({}, {0, 0, 1})}, {at({0, 0, 0.25}), at({3, 0, 0.3}, 0.1)}, WallRule::stop);
@@ -159,7 +159,7 @@ TEST(Advect, StopsWhereItHitsUntilTheFlowReverses) {
     EXPECT_EQ(simulation.statistics().contacts, 2U);
 }
 
-TEST(Advect, LeaksNothingFromClosedMeshesSlidingAndStopping) {
+TEST(Advect, ClosedMeshesLeakNothingSlidingAndStopping) {
     const FlowPointer flow = make_flow_sum({make_rotation({}, {0.5, 0.3, 2.0}), make_source({0.1, 0, 0}, 12.0, 0.2),
                                             make_turbulence({3, 1.0, 0.5, 2, 0.5, 1.0})});
     for (const bool box : {false, true}) {
@@ -178,7 +178,7 @@ TEST(Advect, LeaksNothingFromClosedMeshesSlidingAndStopping) {
     }
 }
 
-TEST(Advect, SlidesRoundABodyAndLeavesItBehind) {
+TEST(Advect, ParticleSlidesAroundABodyAndLeavesIt) {
     for (const double radius : {0.0, 0.02}) {
         for (const bool mesh : {true, false}) {
             std::vector<Particle> particles = cloud(test::scaled(20), 0.8, radius, 7);
@@ -201,8 +201,8 @@ TEST(Advect, SlidesRoundABodyAndLeavesItBehind) {
     }
 }
 
-TEST(Advect, SlidesInsideARoundWallToTheLowestPoint) {
-    // A ball of points pressed down inside a hollow ball and a hollow cylinder.
+TEST(Advect, ParticleSlidesInsideARoundWallToTheLowestPoint) {
+    // A ball of points is pressed down inside a hollow ball and a hollow cylinder.
     for (const double radius : {0.0, 0.05}) {
         std::vector<ColliderDescription> hollow = {{"ball", BallShape{1.0, {}}, 0}};
         SimulationSetup setup = carried(make_wind({0, 0, -1}), std::move(hollow), cloud(50, 0.5, radius, 9));
@@ -217,7 +217,7 @@ TEST(Advect, SlidesInsideARoundWallToTheLowestPoint) {
     }
 }
 
-TEST(Advect, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(Advect, BitsDoNotDependOnTheNumberOfThreads) {
     const FlowPointer flow = make_flow_sum({make_rotation({}, {0.5, 0.3, 2.0}), make_source({0.1, 0, 0}, 12.0, 0.2)});
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 3}) {
@@ -230,7 +230,7 @@ TEST(Advect, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(Advect, RefusesWhatHasNoMeaningWithAFlow) {
+TEST(Advect, SettingsWithoutMeaningForAFlowAreRefused) {
     const auto setup = [] { return carried(make_wind({1, 0, 0}), {}, {at({})}); };
     SimulationSetup forced = setup();
     forced.forces.push_back(make_gravity({0, 0, -9.81}));

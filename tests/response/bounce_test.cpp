@@ -15,20 +15,20 @@ Vec3 bounced(const Vec3& velocity, const Vec3& n, double restitution, double fri
     return bounce({velocity, {}}, 0.0, n, restitution, friction).velocity;
 }
 
-TEST(Bounce, TurnsTheNormalPartAndScalesItByTheRestitution) {
+TEST(Bounce, NormalPartIsReversedAndScaledByTheRestitution) {
     EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 1.0, 0.0), (Vec3{3, 0, 4}));
     EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 0.5, 0.0), (Vec3{3, 0, 2}));
     EXPECT_EQ(bounced({3, 0, -4}, {0, 0, 1}, 0.0, 0.0), (Vec3{3, 0, 0}));
 }
 
-TEST(Bounce, LeavesAVelocityAloneThatDoesNotApproach) {
+TEST(Bounce, SeparatingVelocityStaysUnchanged) {
     EXPECT_EQ(bounced({1, 2, 3}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 3}));
     EXPECT_EQ(bounced({1, 2, 0}, {0, 0, 1}, 0.5, 0.5), (Vec3{1, 2, 0}));
     const Vec3 not_a_number = bounced({1, 2, std::nan("")}, {0, 0, 1}, 0.5, 0.5);
     EXPECT_EQ(not_a_number.x, 1.0);
 }
 
-// Coulomb: the tangential speed falls by friction (1 + e) v_n, but not below zero.
+// Coulomb's law: the tangential speed falls by friction (1 + e) v_n, but not below zero.
 TEST(Bounce, FrictionTakesAtMostItsShareOfTheNormalImpulse) {
     const Vec3 slips = bounced({5, 0, -2}, {0, 0, 1}, 0.5, 0.2);
     EXPECT_DOUBLE_EQ(slips.x, 5.0 - 0.2 * 1.5 * 2.0);
@@ -52,7 +52,7 @@ TEST(Bounce, FrictionKeepsTheHeading) {
     }
 }
 
-TEST(Bounce, WithoutLossKeepsTheSpeedOverManyBounces) {
+TEST(Bounce, SpeedStaysConstantOverManyLosslessBounces) {
     RandomSequence random(2, 0, 0);
     Vec3 v{1, 2, 3};
     const double speed = length(v);
@@ -63,7 +63,8 @@ TEST(Bounce, WithoutLossKeepsTheSpeedOverManyBounces) {
     EXPECT_NEAR(length(v) / speed, 1.0, 1e-12);
 }
 
-/// The closest vector of the cone, by brute force: projections onto every face, edge and the apex by Dykstra's rounds.
+/// Returns the closest vector of the cone by brute force, with Dykstra's algorithm of cyclic projections onto its
+/// faces.
 /// Source: R. L. Dykstra, "An Algorithm for Restricted Least Squares Regression", JASA 78, 1983.
 Vec3 by_rounds(const Vec3& v, std::span<const Vec3> normals) {
     Vec3 w = v;
@@ -79,12 +80,12 @@ Vec3 by_rounds(const Vec3& v, std::span<const Vec3> normals) {
     return w;
 }
 
-TEST(ProjectOff, IsTheClosestVelocityThatApproachesNothing) {
+TEST(ProjectOff, ResultIsTheClosestSeparatingVelocity) {
     RandomSequence random(3, 0, 0);
     for (int i = 0; i < test::scaled(300); ++i) {
         const std::array<Vec3, 3> normals{random.unit_vector(), random.unit_vector(), random.unit_vector()};
         const auto count = static_cast<std::size_t>(1.0 + 3.0 * random.uniform());
-        // Nearly flat cones converge too slowly in the reference.
+        // The reference converges too slowly for nearly flat cones.
         if (std::fabs(dot(normals[0], cross(normals[1], normals[2]))) < 0.2) continue;
         const std::span<const Vec3> some{normals.data(), count};
         const Vec3 v = random.unit_vector();
@@ -94,7 +95,7 @@ TEST(ProjectOff, IsTheClosestVelocityThatApproachesNothing) {
     }
 }
 
-TEST(ProjectOff, HasTheClosedForms) {
+TEST(ProjectOff, ResultMatchesTheClosedForms) {
     const std::array<Vec3, 3> walls{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     EXPECT_EQ(project_off({1, 2, 3}, walls), (Vec3{1, 2, 3}));
     EXPECT_EQ(project_off({-1, 2, 3}, walls), (Vec3{0, 2, 3}));

@@ -1,4 +1,4 @@
-// Where walls hold what a flow carries, and where they let go.
+// Walls that constrain a particle in a flow, and the release from them.
 #include "ricochet/response/constrained_flow.h"
 
 #include <gtest/gtest.h>
@@ -26,17 +26,17 @@ using testing::mesh_collider;
 using testing::plane_collider;
 using testing::run;
 
-/// Two triangles, one after the other in the list.
+/// Returns two triangles, in the order of the corners.
 TriangleMesh quad(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return {{a, b, c, d}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-/// The flow turns about a line at height 1 above the floor z = 0 and presses onto it where x > 0.
+/// A flow that rotates about a line at height 1 above the floor z = 0. It presses onto the floor where x > 0.
 struct Roller {
     static constexpr double kRate = 1.3;   // rad/s
     static constexpr double kStart = 0.7;  // m
     FlowPointer flow = make_rotation({0, 0, 1}, {0, kRate, 0});
-    /// Along the floor at the speed of the rim to x = 0, and from there round on a circle.
+    /// Returns the position at a time: along the floor at the speed of the rim to x = 0, then on a circle.
     [[nodiscard]] static Vec3 place(double time) {
         const double released = kStart / kRate;
         if (time < released) return {kStart - kRate * time, 0, 0};
@@ -45,7 +45,7 @@ struct Roller {
     }
 };
 
-TEST(ConstrainedFlow, LetsGoOfAFloorWhereTheFlowTurnsAwayToTheMethodsOrder) {
+TEST(ConstrainedFlow, FloorReleasesAtTheTurnOfTheFlowToTheMethodsOrder) {
     for (const auto& [kind, order] : {std::pair{IntegratorKind::midpoint, 2.0}, std::pair{IntegratorKind::rk4, 4.0}}) {
         std::vector<double> errors;
         for (const double step : {0.1, 0.05}) {
@@ -61,8 +61,8 @@ TEST(ConstrainedFlow, LetsGoOfAFloorWhereTheFlowTurnsAwayToTheMethodsOrder) {
     }
 }
 
-// The walls' normals differ by twice the slope; each presses the particle onto the other.
-TEST(ConstrainedFlow, GoesAlongABluntValleyWithBothItsFaces) {
+// The normals of the walls differ by twice the slope. Each wall presses the particle onto the other.
+TEST(ConstrainedFlow, ParticleSlidesAlongABluntValleyOnBothFaces) {
     for (const double slope : {0.3, 1e-2, 5e-3, 1e-3, 1e-4, 1e-5, 2e-6}) {
         SCOPED_TRACE(slope);
         const TriangleMesh left = quad({-1, -1, slope}, {3, -1, slope}, {3, 0, 0}, {-1, 0, 0});
@@ -78,8 +78,8 @@ TEST(ConstrainedFlow, GoesAlongABluntValleyWithBothItsFaces) {
     }
 }
 
-// The wall y = 0 ends at x = 0.75, in the middle of a step; the floor goes on.
-TEST(ConstrainedFlow, LeavesTheWallOfAGrooveWhereItEnds) {
+// The wall y = 0 ends at x = 0.75, in the middle of a step. The floor continues.
+TEST(ConstrainedFlow, ParticleLeavesTheWallOfAGrooveAtItsEnd) {
     const TriangleMesh wall = quad({-1, 0, 1}, {0.75, 0, 1}, {0.75, 0, -1}, {-1, 0, -1});
     for (const double radius : {0.0, 0.1}) {
         SimulationSetup setup = carried(make_wind({1, -0.5, -1}), {plane_collider({}, {0, 0, 1}), mesh_collider(wall)},
@@ -95,9 +95,9 @@ TEST(ConstrainedFlow, LeavesTheWallOfAGrooveWhereItEnds) {
     }
 }
 
-// A steady flow presses a particle into a groove of any angle between 1 and 179 degrees, any way round, and takes it
-// along.
-TEST(ConstrainedFlow, SlidesInAnyGrooveForAFewContactsAndAllOfTheTime) {
+// A steady flow presses a particle into a groove and along it. The groove has any orientation and any angle between 1
+// and 179 degrees.
+TEST(ConstrainedFlow, ParticleSlidesInAnyGrooveWithFewContactsAndNoLostTime) {
     RandomSequence random(26, 0, 0);
     for (int round = 0; round < test::scaled(120); ++round) {
         SCOPED_TRACE(round);
@@ -129,8 +129,9 @@ TEST(ConstrainedFlow, SlidesInAnyGrooveForAFewContactsAndAllOfTheTime) {
     }
 }
 
-// At the wall x = 0 the flow turns away where the particle is, and would press it on a little further along: it creeps.
-TEST(ConstrainedFlow, HopsWhereAWallStopsWhatTheFlowWouldBringBack) {
+// At the wall x = 0 the flow turns away at the particle's position, but would press it on again slightly further along.
+// The particle therefore creeps.
+TEST(ConstrainedFlow, ParticleHopsAlongAWallIfTheFlowReturnsItAtOnce) {
     const FlowPointer flow = make_flow([](const Vec3& p, double t) {
         return Vec3{0.3 * (t - 0.2) - 2.0 * p.y, 1.0, 0.0};
     });
@@ -140,13 +141,14 @@ TEST(ConstrainedFlow, HopsWhereAWallStopsWhatTheFlowWouldBringBack) {
     run(simulation);
     const Vec3& p = simulation.particles().position[0];
     EXPECT_GE(p.x, 0.0);
-    // Where it is, the flow has just turned away: y = 0.15 (t - 0.2), but for a hop of a 64th of a step.
+    // At the particle's position the flow has just turned away: y = 0.15 (t - 0.2), up to a hop of a 64th of a step.
     EXPECT_NEAR(p.y, 0.15 * 0.8, 0.05 / 16.0);
     EXPECT_LE(simulation.statistics().bounces_per_step_max, 66U);
 }
 
-/// Where a uniform flow of 1 m/s along x has carried, in `time`, what has come to a ball of 1 m about the origin at the
-/// angle `start` to the flow's axis: over it until it leaves at a right angle, and on. reach: of its centre, m.
+/// Returns the position, after `time`, of a particle on a ball of 1 m at the origin in a uniform flow of 1 m/s along x.
+/// It starts at the angle `start` to the flow's axis, slides over the ball until it leaves at a right angle, and flies
+/// on. reach: distance of its centre from the origin, in m.
 Vec3 over_a_ball(double start, double time, double reach) {
     // The angle grows by sin(angle) / reach: tan(angle / 2) = tan(start / 2) exp(time / reach).
     const double leaving = -reach * std::log(std::tan(0.5 * start));
@@ -169,7 +171,7 @@ double error_over_a_ball(double radius, double step, IntegratorKind kind) {
     return length(simulation.particles().position[0] - over_a_ball(start, 3.0 - before, reach));
 }
 
-TEST(ConstrainedFlow, SlidesOverABallToTheMethodsOrderHoweverSmallTheSphere) {
+TEST(ConstrainedFlow, ParticleSlidesOverABallToTheMethodsOrderForAnyRadius) {
     for (const double radius : {0.0, 1e-6, 1e-3, 0.3}) {
         SCOPED_TRACE(radius);
         const double coarse = error_over_a_ball(radius, 0.0625, IntegratorKind::rk4);
@@ -182,8 +184,8 @@ TEST(ConstrainedFlow, SlidesOverABallToTheMethodsOrderHoweverSmallTheSphere) {
     }
 }
 
-/// A rotation about an axis beside that of a cylinder of 1 m presses what it carries onto the wall from inside.
-TEST(ConstrainedFlow, SlidesInsideACylinderToTheMethodsOrder) {
+/// A rotation about an axis beside the axis of a cylinder of 1 m presses particles onto the wall from inside.
+TEST(ConstrainedFlow, ParticleSlidesInsideACylinderToTheMethodsOrder) {
     const double rate = 2.0;
     const double beside = 0.3;
     for (const double radius : {0.0, 1e-5, 0.01}) {
@@ -197,7 +199,8 @@ TEST(ConstrainedFlow, SlidesInsideACylinderToTheMethodsOrder) {
             setup.options.duration = 0.5;
             Simulation simulation(std::move(setup));
             run(simulation);
-            // Along the wall at the rate (1 - beside cos(angle) / reach) times the flow's, from -pi / 2 on.
+            // The angle along the wall grows at the rate (1 - beside cos(angle) / reach) times the flow's, starting at
+            // -pi / 2.
             double angle = -0.5 * std::acos(-1.0);
             const auto speed = [&](double a) { return rate * (1.0 - beside * std::cos(a) / reach); };
             constexpr int kParts = 4000;
@@ -211,8 +214,8 @@ TEST(ConstrainedFlow, SlidesInsideACylinderToTheMethodsOrder) {
     }
 }
 
-// In a wedge that ends at the origin it comes to rest in a few contacts a step, however it is opened.
-TEST(ConstrainedFlow, RestsInAWedgeAtTheOriginWithoutMuchAdo) {
+// In a wedge that ends at the origin, a particle comes to rest in a few contacts per step, for any opening angle.
+TEST(ConstrainedFlow, ParticleRestsInAWedgeWithFewContacts) {
     for (const double degrees : {90.0, 60.0, 30.0, 10.0, 5.0, 1.0}) {
         const double a = degrees / 360.0 * std::acos(-1.0);
         for (const double z : {0.0, 0.01, 0.05}) {
@@ -230,7 +233,7 @@ TEST(ConstrainedFlow, RestsInAWedgeAtTheOriginWithoutMuchAdo) {
     }
 }
 
-/// Turbulence in a closed mesh that is some `size` wide.
+/// Runs turbulence in a closed mesh of the given width.
 void expect_all_goes_on(const TriangleMesh& mesh, double size, const Vec3& center, int count, std::uint64_t seed) {
     for (const WallRule walls : {WallRule::slide, WallRule::stop}) {
         for (const IntegratorKind kind : {IntegratorKind::rk4, IntegratorKind::forward_euler}) {
@@ -249,7 +252,7 @@ void expect_all_goes_on(const TriangleMesh& mesh, double size, const Vec3& cente
     }
 }
 
-TEST(TurbulenceInAMesh, SpendsNoBudgetAndFreezesNothing) {
+TEST(TurbulenceInAMesh, RunSpendsNoBudgetAndFreezesNothing) {
     const int seeds = test::scaled(4) * test::case_factor(20);
     for (int seed = 1; seed <= seeds; ++seed) {
         const auto s = static_cast<std::uint64_t>(seed);
@@ -258,7 +261,7 @@ TEST(TurbulenceInAMesh, SpendsNoBudgetAndFreezesNothing) {
     }
 }
 
-TEST(TurbulenceInAMeshLong, SpendsNoBudgetInRealMeshesEither) {
+TEST(TurbulenceInAMeshLong, RunSpendsNoBudgetInRealMeshes) {
     for (const char* const name : {"spot.obj", "bunny-closed.off", "armadillo.obj", "quadknot.obj", "fandisk.obj"}) {
         SCOPED_TRACE(name);
         RICOCHET_SHARED_MESH_OR_SKIP(path, name);

@@ -49,7 +49,7 @@ TEST(ContactColoring, NoTwoContactsOfAColourShareABody) {
     for (std::uint32_t i = 0; i < contacts.size(); ++i) EXPECT_EQ(seen[i], i);
 }
 
-TEST(ContactColoring, LeavesTheContactsOfABoulderAmongSandToOneThread) {
+TEST(ContactColoring, ContactsOfABoulderAmongSandAreSerial) {
     std::vector<NetworkContact> contacts;
     for (std::uint32_t i = 1; i <= 100; ++i) contacts.push_back(pair_of(i, 0));
     ContactColoring coloring;

@@ -23,13 +23,13 @@ ContactInterval plan_slide(const Vec3& velocity, const Vec3& a, std::span<const 
     return plan_interval({velocity, {}}, 0.0, a, surfaces, {}, duration);
 }
 
-TEST(ContactMode, RestsOnAFloorWithoutPull) {
+TEST(ContactMode, ParticleWithoutTangentialForceRestsOnAFloor) {
     const ContactInterval slide = plan_slide({}, {0, 0, -kG}, kFloor, 0.0, 2.0);
     EXPECT_TRUE(slide.at_rest);
     EXPECT_EQ(slide.duration, 2.0);
 }
 
-TEST(ContactMode, SlidesFreelyWithoutFriction) {
+TEST(ContactMode, ParticleSlidesFreelyWithoutFriction) {
     const ContactInterval slide = plan_slide({3, 0, -1}, {0, 0, -kG}, kFloor, 0.0, 2.0);
     EXPECT_FALSE(slide.at_rest);
     EXPECT_FALSE(slide.stuck[0].to_slip);
@@ -58,7 +58,7 @@ TEST(ContactMode, StaticFrictionHoldsUpToItsLimit) {
     EXPECT_LT(slips.acceleration.z, 0.0);
 }
 
-TEST(ContactMode, SpeedsUpDownhillAgainstFriction) {
+TEST(ContactMode, SlideAcceleratesDownhillAgainstFriction) {
     const double angle = 0.6;
     const Vec3 downhill{std::cos(angle), 0, -std::sin(angle)};
     const ContactInterval slide = plan_slide(2.0 * downhill, {0, 0, -kG}, slope(angle), 0.2, 1.0);
@@ -66,13 +66,13 @@ TEST(ContactMode, SpeedsUpDownhillAgainstFriction) {
     EXPECT_FALSE(slide.stuck[0].to_slip);
 }
 
-TEST(ContactMode, AValleyOfThreeWallsHoldsWithoutFriction) {
+TEST(ContactMode, ValleyOfThreeWallsHoldsWithoutFriction) {
     const std::array<Vec3, 3> valley{normalized(Vec3{1, 0, 1}), normalized(Vec3{-1, 1, 1}),
                                      normalized(Vec3{-1, -1, 1})};
     EXPECT_TRUE(plan_slide({0, 0, -3}, {0, 0, -kG}, valley, 0.0, 1.0).at_rest);
 }
 
-TEST(ContactMode, AValleyOfTwoWallsLeavesTheMotionAlongIt) {
+TEST(ContactMode, ValleyOfTwoWallsLeavesTheMotionAlongIt) {
     const std::array<Vec3, 2> valley{normalized(Vec3{1, 0, 1}), normalized(Vec3{-1, 0, 1})};
     const ContactInterval slide = plan_slide({0, 2, -3}, {0, 0, -kG}, valley, 0.0, 1.0);
     EXPECT_FALSE(slide.at_rest);

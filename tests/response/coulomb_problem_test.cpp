@@ -33,7 +33,7 @@ double product(const MotionVector& a, const MotionVector& b) {
     return sum;
 }
 
-/// A sphere (or point) under a motion that forces would give it alone, as numbers of a problem.
+/// Adds the contacts of a sphere or point to the problem. `free` is the motion that forces alone would cause.
 void add_contacts(CoulombProblem& problem, const std::vector<TestContact>& contacts, const MotionVector& free,
                   bool is_sphere) {
     for (const TestContact& contact : contacts) {
@@ -53,7 +53,7 @@ void add_contacts(CoulombProblem& problem, const std::vector<TestContact>& conta
     }
 }
 
-/// Signorini's and Coulomb's conditions, checked one by one, within `rounding` of the largest force and rate.
+/// Checks each of Signorini's and Coulomb's conditions, within `rounding` of the largest force and rate.
 void expect_solved(const CoulombProblem& problem, const std::vector<TestContact>& contacts, const MotionVector& free,
                    bool is_sphere, double rounding) {
     MotionVector motion = free;
@@ -79,20 +79,20 @@ void expect_solved(const CoulombProblem& problem, const std::vector<TestContact>
         const double speed = std::hypot(slip[0], slip[1]);
         ASSERT_LE(size, contacts[k].friction * push + rounding * most);
         if (speed <= 100.0 * rounding) continue;
-        // It slips: the force is the largest there can be, against the slip.
+        // The contact slips: its force is the largest possible one and opposes the slip.
         const double against = force[0] * slip[0] + force[1] * slip[1] + contacts[k].friction * push * speed;
         ASSERT_LE(std::fabs(against), rounding * most);
     }
 }
 
-TEST(CoulombProblem, WithoutContactsChangesNothing) {
+TEST(CoulombProblem, ProblemWithoutContactsChangesNothing) {
     CoulombProblem problem;
     ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
     EXPECT_EQ(problem.change(), MotionVector{});
 }
 
-// a = g sin A and N = g cos A; a sphere rolls with 5/7 of it while tan A <= 7/2 mu.
-TEST(CoulombProblem, OnASlopeRollsOrSlips) {
+// The acceleration is g sin A and the normal force g cos A. A sphere rolls with 5/7 of it while tan A <= 7/2 mu.
+TEST(CoulombProblem, SphereOnASlopeRollsOrSlips) {
     for (const double angle : {0.1, 0.5, 1.0}) {
         for (const double friction : {0.0, 0.1, 1.0}) {
             const Vec3 n{-std::sin(angle), 0, std::cos(angle)};
@@ -112,9 +112,9 @@ TEST(CoulombProblem, OnASlopeRollsOrSlips) {
     }
 }
 
-// A sphere in a V-groove of walls at A to the horizontal, that runs down at `slope`: rolling g sin / (1 + 0.4 / cos^2
-// A), slipping g sin - mu g cos / cos A.
-TEST(CoulombProblem, InAGrooveRollsOrSlipsAlongIt) {
+// A sphere in a V-groove that runs down at `slope`; its walls are at A to the horizontal. Its acceleration is g sin /
+// (1 + 0.4 / cos^2 A) if it rolls, and g sin - mu g cos / cos A if it slips.
+TEST(CoulombProblem, SphereInAGrooveRollsOrSlipsAlongIt) {
     constexpr double kGravity = 9.81;
     for (const double walls : {5.0, 30.0, 45.0, 80.0, 85.0}) {
         for (const double slope : {2.0, 20.0, 60.0}) {
@@ -123,7 +123,7 @@ TEST(CoulombProblem, InAGrooveRollsOrSlipsAlongIt) {
                 const double s = slope * std::numbers::pi / 180.0;
                 const std::vector<TestContact> groove{{{0, std::sin(a), std::cos(a)}, friction},
                                                       {{0, -std::sin(a), std::cos(a)}, friction}};
-                // The groove's own axes: x along it, downhill.
+                // The axes of the groove: x points downhill along it.
                 const MotionVector free = motion_vector({kGravity * std::sin(s), 0, -kGravity * std::cos(s)}, {});
                 CoulombProblem problem;
                 add_contacts(problem, groove, free, true);
@@ -133,7 +133,7 @@ TEST(CoulombProblem, InAGrooveRollsOrSlipsAlongIt) {
                 const double found = free[0] + problem.change()[0];
                 EXPECT_NEAR(found / std::max(rolling, slipping), 1.0, 1e-12)
                     << walls << ' ' << slope << ' ' << friction;
-                // What holds by friction may share the load with it.
+                // Contacts that stick by friction may also share the load.
                 for (std::size_t k = 0; slipping > rolling && k < 2; ++k) {
                     EXPECT_NEAR(problem.push(k), kGravity * std::cos(s) / (2.0 * std::cos(a)), 1e-11);
                 }
@@ -142,17 +142,17 @@ TEST(CoulombProblem, InAGrooveRollsOrSlipsAlongIt) {
     }
 }
 
-// Two contacts can hold a sphere by pressing it between them, as hard as one likes. Nothing asks for that here: it is
-// pulled out, and leaves.
-TEST(CoulombProblem, TakesNoWedgingThatNothingAsksFor) {
-    const double a = 1.45;  // walls so steep that friction 2 could hold it against any pull
+// Two contacts can wedge a sphere between them with arbitrarily large forces. Nothing requires such forces here: the
+// sphere is pulled out and leaves.
+TEST(CoulombProblem, UnneededWedgingForcesDoNotAppear) {
+    const double a = 1.45;  // walls so steep that friction 2 could hold the sphere against any pull
     const std::vector<TestContact> wedge{{{0, std::sin(a), std::cos(a)}, 2.0}, {{0, -std::sin(a), std::cos(a)}, 2.0}};
     const MotionVector out = motion_vector({0, 0, 1}, {});
     CoulombProblem problem;
     add_contacts(problem, wedge, out, true);
     ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
     EXPECT_EQ(problem.change(), MotionVector{});
-    // Pressed in it is held, by no more than it takes.
+    // A sphere that is pressed in is held by the smallest sufficient forces.
     const MotionVector in = motion_vector({0, 0, -1}, {});
     problem.clear();
     add_contacts(problem, wedge, in, true);
@@ -161,10 +161,10 @@ TEST(CoulombProblem, TakesNoWedgingThatNothingAsksFor) {
     EXPECT_LT(problem.push(0), 1.0);
 }
 
-TEST(CoulombProblem, ResistsRollingAndSpinning) {
+TEST(CoulombProblem, ResistanceActsAgainstRollingAndSpinning) {
     CoulombProblem problem;
     problem.add({motion_vector({0, 0, 1}, {}), -10.0});
-    // It spins on the spot, and a couple takes that away.
+    // The body spins on the spot, and a torque removes the spin.
     CoulombResistance spinning;
     spinning.size = 1;
     spinning.bound = 0.02;
@@ -172,7 +172,7 @@ TEST(CoulombProblem, ResistsRollingAndSpinning) {
     spinning.is_moving = true;
     spinning.heading = {1.0, 0.0};
     problem.add(spinning);
-    // Something would turn it about x; the resistance to rolling holds that.
+    // A torque would rotate the body about x; rolling resistance prevents it.
     CoulombResistance rolling;
     rolling.bound = 0.05;
     rolling.direction = {motion_vector({}, {1, 0, 0}), motion_vector({}, {0, 1, 0})};
@@ -186,7 +186,7 @@ TEST(CoulombProblem, ResistsRollingAndSpinning) {
     EXPECT_NEAR(problem.change()[3], -0.3, 1e-13);
 }
 
-TEST(CoulombProblem, OfRandomContactsIsSolved) {
+TEST(CoulombProblem, RandomContactsAreSolved) {
     RandomSequence random(3, 0, 0);
     const int cases = 20'000 * test::case_factor(20);
     int unsolved = 0;
@@ -214,7 +214,8 @@ TEST(CoulombProblem, OfRandomContactsIsSolved) {
     EXPECT_LE(unsolved, 1 + cases / 5'000);
 }
 
-/// Two to four walls of great friction, some of which move or close on a sphere: friction jams one in eight of them.
+/// Makes a problem of two to four walls of large friction. Some walls move or close on the sphere. Friction jams one
+/// problem in eight.
 void make_jamming(std::uint64_t seed, CoulombProblem& problem) {
     RandomSequence random(seed, 11, 0);
     std::vector<TestContact> contacts(static_cast<std::size_t>(2 + 3 * random.uniform()));
@@ -242,9 +243,9 @@ void make_jamming(std::uint64_t seed, CoulombProblem& problem) {
     for (const CoulombResistance& sliding : frictions) problem.add(sliding);
 }
 
-// Forces that run away as contacts become stiff say that there is no answer. Of these 2000 one in eight has none; they
-// take 3228 sweeps on average and 19 730 at most. Before it was asked they took 52 299, and 274 900 at most.
-TEST(CoulombProblem, WhereFrictionJamsIsGivenUpSoon) {
+// Forces that diverge as the contacts become stiff prove that no solution exists. One in eight of these 2000 problems
+// has none. They take 3228 sweeps on average and 19 730 at most; without this test 52 299 and 274 900.
+TEST(CoulombProblem, JammedProblemsAreAbandonedEarly) {
     const auto problem = std::make_unique<CoulombProblem>();
     const int cases = test::scaled(2000);
     std::size_t jammed = 0;
@@ -261,7 +262,7 @@ TEST(CoulombProblem, WhereFrictionJamsIsGivenUpSoon) {
     EXPECT_LE(sweeps, 4000 * jammed);
 }
 
-TEST(CoulombProblem, HasTheSameAnswerEveryTimeAndForAnyUnit) {
+TEST(CoulombProblem, SolutionIsRepeatableAndScalesWithTheUnit) {
     const std::vector<TestContact> contacts{{{0, 0.6, 0.8}, 0.5}, {{0, -0.8, 0.6}, 0.7}, {{1, 0, 0}, 0.1}};
     const MotionVector free = motion_vector({-1, 0.25, -9}, {1, 2, 3});
     CoulombProblem problem;

@@ -1,5 +1,5 @@
 /// \file
-/// A course for single particles: colliders, forces and materials ready to move one through.
+/// A course for single particles: colliders, forces and materials to move one through.
 #pragma once
 
 #include <list>
@@ -13,13 +13,13 @@ namespace ricochet::testing {
 
 /// One particle among colliders of one material.
 struct Course {
-    /// With the exact response.
+    /// Creates a course with the exact response.
     Course(std::vector<ColliderDescription> colliders, Material material, const Vec3& gravity,
            IntegratorKind integrator = IntegratorKind::ballistic, std::uint32_t budget = 1000)
         : Course(std::move(colliders), std::move(material), gravity, ResponseKind::exact,
                  settings_of(integrator, budget)) {}
 
-    /// With any response.
+    /// Creates a course with any response.
     Course(std::vector<ColliderDescription> colliders, Material material, const Vec3& gravity, ResponseKind kind,
            const ResponseSettings& settings)
         : world(std::move(colliders)),
@@ -38,8 +38,8 @@ struct Course {
         if (gravity != Vec3{}) list.push_back(make_gravity(gravity));
         return ForceField(std::move(list));
     }
-    /// Moves a point, which goes on in contact when it is where the last move left it; hits and records are those of
-    /// this move.
+    /// Moves a point. The contact state is kept if the point is where the last move left it. Hits and records contain
+    /// this move only.
     MoveOutcome move(ForceInput& state, double duration) {
         const bool goes_on = state.position == last_position && state.velocity == last_velocity;
         MovingParticle particle{state, {}, 0, 0, goes_on ? last_contact : KeptContact{}};
@@ -52,7 +52,7 @@ struct Course {
         last_sides = particle.sides;
         return outcome;
     }
-    /// Moves any particle; one that is not known yet is on the sides where it is now.
+    /// Moves any particle. A new particle gets the sides of its current position.
     MoveOutcome move(MovingParticle& particle, double duration) {
         scratch.hits.clear();
         scratch.records.clear();
@@ -62,13 +62,13 @@ struct Course {
         if (particle.sides.empty()) enrol(particle);
         return response->move(particle, duration, scratch);
     }
-    /// Gives the particle its memory of sides, where the response keeps them.
+    /// Assigns memory of sides to the particle, if the response keeps it.
     void enrol(MovingParticle& particle) {
         if (!response->keeps_sides()) return;
         particle.sides = sides.emplace_back(world.colliders().size());
         response->first_sides(particle.state.position, particle.sides);
     }
-    /// Times of the impacts of the last move.
+    /// Returns the times of the impacts of the last move.
     [[nodiscard]] std::vector<double> impact_times() const {
         std::vector<double> times;
         for (const ContactRecord& record : scratch.records) times.push_back(record.time);
@@ -84,7 +84,7 @@ struct Course {
     Vec3 last_velocity;
     KeptContact last_contact;
     std::span<SideMemory> last_sides;
-    std::list<std::vector<SideMemory>> sides;  ///< one list a particle
+    std::list<std::vector<SideMemory>> sides;  ///< one list per particle
 };
 
 }  // namespace ricochet::testing

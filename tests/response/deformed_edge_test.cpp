@@ -1,4 +1,4 @@
-// How the distance to the edge of a mesh that deforms bends, against differences of the distance itself.
+// Compares the curvature of the distance to the edge of a deforming mesh with finite differences of the distance.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A triangle behind the edge from its corner a to its corner b, all corners of which move.
+/// Returns a triangle behind the edge from its corner a to its corner b. All corners move.
 DeformingColliders triangle_of(const std::vector<Vec3>& corners, const std::vector<Vec3>& velocities) {
     TriangleMesh mesh;
     mesh.vertices = corners;
@@ -29,7 +29,7 @@ DeformingColliders triangle_of(const std::vector<Vec3>& corners, const std::vect
     return DeformingColliders(std::make_shared<ColliderList>(std::vector<ColliderDescription>{{"triangle", shape, 0}}));
 }
 
-TEST(TheBendAtADeformingEdge, IsTheSecondDerivativeOfTheDistance) {
+TEST(TheBendAtADeformingEdge, CurvatureIsTheSecondDerivativeOfTheDistance) {
     constexpr double kTime = 0.5;
     constexpr double kStep = 1e-3;
     constexpr double kRadius = 0.5;
@@ -41,7 +41,7 @@ TEST(TheBendAtADeformingEdge, IsTheSecondDerivativeOfTheDistance) {
             const double y = random.uniform_around(0, 1);
             return Vec3{x, y, random.uniform_around(0, 1)};
         };
-        // At kTime the edge is about the x axis, and the rest of the triangle below.
+        // At kTime the edge is near the x axis, and the rest of the triangle is below it.
         std::vector<Vec3> corners{{-3, 0, 0}, {3, 0.2, 0}, {0, 0, -4}};
         const std::vector<Vec3> velocities{any(), any(), any()};
         for (std::size_t k = 0; k < corners.size(); ++k) corners[k] -= kTime * velocities[k];
@@ -52,7 +52,7 @@ TEST(TheBendAtADeformingEdge, IsTheSecondDerivativeOfTheDistance) {
         particle.position = {0.1, 0.31 / 3.0, kRadius};
         const CollisionWorld::Nearest here = deforming.nearest(0, particle.position, kTime);
         ASSERT_FALSE(here.flat);
-        // Along the edge and past it, at a distance that stays for the moment.
+        // The particle moves along and past the edge at a momentarily constant distance.
         particle.velocity = any();
         const Vec3 slip = particle.velocity - deforming.motion_at(0, particle.position, kTime).velocity;
         particle.velocity -= dot(slip, here.normal) * here.normal;

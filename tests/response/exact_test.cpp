@@ -33,8 +33,8 @@ ColliderDescription ground() { return plane_collider({0, 0, 0}, {0, 0, 1}); }
 class BouncingBall : public ::testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Restitutions, BouncingBall, ::testing::Values(0.5, 0.8, 0.9));
 
-// Impact n at t0 (1 + 2 (e + ... + e^n)), t0 = sqrt(2 h / g); between them the apex h e^(2n).
-TEST_P(BouncingBall, HitsAndRisesAsTheClosedFormSays) {
+// Impact n is at t0 (1 + 2 (e + ... + e^n)) with t0 = sqrt(2 h / g). The apex after it has the height h e^(2n).
+TEST_P(BouncingBall, ImpactsAndApexesMatchTheClosedForm) {
     const double e = GetParam();
     const double h = 1.0;
     const double t0 = std::sqrt(2.0 * h / kG);
@@ -53,7 +53,7 @@ TEST_P(BouncingBall, HitsAndRisesAsTheClosedFormSays) {
     }
 }
 
-TEST_P(BouncingBall, RestsAfterTheClosedFormTime) {
+TEST_P(BouncingBall, BallRestsAfterTheClosedFormTime) {
     const double e = GetParam();
     const double total = std::sqrt(2.0 / kG) * (1.0 + e) / (1.0 - e);
     Course course({ground()}, {"", e, 0.0}, {0, 0, -kG});
@@ -69,8 +69,8 @@ TEST_P(BouncingBall, RestsAfterTheClosedFormTime) {
     EXPECT_EQ(state.position, before);
 }
 
-// Whatever the time step: the parabola is exact, and a bounce does not lose its accuracy.
-TEST_P(BouncingBall, DoesNotDependOnTheTimeStep) {
+// The parabola is exact for any time step, and a bounce loses no accuracy.
+TEST_P(BouncingBall, ResultDoesNotDependOnTheTimeStep) {
     Course course({ground()}, {"", GetParam(), 0.0}, {0, 0, -kG});
     ForceInput whole = at({0, 0, 1}, {0.3, 0, 0});
     ForceInput steps = whole;
@@ -80,7 +80,7 @@ TEST_P(BouncingBall, DoesNotDependOnTheTimeStep) {
     EXPECT_NEAR(length(whole.velocity - steps.velocity), 0.0, 1e-11);
 }
 
-TEST(ExactResponse, AnElasticBallKeepsItsHeight) {
+TEST(ExactResponse, ElasticBallKeepsItsHeight) {
     Course course({ground()}, {"", 1.0, 0.0}, {0, 0, -kG});
     ForceInput state = at({0, 0, 1});
     for (int k = 0; k < test::scaled(20000); ++k) (void)course.move(state, 0.0625);
@@ -88,7 +88,7 @@ TEST(ExactResponse, AnElasticBallKeepsItsHeight) {
     EXPECT_NEAR(energy / kG, 1.0, 1e-9);
 }
 
-// The method is symplectic also with bounces: the energy error stays bounded.
+// The method remains symplectic with bounces, so the energy error stays bounded.
 TEST(ExactResponse, SymplecticEulerKeepsTheEnergyOfAnElasticBallBounded) {
     Course course({ground()}, {"", 1.0, 0.0}, {0, 0, -kG}, IntegratorKind::symplectic_euler);
     ForceInput state = at({0, 0, 1});
@@ -104,8 +104,8 @@ TEST(ExactResponse, SymplecticEulerKeepsTheEnergyOfAnElasticBallBounded) {
     EXPECT_LT(highest, 1.01);
 }
 
-// Successive hops of an elastic ball down a slope are 8 h sin(theta) (1, 2, 3, ...), all of the same duration 2 t0.
-TEST(ExactResponse, HopsDownASlopeAsTheClosedFormSays) {
+// Successive hops of an elastic ball down a slope have the lengths 8 h sin(theta) (1, 2, 3, ...), and all take 2 t0.
+TEST(ExactResponse, HopsDownASlopeMatchTheClosedForm) {
     for (const double degrees : {30.0, 45.0}) {
         const double theta = degrees * kPi / 180.0;
         Course course({plane_collider({0, 0, 0}, {std::sin(theta), 0, std::cos(theta)})}, {"", 1.0, 0.0}, {0, 0, -kG});
@@ -125,7 +125,7 @@ TEST(ExactResponse, HopsDownASlopeAsTheClosedFormSays) {
     }
 }
 
-TEST(ExactResponse, ACornerOfThreeWallsSendsEverythingStraightBack) {
+TEST(ExactResponse, CornerOfThreeWallsReflectsEverythingStraightBack) {
     const std::vector<ColliderDescription> walls{plane_collider({0, 0, 0}, {1, 0, 0}),
                                                  plane_collider({0, 0, 0}, {0, 1, 0}), ground()};
     Course course(walls, {"", 1.0, 0.0}, {});
@@ -142,9 +142,10 @@ TEST(ExactResponse, ACornerOfThreeWallsSendsEverythingStraightBack) {
     EXPECT_NEAR(length(into_the_corner.position - Vec3{1, 1, 1}), 0.0, 1e-13);
 }
 
-// G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003: parallel to one wall of a wedge of
-// arctan(10^-k), the number of reflections is the first digits of pi. The exit follows by unfolding the wedge.
-TEST(ExactResponse, CountsTheDigitsOfPiInAWedge) {
+// G. Galperin, "Playing pool with pi", Regular and Chaotic Dynamics 8, 2003: a particle enters parallel to one wall of
+// a wedge of arctan(10^-k). The number of its reflections is the first digits of pi. The exit follows by unfolding the
+// wedge.
+TEST(ExactResponse, ReflectionsInAWedgeCountTheDigitsOfPi) {
     for (const auto& [tangent, count] :
          {std::pair{0.1, 31U}, std::pair{0.01, 314U}, std::pair{0.001, 3141U}, std::pair{0.0001, 31415U}}) {
         const double angle = std::atan(tangent);
@@ -161,7 +162,7 @@ TEST(ExactResponse, CountsTheDigitsOfPiInAWedge) {
     }
 }
 
-TEST(ExactResponse, ASpentBudgetKeepsAValidPositionAndCountsTheTime) {
+TEST(ExactResponse, SpentBudgetKeepsAValidPositionAndCountsTheTime) {
     const double angle = std::atan(0.01);
     const std::vector<ColliderDescription> walls{plane_collider({0, 0, 0}, {0, 1, 0}),
                                                  plane_collider({0, 0, 0}, {std::sin(angle), -std::cos(angle), 0})};
@@ -179,7 +180,7 @@ TEST(ExactResponse, ASpentBudgetKeepsAValidPositionAndCountsTheTime) {
         EXPECT_GT(state.position.y, 0.0);
         EXPECT_EQ(course.world.side_of_surface(1, state.position), 1);
     }
-    // Nothing is lost but time: in the end all the bounces have happened.
+    // Only time is lost: in the end all bounces have happened.
     EXPECT_EQ(bounces, 314U);
     EXPECT_GE(exhausted, 6);
     EXPECT_NEAR(state.time, simulated, 1e-9);
@@ -190,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Sliding,
                          ::testing::Values(IntegratorKind::ballistic, IntegratorKind::symplectic_euler),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-/// A slope through the origin, and a point just off it.
+/// A slope through the origin, and a point just above it.
 struct Slope {
     explicit Slope(double angle)
         : normal{std::sin(angle), 0, std::cos(angle)}, downhill{std::cos(angle), 0, -std::sin(angle)} {}
@@ -198,7 +199,7 @@ struct Slope {
     Vec3 downhill;
 };
 
-TEST_P(Sliding, DownASlopeWithFrictionFollowsTheClosedForm) {
+TEST_P(Sliding, SlideDownASlopeWithFrictionMatchesTheClosedForm) {
     const double angle = 0.6;
     const double friction = 0.25;
     const Slope slope(angle);
@@ -209,7 +210,7 @@ TEST_P(Sliding, DownASlopeWithFrictionFollowsTheClosedForm) {
     const double dt = 1.0 / kSteps;
     for (int k = 0; k < kSteps; ++k) (void)course.move(state, dt);
     EXPECT_NEAR(dot(state.velocity, slope.downhill), a, 1e-9);
-    // Symplectic Euler's positions are first order: x = a t^2 (1 + dt / t) / 2.
+    // The positions of symplectic Euler are first order: x = a t^2 (1 + dt / t) / 2.
     const double expected = GetParam() == IntegratorKind::ballistic ? 0.5 * a : 0.5 * a * (1.0 + dt);
     EXPECT_NEAR(dot(state.position, slope.downhill), expected, 1e-9);
     EXPECT_NEAR(dot(state.position, slope.normal), 0.0, 1e-12);
@@ -228,7 +229,7 @@ TEST_P(Sliding, StaticFrictionHolds) {
     EXPECT_EQ(state.position, settled);
 }
 
-TEST_P(Sliding, FrictionStopsItAfterTheClosedFormDistance) {
+TEST_P(Sliding, FrictionStopsTheParticleAfterTheClosedFormDistance) {
     Course course({ground()}, {"", 0.0, 0.5}, {0, 0, -kG}, GetParam());
     ForceInput state = at({0, 0, 1e-15}, {2, 0, 0});
     bool resting = false;
@@ -240,18 +241,18 @@ TEST_P(Sliding, FrictionStopsItAfterTheClosedFormDistance) {
     EXPECT_NEAR(state.position.x, distance, GetParam() == IntegratorKind::ballistic ? 1e-9 : 2.0 * dt);
 }
 
-TEST_P(Sliding, LeavesAConvexEdgeInFreeFlight) {
+TEST_P(Sliding, ParticleLeavesAConvexEdgeInFreeFlight) {
     Course course({mesh_collider(floor_mesh(1.0, 1))}, {"", 0.5, 0.0}, {0, 0, -kG}, GetParam());
     ForceInput state = at({0, 0.25, 1e-15}, {2, 0, 0});
     const double dt = 1.0 / 1024;
     for (int k = 0; k < 1024; ++k) (void)course.move(state, dt);
     EXPECT_NEAR(state.position.x, 2.0, 1e-12);
-    // Off the edge at t = 0.5; symplectic Euler falls a first-order amount further.
+    // The particle leaves the edge at t = 0.5. Symplectic Euler falls a first-order amount further.
     const double fall = 0.5 * kG * 0.25;
     EXPECT_NEAR(state.position.z, -fall, GetParam() == IntegratorKind::ballistic ? 1e-9 : kG * dt);
 }
 
-TEST_P(Sliding, OverAFloorOfManyTrianglesIsAsOverAPlane) {
+TEST_P(Sliding, FloorOfManyTrianglesActsLikeAPlane) {
     Course plane({ground()}, {"", 0.2, 0.1}, {0, 0, -kG}, GetParam());
     Course mesh({mesh_collider(floor_mesh(8.0, 37))}, {"", 0.2, 0.1}, {0, 0, -kG}, GetParam());
     ForceInput on_plane = at({-3, 0.1, 1e-15}, {4, 0.3, 0});
@@ -264,7 +265,7 @@ TEST_P(Sliding, OverAFloorOfManyTrianglesIsAsOverAPlane) {
     EXPECT_NEAR(length(on_plane.velocity - on_mesh.velocity), 0.0, 1e-9);
 }
 
-/// Walls of a pit that all pass through the origin, as a mesh: facing sides steep enough to slide down.
+/// Returns a mesh of the walls of a pit. All walls pass through the origin and are steep enough to slide down.
 TriangleMesh pit(int sides) {
     TriangleMesh mesh{{{0, 0, 0}}, {}};
     for (int k = 0; k < sides; ++k) {
@@ -278,13 +279,13 @@ TriangleMesh pit(int sides) {
     return mesh;
 }
 
-/// A trough along y of two long triangles' pairs.
+/// Returns a trough along y of two long quadrilaterals.
 TriangleMesh trough() {
     return {{{-2, -5, 1.5}, {-2, 5, 1.5}, {0, -5, 0}, {0, 5, 0}, {2, -5, 1.5}, {2, 5, 1.5}},
             {{0, 2, 3}, {0, 3, 1}, {2, 4, 5}, {2, 5, 3}}};
 }
 
-/// Lets a particle fall into a valley around the y axis or the origin; true when it rests in the end.
+/// Lets a particle fall into a valley around the y axis or the origin. Returns true if it rests at the end.
 bool settles_in(Course& course, ForceInput& state, int steps) {
     bool resting = false;
     for (int k = 0; k < steps; ++k) {
@@ -295,7 +296,7 @@ bool settles_in(Course& course, ForceInput& state, int steps) {
     return resting;
 }
 
-TEST(ValleyOfTwoWalls, BringsAParticleToRest) {
+TEST(ValleyOfTwoWalls, ParticleComesToRest) {
     Course course({mesh_collider(trough())}, {"", 0.5, 0.2}, {0, 0, -kG});
     ForceInput state = at({0.7, 0.1, 2.0}, {0.5, 0.2, 0});
     EXPECT_TRUE(settles_in(course, state, 2000));
@@ -303,7 +304,7 @@ TEST(ValleyOfTwoWalls, BringsAParticleToRest) {
     EXPECT_LT(state.position.z, 1e-6);
 }
 
-TEST(ValleyOfThreeWalls, BringsAParticleToRestAtItsBottomWithoutFriction) {
+TEST(ValleyOfThreeWalls, ParticleRestsAtTheBottomWithoutFriction) {
     Course course({mesh_collider(pit(3))}, {"", 0.4, 0.0}, {0, 0, -kG});
     ForceInput state = at({0.2, 0.1, 1.0});
     EXPECT_TRUE(settles_in(course, state, 4000));
@@ -311,9 +312,9 @@ TEST(ValleyOfThreeWalls, BringsAParticleToRestAtItsBottomWithoutFriction) {
     EXPECT_LT(state.position.z, 1e-6);
 }
 
-// Symplectic Euler drifts without force: where a kick throws the particle, up to g dt^2, is where it is found.
-TEST(PitOfFourFaces, EndsCirclingInRestInsteadOfSpendingTheBudget) {
-    // The four faces that a particle was seen circling between on a rocky terrain, as planes through one point.
+// Symplectic Euler drifts without force. A kick may therefore move the particle by up to g dt^2.
+TEST(PitOfFourFaces, CirclingParticleComesToRestWithoutSpendingTheBudget) {
+    // Four faces, as planes through one point, between which a particle circled on a rocky terrain.
     const std::vector<Vec3> normals{
         {0.7241, -0.4512, 0.5215}, {-0.2919, -0.6258, 0.7233}, {-0.3135, 0.5465, 0.7766}, {0.7505, 0.3803, 0.5405}};
     std::vector<ColliderDescription> planes;
@@ -331,7 +332,7 @@ TEST(PitOfFourFaces, EndsCirclingInRestInsteadOfSpendingTheBudget) {
     EXPECT_LT(length(state.position), 1e-4);
 }
 
-TEST(Valleys, HoldAParticleWithinOneKickOfTheBottomWithSymplecticEuler) {
+TEST(Valleys, ParticleStaysWithinOneKickOfTheBottomWithSymplecticEuler) {
     for (const TriangleMesh& valley : {trough(), pit(3)}) {
         Course course({mesh_collider(valley)}, {"", 0.4, 0.1}, {0, 0, -kG}, IntegratorKind::symplectic_euler);
         ForceInput state = at({0.2, 0.1, 1.0});
@@ -343,7 +344,7 @@ TEST(Valleys, HoldAParticleWithinOneKickOfTheBottomWithSymplecticEuler) {
     }
 }
 
-TEST(ExactResponse, AParticleExactlyOnASurfaceIsOnTheSideOfTheNormal) {
+TEST(ExactResponse, ParticleExactlyOnASurfaceIsOnTheSideOfTheNormal) {
     for (const auto& collider : {ground(), mesh_collider(floor_mesh(2.0, 2))}) {
         for (const IntegratorKind kind : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {
             Course course({collider}, {"", 0.5, 0.0}, {0, 0, -kG}, kind);
@@ -362,7 +363,7 @@ TEST(ExactResponse, AParticleExactlyOnASurfaceIsOnTheSideOfTheNormal) {
     }
 }
 
-TEST(ExactResponse, AParticleLeftOnASurfaceWithoutForcesStaysThere) {
+TEST(ExactResponse, ParticleOnASurfaceWithoutForcesStaysThere) {
     Course course({ground()}, {"", 1.0, 0.0}, {});
     ForceInput state = at({1, 2, 0});
     const MoveOutcome outcome = course.move(state, 1.0);
@@ -371,8 +372,8 @@ TEST(ExactResponse, AParticleLeftOnASurfaceWithoutForcesStaysThere) {
     EXPECT_NEAR(state.position.z, 0.0, 1e-14);
 }
 
-// The contact offset depends on the contact point alone, so the mesh's resolution changes no bit.
-TEST(ExactResponse, BouncesAlikeOnTwoTrianglesManyTrianglesAndAPlane) {
+// The contact offset depends on the contact point alone, so the resolution of the mesh changes no bit.
+TEST(ExactResponse, TwoTrianglesManyTrianglesAndAPlaneGiveEqualBounces) {
     for (const double restitution : {1.0, 0.8}) {
         for (const IntegratorKind kind : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {
             Course plane({ground()}, {"", restitution, 0.1}, {0, 0, -kG}, kind);
@@ -409,9 +410,9 @@ TEST(ExactResponse, ImpulsesAddUpToTheChangeOfMomentum) {
     EXPECT_GT(course.impact_times().size(), 3U);
 }
 
-// Flying, bouncing, cascades, sliding into walls, rolling and rest: what the surfaces are given is what gravity gives
-// and the particle does not keep.
-TEST(ExactResponse, MomentumIsBookedInEveryKindOfContact) {
+// Covers flight, bounces, impact cascades, sliding into walls, rolling and rest. The impulse on the surfaces equals
+// gravity's impulse minus the particle's change of momentum.
+TEST(ExactResponse, MomentumIsRecordedInEveryKindOfContact) {
     for (const IntegratorKind kind :
          {IntegratorKind::ballistic, IntegratorKind::rk4, IntegratorKind::symplectic_euler}) {
         for (const double radius : {0.0, 0.05}) {
@@ -429,12 +430,12 @@ TEST(ExactResponse, MomentumIsBookedInEveryKindOfContact) {
                 const Vec3 expected = 2.0 * (time * Vec3{0, 0, -kG} - (particle.state.velocity - start));
                 ASSERT_LT(length(given - expected), 1e-10) << "step " << k;
             }
-            EXPECT_EQ(resting, radius == 0.0);  // a sphere rolls on
+            EXPECT_EQ(resting, radius == 0.0);  // a sphere continues to roll
         }
     }
 }
 
-TEST(ExactResponse, RestingContactCarriesTheWeight) {
+TEST(ExactResponse, RestingContactTransfersTheWeight) {
     Course course({ground()}, {"", 0.5, 0.3}, {0, 0, -kG});
     ForceInput state{{0, 0, 1e-15}, {}, 2.0, 0.0, 0.0};
     (void)course.move(state, 0.5);
@@ -443,7 +444,7 @@ TEST(ExactResponse, RestingContactCarriesTheWeight) {
     EXPECT_NEAR(given.z, -2.0 * kG * 0.5, 1e-6);
 }
 
-TEST(ExactResponse, RefusesToMoveStatesBeyondTheArithmetic) {
+TEST(ExactResponse, StatesOutsideTheValidRangeAreFrozen) {
     Course course({ground()}, {"", 0.5, 0.0}, {0, 0, -kG});
     for (const Vec3& v : {Vec3{1e300, 0, 0}, Vec3{0, std::nan(""), 0}, Vec3{0, 0, -INFINITY}}) {
         ForceInput state = at({0, 0, 1}, v);
@@ -455,7 +456,7 @@ TEST(ExactResponse, RefusesToMoveStatesBeyondTheArithmetic) {
     EXPECT_TRUE(course.move(lost, 1.0).is_frozen());
 }
 
-TEST(ExactResponse, NeverRestsWhereNothingIsLost) {
+TEST(ExactResponse, LosslessContactNeverRests) {
     Course course({ground()}, {"", 1.0, 0.0}, {0, 0, -kG});
     ForceInput state = at({0, 0, 1e-9});
     const MoveOutcome outcome = course.move(state, 0.01);

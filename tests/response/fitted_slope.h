@@ -1,5 +1,5 @@
 /// \file
-/// Orders of convergence, as slopes.
+/// Slopes of errors on logarithmic axes, which give orders of convergence.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace ricochet::testing {
 
-/// Slope of log(y) against log(x) by least squares.
+/// Returns the slope of log(y) against log(x) by least squares.
 inline double fitted_slope(const std::vector<double>& x, const std::vector<double>& y) {
     double sx = 0.0;
     double sy = 0.0;

@@ -1,5 +1,5 @@
 /// \file
-/// Particles that a flow carries among colliders, for tests.
+/// Particles in a flow among colliders, for tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ inline SimulationSetup carried(FlowPointer flow, std::vector<ColliderDescription
     return setup;
 }
 
-/// Where the flow takes it from.
+/// Returns a particle that starts at a position in the flow.
 inline Particle at(const Vec3& position, double radius = 0.0) {
     Particle particle;
     particle.position = position;
@@ -40,7 +40,7 @@ inline Particle at(const Vec3& position, double radius = 0.0) {
     return particle;
 }
 
-/// To the end, and nothing leaks, freezes or loses time.
+/// Runs to the end and checks that nothing leaks, freezes or loses time.
 inline void run(Simulation& simulation) {
     while (!simulation.finished()) simulation.step();
     EXPECT_EQ(simulation.statistics().violations, 0U);
@@ -49,7 +49,7 @@ inline void run(Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-/// Points and spheres in turn in a cube about the origin.
+/// Returns alternating points and spheres in a cube about the origin.
 inline std::vector<Particle> cloud(int count, double half, double radius, std::uint64_t seed) {
     RandomSequence random(seed, 0, 0);
     std::vector<Particle> particles;

@@ -13,12 +13,12 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Twice the kinetic energy over the mass.
+/// Returns twice the kinetic energy over the mass.
 double energy(const Motion& motion, double radius) {
     return length_squared(motion.velocity) + 0.4 * radius * radius * length_squared(motion.spin);
 }
 
-/// Normals in a cone about the x axis, from flat to wide.
+/// Returns surfaces whose normals are in a cone about the x axis, from flat to wide.
 std::vector<ImpactSurface> random_surfaces(std::size_t count, RandomSequence& random) {
     const double spread = std::pow(10.0, -4.0 * random.uniform());
     const double friction = random.uniform() < 0.3 ? 0.0 : 2.0 * random.uniform();
@@ -41,7 +41,7 @@ double least_restitution(const Motion& before, const std::vector<ImpactSurface>&
     return least;
 }
 
-TEST(ImpactProblem, OnOneSurfaceIsABounce) {
+TEST(ImpactProblem, OneSurfaceGivesABounce) {
     RandomSequence random(1, 0, 0);
     for (int k = 0; k < 1000; ++k) {
         const double radius = k % 2 == 0 ? 0.0 : 0.3;
@@ -59,7 +59,7 @@ TEST(ImpactProblem, OnOneSurfaceIsABounce) {
     }
 }
 
-TEST(ImpactProblem, InARectangularCornerWithoutLossesTurnsTheVelocityBack) {
+TEST(ImpactProblem, RectangularCornerWithoutLossesReversesTheVelocity) {
     const std::vector<ImpactSurface> corner{{{1, 0, 0}, 1.0, 0.0}, {{0, 1, 0}, 1.0, 0.0}, {{0, 0, 1}, 1.0, 0.0}};
     const Vec3 velocity{-0.3, -0.7, -0.2};
     const ImpactResult result = solve_impact({velocity, {}}, 0.1, corner);
@@ -68,25 +68,25 @@ TEST(ImpactProblem, InARectangularCornerWithoutLossesTurnsTheVelocityBack) {
         EXPECT_LT(length(result.push[k] - 2.0 * -velocity[static_cast<int>(k)] * corner[k].normal), 1e-15);
 }
 
-// Along the bisector of a wedge both walls push alike and the velocity comes back times the restitution, however narrow
-// the wedge is; wall by wall a narrow wedge takes hundreds of rebounds.
-TEST(ImpactProblem, InAWedgeTurnsTheVelocityBackTimesTheRestitution) {
+// Along the bisector of a wedge both walls give equal impulses. The velocity is reversed and multiplied by the
+// restitution, however narrow the wedge is. Resolved wall by wall, a narrow wedge takes hundreds of rebounds.
+TEST(ImpactProblem, WedgeReversesTheVelocityTimesTheRestitution) {
     for (const double half_angle : {1e-6, 1e-3, 0.1, 0.7, 1.5}) {
         for (const double restitution : {0.0, 0.3, 1.0}) {
             const double s = std::sin(half_angle);
             const double c = std::cos(half_angle);
             const std::vector<ImpactSurface> wedge{{{s, c, 0}, restitution, 0.0}, {{s, -c, 0}, 1.0, 0.0}};
             const ImpactResult result = solve_impact({{-2, 0, 0.5}, {}}, 0.0, wedge);
-            // The products of the normals are rounded to 2^-53, of sin^2.
+            // The products of the normals are rounded to 2^-53, relative to sin^2.
             const double rounding = 1e-12 + 0x1p-50 / (s * s);
             EXPECT_LT(length(result.after.velocity - Vec3{2.0 * restitution, 0, 0.5}), rounding) << half_angle;
         }
     }
 }
 
-// A sphere that falls into a V-groove with sticking friction and without restitution rolls on along it: angular
-// momentum about the line through both contact points, v (h^2 + 2/5 r^2) = h^2 v0 + 2/5 r^2 (h omega0), is kept.
-TEST(ImpactProblem, IntoAGrooveGoesOnRolling) {
+// A sphere falls into a V-groove with sticking friction and without restitution, and rolls along it. The angular
+// momentum about the line through both contact points is conserved: v (h^2 + 2/5 r^2) = h^2 v0 + 2/5 r^2 (h omega0).
+TEST(ImpactProblem, SphereRollsOnAfterFallingIntoAGroove) {
     const double r = 0.25;
     const double steep = std::numbers::pi / 3;  // of both walls
     const double h = r * std::cos(steep);       // from the centre to the line through the contact points
@@ -99,7 +99,7 @@ TEST(ImpactProblem, IntoAGrooveGoesOnRolling) {
     EXPECT_LT(length(result.after.velocity - Vec3{h * rolling, 0, 0}), 1e-13);
 }
 
-TEST(ImpactProblem, OfSurfacesOfTheSameNormalIsThatOfTheFirst) {
+TEST(ImpactProblem, SurfacesWithTheSameNormalCountAsTheFirst) {
     const ImpactSurface floor{{0, 0, 1}, 0.5, 0.2};
     const std::vector<ImpactSurface> floors{floor, floor, floor};
     const Motion before{{1, 0, -1}, {0, 3, 0}};
@@ -109,7 +109,7 @@ TEST(ImpactProblem, OfSurfacesOfTheSameNormalIsThatOfTheFirst) {
     EXPECT_EQ(three.push[1], Vec3{});
 }
 
-TEST(ImpactProblem, NeverLetsEnergyInAndMeetsMoreausLaw) {
+TEST(ImpactProblem, EnergyNeverGrowsAndMoreausLawIsMet) {
     RandomSequence random(2, 0, 0);
     const int cases = 20'000 * test::case_factor(20);
     for (int k = 0; k < cases; ++k) {

@@ -1,5 +1,5 @@
-// Contact is followed in intervals, each of which is a problem or more to solve: those beyond a step's first 64 spend
-// the budget of bounces, so that a step's work has a bound.
+// Contact is integrated in intervals, and each interval solves at least one problem. Intervals beyond the first 64 of a
+// step spend the bounce budget, which bounds the work of a step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,13 +21,13 @@ constexpr double kSpeed = 10.0;
 constexpr double kTurning = kSpeed / (kShell - kRadius);  // rad/s
 
 struct Round {
-    double turned = 0.0;  // rad, by the time that was simulated
-    double lost = 0.0;    // s, that was not
+    double turned = 0.0;  // rad, within the simulated time
+    double lost = 0.0;    // s, not simulated
     Vec3 position;
     std::uint32_t bounces = 0;
 };
 
-/// A sphere that slides round and round in a ball, in a step of a second: arcs of a tenth of a radian.
+/// Slides a sphere around inside a ball, in a step of one second. The arcs are a tenth of a radian long.
 Round slide(std::uint32_t budget) {
     Course course({{"shell", BallShape{kShell, {}}, 0}}, {"", 0.0, 0.0}, {}, IntegratorKind::ballistic, budget);
     MovingParticle sphere{{{kShell - kRadius - 1e-9, 0, 0}, {0, kSpeed, 0}, 1.0, kRadius, 0.0}, {}, 0, 0};
@@ -36,10 +36,10 @@ Round slide(std::uint32_t budget) {
             outcome.bounces};
 }
 
-TEST(IntervalsOfContact, BeyondSixtyFourInAStepSpendTheBudgetOfBounces) {
+TEST(IntervalsOfContact, IntervalsBeyondSixtyFourInAStepSpendTheBounceBudget) {
     const Round all = slide(1000);
     EXPECT_EQ(all.lost, 0.0);
-    // Contact goes on anew, as an impact, after each 64 intervals.
+    // Contact starts anew as an impact after each 64 intervals.
     EXPECT_LE(all.bounces, 1.0 + kTurning / (64.0 * kMaxArcAngle));
     EXPECT_NEAR(all.position.x, (kShell - kRadius) * std::cos(kTurning), 1e-3);
     EXPECT_NEAR(all.position.y, (kShell - kRadius) * std::sin(kTurning), 1e-3);
@@ -47,7 +47,7 @@ TEST(IntervalsOfContact, BeyondSixtyFourInAStepSpendTheBudgetOfBounces) {
         SCOPED_TRACE("budget " + std::to_string(budget));
         const Round cut = slide(budget);
         EXPECT_GT(cut.lost, 0.0);
-        // Four intervals for each bounce that the impacts have left of the budget.
+        // Each bounce that the impacts left in the budget pays for four intervals.
         const double intervals = 64.0 + 4.0 * (static_cast<double>(budget) - static_cast<double>(cut.bounces));
         EXPECT_NEAR(cut.turned, kMaxArcAngle * intervals, 4.0 * kMaxArcAngle);
     }

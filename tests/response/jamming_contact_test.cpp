@@ -1,4 +1,4 @@
-// Contact between surfaces whose friction leaves no answer to what slips.
+// Slipping contact between surfaces whose friction permits no solution.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +21,7 @@ double slip_at(const HoldingSurface& surface, const Motion& motion) {
     return length(motion.velocity - kRadius * cross(motion.spin, surface.normal));
 }
 
-/// A ball that slips on two walls of great friction.
+/// A ball that slips on two walls of large friction.
 struct Case {
     std::array<HoldingSurface, 2> surfaces;
     Motion motion;
@@ -41,7 +41,7 @@ struct Case {
     }
 };
 
-TEST(JammingContact, StopsTheSlipAtOnceAndGivesNoEnergy) {
+TEST(JammingContact, SlipStopsAtOnceWithoutAddingEnergy) {
     int jammed = 0;
     for (int seed = 1; seed <= test::scaled(20000); ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
@@ -60,9 +60,9 @@ TEST(JammingContact, StopsTheSlipAtOnceAndGivesNoEnergy) {
     EXPECT_GE(jammed, test::scaled(20));
 }
 
-// A gap of a quarter of a degree, from which a point does not come out: friction took a part of what was left of its
-// speed, and a part of that, in ten thousand intervals a step.
-TEST(JammingContact, APointThatHardlyMovesInANarrowGapRests) {
+// A point in a gap of a quarter of a degree cannot get out. Friction removed a fixed share of the remaining speed in
+// each interval, which took ten thousand intervals per step.
+TEST(JammingContact, NearlyStationaryPointInANarrowGapRests) {
     std::array<HoldingSurface, 2> gap;
     gap[0].normal = {0.46574718545660487, -0.078489906786261762, 0.88143002772309431};
     gap[1].normal = {-0.46546839969552051, 0.082871124693530307, -0.88117622844520749};
@@ -76,8 +76,8 @@ TEST(JammingContact, APointThatHardlyMovesInANarrowGapRests) {
     }
 }
 
-// On a smooth floor nothing stops it, however slow it is.
-TEST(JammingContact, WhatHardlyMovesOnASmoothFloorGoesOn) {
+// On a smooth floor nothing stops a particle, however slow it is.
+TEST(JammingContact, NearlyStationaryPointOnASmoothFloorContinues) {
     std::array<HoldingSurface, 1> floor;
     floor[0].normal = {0, 0, 1};
     for (const double friction : {0.0, 0.5}) {

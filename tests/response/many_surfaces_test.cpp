@@ -1,4 +1,4 @@
-// Impacts on more surfaces at once than one problem of contact holds.
+// Impacts on more surfaces at once than one contact problem can include.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace RICOCHET_FILE {
 
 constexpr int kSides = 5 * static_cast<int>(ImpactResult::kMostSurfaces);
 
-/// Normals of a funnel about the z axis whose sides all pass through the origin.
+/// Returns the normals of a funnel about the z axis. All sides pass through the origin.
 std::vector<Vec3> funnel_normals() {
     std::vector<Vec3> normals;
     for (int k = 0; k < kSides; ++k) {
@@ -31,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Responses, ManySurfaces,
                          ::testing::Values(ResponseKind::exact, ResponseKind::rollback, ResponseKind::project),
                          [](const auto& test) { return std::string(name_of(test.param)); });
 
-TEST_P(ManySurfaces, AreAllAnsweredByABallThatFallsIntoAFunnel) {
+TEST_P(ManySurfaces, BallInAFunnelReboundsFromAllSides) {
     const std::vector<Vec3> normals = funnel_normals();
     for (const double radius : {0.0, 0.2}) {
         for (const double restitution : {0.0, 0.5, 1.0}) {

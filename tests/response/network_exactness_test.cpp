@@ -1,4 +1,4 @@
-// Contacts that have to be solved more closely than others of their network.
+// Contacts that require a smaller error than others of their network.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
+constexpr double kKick = 9.81e-3;  // m/s, from gravity in one step
 constexpr std::uint32_t kHeight = 20;
 const Vec3 kUp{0, 0, 1};
 
@@ -20,7 +20,8 @@ struct Columns {
     std::vector<NetworkContact> contacts;
 };
 
-/// Of balls of 1 kg on a floor, which begin without what holds them; exactness: of each column's contacts.
+/// Returns columns of balls of 1 kg on a floor, without initial contact impulses. exactness: one factor for the
+/// contacts of each column.
 Columns columns(const std::vector<double>& exactness) {
     Columns all;
     for (const double own : exactness) {
@@ -53,8 +54,8 @@ double fall_of(const Columns& network, std::uint32_t column) {
     return fall;
 }
 
-// A power of two, so that nothing is rounded.
-TEST(NetworkExactness, OfAllContactsIsASmallerTolerance) {
+// The factor is a power of two, so that nothing is rounded.
+TEST(NetworkExactness, ExactnessOfAllContactsActsAsASmallerTolerance) {
     Columns exact = columns({1024.0, 1024.0});
     Columns plain = columns({1.0, 1.0});
     const NetworkReport first = solve(exact, 1024.0 * 1e-9);
@@ -67,7 +68,7 @@ TEST(NetworkExactness, OfAllContactsIsASmallerTolerance) {
     }
 }
 
-TEST(NetworkExactness, OfOneColumnTakesTheSweepsThatItNeedsAlone) {
+TEST(NetworkExactness, ExactnessOfOneColumnNeedsOnlyItsOwnSweeps) {
     Columns both = columns({1.0, 1000.0});
     Columns coarse = columns({1.0});
     const NetworkReport report = solve(both, 0.1 * kKick);

@@ -31,7 +31,7 @@ double largest_way(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
     return most;
 }
 
-TEST(NetworkIsland, AColumnOfTwentyStandsForTenSeconds) {
+TEST(NetworkIsland, ColumnOfTwentyStandsForTenSeconds) {
     Pile pile({mesh_collider(floor_mesh(1.0, 8))}, kRough, kLaw);
     for (int i = 0; i < 20; ++i) pile.add({0, 0, kRadius * (2 * i + 1)}, kRadius);
     const std::vector<Vec3> start = pile.centers();
@@ -42,9 +42,9 @@ TEST(NetworkIsland, AColumnOfTwentyStandsForTenSeconds) {
     EXPECT_EQ(pile.unsimulated, 0.0);
 }
 
-/// In a tray: without a rim friction alone would have to hold the foot.
-TEST(NetworkIsland, APyramidStandsInATray) {
-    const int rows = test::is_long_run() ? 14 : 6;  // of rows x rows balls at its foot
+/// The tray has a rim, because friction alone would otherwise have to hold the foot.
+TEST(NetworkIsland, PyramidStandsInATray) {
+    const int rows = test::is_long_run() ? 14 : 6;  // rows x rows balls at its foot
     const double rim = (2 * rows - 1) * kRadius;
     Pile pile({plane_collider({0, 0, 0}, {0, 0, 1}), plane_collider({-kRadius, 0, 0}, {1, 0, 0}),
                plane_collider({rim, 0, 0}, {-1, 0, 0}), plane_collider({0, -kRadius, 0}, {0, 1, 0}),
@@ -64,7 +64,7 @@ TEST(NetworkIsland, APyramidStandsInATray) {
     EXPECT_LT(pile.overlap, 1e-3);
 }
 
-TEST(NetworkIsland, ALooseCloudSettlesInABoxAndGainsNoEnergy) {
+TEST(NetworkIsland, LooseCloudSettlesInABoxAndGainsNoEnergy) {
     const double side = 12.0 * kRadius;
     Pile pile({mesh_collider(testing::flipped(testing::box_mesh({0, 0, 0}, {side, side, 1.0})))}, kRough, kLaw);
     RandomSequence random(1, 0, 0);
@@ -76,7 +76,7 @@ TEST(NetworkIsland, ALooseCloudSettlesInABoxAndGainsNoEnergy) {
     }
     double energy = pile.energy();
     double overlap = 0.0;
-    const double fall = 0.5 * kStep * Pile::kGravity * kStep * Pile::kGravity;  // of a kick, over the mass
+    const double fall = 0.5 * kStep * Pile::kGravity * kStep * Pile::kGravity;  // energy of one kick, over the mass
     double mass = 0.0;
     for (const MovingParticle& particle : pile.particles()) mass += particle.state.mass;
     for (int k = 0; k < 600; ++k) {
@@ -96,8 +96,8 @@ TEST(NetworkIsland, ALooseCloudSettlesInABoxAndGainsNoEnergy) {
     EXPECT_EQ(pile.unsimulated, 0.0);
 }
 
-/// A floor of triangles is one floor: a ball rolls over its edges as over a plane.
-TEST(NetworkIsland, RollsOverTheEdgesOfAFlatMeshAsOverAPlane) {
+/// A flat floor of triangles must act like one plane when a ball rolls over its edges.
+TEST(NetworkIsland, BallRollsOverTheEdgesOfAFlatMeshAsOverAPlane) {
     std::vector<Vec3> ends;
     for (const bool is_mesh : {false, true}) {
         Pile pile({is_mesh ? mesh_collider(floor_mesh(1.0, 64)) : plane_collider({0, 0, 0}, {0, 0, 1})}, kRough, kLaw);
@@ -110,7 +110,7 @@ TEST(NetworkIsland, RollsOverTheEdgesOfAFlatMeshAsOverAPlane) {
     EXPECT_GT(ends[1].x, 0.0);
 }
 
-TEST(NetworkIsland, ABeltCarriesWhatLiesOnIt) {
+TEST(NetworkIsland, BeltMovesTheBallsOnIt) {
     Material belt{"", 0.5, 0.5};
     belt.motion.velocity = {0.3, 0, 0};
     Pile pile({plane_collider({0, 0, 0}, {0, 0, 1})}, belt, kLaw);
@@ -122,10 +122,10 @@ TEST(NetworkIsland, ABeltCarriesWhatLiesOnIt) {
     EXPECT_NEAR(pile.centers()[1].x, 0.06, 1e-6);
 }
 
-TEST(WallContacts, AreOneOnAFlatFloorAndThreeInACorner) {
+TEST(WallContacts, FlatFloorGivesOneContactAndACornerThree) {
     CollisionWorld box(
         std::vector<ColliderDescription>{mesh_collider(testing::flipped(testing::box_mesh({0, 0, 0}, {1, 1, 1})))});
-    ContactScratch scratch;  // of the planes of triangles
+    ContactScratch scratch;  // for the planes of triangles
     std::vector<WallContact> found;
     CollisionWorld floor(std::vector<ColliderDescription>{mesh_collider(floor_mesh(1.0, 8))});
     for (const Vec3& place : {Vec3{0.1, 0.05, 0.11}, Vec3{0.25, 0.25, 0.11}, Vec3{0.2, 0.2, 0.11}}) {

@@ -58,7 +58,7 @@ Vec3 momentum(const std::vector<NetworkBody>& bodies) {
     return sum;
 }
 
-/// Balls at random places that overlap little, which fly anyhow; those that are near each other touch or nearly do.
+/// Balls at random positions with small overlaps and random velocities. Near neighbours touch or nearly touch.
 struct Heap {
     std::vector<NetworkBody> bodies;
     std::vector<Vec3> centers;
@@ -104,7 +104,7 @@ Heap random_heap(std::uint64_t seed, std::size_t count, bool with_walls) {
     return heap;
 }
 
-/// The largest violation of the conditions that a contact has to meet without a rebound, m/s.
+/// Returns the largest violation of the contact conditions without a rebound, in m/s.
 double defect(const NetworkContact& contact, const NetworkImpulse& impulse, const std::vector<NetworkBody>& bodies) {
     const NetworkBody& a = bodies[contact.a];
     Vec3 u = a.velocity - a.radius * cross(a.spin, contact.normal) - contact.wall_velocity;
@@ -121,13 +121,13 @@ double defect(const NetworkContact& contact, const NetworkImpulse& impulse, cons
     const double most = contact.friction * impulse.normal;
     EXPECT_GE(impulse.normal, 0.0);
     EXPECT_LE(length(impulse.tangential), most * (1.0 + 1e-12));
-    // Slip: friction is at its bound and against it; else there is none.
+    // Friction opposes the slip and is at its bound; otherwise there is no slip.
     const Vec3 wish = impulse.tangential - slip / mobility;
     const Vec3 cut = length(wish) > most ? (most / length(wish)) * wish : wish;
     return std::max(worst, length(cut - impulse.tangential) * mobility);
 }
 
-TEST(NetworkSolver, SaysWhichContactsRebound) {
+TEST(NetworkSolver, ReboundingContactsAreReported) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, 1})};
     std::vector<NetworkContact> contacts{on_wall(0, kUp), on_wall(1, kUp), on_wall(2, kUp)};
     for (NetworkContact& contact : contacts) contact.restitution = 0.5;
@@ -147,7 +147,7 @@ TEST(NetworkSolver, BallOnAFloorIsHeldByItsWeight) {
     EXPECT_LT(max_abs(bodies[0].velocity), 1e-15);
 }
 
-TEST(NetworkSolver, WhatIsLeftOfAGapIsFallenThrough) {
+TEST(NetworkSolver, BallMayFallThroughItsRemainingGap) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -3})};
     std::vector<NetworkContact> contacts{on_wall(0, kUp)};
     contacts[0].gap = 2e-3;
@@ -174,8 +174,8 @@ TEST(NetworkSolver, ForcesInAColumnAreTheWeightsAbove) {
     }
 }
 
-// A light ball passes on a heavy one's weight to the floor; sweeps alone would take as many as the ratio of the masses.
-TEST(NetworkSolver, ALightBallHoldsAHeavyOne) {
+// A light ball transfers the weight of a heavy one to the floor. Sweeps alone would take as many as the mass ratio.
+TEST(NetworkSolver, LightBallHoldsAHeavyOne) {
     for (const double ratio : {1e3, 1e6, 1e9}) {
         SCOPED_TRACE(ratio);
         const Vec3 fall{0, 0, -1.0 - kGravity * kStep};
@@ -195,7 +195,7 @@ TEST(NetworkSolver, ALightBallHoldsAHeavyOne) {
 }
 
 TEST(NetworkSolver, WallsOfAGrooveShareABall) {
-    // Walls at angles A and B to the horizontal: N_A sin A = N_B sin B, N_A cos A + N_B cos B = m g.
+    // For walls at angles A and B to the horizontal: N_A sin A = N_B sin B, N_A cos A + N_B cos B = m g.
     const double a = 0.6;
     const double b = 1.1;
     std::vector<NetworkBody> bodies{ball(1.5, 0.1, {0, 0, -kGravity * kStep})};
@@ -208,8 +208,8 @@ TEST(NetworkSolver, WallsOfAGrooveShareABall) {
     EXPECT_NEAR(solver.impulses()[1].normal, weight * std::sin(a) / std::sin(a + b), 1e-12);
 }
 
-/// A ball on an incline rolls where friction is 2/7 of the slope's tangent, and slips below.
-TEST(NetworkSolver, FrictionOnAnInclineAtTheEdgeOfItsCone) {
+/// A ball on an incline rolls if friction is at least 2/7 of the slope's tangent, and slips below.
+TEST(NetworkSolver, BallRollsOrSlipsAtTheLimitOfItsFrictionCone) {
     const double angle = 0.5;
     const Vec3 normal{std::sin(angle), 0, std::cos(angle)};
     const Vec3 down{std::cos(angle), 0, -std::sin(angle)};
@@ -235,27 +235,27 @@ TEST(NetworkSolver, RollingFrictionHoldsABallOnAnInclineUpToItsTangent) {
         contacts[0].rolling_friction = part * 0.2 * std::tan(angle);
         NetworkSolver solver;
         static_cast<void>(solver.solve(bodies, contacts, exactly()));
-        // Beyond: m g sin r - moment = 7/5 m r^2 alpha.
+        // Beyond the limit: m g sin r - moment = 7/5 m r^2 alpha.
         const double rolls =
             kGravity * kStep * (std::sin(angle) - part * std::tan(angle) * std::cos(angle)) * 5.0 / 7.0;
         EXPECT_NEAR(length(bodies[0].velocity), std::max(0.0, rolls), 1e-13) << part;
     }
 }
 
-TEST(NetworkSolver, MaterialThatMovesCarriesWhatLiesOnIt) {
+TEST(NetworkSolver, MovingWallMovesTheBallOnIt) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.2, {0, 0, -kGravity * kStep})};
     std::vector<NetworkContact> contacts{on_wall(0, kUp, 0.1)};
     contacts[0].wall_velocity = {3, 0, 0};
     NetworkSolver solver;
     static_cast<void>(solver.solve(bodies, contacts, exactly()));
     EXPECT_NEAR(bodies[0].velocity.x, 0.1 * kGravity * kStep, 1e-15);
-    contacts[0].wall_velocity = {0, 0, 0.5};  // a wall that comes
+    contacts[0].wall_velocity = {0, 0, 0.5};  // an approaching wall
     bodies[0] = ball(1.0, 0.2, {0, 0, -kGravity * kStep});
     static_cast<void>(solver.solve(bodies, contacts, exactly()));
     EXPECT_NEAR(bodies[0].velocity.z, 0.5, 1e-15);
 }
 
-TEST(NetworkSolver, AnImpactReboundsByItsRestitution) {
+TEST(NetworkSolver, ImpactReboundsByItsRestitution) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.1, {2, 0, 0}), ball(3.0, 0.1, {-1, 0, 0})};
     std::vector<NetworkContact> contacts{between(0, 1, {-1, 0, 0})};
     contacts[0].restitution = 0.7;
@@ -263,15 +263,15 @@ TEST(NetworkSolver, AnImpactReboundsByItsRestitution) {
     static_cast<void>(solver.solve(bodies, contacts, exactly()));
     EXPECT_NEAR(bodies[0].velocity.x - bodies[1].velocity.x, -0.7 * 3.0, 1e-13);
     EXPECT_NEAR(momentum({bodies[0], bodies[1]}).x, -1.0, 1e-13);
-    contacts[0].touched = true;  // it presses
+    contacts[0].touched = true;  // a pressing contact
     bodies = {ball(1.0, 0.1, {2, 0, 0}), ball(3.0, 0.1, {-1, 0, 0})};
     static_cast<void>(solver.solve(bodies, contacts, exactly()));
     EXPECT_NEAR(bodies[0].velocity.x, -0.25, 1e-13);
     EXPECT_NEAR(bodies[1].velocity.x, -0.25, 1e-13);
 }
 
-/// Moreau's law with e = 1: what is touched by the ball that is hit goes on with it as one body, and no energy is lost.
-TEST(NetworkSolver, ARowThatIsHitAtOneEndAnswersAsOneBody) {
+/// Moreau's law with e = 1: the row moves on as one body with the ball that is hit, and no energy is lost.
+TEST(NetworkSolver, RowHitAtOneEndMovesAsOneBody) {
     constexpr std::uint32_t kCount = 6;
     std::vector<NetworkBody> bodies(kCount, ball(0.2, 0.1));
     bodies[0].velocity = {1, 0, 0};
@@ -289,7 +289,7 @@ TEST(NetworkSolver, ARowThatIsHitAtOneEndAnswersAsOneBody) {
     EXPECT_NEAR(kinetic_energy(bodies), before, 1e-12 * before);
 }
 
-TEST(NetworkSolver, TheSmallestRestitutionCountsInEachConnectedImpactAlone) {
+TEST(NetworkSolver, SmallestRestitutionAppliesToEachConnectedImpactAlone) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1}), ball(1.0, 0.1, {0, 0, -1})};
     std::vector<NetworkContact> contacts{on_wall(0, kUp), on_wall(1, kUp), between(2, 1, kUp)};
     contacts[0].restitution = 0.9;
@@ -299,10 +299,10 @@ TEST(NetworkSolver, TheSmallestRestitutionCountsInEachConnectedImpactAlone) {
     static_cast<void>(solver.solve(bodies, contacts, exactly()));
     EXPECT_NEAR(bodies[0].velocity.z, 0.9, 1e-12);
     EXPECT_NEAR(bodies[1].velocity.z, 0.5, 1e-12);
-    EXPECT_NEAR(bodies[2].velocity.z, 0.5, 1e-12);  // it did not approach the other, which comes
+    EXPECT_NEAR(bodies[2].velocity.z, 0.5, 1e-12);  // it did not approach the other ball, which moves toward it
 }
 
-TEST(NetworkSolver, PartsWhatOverlapsByHalfOfIt) {
+TEST(NetworkSolver, OverlapIsReducedByHalf) {
     std::vector<NetworkBody> bodies{ball(1.0, 0.1), ball(1.0, 0.1)};
     std::vector<NetworkContact> contacts{between(0, 1, kUp)};
     contacts[0].gap = -1e-6;
@@ -312,7 +312,7 @@ TEST(NetworkSolver, PartsWhatOverlapsByHalfOfIt) {
     EXPECT_TRUE(report.is_converged);
 }
 
-TEST(NetworkSolver, MeetsTheConditionsOfRandomHeaps) {
+TEST(NetworkSolver, RandomHeapsMeetTheConditions) {
     NetworkSolver solver;
     for (int seed = 0; seed < test::scaled(200); ++seed) {
         SCOPED_TRACE(seed);
@@ -326,13 +326,13 @@ TEST(NetworkSolver, MeetsTheConditionsOfRandomHeaps) {
     }
 }
 
-TEST(NetworkSolver, NeverAddsEnergyEvenWhereSweepsEndEarly) {
+TEST(NetworkSolver, EnergyNeverGrowsEvenIfSweepsEndEarly) {
     NetworkSolver solver;
     for (int seed = 0; seed < test::scaled(600); ++seed) {
         SCOPED_TRACE(seed);
         Heap heap = random_heap(static_cast<std::uint64_t>(seed), 40, true);
         RandomSequence random(static_cast<std::uint64_t>(seed), 1, 0);
-        for (NetworkContact& contact : heap.contacts) {  // starts that fit to nothing
+        for (NetworkContact& contact : heap.contacts) {  // arbitrary, inconsistent starts
             contact.start.normal = random.uniform() < 0.5 ? 0.0 : 3.0 * random.uniform();
             contact.start.tangential = 3.0 * random.unit_vector();
         }
@@ -345,7 +345,7 @@ TEST(NetworkSolver, NeverAddsEnergyEvenWhereSweepsEndEarly) {
     }
 }
 
-TEST(NetworkSolver, KeepsMomentum) {
+TEST(NetworkSolver, MomentumIsConserved) {
     NetworkSolver solver;
     for (int seed = 0; seed < test::scaled(100); ++seed) {
         SCOPED_TRACE(seed);
@@ -358,8 +358,8 @@ TEST(NetworkSolver, KeepsMomentum) {
     }
 }
 
-/// Sweeps with momentum carry bodies and contacts along apart from each other.
-TEST(NetworkSolver, BodiesHaveGotWhatTheContactsSay) {
+/// Accelerated sweeps update bodies and contacts separately.
+TEST(NetworkSolver, VelocitiesOfBodiesMatchTheContactImpulses) {
     NetworkSolver solver;
     for (int seed = 0; seed < test::scaled(100); ++seed) {
         SCOPED_TRACE(seed);
@@ -391,7 +391,7 @@ TEST(NetworkSolver, BodiesHaveGotWhatTheContactsSay) {
     }
 }
 
-TEST(NetworkSolver, TheLoadOfAColumnTakesSweepsLikeItsHeight) {
+TEST(NetworkSolver, SweepsForAColumnGrowLikeItsHeight) {
     NetworkSolver solver;
     const auto sweeps_of = [&](std::uint32_t count) {
         std::vector<NetworkBody> bodies(count, ball(1.0, 0.1, -kGravity * kStep * kUp));
@@ -407,7 +407,7 @@ TEST(NetworkSolver, TheLoadOfAColumnTakesSweepsLikeItsHeight) {
     EXPECT_LT(high, 240);
 }
 
-TEST(NetworkSolver, SlipMayBeWrongByALimitOfItsOwnAndApproachMayNot) {
+TEST(NetworkSolver, SlipHasItsOwnErrorLimitAndApproachDoesNot) {
     NetworkSolver solver;
     int all = 0;
     int fewer = 0;
@@ -439,7 +439,7 @@ TEST(NetworkSolver, SlipMayBeWrongByALimitOfItsOwnAndApproachMayNot) {
     EXPECT_LT(fewer, all);
 }
 
-TEST(NetworkSolver, TwoThatNothingMovesDoNothingWhateverTheyDidBefore) {
+TEST(NetworkSolver, ContactBetweenTwoFixedBodiesHasNoImpulse) {
     std::vector<NetworkBody> bodies(3, ball(1.0, 0.1));
     bodies[0].inverse_mass = bodies[0].inverse_inertia = bodies[1].inverse_mass = bodies[1].inverse_inertia = 0.0;
     bodies[2].velocity = -kGravity * kStep * kUp;
@@ -454,8 +454,8 @@ TEST(NetworkSolver, TwoThatNothingMovesDoNothingWhateverTheyDidBefore) {
     EXPECT_NEAR(bodies[2].velocity.z, 0.0, 1e-15);
 }
 
-/// A cube of balls, each of which touches six: factorizations would take minutes.
-TEST(NetworkSolver, WhatWouldTakeTooLongToSolveDirectlyIsLeftToSweeps) {
+/// A cube of balls with six contacts each. Factorisations would take minutes.
+TEST(NetworkSolver, ProblemTooLargeForTheDirectSolverIsLeftToSweeps) {
     constexpr std::uint32_t kSide = 16;
     NetworkState ball;
     ball.velocity = {0, 0, -1};
@@ -487,7 +487,7 @@ TEST(NetworkSolver, WhatWouldTakeTooLongToSolveDirectlyIsLeftToSweeps) {
     for (const NetworkRow& row : rows) ASSERT_EQ(row.push, NetworkPush{});
 }
 
-TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
+TEST(NetworkSolver, BitsDoNotDependOnTheNumberOfThreads) {
     const Heap heap = random_heap(5, 3000, true);
     ASSERT_GT(heap.contacts.size(), 3000U);
     std::vector<NetworkBody> expected;
@@ -506,7 +506,7 @@ TEST(NetworkSolver, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-/// Without friction the velocities are unique; how rigid contacts share their load is not.
+/// Without friction the velocities are unique, but the distribution of load among rigid contacts is not.
 TEST(NetworkSolver, OrderOfContactsChangesVelocitiesWithinTheToleranceOnly) {
     NetworkSolver solver;
     for (int seed = 0; seed < test::scaled(30); ++seed) {
@@ -528,7 +528,7 @@ TEST(NetworkSolver, OrderOfContactsChangesVelocitiesWithinTheToleranceOnly) {
     }
 }
 
-TEST(NetworkSolver, AWarmStartThatFitsNeedsOneSweep) {
+TEST(NetworkSolver, MatchingWarmStartNeedsOneSweep) {
     Heap heap = random_heap(8, 100, true);
     for (NetworkContact& contact : heap.contacts) contact.restitution = 0.0;
     std::vector<NetworkBody> bodies = heap.bodies;

@@ -1,4 +1,4 @@
-// What sweeps over a contact network begin with: the impulses of the last step.
+// Warm start of sweeps over a contact network with the impulses of the last step.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-constexpr double kKick = 9.81e-3;  // m/s, of gravity in a step
+constexpr double kKick = 9.81e-3;  // m/s, from gravity in one step
 const Vec3 kUp{0, 0, 1};
 
 NetworkBody ball(double velocity) { return {velocity * kUp, {}, 1.0, 250.0, 0.1}; }
 
-/// Of a ball of 1 kg on a floor, which has pushed it so in the last step.
+/// Returns the contact of a ball of 1 kg on a floor. `start` is its impulse in the last step.
 NetworkContact on_floor(std::uint32_t body, double start) {
     NetworkContact contact;
     contact.a = body;
@@ -31,7 +31,7 @@ NetworkSettings one_sweep() {
     return settings;
 }
 
-TEST(NetworkStart, AContactThatBeginsWronglyShakesNoOther) {
+TEST(NetworkStart, WrongStartOfAContactDisturbsNoOther) {
     for (const double wrong : {0.0, 0.1, 3.0, 100.0}) {
         SCOPED_TRACE(wrong);
         std::vector<NetworkBody> bodies = {ball(-kKick), ball(-kKick)};
@@ -41,8 +41,8 @@ TEST(NetworkStart, AContactThatBeginsWronglyShakesNoOther) {
     }
 }
 
-// Else what has wedged it would go on, and rub.
-TEST(NetworkStart, ABallBetweenTwoWallsThatHaveHeldItFallsUpwardsWhereGravityTurnsRound) {
+// Otherwise the impulses that wedged the ball would persist and cause friction.
+TEST(NetworkStart, WedgedBallIsFreedIfGravityReverses) {
     std::vector<NetworkBody> bodies = {ball(kKick)};
     std::vector<NetworkContact> contacts;
     for (const double side : {-1.0, 1.0}) {

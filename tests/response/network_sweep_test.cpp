@@ -16,11 +16,11 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Rows of which no two have a body that moves in common, and all that belongs to them.
+/// Constraints and their bodies. No two constraints share a moving body.
 struct Rows {
     std::vector<NetworkRow> rows;
     std::vector<RollingRow> rolling;
-    std::vector<NetworkState> states;  // the first is a wall
+    std::vector<NetworkState> states;  // the first one is a wall
     std::vector<NetworkState> last;
 };
 
@@ -37,7 +37,7 @@ std::uint32_t add_body(Rows& all, RandomSequence& random) {
     return static_cast<std::uint32_t>(all.states.size() - 1);
 }
 
-/// Idle ones in part, with and without friction; some that nothing could part, as the solver leaves them out.
+/// Adds a constraint with or without friction. Some are idle, and some join two fixed bodies, which the solver skips.
 void add_row(Rows& all, RandomSequence& random, bool rolls) {
     NetworkRow row;
     row.a = add_body(all, random);
@@ -81,7 +81,7 @@ Rows random_rows(std::uint64_t seed, std::size_t count) {
     return all;
 }
 
-/// The normal impulse, then friction, of one row: plain, and by itself.
+/// Solves the normal impulse, then friction, of a single constraint with scalar code.
 void relax_plainly(NetworkRow& row, double factor, NetworkState& a, NetworkState& b, SweepChange& change) {
     const Vec3 between = a.velocity - b.velocity;
     const double approach = dot(row.normal, between);
@@ -183,10 +183,10 @@ void expect_same_bits(const Rows& a, const Rows& b) {
     }
 }
 
-/// Numbers of rows around four, and around those that are looked for together.
+/// Numbers of constraints around multiples of four, and around the number that is scanned together.
 constexpr std::array<std::size_t, 12> kCounts{0, 1, 2, 3, 4, 5, 8, 11, 63, 64, 67, 200};
 
-TEST(NetworkSweep, EachWayHasTheBitsOfOneRowAfterTheOther) {
+TEST(NetworkSweep, EveryVariantGivesTheBitsOfAScalarSweep) {
     for (int seed = 0; seed < test::scaled(50); ++seed) {
         for (const std::size_t count : kCounts) {
             for (const SweepWay way : sweep_ways()) {
@@ -207,7 +207,7 @@ TEST(NetworkSweep, EachWayHasTheBitsOfOneRowAfterTheOther) {
     }
 }
 
-TEST(NetworkSweep, RowsThatDoNothingChangeNothing) {
+TEST(NetworkSweep, IdleConstraintsChangeNothing) {
     Rows all = random_rows(1, 100);
     for (NetworkRow& row : all.rows) {
         row.push = row.direction = {};

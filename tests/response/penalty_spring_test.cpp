@@ -27,11 +27,12 @@ struct Oscillator {
         const auto [a4, b4] = slope(x + h * a3, v + h * b3);
         return {x + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4), v + h / 6.0 * (b1 + 2.0 * (b2 + b3) + b4)};
     }
-    /// The contact's push, in the same units.
+    /// Returns the contact's force, in the same units.
     [[nodiscard]] double push(double zeta) const { return x + 2.0 * zeta * v; }
 };
 
-/// Restitution of a contact that ends when its force would begin to pull, by Runge-Kutta steps and halving the last.
+/// Returns the restitution of a contact that ends before its force would pull. Uses Runge-Kutta steps and bisects the
+/// last one.
 double integrated_restitution(double zeta) {
     constexpr double kStep = 1e-3;
     Oscillator now;
@@ -49,7 +50,7 @@ double integrated_restitution(double zeta) {
     return -now.after(low, zeta).v;
 }
 
-TEST(PenaltySpring, RestitutionOfDampingIsThatOfAContactThatEndsWhenItWouldPull) {
+TEST(PenaltySpring, RestitutionOfDampingMatchesAnIntegratedContact) {
     for (const double zeta : {0.0, 0.01, 0.05, 0.1, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0, 1.05, 1.5, 2.0, 4.0}) {
         EXPECT_NEAR(restitution_of_damping(zeta), integrated_restitution(zeta), 1e-10) << zeta;
     }
@@ -69,7 +70,7 @@ TEST(PenaltySpring, RestitutionHasTheKnownLimits) {
     EXPECT_NEAR((1.0 - restitution_of_damping(1e-6)) / 1e-6, kPi, 1e-5);
 }
 
-TEST(PenaltySpring, DampingRatioIsTheInverse) {
+TEST(PenaltySpring, DampingRatioInvertsTheRestitution) {
     double last = std::numeric_limits<double>::infinity();
     for (int k = 10; k <= 1000; ++k) {
         const double restitution = 0.001 * k;
@@ -80,7 +81,7 @@ TEST(PenaltySpring, DampingRatioIsTheInverse) {
     }
 }
 
-TEST(PenaltySpring, WithoutAStiffnessAContactLastsTheGivenNumberOfSubsteps) {
+TEST(PenaltySpring, ContactWithoutAStiffnessLastsTheGivenNumberOfSubsteps) {
     ResponseSettings settings;
     settings.time_step = 0.01;
     settings.penalty.substeps = 4;
@@ -96,8 +97,8 @@ TEST(PenaltySpring, WithoutAStiffnessAContactLastsTheGivenNumberOfSubsteps) {
     EXPECT_EQ(contact_stiffness(settings, 7.0), 123.0);
 }
 
-/// Largest excursion, in units of the first, of central differences whose damping lags: v += h (-x - 2 zeta v), x += h
-/// v.
+/// Returns the largest excursion, relative to the first, of central differences with lagging damping: v += h (-x - 2
+/// zeta v), x += h v.
 double largest_excursion(double h, double zeta, int steps) {
     double x = 1.0;
     double v = 0.0;
@@ -110,7 +111,7 @@ double largest_excursion(double h, double zeta, int steps) {
     return largest;
 }
 
-TEST(PenaltySpring, TheLongestStableStepIsThatOfLaggingDamping) {
+TEST(PenaltySpring, LongestStableStepMatchesLaggingDamping) {
     for (const double zeta : {0.0, 0.05, 0.2, 0.5, 1.0, 3.0}) {
         const double stiffness = 400.0;
         const double mass = 0.25;  // omega = 40 / s
@@ -124,7 +125,7 @@ TEST(PenaltySpring, TheLongestStableStepIsThatOfLaggingDamping) {
 
 PenaltyContact contact(double depth) { return {depth, {0, 0, 1}, 1000.0, 20.0, 0.3, 0.0}; }
 
-TEST(PenaltyContact, PushesBySpringAndDamperAndNeverPulls) {
+TEST(PenaltyContact, SpringAndDamperPushAndNeverPull) {
     EXPECT_EQ(force_of(contact(0.01), {}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 10}));
     EXPECT_EQ(force_of(contact(0.01), {{0, 0, -2}, {}}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 50}));
     EXPECT_EQ(force_of(contact(0.01), {{0, 0, 0.25}, {}}, 0.0, {1e-3, 1e-9}).force, (Vec3{0, 0, 5}));
@@ -139,7 +140,7 @@ TEST(PenaltyContact, FrictionGrowsWithSlipUpToCoulombsLimit) {
     }
 }
 
-TEST(PenaltyContact, TurnsASphereThatSlipsAndNotOneThatRolls) {
+TEST(PenaltyContact, SlippingSphereIsTurnedAndRollingSphereIsNot) {
     const double radius = 0.1;
     const ContactForce slips = force_of(contact(0.01), {{2, 0, 0}, {}}, radius, {1e-3, 1e-9});
     EXPECT_NEAR(slips.force.x, -3.0, 1e-14);
@@ -149,26 +150,26 @@ TEST(PenaltyContact, TurnsASphereThatSlipsAndNotOneThatRolls) {
     EXPECT_NEAR(length(rolls.torque), 0.0, 1e-12);
 }
 
-TEST(PenaltyContact, ResistsRollingByItsCoefficient) {
+TEST(PenaltyContact, RollingResistanceMatchesItsCoefficient) {
     PenaltyContact soft = contact(0.01);
     soft.rolling_friction = 0.05;
     const ContactForce rolls = force_of(soft, {{2, 0, 0}, {0, 20, 0}}, 0.1, {1e-3, 1e-9});
     EXPECT_NEAR(rolls.torque.y, -0.05 * 10.0 * 0.1, 1e-12);
 }
 
-TEST(PenaltyContact, BrakesAtMostToAStopWithinTheStep) {
+TEST(PenaltyContact, BrakingStopsAtMostWithinTheStep) {
     PenaltyContact rough = contact(0.01);
     rough.friction = 10.0;
     rough.rolling_friction = 10.0;
     rough.damping = 1e6;
     rough.mass = 0.5;
     const double h = 0.01;
-    // A point: its slip ends exactly, and the damper takes its approach and no more.
+    // For a point, the slip ends exactly, and the damper removes the approach and no more.
     const Vec3 v{0.3, 0, -0.2};
     const ContactForce point = force_of(rough, {v, {}}, 0.0, {1e-3, h});
     EXPECT_NEAR(v.x + h * point.force.x / rough.mass, 0.0, 1e-15);
     EXPECT_NEAR(v.z + h * (point.force.z - rough.stiffness * 0.01) / rough.mass, 0.0, 1e-15);
-    // A sphere: friction changes velocity and spin so that its slip ends.
+    // For a sphere, friction changes velocity and spin so that its slip ends.
     const double radius = 0.1;
     rough.rolling_friction = 0.0;
     const ContactForce sphere = force_of(rough, {{0.3, 0, 0}, {}}, radius, {1e-3, h});

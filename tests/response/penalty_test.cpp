@@ -28,7 +28,7 @@ const Vec3 kGravity{0, 0, -kG};
 
 ColliderDescription ground() { return plane_collider({0, 0, 0}, {0, 0, 1}); }
 
-/// One sub-step a move, of a spring of 10 kN/m under 1 kg: omega = 100 / s.
+/// Each move is one substep of a spring of 10 kN/m under 1 kg: omega = 100 / s.
 constexpr double kStiffness = 1e4;
 constexpr double kOmega = 100.0;
 
@@ -50,7 +50,7 @@ MovingParticle particle_at(const Vec3& position, const Vec3& velocity = {}, doub
     return {{position, velocity, mass, radius, 0.0}, {}, 0, 0};
 }
 
-/// A particle that has sunk into the floor's upper side.
+/// Returns a particle inside the floor that came from its upper side.
 MovingParticle sunk(Course& course, const Vec3& position, const Vec3& velocity = {}, double radius = 0.0) {
     MovingParticle particle = particle_at(position, velocity, radius);
     course.enrol(particle);
@@ -64,7 +64,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, Penalty,
                                            IntegratorKind::midpoint, IntegratorKind::rk4),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-TEST_P(Penalty, CarriesAWeightAtTheDepthWhereItsSpringDoes) {
+TEST_P(Penalty, WeightRestsAtTheEquilibriumDepthOfItsSpring) {
     for (const double mass : {0.1, 1.0, 20.0}) {
         for (const double stiffness : {200.0, 1e5}) {
             for (const double radius : {0.0, 0.3}) {
@@ -86,7 +86,8 @@ TEST_P(Penalty, CarriesAWeightAtTheDepthWhereItsSpringDoes) {
     }
 }
 
-/// Speed after a contact over that before it, which begins at the given part of a sub-step. No gravity.
+/// Returns the ratio of the speeds after and before a contact, without gravity. The contact begins at the given
+/// fraction of a substep.
 double measured_restitution(IntegratorKind integrator, double restitution, double substep, double phase) {
     Course course = course_of({"", restitution, 0.0}, {}, settings_with(integrator, substep));
     MovingParticle ball = particle_at({0, 0, (1.0 + phase) * substep}, {0, 0, -1});
@@ -115,9 +116,9 @@ struct Convergence {
     }
 };
 
-// The damper's force jumps where contact begins. The sub-step in which that happens takes a fraction of the jump that
-// is wrong by up to all of it: an error of 2 zeta omega h of the velocity at most, of first order.
-TEST_P(Penalty, ReachesTheMaterialsRestitutionInTheFirstOrderOfSubsteps) {
+// The damper's force jumps at the start of contact. The substep with the jump takes a wrong fraction of it, off by up
+// to all of it. The velocity error is at most 2 zeta omega h, which is first order.
+TEST_P(Penalty, RestitutionConvergesToTheMaterialsInTheFirstOrder) {
     for (const double restitution : {0.3, 0.6, 0.9}) {
         SCOPED_TRACE(restitution);
         const Convergence measured(GetParam(), restitution, 6);
@@ -128,16 +129,16 @@ TEST_P(Penalty, ReachesTheMaterialsRestitutionInTheFirstOrderOfSubsteps) {
     }
 }
 
-// Without a damper the force has a kink only, and the integrators' energies oscillate or drift by less than the kink's
+// Without a damper the force has only a kink. The integrators' energies oscillate or drift by less than the kink's
 // second order.
-TEST_P(Penalty, KeepsTheEnergyOfAnUndampedBounceToTheSecondOrderOfSubsteps) {
+TEST_P(Penalty, EnergyOfAnUndampedBounceConvergesInTheSecondOrder) {
     const Convergence measured(GetParam(), 1.0, 6);
     EXPECT_NEAR(fitted_slope(measured.steps, measured.errors), 2.0, 0.2);
     const double first = kOmega * measured.steps.front();
     EXPECT_LT(measured.errors.front(), first * first);
 }
 
-TEST_P(Penalty, HoldsAnUndampedContactForHalfAPeriod) {
+TEST_P(Penalty, UndampedContactLastsHalfAPeriod) {
     const double substep = 0.05 / kOmega;
     Course course = course_of({}, {}, settings_with(GetParam(), substep));
     course.scratch.record_segments = true;
@@ -155,7 +156,7 @@ TEST_P(Penalty, HoldsAnUndampedContactForHalfAPeriod) {
     EXPECT_NEAR((end - begin) * kOmega, kPi, 0.05 * 0.05);
 }
 
-TEST_P(Penalty, HoldsAContactWithoutAStiffnessForTheGivenNumberOfSubsteps) {
+TEST_P(Penalty, ContactWithoutAStiffnessLastsTheGivenNumberOfSubsteps) {
     for (const double time_step : {0.1, 0.001}) {
         for (const double contact_steps : {10.0, 20.0, 50.0}) {
             ResponseSettings settings = settings_with(GetParam(), time_step);
@@ -176,8 +177,9 @@ TEST_P(Penalty, HoldsAContactWithoutAStiffnessForTheGivenNumberOfSubsteps) {
     }
 }
 
-// Everything scales with the sub-step then: a smaller one does not help, more of them in a contact do.
-TEST_P(Penalty, WithoutAStiffnessMissesTheRestitutionByItsSubstepsAContactAlone) {
+// Without a stiffness everything scales with the substep. A smaller substep does not help, but more substeps per
+// contact do.
+TEST_P(Penalty, RestitutionErrorDependsOnlyOnTheSubstepsPerContact) {
     const auto largest_error = [&](double time_step, double contact_steps) {
         double largest = 0.0;
         for (int p = 0; p < 16; ++p) {
@@ -201,7 +203,7 @@ TEST_P(Penalty, WithoutAStiffnessMissesTheRestitutionByItsSubstepsAContactAlone)
     EXPECT_NEAR(fitted_slope(contact_steps, errors), -1.0, 0.15);
 }
 
-TEST_P(Penalty, SinksInAnUndampedImpactBySpeedOverFrequency) {
+TEST_P(Penalty, UndampedImpactSinksBySpeedOverFrequency) {
     const double substep = 0.02 / kOmega;
     for (const double speed : {0.01, 1.0, 30.0}) {
         for (const double radius : {0.0, 0.1}) {
@@ -214,7 +216,7 @@ TEST_P(Penalty, SinksInAnUndampedImpactBySpeedOverFrequency) {
     }
 }
 
-TEST_P(Penalty, BrakesASlidingBlockByCoulombsForce) {
+TEST_P(Penalty, SlidingBlockIsBrakedByCoulombsForce) {
     Course course = course_of({"", 0.5, 0.3}, kGravity, settings_with(GetParam(), 1e-3));
     MovingParticle block = sunk(course, {0, 0, -kG / kStiffness}, {2, 0, 0});
     for (int k = 0; k < 500; ++k) (void)course.move(block, 1e-3);
@@ -226,7 +228,7 @@ constexpr double kAngle = 0.5;
 const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 
-/// Speed downhill after a second on a slope, from rest at the depth of equilibrium.
+/// Returns the speed downhill after a second on a slope. The particle starts at rest at the equilibrium depth.
 double speed_on_a_slope(IntegratorKind integrator, double friction) {
     Course course({plane_collider({0, 0, 0}, kNormal)}, {"", 0.5, friction}, kGravity, ResponseKind::penalty,
                   settings_with(integrator, 1e-3));
@@ -236,16 +238,17 @@ double speed_on_a_slope(IntegratorKind integrator, double friction) {
     return dot(block.state.velocity, kDownhill);
 }
 
-// Friction needs slip: mu N (v / friction_speed) = m g sin(theta).
-TEST_P(Penalty, CreepsOnASlopeBelowTheAngleOfFrictionWithTheSpeedOfItsRegularisation) {
+// Regularised friction needs slip: mu N (v / friction_speed) = m g sin(theta).
+TEST_P(Penalty, CreepBelowTheAngleOfFrictionHasTheRegularisedSpeed) {
     for (const double part : {1.05, 1.5, 4.0}) {
         const double friction = part * std::tan(kAngle);
         EXPECT_NEAR(speed_on_a_slope(GetParam(), friction), 0.05 * std::tan(kAngle) / friction, 1e-5) << part;
     }
 }
 
-// Where a sub-step's friction is more than what stops the slip, it shakes, by no more than what one sub-step adds.
-TEST_P(Penalty, CreepsNoFasterThanASubstepsFrictionWhereThatIsStifferThanTheSubstep) {
+// If the friction of a substep exceeds the amount that stops the slip, the slip oscillates by at most one substep's
+// change.
+TEST_P(Penalty, CreepWithStiffFrictionIsBoundedByTheChangeOfASubstep) {
     constexpr double kSubstep = 1.0 / 600.0;
     for (const double part : {1.1, 2.0}) {
         const double friction = part * std::tan(kAngle);
@@ -262,24 +265,24 @@ TEST_P(Penalty, CreepsNoFasterThanASubstepsFrictionWhereThatIsStifferThanTheSubs
             ASSERT_LT(length(block.state.velocity), fastest) << k;
         }
         const double creep = dot(block.state.position, kDownhill) / (3000 * kSubstep);
-        EXPECT_GT(creep, 1.2 * settings.penalty.friction_speed / part);  // more than the regularisation says
+        EXPECT_GT(creep, 1.2 * settings.penalty.friction_speed / part);  // more than the regularisation predicts
         EXPECT_LT(creep, fastest);
     }
 }
 
-TEST_P(Penalty, SlidesDownASlopeAboveTheAngleOfFrictionAsCoulombSays) {
+TEST_P(Penalty, SlideAboveTheAngleOfFrictionMatchesCoulombsLaw) {
     for (const double part : {0.0, 0.5, 0.9}) {
         const double friction = part * std::tan(kAngle);
         const double expected = kG * (std::sin(kAngle) - friction * std::cos(kAngle));
         const double speed = speed_on_a_slope(GetParam(), friction);
-        // Until it slips with friction_speed it is braked less: v' = g sin(theta) (1 - v / (friction_speed / part)).
+        // Below a slip of friction_speed the braking is weaker: v' = g sin(theta) (1 - v / (friction_speed / part)).
         const double pull = kG * std::sin(kAngle);
         const double start = part > 0.0 ? -0.05 / (part * pull) * std::log(1.0 - part) : 0.05 / pull;
         EXPECT_NEAR(speed, 0.05 + (1.0 - start) * expected, 2e-3) << part;
     }
 }
 
-TEST_P(Penalty, LetsASphereThatWasThrownRollAtFiveSeventhsOfItsSpeed) {
+TEST_P(Penalty, ThrownSphereRollsAtFiveSeventhsOfItsSpeed) {
     Course course = course_of({"", 0.5, 0.3}, kGravity, settings_with(GetParam(), 1e-3));
     const double radius = 0.1;
     MovingParticle sphere = sunk(course, {0, 0, radius - kG / kStiffness}, {2, 0, 0}, radius);
@@ -288,8 +291,8 @@ TEST_P(Penalty, LetsASphereThatWasThrownRollAtFiveSeventhsOfItsSpeed) {
     EXPECT_NEAR(sphere.spin.y * radius, 10.0 / 7.0, 1e-6);
 }
 
-/// Distance from the depth of equilibrium, in units of it, of a weight that started a hundredth beside it: the largest
-/// of the last hundred of 10000 steps.
+/// Returns the deviation from the equilibrium depth, relative to that depth, of a weight that started one hundredth
+/// away. It is the largest deviation in the last hundred of 10000 steps.
 double swing(IntegratorKind integrator, double restitution, double part_of_bound) {
     ResponseSettings settings = settings_with(integrator, 1.0);
     const double bound = longest_stable_step(contact_spring(settings, 1.0, restitution), 1.0);
@@ -305,20 +308,20 @@ double swing(IntegratorKind integrator, double restitution, double part_of_bound
     return largest;
 }
 
-// The bound is that of central differences with lagging damping, which symplectic Euler is. Beyond it what has no
-// damping is thrown off; with damping the force, which never pulls, only shakes it for ever.
-TEST(PenaltyStability, IsLostExactlyAtTheBoundUnderSymplecticEuler) {
+// The bound is exact for central differences with lagging damping, that is, for symplectic Euler. Beyond the bound an
+// undamped particle is thrown off. A damped one oscillates forever, because the force never pulls.
+TEST(PenaltyStability, StabilityEndsExactlyAtTheBoundForSymplecticEuler) {
     EXPECT_LT(swing(IntegratorKind::symplectic_euler, 1.0, 1.0 / 1.02), 0.1);
     EXPECT_GT(swing(IntegratorKind::symplectic_euler, 1.0, 1.02), 1e3);
     for (const double restitution : {0.9, 0.6, 0.2, 0.05}) {
         EXPECT_LT(swing(IntegratorKind::symplectic_euler, restitution, 1.0 / 1.02), 1e-9) << restitution;
     }
-    for (const double restitution : {0.9, 0.6}) {  // dampers that are stronger are held to what a step can take
+    for (const double restitution : {0.9, 0.6}) {  // stronger dampers are limited to the change that a step can take
         EXPECT_GT(swing(IntegratorKind::symplectic_euler, restitution, 1.02), 0.02) << restitution;
     }
 }
 
-TEST(PenaltyStability, HoldsUpToTheBoundUnderVelocityVerletAndRungeKutta) {
+TEST(PenaltyStability, MotionIsStableUpToTheBoundForVelocityVerletAndRungeKutta) {
     for (const IntegratorKind integrator : {IntegratorKind::ballistic, IntegratorKind::rk4}) {
         for (const double part : {1.0 / 1.02, 0.7, 0.3}) {
             EXPECT_LT(swing(integrator, 1.0, part), 0.1) << part;
@@ -329,9 +332,9 @@ TEST(PenaltyStability, HoldsUpToTheBoundUnderVelocityVerletAndRungeKutta) {
     }
 }
 
-// The explicit midpoint rule turns an undamped spring by a factor of sqrt(1 + (omega h)^4 / 4) a step: it has no stable
-// step then, only damping gives it one.
-TEST(PenaltyStability, IsNotThatOfTheMidpointRule) {
+// The explicit midpoint rule amplifies an undamped spring by sqrt(1 + (omega h)^4 / 4) per step. It has no stable step
+// unless there is damping.
+TEST(PenaltyStability, BoundDoesNotApplyToTheMidpointRule) {
     EXPECT_GT(swing(IntegratorKind::midpoint, 1.0, 0.5), 1.0);
     EXPECT_GT(swing(IntegratorKind::midpoint, 0.9, 1.0 / 1.02), 1.0);
     EXPECT_LT(swing(IntegratorKind::midpoint, 0.2, 1.0 / 1.02), 1e-9);
@@ -344,7 +347,7 @@ Material random_wall(double absorption, double diffuse) {
     return material;
 }
 
-TEST(PenaltyAtWallsOfChance, AbsorbsAtTheBeginningOfAContact) {
+TEST(PenaltyAtWallsOfChance, ParticlesAreAbsorbedAtTheBeginningOfAContact) {
     const double substep = 1e-3;
     Course course = course_of(random_wall(1.0, 0.0), {}, settings_with(IntegratorKind::ballistic, substep));
     for (int i = 0; i < test::scaled(100); ++i) {
@@ -368,7 +371,7 @@ TEST(PenaltyAtWallsOfChance, AbsorbsAtTheBeginningOfAContact) {
     EXPECT_NEAR(absorbed, 0.3 * count, 5.0 * std::sqrt(0.21 * count) + 1.0);
 }
 
-TEST(PenaltyAtWallsOfChance, ReflectsDiffuselyOnceAContact) {
+TEST(PenaltyAtWallsOfChance, ParticlesAreReflectedDiffuselyOncePerContact) {
     const double substep = 1e-3;
     Course course = course_of(random_wall(0.0, 1.0), {}, settings_with(IntegratorKind::ballistic, substep));
     const int count = test::scaled(2000);
@@ -384,12 +387,13 @@ TEST(PenaltyAtWallsOfChance, ReflectsDiffuselyOnceAContact) {
         cosines += molecule.state.velocity.z / length(molecule.state.velocity) / count;
         energy += length_squared(molecule.state.velocity) / 10.0 / count;
     }
-    EXPECT_NEAR(cosines, 2.0 / 3.0, 5.0 * std::sqrt(1.0 / 18.0 / count) + 0.01);  // the cosine law's mean
-    // Turned at some depth, after some of the spring's work: right to the second order of omega times the sub-step.
+    EXPECT_NEAR(cosines, 2.0 / 3.0, 5.0 * std::sqrt(1.0 / 18.0 / count) + 0.01);  // the mean of the cosine law
+    // The direction changes at some depth, after some work of the spring. The energy error is second order in omega
+    // times the substep.
     EXPECT_NEAR(energy, 1.0, 0.5 * kOmega * substep * kOmega * substep);
 }
 
-TEST(PenaltyRest, ComesToRestWithinAResponsesMeaningOfIt) {
+TEST(PenaltyRest, ParticleComesToRestWithinTheResponsesTolerance) {
     ResponseSettings settings;
     Course course({mesh_collider(floor_mesh(1.0, 2))}, {"", 0.3, 0.5}, kGravity, ResponseKind::penalty, settings);
     MovingParticle ball = particle_at({0.1, 0.2, 0.5}, {}, 0.05);

@@ -1,5 +1,5 @@
 /// \file
-/// Spheres that are moved together by the problem of their contacts, step by step, without a simulation.
+/// Spheres that one contact problem moves together, step by step, without a simulation.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ public:
           materials_(PairContactSettings{law.restitution, law.friction, law.rolling_friction}),
           island_(course_.response->rules(), materials_) {}
 
-    /// Of density 2500 kg/m^3.
+    /// Adds a sphere of density 2500 kg/m^3.
     void add(const Vec3& center, double radius, const Vec3& velocity = {}) {
         course_.world.prepare_radius(radius);
         MovingParticle particle;
@@ -77,13 +77,13 @@ public:
         return sum;
     }
 
-    double overlap = 0.0;  ///< the largest after the last step, over the smaller radius
+    double overlap = 0.0;  ///< largest overlap after the last step, over the smaller radius
     int unsolved = 0;
     int sweeps = 0;
     double unsimulated = 0.0;
 
 private:
-    /// By columns along x.
+    /// Returns the pairs of near spheres, found by sorting along x.
     [[nodiscard]] std::vector<NeighbourPair> pairs(const std::vector<double>& reach) const {
         std::vector<std::pair<double, std::uint32_t>> begins;
         const auto half = [&](std::uint32_t i) { return particles_[i].state.radius + reach[i]; };

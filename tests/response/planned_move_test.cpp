@@ -17,9 +17,9 @@ using testing::plane_collider;
 constexpr double kRadius = 0.02;
 constexpr double kStep = 2e-3;
 
-/// Sweeps over many contacts leave a little that leads into both walls of a groove. A ball that was stopped by it,
-/// since each line along one wall leads into the other, was found by those that were planned to come where it had been.
-TEST(PlannedMove, GoesAlongAGrooveWhereThePlanLeadsALittleIntoBothWalls) {
+/// Sweeps over many contacts leave a small velocity into both walls of a groove. Each correction along one wall leads
+/// into the other. A ball that stopped for that reason would block the planned paths of the following balls.
+TEST(PlannedMove, BallMovesAlongAGrooveDespiteASmallVelocityIntoBothWalls) {
     RandomSequence random(1, 0, 0);
     for (int k = 0; k < 300; ++k) {
         SCOPED_TRACE(k);

@@ -43,18 +43,18 @@ Course course_of(std::vector<ColliderDescription> colliders, const Material& mat
     return {std::move(colliders), material, gravity, ResponseKind::project, settings};
 }
 
-/// Energy over mass, J/kg, of a particle of some radius above the floor.
+/// Returns the energy over the mass, in J/kg, of a particle of any radius above the floor.
 double energy(const MovingParticle& particle) {
     return kG * (particle.state.position.z - particle.state.radius) + 0.5 * length_squared(particle.state.velocity);
 }
 
-TEST(Project, SaysHowDeepTheFreeStepHasLed) {
+TEST(Project, DepthOfTheFreeStepIsReported) {
     for (const double radius : {0.0, 0.2}) {
         for (const double step : {0.07, 0.1, 0.13, 0.31}) {
             for (const bool is_mesh : {false, true}) {
                 Course course = course_of({is_mesh ? mesh_collider(floor_mesh(2.0, 3)) : ground()}, {}, kGravity);
                 MovingParticle ball = particle_at({0.1, 0.2, 1.0 + radius}, {}, radius);
-                const double behind = std::ceil(std::sqrt(2.0 / kG) / step) * step;  // the first end of a step below
+                const double behind = std::ceil(std::sqrt(2.0 / kG) / step) * step;  // first step end below
                 MoveOutcome outcome;
                 while (ball.state.time < behind - 0.5 * step) {
                     EXPECT_EQ(outcome.depth, 0.0);
@@ -69,7 +69,7 @@ TEST(Project, SaysHowDeepTheFreeStepHasLed) {
     }
 }
 
-TEST(Project, AnswersAnImpactAtTheEndOfTheStepThatItFallsInto) {
+TEST(Project, ImpactIsResolvedAtTheEndOfItsStep) {
     const double t0 = std::sqrt(2.0 / kG);
     for (const double step : {0.1, 0.01, 0.003}) {
         Course course = course_of({ground()}, {}, kGravity);
@@ -80,7 +80,7 @@ TEST(Project, AnswersAnImpactAtTheEndOfTheStepThatItFallsInto) {
     }
 }
 
-TEST(Project, LiftsAnElasticBallByItsDepthAndTheOffsetAtTheFirstBounce) {
+TEST(Project, FirstBounceLiftsAnElasticBallByItsDepthAndTheOffset) {
     for (const double offset : {1e-9, 1e-6, 1e-3}) {
         for (const double step : {0.011, 0.1, 0.17}) {
             SCOPED_TRACE(::testing::Message() << "offset " << offset << ", step " << step);
@@ -94,7 +94,7 @@ TEST(Project, LiftsAnElasticBallByItsDepthAndTheOffsetAtTheFirstBounce) {
     }
 }
 
-TEST(Project, GainsTheSumOfItsLiftsOverManyBounces) {
+TEST(Project, EnergyGainIsTheSumOfTheLiftsOverManyBounces) {
     for (const double step : {1.0 / 60.0, 0.01, 0.0013}) {
         SCOPED_TRACE(step);
         Course course = course_of({ground()}, {}, kGravity);
@@ -112,12 +112,12 @@ TEST(Project, GainsTheSumOfItsLiftsOverManyBounces) {
     }
 }
 
-TEST(Project, LeavesTheVelocityOfWhatMovesAwayAlone) {
+TEST(Project, VelocityOfASeparatingParticleStaysUnchanged) {
     Course course = course_of({ground()}, {"", 0.5, 0.3}, {});
     MovingParticle near_it = particle_at({0, 0, 0.1 * kOffset}, {1, 2, 1e-7});
     EXPECT_EQ(course.move(near_it, 0.1).bounces, 0U);
     EXPECT_EQ(near_it.state.velocity, (Vec3{1, 2, 1e-7}));
-    EXPECT_NEAR(near_it.state.position.z, 0.1 * kOffset + 1e-8, 1e-20);  // nor is it moved, in front of the surface
+    EXPECT_NEAR(near_it.state.position.z, 0.1 * kOffset + 1e-8, 1e-20);  // not moved either
     MovingParticle behind = particle_at({0, 0, 1});
     course.enrol(behind);
     behind.sides[0] = {1, true, true};
@@ -140,8 +140,8 @@ constexpr double kAngle = 0.5;
 const Vec3 kNormal{std::sin(kAngle), 0, std::cos(kAngle)};
 const Vec3 kDownhill{std::cos(kAngle), 0, -std::sin(kAngle)};
 
-// A step's distance from rest is g sin(theta) dt^2 / 2 of the parabola; symplectic Euler's is twice that.
-TEST_P(ProjectOnASlope, CreepsByTheFreeDistanceOfAStepWhereFrictionHolds) {
+// A step from rest covers g sin(theta) dt^2 / 2 on the parabola, and twice that with symplectic Euler.
+TEST_P(ProjectOnASlope, CreepUnderStaticFrictionIsTheFreeDistanceOfAStep) {
     const double share = GetParam() == IntegratorKind::symplectic_euler ? 1.0 : 0.5;
     for (const double step : {0.02, 0.01, 0.001}) {
         SCOPED_TRACE(step);
@@ -159,7 +159,7 @@ TEST_P(ProjectOnASlope, CreepsByTheFreeDistanceOfAStepWhereFrictionHolds) {
     }
 }
 
-TEST_P(ProjectOnASlope, SlidesAboveTheAngleOfFrictionAsCoulombSays) {
+TEST_P(ProjectOnASlope, SlideAboveTheAngleOfFrictionMatchesCoulombsLaw) {
     for (const double part : {0.0, 0.5, 0.9}) {
         const double friction = part * std::tan(kAngle);
         Course course =
@@ -169,13 +169,14 @@ TEST_P(ProjectOnASlope, SlidesAboveTheAngleOfFrictionAsCoulombSays) {
         for (int k = 0; k < 100; ++k) (void)course.move(block, kStep);
         const double expected = kG * (std::sin(kAngle) - friction * std::cos(kAngle));
         EXPECT_NEAR(dot(block.state.velocity, kDownhill), expected, 1e-9 * expected);
-        // Braked at the ends of steps only: ahead by up to a step's worth of friction and distance.
+        // Friction acts only at the ends of steps, so the particle is ahead by at most a step's worth of friction and
+        // distance.
         EXPECT_NEAR(dot(block.state.position, kDownhill), 0.5 * expected, kG * kStep);
         EXPECT_NEAR(dot(block.state.position, kNormal), 0.0, 2.0 * kOffset);
     }
 }
 
-/// Free particles that bounce without loss; counts those on the wrong side after any step.
+/// Free particles that bounce without loss. Counts the particles on the wrong side after each step.
 struct Flock {
     std::vector<MovingParticle> particles;
     std::uint64_t bounces = 0;
@@ -200,7 +201,7 @@ class ProjectAtSolids : public ::testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Meshes, ProjectAtSolids, ::testing::ValuesIn(testing::kSolids),
                          [](const auto& name) { return std::string(name.param); });
 
-TEST_P(ProjectAtSolids, WhatIsInsideStaysInsideAtModerateSpeed) {
+TEST_P(ProjectAtSolids, InsideParticlesStayInsideAtModerateSpeed) {
     const TriangleMesh mesh = testing::solid(GetParam());
     const testing::ParityOracle oracle(mesh);
     for (const double radius : {0.0, 0.03}) {
@@ -219,7 +220,7 @@ TEST_P(ProjectAtSolids, WhatIsInsideStaysInsideAtModerateSpeed) {
     }
 }
 
-TEST_P(ProjectAtSolids, WhatIsOutsideStaysOutsideAtModerateSpeed) {
+TEST_P(ProjectAtSolids, OutsideParticlesStayOutsideAtModerateSpeed) {
     const TriangleMesh mesh = testing::solid(GetParam());
     const testing::ParityOracle oracle(mesh);
     const Vec3 corner{1.6, 1.6, 1.6};
@@ -241,9 +242,10 @@ TEST_P(ProjectAtSolids, WhatIsOutsideStaysOutsideAtModerateSpeed) {
     }
 }
 
-// Thrown out over the rim of a sheet, round it and back underneath: the path is that without any sheet, bit for bit.
-TEST(ProjectAtARim, LetsAParticleGoRoundItAndKeepsItOnItsNewSide) {
-    for (const double beyond : {1e-3, 0.01, 0.2}) {  // m beyond the rim where it falls through the sheet's plane
+// A particle flies out over the rim of a sheet and back underneath. Its path equals the path without a sheet, bit for
+// bit.
+TEST(ProjectAtARim, ParticleMayGoAroundTheRimAndKeepsItsNewSide) {
+    for (const double beyond : {1e-3, 0.01, 0.2}) {  // m beyond the rim, at the plane of the sheet
         SCOPED_TRACE(beyond);
         const Vec3 wind{-6, 0, -2};
         Course course = course_of({mesh_collider(floor_mesh(1.0, 4))}, {}, wind);
@@ -269,7 +271,7 @@ TEST(ProjectAtARim, LetsAParticleGoRoundItAndKeepsItOnItsNewSide) {
     }
 }
 
-TEST(ProjectAtARim, IsNotConfusedByFlyingOutOverItAndBack) {
+TEST(ProjectAtARim, FlightOverTheRimAndBackKeepsTheSide) {
     Course course = course_of({mesh_collider(floor_mesh(1.0, 4))}, {"", 0.9, 0.0}, kGravity);
     MovingParticle ball = particle_at({0.5, 0.1, 1.0}, {4, 0, 0});
     for (int k = 0; k < 25; ++k) (void)course.move(ball, 0.01);  // out over the rim
@@ -285,8 +287,8 @@ TEST(ProjectAtARim, IsNotConfusedByFlyingOutOverItAndBack) {
     EXPECT_EQ(bounces, 1U);
 }
 
-// Documented: what ends a step in the far half of a plate is put on its far side.
-TEST(ProjectAtAPlate, PutsWhatEndsInTheFarHalfOnTheFarSide) {
+// A documented limit: a particle that ends a step in the far half of a plate is moved to its far side.
+TEST(ProjectAtAPlate, ParticleInTheFarHalfIsMovedToTheFarSide) {
     const TriangleMesh plate = testing::box_mesh({0, -1, -1}, {0.1, 1, 1});
     for (const double depth : {0.03, 0.049, 0.051, 0.07}) {
         Course course = course_of({mesh_collider(plate)}, {}, {});
@@ -299,7 +301,7 @@ TEST(ProjectAtAPlate, PutsWhatEndsInTheFarHalfOnTheFarSide) {
     }
 }
 
-TEST(ProjectInACorner, IsPutInFrontOfAllItsWalls) {
+TEST(ProjectInACorner, ParticleIsMovedInFrontOfAllWalls) {
     const std::vector<ColliderDescription> corner{plane_collider({0, 0, 0}, {1, 0, 0}),
                                                   plane_collider({0, 0, 0}, {0, 1, 0}), ground()};
     RandomSequence random(9, 0, 0);

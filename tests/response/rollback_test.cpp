@@ -49,10 +49,10 @@ Course course_of(ColliderDescription collider, const Material& material, double 
             settings_with(time_tolerance, integrator)};
 }
 
-/// Rounding of a time of some seconds, and of a sphere's distance (kSphereTolerance) at some m/s.
+/// Rounding errors of a time of some seconds, and of a sphere's distance (kSphereTolerance) at some m/s.
 constexpr double kTimeRounding = 2e-12;
 
-TEST(Rollback, FindsTheTimeOfImpactFromBelowToWithinItsTolerance) {
+TEST(Rollback, TimeOfImpactIsEarlyByAtMostTheTolerance) {
     for (int digits = 3; digits <= 12; ++digits) {
         const double tolerance = std::pow(10.0, -digits);
         SCOPED_TRACE(tolerance);
@@ -71,7 +71,7 @@ TEST(Rollback, FindsTheTimeOfImpactFromBelowToWithinItsTolerance) {
     }
 }
 
-TEST(Rollback, PaysTenTrialsAnImpactForATolerance1024TimesAsSmall) {
+TEST(Rollback, ToleranceSmallerBy1024CostsTenTrialsPerImpact) {
     const auto trials = [](double tolerance, double duration, std::uint32_t impacts) {
         Course course = course_of(ground(), {}, tolerance);
         ForceInput ball = at({0, 0, 1});
@@ -83,13 +83,14 @@ TEST(Rollback, PaysTenTrialsAnImpactForATolerance1024TimesAsSmall) {
     for (const double tolerance : {1e-3, 3e-4, 1e-6, 1e-8}) {
         SCOPED_TRACE(tolerance);
         EXPECT_EQ(trials(tolerance / 1024.0, 1.5 * t0, 1) - trials(tolerance, 1.5 * t0, 1), 10);
-        // What is left of the step after the first impact depends on the tolerance: a trial more or less each.
+        // The rest of the step after the first impact depends on the tolerance: one trial more or less per impact.
         EXPECT_NEAR(trials(tolerance / 1024.0, 8.0 * t0, 4) - trials(tolerance, 8.0 * t0, 4), 40, 4);
     }
 }
 
-// An elastic ball answered a time d too early is as fast as its height says, so that it flies on 2 d ahead of time.
-TEST(Rollback, BringsEveryImpactOfAnElasticBallToWithinItsTolerances) {
+// An elastic ball resolved too early by d has the speed of its height, so it is early by another 2 d at the next
+// impact.
+TEST(Rollback, EveryImpactOfAnElasticBallIsWithinItsTolerances) {
     const double t0 = std::sqrt(2.0 / kG);
     for (const double time_step : {20.0 * t0, 0.3, 1.0 / 60.0}) {
         for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
@@ -113,9 +114,9 @@ TEST(Rollback, BringsEveryImpactOfAnElasticBallToWithinItsTolerances) {
     }
 }
 
-// Answered a height v d above the floor, at a speed g d short: the apex is (1 - e^2) v d too high, the errors of
-// earlier ones shrink by e^2 each.
-TEST(Rollback, RaisesNoApexByMoreThanTheDistanceOfOneTolerance) {
+// The impact is resolved at a height v d above the floor, at a speed too small by g d. The apex is too high by (1 -
+// e^2) v d. The errors of earlier impacts shrink by e^2 each.
+TEST(Rollback, ApexRisesByAtMostTheDistanceOfOneTolerance) {
     for (const double e : {0.5, 0.8, 0.95}) {
         for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
             SCOPED_TRACE(::testing::Message() << "e " << e << ", tolerance " << tolerance);
@@ -134,8 +135,8 @@ TEST(Rollback, RaisesNoApexByMoreThanTheDistanceOfOneTolerance) {
     }
 }
 
-// Successive hops of an elastic ball down a slope are 8 h sin(theta) (1, 2, 3, ...), all of the same duration 2 t0.
-TEST(Rollback, HopsDownASlopeAsTheClosedFormSaysToWithinItsTolerances) {
+// Successive hops of an elastic ball down a slope have the lengths 8 h sin(theta) (1, 2, 3, ...), and all take 2 t0.
+TEST(Rollback, HopsDownASlopeMatchTheClosedFormWithinTheirTolerances) {
     const double t0 = std::sqrt(2.0 / kG);
     for (const double degrees : {30.0, 45.0}) {
         const double theta = degrees * kPi / 180.0;
@@ -151,7 +152,7 @@ TEST(Rollback, HopsDownASlopeAsTheClosedFormSaysToWithinItsTolerances) {
                 const ContactRecord& record = course.scratch.records[static_cast<std::size_t>(n)];
                 const double time = (2 * n + 1) * t0;
                 const double speed = kG * std::sin(theta) * time;
-                // 1 + 8 (1 + 2 + ... + n) times h sin(theta) below the start.
+                // The impact is 1 + 8 (1 + 2 + ... + n) times h sin(theta) below the start.
                 const double distance = (1.0 + 4.0 * n * (n + 1)) * std::sin(theta);
                 EXPECT_NEAR(dot(record.position, downhill) - start, distance, (2 * n + 1) * tolerance * speed + 1e-10);
             }
@@ -159,8 +160,8 @@ TEST(Rollback, HopsDownASlopeAsTheClosedFormSaysToWithinItsTolerances) {
     }
 }
 
-// Documented: only the path's chord is tested.
-TEST(Rollback, MissesAnArcThatDipsThroughAPlaneAndIsBackAtTheEndOfTheStep) {
+// A documented limit: only the chord of the path is tested.
+TEST(Rollback, ArcThatDipsThroughAPlaneWithinAStepIsMissed) {
     const double v = 2.0;
     const double back = 2.0 * v / kG;
     for (const ResponseKind kind : {ResponseKind::rollback, ResponseKind::exact}) {
@@ -171,13 +172,13 @@ TEST(Rollback, MissesAnArcThatDipsThroughAPlaneAndIsBackAtTheEndOfTheStep) {
         if (kind == ResponseKind::exact) continue;
         EXPECT_EQ(outcome.trials, 1U);
         EXPECT_NEAR(length(ball.position - Vec3{back, 0, 0.1}), 0.0, 1e-14);
-        // Steps that end below the plane notice it.
+        // Steps that end below the plane detect it.
         ball = at({0, 0, 0.1}, {1, 0, -v});
         EXPECT_EQ(course.move(ball, 0.4 * back).bounces, 1U);
     }
 }
 
-/// Random points inside a random rock: a sphere's mesh, every vertex moved in and out.
+/// Returns a random rock: a sphere mesh with every vertex moved in or out.
 TriangleMesh rock(std::uint64_t seed) {
     TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 2);
     RandomSequence random(seed, 0, 0);
@@ -234,7 +235,7 @@ TEST_P(RollbackInRocks, NoSegmentCrossesASurfaceAndNoParticleEndsOnTheWrongSide)
     EXPECT_GT(contacts, 8U * static_cast<std::uint64_t>(test::scaled(25)));
 }
 
-/// Elastic points above a floor, dropped from heights that differ.
+/// Returns elastic points above a floor, dropped from different heights.
 SimulationSetup rain(int count, bool global, double tolerance) {
     SimulationSetup setup;
     setup.options.response = ResponseKind::rollback;
@@ -263,7 +264,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, RollbackOfOne,
                          ::testing::Values(IntegratorKind::ballistic, IntegratorKind::midpoint, IntegratorKind::rk4),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-TEST_P(RollbackOfOne, IsTheSameToTheToleranceWhetherTheSystemOrTheParticleGoesBack) {
+TEST_P(RollbackOfOne, SystemAndParticleRollbackAgreeWithinTheTolerance) {
     for (const double tolerance : {1e-5, 1e-8, 1e-11}) {
         SCOPED_TRACE(tolerance);
         const auto end = [&](bool global) {
@@ -284,10 +285,10 @@ TEST_P(RollbackOfOne, IsTheSameToTheToleranceWhetherTheSystemOrTheParticleGoesBa
     }
 }
 
-TEST(RollbackTogether, CostsEveryParticleATrialForEveryCollisionOfTheOthers) {
+TEST(RollbackTogether, EveryCollisionCostsAllParticlesATrial) {
     const auto trials_per_particle = [](int count, bool global) {
         const Simulation simulation = finished(rain(count, global, 1e-6));
-        EXPECT_EQ(simulation.statistics().contacts, static_cast<std::uint64_t>(count));  // one each, at its own time
+        EXPECT_EQ(simulation.statistics().contacts, static_cast<std::uint64_t>(count));  // each at another time
         return static_cast<double>(simulation.statistics().trials) / count;
     };
     const double alone = trials_per_particle(1, false);
@@ -298,12 +299,13 @@ TEST(RollbackTogether, CostsEveryParticleATrialForEveryCollisionOfTheOthers) {
     }
 }
 
-TEST(RollbackTogether, AgreesWithEachParticleGoingBackForItself) {
+TEST(RollbackTogether, SystemAndParticleRollbackAgreeForManyParticles) {
     for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
         SCOPED_TRACE(tolerance);
         const Simulation alone = finished(rain(40, false, tolerance));
         const Simulation together = finished(rain(40, true, tolerance));
-        // Up to two tolerances ahead for the impact, one for each of two brackets' ends and one for waiting; 6 m/s.
+        // The error bound at 6 m/s: two tolerances ahead for the impact, one for each of two brackets' ends and one for
+        // waiting.
         for (std::size_t i = 0; i < 40; ++i) {
             const double moved = length(alone.particles().position[i] - together.particles().position[i]);
             EXPECT_LT(moved, 6.0 * 5.0 * tolerance + 1e-12) << i;
@@ -311,7 +313,7 @@ TEST(RollbackTogether, AgreesWithEachParticleGoingBackForItself) {
     }
 }
 
-TEST(RollbackTogether, IsNotHeldUpByParticlesAtRest) {
+TEST(RollbackTogether, ParticlesAtRestCostNoTrials) {
     const auto run = [](int resting) {
         SimulationSetup setup = rain(4, true, 1e-9);
         setup.options.time_step = 0.1;
@@ -330,11 +332,11 @@ TEST(RollbackTogether, IsNotHeldUpByParticlesAtRest) {
         EXPECT_LT(length(with.particles().position[i] - without.particles().position[i]), 1e-6);
     }
     EXPECT_EQ(with.statistics().resting, 50U + without.statistics().resting);
-    // They land in the first step; after that they cost nothing.
+    // The resting particles land in the first step and cost nothing afterwards.
     EXPECT_LT(with.statistics().trials, without.statistics().trials + 50U * 60U);
 }
 
-TEST(RollbackTogether, GivesTheSameBitsForAnyNumberOfThreads) {
+TEST(RollbackTogether, BitsDoNotDependOnTheNumberOfThreads) {
     const auto hash = [](int threads) {
         const ThreadLimit limit(threads);
         SimulationSetup setup = rain(test::scaled(600), true, 1e-6);
@@ -347,9 +349,9 @@ TEST(RollbackTogether, GivesTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hash(1), hash(2));
 }
 
-// A piece of a step is a step of its own there, which kicks anew: each impact costs a part of a kick. The particle that
-// goes back for itself is kicked once a step.
-TEST(RollbackTogether, LosesHeightUnderSymplecticEulerWhereGoingBackAloneKeepsIt) {
+// In a system rollback each piece of a step is a step with its own kick, so each impact costs a part of a kick. A
+// particle that rolls back alone gets one kick per step.
+TEST(RollbackTogether, SystemRollbackLosesHeightUnderSymplecticEuler) {
     const auto height = [](bool global) {
         SimulationSetup setup = rain(1, global, 1e-9);
         setup.options.integrator = IntegratorKind::symplectic_euler;
@@ -364,7 +366,7 @@ TEST(RollbackTogether, LosesHeightUnderSymplecticEulerWhereGoingBackAloneKeepsIt
     EXPECT_LT(height(true), 0.8);
 }
 
-TEST(RollbackContact, ComesToRestAndStaysPut) {
+TEST(RollbackContact, ParticleComesToRestAndStaysThere) {
     for (const double radius : {0.0, 0.05}) {
         for (const double tolerance : {1e-6, 1e-9}) {
             SCOPED_TRACE(::testing::Message() << "radius " << radius << ", tolerance " << tolerance);
@@ -373,8 +375,8 @@ TEST(RollbackContact, ComesToRestAndStaysPut) {
             for (int k = 0; k < 120; ++k) (void)course.move(ball, 1.0 / 60.0);
             const Vec3 position = ball.state.position;
             EXPECT_GT(position.z, radius - 1e-12);
-            // It lands one tolerance's distance off at the latest, at the speed that ends in rest or what one step
-            // adds.
+            // The particle lands at most one tolerance's distance above the floor. Its speed is the resting speed or
+            // the gain of one step.
             EXPECT_LT(position.z, radius + tolerance * (kG / 60.0 + 1e-3));
             for (int k = 0; k < 1000; ++k) {
                 ASSERT_TRUE(course.move(ball, 1.0 / 60.0).is_resting()) << k;
@@ -390,7 +392,7 @@ INSTANTIATE_TEST_SUITE_P(Integrators, RollbackOnASlope,
                                            IntegratorKind::midpoint, IntegratorKind::rk4),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
 
-TEST_P(RollbackOnASlope, FrictionHoldsBelowItsAngleAndBrakesAboveItAsCoulombSays) {
+TEST_P(RollbackOnASlope, FrictionHoldsBelowItsAngleAndBrakesAboveItByCoulombsLaw) {
     const double theta = 0.5;
     const Vec3 normal{std::sin(theta), 0, std::cos(theta)};
     const Vec3 downhill{std::cos(theta), 0, -std::sin(theta)};

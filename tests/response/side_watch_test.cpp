@@ -18,7 +18,7 @@ using testing::mesh_collider;
 using testing::plane_collider;
 using testing::world_of;
 
-/// A particle that is watched.
+/// A watched particle.
 struct Watched {
     Watched(const SignedDistance& distance, std::size_t colliders, const Vec3& at, double radius = 0.0)
         : sides(colliders), position(at), watch(distance, sides, radius, lists) {
@@ -26,7 +26,7 @@ struct Watched {
     }
     Watched(const Watched&) = delete;
     Watched& operator=(const Watched&) = delete;
-    /// Goes to a position and stays there.
+    /// Moves to a position and stays there.
     std::vector<Proximity> go(const Vec3& to, double margin = 0.01) {
         std::vector<Proximity> seen;
         watch.find_near(to, position, margin, seen);
@@ -41,7 +41,7 @@ struct Watched {
     SideWatch watch;
 };
 
-TEST(SideWatch, ABirthOnASurfaceIsOnTheSideOfItsNormal) {
+TEST(SideWatch, ParticleSpawnedOnASurfaceIsOnTheSideOfItsNormal) {
     const CollisionWorld world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}), plane_collider({0, 0, 2}, {0, 0, 1}));
     const SignedDistance distance(world);
     Watched watched(distance, 2, {0, 0, 0});
@@ -54,8 +54,9 @@ TEST(SideWatch, ABirthOnASurfaceIsOnTheSideOfItsNormal) {
     EXPECT_TRUE(above.go({0, 0, 0.1}).empty());
 }
 
-TEST(SideWatch, TellsBehindByTheNumberOfSurfacesCrossed) {
-    // Two sheets of one mesh, both facing up, and a ball: between the sheets the nearest point says "above" or "below".
+TEST(SideWatch, NumberOfCrossedSurfacesDecidesTheSide) {
+    // One mesh of two sheets, both facing up, and a ball. Between the sheets the nearest point alone could give either
+    // side.
     TriangleMesh sheets = floor_mesh(4.0, 1);
     const auto count = static_cast<std::uint32_t>(sheets.vertices.size());
     const std::size_t triangles = sheets.triangles.size();
@@ -71,7 +72,7 @@ TEST(SideWatch, TellsBehindByTheNumberOfSurfacesCrossed) {
     ASSERT_EQ(seen.size(), 1U);
     EXPECT_TRUE(seen[0].behind);
     EXPECT_EQ(seen[0].normal, (Vec3{0, 0, -1}));
-    // Right through a ball it is on its own side again.
+    // A path right through a ball ends on its original side.
     const CollisionWorld with_ball = world_of(ColliderDescription{"ball", BallShape{0.1, {}}, 0});
     const SignedDistance of_ball(with_ball);
     Watched through(of_ball, 1, {-0.5, 0, 0});
@@ -80,14 +81,14 @@ TEST(SideWatch, TellsBehindByTheNumberOfSurfacesCrossed) {
     EXPECT_TRUE(into.go({0.05, 0, 0}).at(0).behind);
 }
 
-TEST(SideWatch, SeesHowDeepWhatHasCrossedAPlaneIsAndWhereItCameFrom) {
+TEST(SideWatch, DepthAndOriginOfACrossingParticleAreReported) {
     const CollisionWorld world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     const SignedDistance distance(world);
     for (const double side : {1.0, -1.0}) {
         for (const double radius : {0.0, 0.1}) {
             Watched watched(distance, 1, {0, 0, side}, radius);
             EXPECT_TRUE(watched.go({0, 0, 0.5 * side}).empty());
-            for (const double depth : {0.2, 3.0, 0.01}) {  // it stays behind, however deep, until it has come back
+            for (const double depth : {0.2, 3.0, 0.01}) {  // the particle stays behind at any depth, until it returns
                 const auto seen = watched.go({0.1, 0, -depth * side});
                 ASSERT_EQ(seen.size(), 1U);
                 EXPECT_TRUE(seen[0].behind);
@@ -101,7 +102,7 @@ TEST(SideWatch, SeesHowDeepWhatHasCrossedAPlaneIsAndWhereItCameFrom) {
     }
 }
 
-TEST(SideWatch, SeesWithinItsMarginOnly) {
+TEST(SideWatch, SurfacesAreReportedWithinTheMarginOnly) {
     const CollisionWorld world = world_of(plane_collider({0, 0, 0}, {0, 0, 1}));
     const SignedDistance distance(world);
     Watched watched(distance, 1, {0, 0, 0.2}, 0.1);
@@ -113,7 +114,7 @@ TEST(SideWatch, SeesWithinItsMarginOnly) {
     EXPECT_FALSE(watched.watch.in_contact());
 }
 
-TEST(SideWatch, ChangesSidesRoundAnOpenRimOnly) {
+TEST(SideWatch, SideChangesAroundAnOpenRimOnly) {
     const CollisionWorld world = world_of(mesh_collider(floor_mesh(1.0, 4)));
     const SignedDistance distance(world);
     Watched around(distance, 1, {0.5, 0.1, 0.2});
@@ -122,7 +123,7 @@ TEST(SideWatch, ChangesSidesRoundAnOpenRimOnly) {
     (void)around.go({0.5, 0.1, -0.2}, 0.4);
     EXPECT_FALSE(around.watch.in_contact());
     EXPECT_EQ(around.sides[0].side, -1);
-    // Unseen since the rim, it belongs to where it comes from.
+    // A particle last reported near the rim keeps the side it came from.
     Watched unseen(distance, 1, {0.5, 0.1, 0.2});
     for (const Vec3& position : {Vec3{1.3, 0.1, 0.2}, Vec3{1.3, 0.1, -0.2}, Vec3{0.5, 0.1, -0.2}}) {
         EXPECT_TRUE(unseen.go(position).empty());
@@ -139,7 +140,7 @@ TEST(SideWatch, ChangesSidesRoundAnOpenRimOnly) {
     EXPECT_EQ(through.sides[0].side, 1);
 }
 
-TEST(SideWatch, SeesTheSameAfterASurvey) {
+TEST(SideWatch, ResultsAreTheSameAfterASurvey) {
     const CollisionWorld world =
         world_of(mesh_collider(testing::solid("torus")), plane_collider({0, 0, -0.7}, {0.1, 0, 1}));
     const SignedDistance distance(world);

@@ -12,7 +12,7 @@
 
 namespace ricochet::testing {
 
-/// A torus about the z axis, wound outward: `around` x `across` quadrilaterals of two triangles.
+/// Returns a torus about the z axis, wound outward, of `around` x `across` quadrilaterals of two triangles.
 inline TriangleMesh torus_mesh(double ring, double tube, std::uint32_t around, std::uint32_t across) {
     constexpr double kTurn = 6.283185307179586;
     TriangleMesh mesh;
@@ -34,7 +34,7 @@ inline TriangleMesh torus_mesh(double ring, double tube, std::uint32_t around, s
     return mesh;
 }
 
-/// A sphere of radius 1 with smooth bumps and dents.
+/// Returns a sphere of radius 1 with smooth bumps and dents.
 inline TriangleMesh bumpy_sphere_mesh(int levels) {
     TriangleMesh mesh = sphere_mesh({}, 1.0, levels);
     for (Vec3& p : mesh.vertices) {
@@ -43,7 +43,7 @@ inline TriangleMesh bumpy_sphere_mesh(int levels) {
     return mesh;
 }
 
-/// A mesh by the name that a failing test shows.
+/// Returns a mesh by name. The name appears in the message of a failing test.
 inline TriangleMesh solid(const std::string& name) {
     if (name == "torus") return torus_mesh(0.9, 0.4, 32, 16);
     return name == "bumpy_sphere" ? bumpy_sphere_mesh(3) : sphere_mesh({}, 1.0, 3);

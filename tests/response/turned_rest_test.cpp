@@ -1,4 +1,5 @@
-// What comes to rest in one orientation does so in every one: rounding of turned normals and pulls decides nothing.
+// A particle that comes to rest in one orientation must do so in every one. Rounding of rotated normals and forces must
+// decide nothing.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +20,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Axes of a turned world; the first one is the usual one.
+/// Axes of a rotated world. The first set is unrotated.
 struct Axes {
     Vec3 x{1, 0, 0};
     Vec3 y{0, 1, 0};
@@ -38,7 +39,7 @@ Axes turned(int number) {
     return axes;
 }
 
-/// A particle above, or on, planes through the origin, in a world that is turned afterwards.
+/// A particle above or on planes through the origin, in a world that is rotated afterwards.
 struct RestCase {
     std::string name;
     Material material;
@@ -58,7 +59,7 @@ Material material_of(double friction, double rolling, double spinning) {
     return material;
 }
 
-/// Where a sphere touches planes whose normals lie at the same angle from the given one.
+/// Returns a sphere that touches planes whose normals have the same angle to the given direction.
 Particle touching(const Vec3& along, double angle, double radius, const Vec3& velocity, double spin) {
     return testing::particle_of((radius / std::cos(angle)) * along, velocity, radius, spin * along);
 }
@@ -102,7 +103,7 @@ SimulationSetup setup_of(const RestCase& one, const Axes& axes, IntegratorKind i
     return setup;
 }
 
-TEST(TurnedRest, IsTheSameInEveryOrientation) {
+TEST(TurnedRest, RestIsTheSameInEveryOrientation) {
     const int orientations = test::scaled(12) + 1;
     for (const IntegratorKind integrator : {IntegratorKind::ballistic, IntegratorKind::symplectic_euler}) {
         for (const RestCase& one : cases()) {
@@ -118,7 +119,7 @@ TEST(TurnedRest, IsTheSameInEveryOrientation) {
     }
 }
 
-TEST(TurnedRest, KeepsTheSpinAboutTheNormalToTheLastBit) {
+TEST(TurnedRest, SpinAboutTheNormalIsKeptToTheLastBit) {
     for (int k = 0; k < test::scaled(100); ++k) {
         const Axes axes = turned(k);
         const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.5}};
@@ -129,8 +130,9 @@ TEST(TurnedRest, KeepsTheSpinAboutTheNormalToTheLastBit) {
     }
 }
 
-TEST(TurnedRest, IsNotWhatSlidesSlowlyAfterAnImpact) {
-    // A billionth of what the pull gives in the time is a speed; a hundred-billionth is what impacts leave by rounding.
+TEST(TurnedRest, SlowSlideAfterAnImpactIsNotRest) {
+    // A speed of a billionth of the force's change in the interval counts as motion. A hundred-billionth is rounding
+    // from impacts.
     for (int k = 0; k < test::scaled(100); ++k) {
         const Axes axes = turned(k);
         const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.0}};
@@ -145,8 +147,8 @@ TEST(TurnedRest, IsNotWhatSlidesSlowlyAfterAnImpact) {
     }
 }
 
-TEST(AlongSurfaces, LeavesNoSpeedToWhatRollsAndSlipsNot) {
-    // Neither slip nor turning about tangents: the centre stands still, however fast the sphere spins.
+TEST(AlongSurfaces, RollingSphereWithoutSlipKeepsNoSpeed) {
+    // There is neither slip nor rotation about tangents: the centre rests, however fast the sphere spins.
     for (int k = 0; k < test::scaled(200); ++k) {
         const Axes axes = turned(k);
         const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.5, 0.1}};

@@ -9,7 +9,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Kinetic energy of a sphere and of what yields, by an impulse J on the particle; relative to the body before.
+/// Returns the change of the kinetic energy of a sphere and a dynamic body, caused by an impulse J on the particle. It
+/// is relative to the motion of the body before.
 double energy_change(const Motion& before, const Motion& after, const ForceInput& state, const YieldingSurface& s) {
     const double inertia = 0.4 * state.mass * state.radius * state.radius;
     const auto energy = [&](const Motion& m) {
@@ -17,13 +18,13 @@ double energy_change(const Motion& before, const Motion& after, const ForceInput
     };
     const Vec3 impulse = state.mass * (after.velocity - before.velocity);
     const Vec3 where = state.position - state.radius * s.normal;
-    // On the body: -J . w + J . K J / 2.
+    // Energy change of the body: -J . w + J . K J / 2.
     return energy(after) - energy(before) - dot(impulse, s.velocity) +
            0.5 * dot(impulse, s.body.change_at(where, impulse));
 }
 
-// Without mobility it is the bounce off a wall.
-TEST(AnImpactOnABodyThatYields, IsThatOnAWallWhereItDoesNot) {
+// A body with zero inverse mass acts like a wall.
+TEST(AnImpactOnABodyThatYields, BodyWithZeroInverseMassActsLikeAWall) {
     RandomSequence random(1, 1, 0);
     for (int k = 0; k < 200; ++k) {
         const double radius = k % 2 == 0 ? 0.0 : 0.2;
@@ -40,7 +41,7 @@ TEST(AnImpactOnABodyThatYields, IsThatOnAWallWhereItDoesNot) {
     }
 }
 
-TEST(AnImpactOnABodyThatYields, NeverPutsEnergyInAndTurnsTheApproachAround) {
+TEST(AnImpactOnABodyThatYields, EnergyNeverGrowsAndTheApproachIsReversed) {
     RandomSequence random(2, 1, 0);
     const auto any = [&] { return 2.0 * random.uniform() - 1.0; };
     for (int k = 0; k < 5000; ++k) {
@@ -72,7 +73,8 @@ TEST(AnImpactOnABodyThatYields, NeverPutsEnergyInAndTurnsTheApproachAround) {
     }
 }
 
-/// A box, 1 x 0.6 x 0.2 m, of 3 kg at the origin, that a sphere of 0.2 kg falls onto straight, off its centre.
+/// Drops a sphere of 0.2 kg straight and off-centre onto a box of 1 x 0.6 x 0.2 m and 3 kg at the origin. Returns the
+/// sphere's motion after.
 Motion dropped_on_box(const Vec3& slip, double friction, double restitution = 0.7) {
     Mobility box;
     box.of_mass = diagonal_matrix(1.0 / 3.0);
@@ -82,19 +84,18 @@ Motion dropped_on_box(const Vec3& slip, double friction, double restitution = 0.
     return bounce({Vec3{0, 0, -3} + slip, {}}, state, surface);
 }
 
-TEST(AnImpactOnABodyThatYields, SticksWhereThereIsNoSlipBeforeIt) {
+TEST(AnImpactOnABodyThatYields, ContactWithoutSlipSticks) {
     const Motion after = dropped_on_box({}, 0.3);
     EXPECT_NEAR(after.velocity.x, 0.02954, 5e-6);
     EXPECT_NEAR(after.velocity.y, 0.02186, 5e-6);
     EXPECT_NEAR(after.velocity.z, 1.36242, 5e-6);
-    // Without losses the energy of sticking is as before, to rounding, which does not decide.
+    // Without losses, sticking conserves the energy up to rounding. Rounding must not decide.
     const Motion elastic = dropped_on_box({}, 0.3, 1.0);
     EXPECT_GT(elastic.velocity.x, 0.02);
 }
 
-// The same answer for slips of the size of rounding, whatever their direction, also where friction is too weak to stop
-// them.
-TEST(AnImpactOnABodyThatYields, DoesNotDependOnTheDirectionOfRounding) {
+// Slips of the size of rounding give the same result in every direction, even if friction is too weak to stop them.
+TEST(AnImpactOnABodyThatYields, ResultDoesNotDependOnTheDirectionOfRounding) {
     for (const double restitution : {0.0, 0.7, 1.0}) {
         for (const double friction : {0.002, 0.01, 0.02, 0.3}) {
             const Motion without = dropped_on_box({}, friction, restitution);
@@ -112,8 +113,8 @@ TEST(AnImpactOnABodyThatYields, DoesNotDependOnTheDirectionOfRounding) {
     }
 }
 
-// What slips on after the impact is held back against the slip that the impulse makes: a point on a hinge's arm.
-TEST(AnImpactOnABodyThatYields, SlipsAgainstTheSlipThatTheImpulseMakes) {
+// Friction opposes the slip that the impulse itself causes. The body is a point on the arm of a hinge.
+TEST(AnImpactOnABodyThatYields, FrictionOpposesTheSlipCausedByTheImpulse) {
     Mobility arm;
     arm.of_mass = diagonal_matrix(0.0);
     arm.of_inertia = SymmetricMatrix{0, 1.0 / 0.2, 0, 0, 0, 0};  // turns about y

@@ -37,7 +37,7 @@ double length_of_tour(const ActiveSet& active, const std::vector<Vec3>& position
     return sum;
 }
 
-TEST(ActiveSet, IsWorthSortingWhereItIsAThinSelectionAmongManyTriangles) {
+TEST(ActiveSet, SortingPaysForAThinSelectionAmongManyTriangles) {
     EXPECT_TRUE(every(20, kMany).is_worth_sorting(kMany, kManyTriangles));
     EXPECT_TRUE(every(4, kMany).is_worth_sorting(kMany, kManyTriangles));
     EXPECT_FALSE(every(3, kMany).is_worth_sorting(kMany, kManyTriangles)) << "most of them are moved anyway";
@@ -45,7 +45,7 @@ TEST(ActiveSet, IsWorthSortingWhereItIsAThinSelectionAmongManyTriangles) {
     EXPECT_FALSE(every(1000, kMany).is_worth_sorting(kMany, kManyTriangles)) << "too few to gain anything";
 }
 
-TEST(ActiveSet, SortedByPositionHasNeighboursInSpaceOneAfterTheOther) {
+TEST(ActiveSet, SortingByPositionPlacesNeighboursTogether) {
     const std::vector<Vec3> positions = random_positions();
     const ActiveSet unsorted = every(4, kMany);
     ActiveSet sorted = unsorted;
@@ -56,7 +56,7 @@ TEST(ActiveSet, SortedByPositionHasNeighboursInSpaceOneAfterTheOther) {
     EXPECT_TRUE(std::equal(members.begin(), members.end(), unsorted.block(0).begin(), unsorted.block(0).end()));
 }
 
-TEST(ActiveSet, IsSortedTheSameForAnyNumberOfThreads) {
+TEST(ActiveSet, OrderDoesNotDependOnTheNumberOfThreads) {
     const std::vector<Vec3> positions = random_positions();
     std::vector<std::uint32_t> expected;
     for (const int threads : {1, 2, 7}) {

@@ -1,4 +1,4 @@
-// Steps of dormand_prince end, also where no sub-step is short enough, and what is lost is counted.
+// Steps of dormand_prince end even if no substep is short enough, and lost time is counted.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ namespace RICOCHET_FILE {
 using testing::particle_of;
 using testing::setup_of;
 
-/// A particle at rest that falls into the middle.
+/// Returns a particle at rest that falls into the centre.
 SimulationSetup falling(std::unique_ptr<Force> force, ResponseKind response) {
     SimulationSetup setup = setup_of(1.0 / 60.0, 1.0);
     setup.options.integrator.kind = IntegratorKind::dormand_prince;
@@ -29,7 +29,7 @@ SimulationSetup falling(std::unique_ptr<Force> force, ResponseKind response) {
     return setup;
 }
 
-/// Steps to the end, or to where the particle is beyond the speed of light: then it returns false.
+/// Runs to the end, or until the particle exceeds the speed of light. Returns false in that case.
 bool run(Simulation& simulation) {
     try {
         while (!simulation.finished()) simulation.step();
@@ -39,7 +39,7 @@ bool run(Simulation& simulation) {
     return true;
 }
 
-TEST(AdaptiveSteps, EndWhereAParticleFallsIntoAPointMass) {
+TEST(AdaptiveSteps, StepsEndWhenAParticleFallsIntoAPointMass) {
     for (const ResponseKind response : {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project}) {
         SCOPED_TRACE(name_of(response));
         Simulation gravity(falling(make_point_gravity({{{0, 0, 0}, 8.85, 0.0}}), response));
@@ -55,8 +55,8 @@ TEST(AdaptiveSteps, EndWhereAParticleFallsIntoAPointMass) {
     }
 }
 
-// With an orbit of 2e-6 s a step has 8000 of them, each of some 50 sub-steps.
-TEST(AdaptiveSteps, OfATightOrbitAreCutOffAndTheParticleStaysOnIt) {
+// A step has 8000 orbits of 2e-6 s, each of about 50 substeps.
+TEST(AdaptiveSteps, StepsOfATightOrbitAreCutOffAndTheParticleStaysOnIt) {
     const double strength = 10.0;
     const double radius = 1e-4;
     for (const ResponseKind response : {ResponseKind::exact, ResponseKind::rollback, ResponseKind::project}) {
@@ -73,7 +73,7 @@ TEST(AdaptiveSteps, OfATightOrbitAreCutOffAndTheParticleStaysOnIt) {
     }
 }
 
-TEST(AdaptiveSteps, EndWhereTwoParticlesFallIntoEachOther) {
+TEST(AdaptiveSteps, StepsEndWhenTwoParticlesFallIntoEachOther) {
     SimulationSetup setup = setup_of(1.0 / 60.0, 0.5);
     setup.options.integrator.kind = IntegratorKind::dormand_prince;
     setup.particles = {particle_of({}), particle_of({0.1, 0.2, -0.1})};
@@ -85,7 +85,7 @@ TEST(AdaptiveSteps, EndWhereTwoParticlesFallIntoEachOther) {
     EXPECT_TRUE(!is_whole || simulation.statistics().unsolved_steps > 0U);
 }
 
-TEST(AdaptiveSteps, LoseNothingOnAnOrdinaryOrbit) {
+TEST(AdaptiveSteps, OrdinaryOrbitLosesNothing) {
     SimulationSetup setup = falling(make_point_gravity({{{0, 0, 0}, 1.0, 0.0}}), ResponseKind::exact);
     setup.options.duration = 20.0;
     setup.particles = {particle_of({1, 0, 0}, {0, 0.3, 0})};
@@ -97,8 +97,8 @@ TEST(AdaptiveSteps, LoseNothingOnAnOrdinaryOrbit) {
     EXPECT_NEAR(simulation.kinetic_energy() + simulation.potential_energy().value(), before, 1e-3);
 }
 
-// A jump of a force is passed, and loses next to nothing.
-TEST(AdaptiveSteps, PassAJumpOfAForce) {
+// The steps pass a jump of a force and lose almost nothing.
+TEST(AdaptiveSteps, StepsPassAJumpOfAForce) {
     SimulationSetup setup = setup_of(0.1, 1.0);
     setup.options.integrator = {IntegratorKind::dormand_prince, {1e-30, 1e-30}};
     setup.forces.push_back(make_acceleration([](const ForceInput& input) {

@@ -1,4 +1,4 @@
-// A simulation that is saved, restored in another one and run on gives the same bits as one that was never stopped.
+// A simulation that is saved, restored in another one and continued gives the same bits as one that was never stopped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// Everything at once: emitters with rates, children, attributes, springs, resting, random walls, totals.
+/// Returns a setup with all features: emitters with rates, children, attributes, springs, rest, random walls, totals.
 SimulationSetup busy_setup(ResponseKind response = ResponseKind::exact) {
     SimulationSetup setup;
     setup.options.time_step = 0.01;
@@ -83,7 +83,7 @@ void run_to(Simulation& simulation, std::uint64_t step) {
     while (simulation.step_index() < step) simulation.step();
 }
 
-TEST(SavedSimulation, GoesOnToTheSameBitsWhateverTheResponseAndTheThreads) {
+TEST(SavedSimulation, ContinuationHasTheSameBitsForAnyResponseAndThreads) {
     for (const ResponseKind kind : response_kinds()) {
         SCOPED_TRACE(name_of(kind));
         Simulation whole(busy_setup(kind));
@@ -99,12 +99,12 @@ TEST(SavedSimulation, GoesOnToTheSameBitsWhateverTheResponseAndTheThreads) {
         EXPECT_EQ(saved(resumed), bytes);
         run_to(resumed, 150);
         EXPECT_EQ(resumed.state_hash(), whole.state_hash());
-        // Every column, counter and total, and not only what the hash covers.
+        // Compares every column, counter and total, because the hash does not cover all of them.
         EXPECT_EQ(saved(resumed), saved(whole));
     }
 }
 
-TEST(SavedSimulation, KeepsAttributesAndBrokenSprings) {
+TEST(SavedSimulation, AttributesAndBrokenSpringsAreKept) {
     Simulation whole(busy_setup());
     run_to(whole, 100);
     EXPECT_EQ(whole.statistics().springs_broken, 1U);
@@ -121,7 +121,7 @@ TEST(SavedSimulation, KeepsAttributesAndBrokenSprings) {
     EXPECT_EQ(resumed.triangle_totals(0).lasting_impulse, whole.triangle_totals(0).lasting_impulse);
 }
 
-TEST(SavedSimulation, IsWatchedFromWhereItIs) {
+TEST(SavedSimulation, VerificationStartsFromTheRestoredState) {
     Simulation whole(busy_setup());
     run_to(whole, 60);
     SimulationSetup setup = busy_setup();
@@ -134,7 +134,7 @@ TEST(SavedSimulation, IsWatchedFromWhereItIs) {
     EXPECT_EQ(resumed.state_hash(), whole.state_hash());
 }
 
-TEST(SavedSimulation, IsRefusedByAnotherSetupAndWhenItIsCutShort) {
+TEST(SavedSimulation, OtherSetupAndTruncatedStateAreRefused) {
     Simulation whole(busy_setup());
     run_to(whole, 20);
     std::vector<std::byte> bytes = saved(whole);
@@ -151,7 +151,7 @@ TEST(SavedSimulation, IsRefusedByAnotherSetupAndWhenItIsCutShort) {
     EXPECT_THROW(restore(same, bytes), InputError);
 }
 
-TEST(SavedSimulation, IsRefusedByOtherOptionsMaterialsAndBounds) {
+TEST(SavedSimulation, OtherOptionsMaterialsAndBoundsAreRefused) {
     Simulation whole(busy_setup());
     run_to(whole, 20);
     const std::vector<std::byte> bytes = saved(whole);
@@ -171,7 +171,7 @@ TEST(SavedSimulation, IsRefusedByOtherOptionsMaterialsAndBounds) {
     }
 }
 
-/// A floor that stands in the last of two frames, and a wall in the first.
+/// Returns a setup with a floor in the last of two frames, and a wall in the first.
 SimulationSetup moving_setup(const std::vector<FrameDescription>& frames) {
     SimulationSetup setup = busy_setup();
     setup.frames = std::make_shared<const FrameTree>(frames);
@@ -192,7 +192,7 @@ std::vector<FrameDescription> table_on_a_base() {
               KeyedRotation{{0, 0, 1}, KeyedCurve<double>({{0.0, 0.0}, {2.0, 30.0}})}}}};
 }
 
-TEST(SavedSimulation, IsRefusedWhereCollidersMoveOtherwise) {
+TEST(SavedSimulation, OtherMotionOfCollidersIsRefused) {
     const CurveKey<Vec3> begin{0.0, {}};
     const std::vector<FrameDescription> frames = table_on_a_base();
     Simulation whole(moving_setup(frames));
@@ -238,7 +238,7 @@ TEST(SavedSimulation, IsRefusedWhereCollidersMoveOtherwise) {
     }
 }
 
-TEST(SavedSimulation, IsRefusedWhereCollidersChangeFramesAndNotForTheirNames) {
+TEST(SavedSimulation, ExchangedFramesAreRefusedAndRenamedOnesAreNot) {
     using Frames = std::vector<FrameDescription>;
     const Frames frames = table_on_a_base();
     Simulation whole(moving_setup(frames));
@@ -248,7 +248,7 @@ TEST(SavedSimulation, IsRefusedWhereCollidersChangeFramesAndNotForTheirNames) {
     std::swap(exchanged.colliders[0].frame, exchanged.colliders[1].frame);
     Simulation with_others(std::move(exchanged));
     EXPECT_THROW(restore(with_others, bytes), InputError);
-    // Names say nothing about motion.
+    // Names have no effect on motion.
     Frames renamed = frames;
     renamed[0].name = renamed[1].parent = "ground";
     Simulation same(moving_setup(renamed));
@@ -258,7 +258,7 @@ TEST(SavedSimulation, IsRefusedWhereCollidersChangeFramesAndNotForTheirNames) {
     EXPECT_EQ(same.state_hash(), whole.state_hash());
 }
 
-TEST(SavedSimulation, IsRefusedWhereAnyByteIsDamaged) {
+TEST(SavedSimulation, DamagedByteIsRefused) {
     Simulation whole(busy_setup());
     run_to(whole, 3);
     std::vector<std::byte> bytes = saved(whole);
@@ -274,7 +274,7 @@ TEST(SavedSimulation, IsRefusedWhereAnyByteIsDamaged) {
     EXPECT_EQ(same.state_hash(), whole.state_hash());
 }
 
-/// Gives a state that was changed the checksum that it says it has.
+/// Writes the valid checksum of a modified state.
 void sign(std::vector<std::byte>& bytes) {
     constexpr std::size_t kSize = sizeof(std::uint64_t);
     StateHash checksum;
@@ -283,8 +283,8 @@ void sign(std::vector<std::byte>& bytes) {
     std::memcpy(bytes.data() + bytes.size() - kSize, &value, kSize);
 }
 
-// A checksum keeps off accidents; what somebody makes up with a right one is refused, or is a state like any other.
-TEST(SavedSimulation, IsRefusedOrGoesOnWhateverWasMadeUp) {
+// The checksum protects against accidents. A forged state with a valid checksum is refused, or is an ordinary state.
+TEST(SavedSimulation, ForgedStateIsRefusedOrContinues) {
     Simulation whole(busy_setup());
     run_to(whole, 40);
     const std::vector<std::byte> bytes = saved(whole);
@@ -305,14 +305,14 @@ TEST(SavedSimulation, IsRefusedOrGoesOnWhateverWasMadeUp) {
             for (int step = 0; step < 3; ++step) same.step();
         } catch (const InputError&) {
             ++refused;
-        } catch (const RunError&) {  // it diverges
+        } catch (const RunError&) {  // the motion diverges
         }
     }
     EXPECT_GT(refused, 0);
     EXPECT_LT(refused, cases);
 }
 
-TEST(SavedSimulation, IsRefusedWithAParticleOutOfRange) {
+TEST(SavedSimulation, ParticleOutOfRangeIsRefused) {
     const auto setup = [] {
         SimulationSetup one;
         one.particles.push_back({0, {0.123456789, 0, 0}, {}, 1.0, 0.987654321});
@@ -338,13 +338,13 @@ TEST(SavedSimulation, IsRefusedWithAParticleOutOfRange) {
     }
 }
 
-TEST(SavedSimulation, IsNotTakenOverByEmittersThatHaveEmitted) {
+TEST(SavedSimulation, EmittersThatHaveEmittedRefuseAState) {
     Simulation whole(busy_setup());
     run_to(whole, 3);
     EXPECT_THROW(restore(whole, saved(whole)), InputError);
 }
 
-TEST(SavedSimulation, GoesOnWhereAnErrorInsideAStepHasEndedTheRun) {
+TEST(SavedSimulation, RunContinuesAfterAnErrorInsideAStep) {
     bool fails = false;
     const auto setup = [&fails] {
         SimulationSetup made;
@@ -372,8 +372,8 @@ TEST(SavedSimulation, GoesOnWhereAnErrorInsideAStepHasEndedTheRun) {
     EXPECT_EQ(simulation.state_hash(), reference.state_hash());
 }
 
-// Inside advance() particles in free flight are some steps behind, to be made up for at its end.
-TEST(SavedSimulation, RestoredBetweenTheStepsOfAnAdvanceGoesOnAsIfItHadNeverLeft) {
+// Inside advance(), particles in free flight are some steps behind. The end of the call makes these steps.
+TEST(SavedSimulation, RestoreBetweenTheStepsOfAnAdvanceContinuesWithTheSameBits) {
     const auto setup = [] {
         SimulationSetup made;
         made.options.time_step = 0.02;

@@ -1,4 +1,4 @@
-// The births of a step: the same bits for any number of threads and of ranks, each of which makes only its part.
+// Births of a step have the same bits for any number of threads and ranks. Each rank makes only its share.
 #include "ricochet/simulation/births.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ using testing::run;
 using testing::run_on;
 using testing::setup_of;
 
-/// A closed tetrahedron.
+/// Returns a closed tetrahedron.
 std::shared_ptr<const TriangleMesh> tetrahedron(const Vec3& at) {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->vertices = {at, at + Vec3{1, 0, 0}, at + Vec3{0, 1, 0}, at + Vec3{0, 0, 1}};
@@ -49,8 +49,9 @@ std::vector<EmitterShape> all_shapes() {
             MeshVolumeShape{tetrahedron({7, 0, -0.02})}};
 }
 
-/// Emitters of every kind between a floor and a lid that moves, where some births are moved and some find no place:
-/// points and spheres, bursts and rates, steady and drawn, from the world and from a frame that moves.
+/// Returns emitters of every kind between a floor and a moving lid. Some births are moved, and some find no position.
+/// There are points and spheres, bursts and rates, fixed and random values, and emitters in the world and in a moving
+/// frame.
 SimulationSetup every_kind() {
     Material soft;
     soft.restitution = 0.5;
@@ -96,7 +97,7 @@ SimulationSetup every_kind() {
     return setup;
 }
 
-/// Spheres that meet, born into a room that has place for some of them.
+/// Returns colliding spheres, born into a room with space for some of them.
 SimulationSetup crowd() {
     SimulationSetup setup = setup_of(0.02, 0.3);
     setup.options.particle_contacts.emplace();
@@ -114,7 +115,7 @@ SimulationSetup crowd() {
     return setup;
 }
 
-TEST(Births, HaveTheSameBitsForAnyNumberOfThreads) {
+TEST(Births, BitsDoNotDependOnTheNumberOfThreads) {
     for (SimulationSetup (*make)() : {every_kind, crowd}) {
         std::vector<Outcome> outcomes;
         for (const int threads : {1, 2, 7}) {
@@ -126,15 +127,15 @@ TEST(Births, HaveTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-TEST(Births, SharedByRanksHaveTheBitsOfOneProcess) {
+TEST(Births, RanksTogetherGiveTheBitsOfOneProcess) {
     const Outcome alone = run(every_kind, nullptr);
     for (const std::size_t count : {1U, 2U, 3U, 5U}) {
         EXPECT_EQ(difference(run_on(count, every_kind), alone), "none") << count << " ranks";
     }
 }
 
-// The scenes do what they are there for.
-TEST(Births, AreTriedWithAllThatRefusesThem) {
+// Checks that the scenes exercise their features.
+TEST(Births, EveryReasonForRefusalOccurs) {
     Simulation every(every_kind());
     while (!every.finished()) every.step();
     EXPECT_GT(every.statistics().emitted, 1500U);
@@ -146,7 +147,7 @@ TEST(Births, AreTriedWithAllThatRefusesThem) {
     EXPECT_GT(crowded.statistics().births_refused_by_overlap, 50U);
 }
 
-/// Two emitters of spheres, a third of points.
+/// Returns two emitters of spheres and a third of points.
 std::vector<Emitter> three_emitters() {
     std::vector<Emitter> emitters;
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -161,7 +162,7 @@ std::vector<Emitter> three_emitters() {
     return emitters;
 }
 
-/// Refuses most positions of spheres, so that some births find none of theirs.
+/// Returns false for most positions of spheres, so that some births find no position.
 bool is_liked(const Particle& particle) {
     return !(particle.radius > 0.0) || (particle.radius < 0.15 && particle.position.x > 0.0) ||
            particle.position.x > 0.499;
@@ -173,8 +174,8 @@ struct Made {
     std::uint64_t refused_by_population = 0;
 };
 
-/// By the words of Emitter::births(): each emitter by itself, then in the order of time, then as many as there is room
-/// for.
+/// Follows the description of Emitter::births(): each emitter alone, then sorted by time, then limited to the remaining
+/// capacity.
 Made one_after_the_other(std::vector<Emitter>& emitters, double from, double to, std::uint64_t room, std::uint64_t id) {
     Made made;
     std::uint64_t born = 0;
@@ -206,7 +207,7 @@ void expect_part_of(std::span<Particle* const> here, const Made& all, std::uint6
     EXPECT_TRUE(std::is_sorted(here.begin(), here.end(), by_id));
 }
 
-TEST(StepBirths, AreThoseOfEmittersOneAfterTheOther) {
+TEST(StepBirths, BirthsMatchEmittersRunOneByOne) {
     constexpr std::uint64_t kFirst = 1000;
     for (const std::uint64_t room : {0U, 1U, 7U, 50U, 300U, 100'000U}) {
         for (const std::size_t count : {1U, 2U, 3U}) {
@@ -232,7 +233,7 @@ TEST(StepBirths, AreThoseOfEmittersOneAfterTheOther) {
     }
 }
 
-TEST(StepBirths, AreMadeByOneRankEach) {
+TEST(StepBirths, EachBirthIsMadeByOneRank) {
     constexpr std::size_t kRanks = 3;
     constexpr std::uint64_t kBorn = 3000;
     std::vector<std::uint64_t> asked(kRanks, 0);
@@ -257,7 +258,7 @@ TEST(StepBirths, AreMadeByOneRankEach) {
     EXPECT_EQ(asked[0] + asked[1] + asked[2], kBorn);
 }
 
-TEST(StepBirths, SayThatMoreAreBornThanFitBeforeAllAreMade) {
+TEST(StepBirths, ExcessBirthsAreReportedBeforeAllAreMade) {
     EmitterDescription description;
     description.name = "emitter";
     description.burst = 100'000;

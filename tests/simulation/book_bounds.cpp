@@ -6,23 +6,23 @@
 namespace ricochet::test {
 namespace RICOCHET_FILE {
 
-/// The bounds that theory gives for springs at a step h, with what a run has come to.
+/// Theoretical error bounds for springs at a step h, from the results of a run.
 struct SpringTheory {
     double h;         ///< s
-    double speed;     ///< m/s, more than which the energy does not allow
-    double contacts;  ///< bounces; with penalty, steps of those
+    double speed;     ///< m/s, an upper bound from the energy
+    double contacts;  ///< number of bounces; with penalty, number of steps in contact
 
-    /// Largest rate of an oscillation, 1/s: twice two springs over the mass (Gershgorin).
+    /// Returns the largest angular frequency, in 1/s: twice two springs over the mass (Gershgorin).
     [[nodiscard]] static double rate() { return std::sqrt(4.0 * kStiffness / kMass); }
 
-    /// J, that a bounce makes: it leads off the plan by 2 v t at most in what is left of the step, which is
-    /// k (2 v h)^2 / 6 for each of two springs, twice where it is the work on both ends.
+    /// Returns the energy, in J, that bounces may add. A bounce deviates from the plan by at most 2 v t in the rest of
+    /// the step. This changes each of two springs by k (2 v h)^2 / 6, and by twice that if both ends do work.
     [[nodiscard]] double energy_of_bounces() const {
         return contacts * 2.0 * 2.0 * kStiffness * std::pow(2.0 * speed * h, 2) / 6.0;
     }
-    /// J, by which a method's own energy moves off the true one, for an oscillation that has all of it: what the
-    /// amplification |R| of a step makes of it in n steps, and for symplectic methods what their own Hamiltonian
-    /// differs by (E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", IX.3).
+    /// Returns the energy error of a method, in J, for an oscillation that has all of the energy. It follows from the
+    /// amplification |R| of a step over n steps. For symplectic methods it is the difference of their own Hamiltonian
+    /// (E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical Integration", IX.3).
     [[nodiscard]] double energy_of(IntegratorKind kind) const {
         const double z = rate() * h;
         const double steps = kDuration / h;
@@ -45,14 +45,15 @@ struct SpringTheory {
     }
 };
 
-/// J, by which penalties may miss: walls are springs of half a period of `contact_steps` sub-steps, whatever the step,
-/// and a bounce is half an oscillation by the scene's method. Forward Euler's growth goes on from bounce to bounce.
+/// Returns the energy error, in J, of penalties. Walls are springs with half a period of `contact_steps` substeps for
+/// any step, and a bounce is half an oscillation of the scene's method. The growth of forward Euler continues from
+/// bounce to bounce.
 double energy_of_penalties(const BookCase& c, double contacts) {
     if (c.response != ResponseKind::penalty) return 0.0;
     const double steps = PenaltySettings{}.contact_steps;
     const double z = std::numbers::pi / steps;
     const double of_each = contacts * kEnergy / kParticles;
-    // A child that is born within a wall is pushed out as its parent would be, by as much energy as its mass has at 2
+    // A child that is born inside a wall is pushed out like its parent. This adds at most the energy of its mass at 2
     // m/s.
     const double born = c.has(Feature::children) ? contacts * 0.5 * kChildMass * 4.0 : 0.0;
     switch (c.integrator) {
@@ -69,17 +70,17 @@ double energy_of_penalties(const BookCase& c, double contacts) {
     }
 }
 
-/// N s, that springs give the other end of what a wall has swallowed until they are lost at the end of the step, and
-/// that nobody holds up: at most by two springs that hold all of the energy.
+/// Returns the momentum, in N s, that springs give to the other end of an absorbed particle until they are removed at
+/// the end of the step. Nothing balances it. The bound is two springs that have all of the energy.
 double pulls_of_swallowed(const BookCase& c, const BookedRun& run) {
     if (!c.has(Feature::springs)) return 0.0;
     const double pull = std::sqrt(2.0 * kEnergy * kStiffness);
     return 2.0 * pull * c.time_step * static_cast<double>(run.swallowed().count);
 }
 
-/// J, of springs that hang on what walls swallow, and of penalties: what is swallowed at the end of the sub-step in
-/// which it has entered a wall has at most v h of the way in, and of its energy the part (omega h)^2, pi /
-/// contact_steps, in the wall's spring.
+/// Returns the energy, in J, lost with springs of absorbed particles and in penalties. A particle is absorbed at the
+/// end of the substep in which it enters a wall. It is then at most v h deep, so the wall's spring has the fraction
+/// (omega h)^2 of its energy, with omega h = pi / contact_steps.
 double lost_with_swallowed(const BookCase& c, const BookedRun& run) {
     if (!c.has(Feature::absorbing)) return 0.0;
     if (c.has(Feature::springs)) return run.start().energy;
@@ -90,8 +91,8 @@ double lost_with_swallowed(const BookCase& c, const BookedRun& run) {
 
 }  // namespace RICOCHET_FILE
 
-/// Without springs and penalties particles fly straight and bounce elastically. Springs give momentum to either end
-/// alike, whatever it does, but to what a wall has swallowed.
+/// Returns the bounds of one run. Without springs and penalties, particles fly straight and bounce elastically. Springs
+/// give opposite momentum to their two ends, except to absorbed particles.
 BookBounds bounds_of(const BookCase& c, const BookedRun& run) {
     const SimulationStatistics& statistics = run.simulation().statistics();
     const double speed = std::sqrt(2.0 * run.start().energy / kMass);

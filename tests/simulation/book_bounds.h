@@ -1,17 +1,17 @@
 /// \file
-/// How far books may be open, from theory: nothing here is fitted to what runs give.
+/// Theoretical error bounds of the balances. No bound is fitted to results of runs.
 #pragma once
 
 #include "simulation/books.h"
 
 namespace ricochet::test {
 
-/// Of one run.
+/// Bounds of one run.
 struct BookBounds {
     double momentum = 0.0;  ///< N s
-    double energy = 0.0;    ///< J, to either side
-    double launched = 0.0;  ///< J, that fragments may have got besides
-    double lost = 0.0;      ///< J, that springs may have taken with them
+    double energy = 0.0;    ///< J, in both directions
+    double launched = 0.0;  ///< J, extra launch energy of fragments
+    double lost = 0.0;      ///< J, removed together with springs
 };
 
 [[nodiscard]] BookBounds bounds_of(const BookCase& c, const BookedRun& run);

@@ -24,7 +24,7 @@ std::vector<Particle> moving_particles(std::uint64_t seed) {
     return particles;
 }
 
-/// Each by an emitter of its own, so that it may have children.
+/// Emits each particle from its own emitter, so that it may have children.
 std::uint32_t emit(const Particle& particle, SimulationSetup& setup) {
     EmitterDescription emitter;
     emitter.name = "parent " + std::to_string(setup.emitters.size());
@@ -57,7 +57,7 @@ void join(std::size_t count, SimulationSetup& setup) {
     }
 }
 
-/// The emitters whose particles bring a mass of their own.
+/// Returns the emitters whose particles bring their own mass.
 std::vector<std::uint32_t> bearing_of(const SimulationSetup& setup) {
     std::vector<std::uint32_t> bearing;
     for (std::uint32_t k = 0; k < setup.emitters.size(); ++k) {
@@ -137,7 +137,7 @@ BookedRun::BookedRun(const BookCase& c, SimulationSetup setup)
     : bearing_(bearing_of(setup)), simulation_(std::move(setup)) {
     start_ = living();
     if (c.emits()) {
-        simulation_.step();  // in which all are born that nobody bears, and the first children
+        simulation_.step();  // the step in which all independent particles and the first children are born
         note_step();
         start_ = living();
         born_ = {};
@@ -169,7 +169,7 @@ Vec3 BookedRun::walls() const {
     return sum;
 }
 
-/// An elastic wall leaves no one at rest, but what it swallows.
+/// An elastic wall leaves no particle at rest, so a particle at rest was absorbed.
 void BookedRun::note_step() {
     for (const ContactRecord& contact : simulation_.contact_records()) {
         if (contact.velocity_after != Vec3{}) continue;

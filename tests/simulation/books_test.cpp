@@ -1,5 +1,5 @@
-// The books of mass, momentum and energy over every response, integrator and pair of features that go together:
-// particles in a box without gravity, so that all that they lose the walls have got.
+// Checks the balances of mass, momentum and energy for every response, integrator and valid pair of features. Particles
+// move in a box without gravity, so the walls receive everything that they lose.
 #include "simulation/books.h"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ void expect_refused(const BookCase& c, const std::string& reason) {
     }
 }
 
-/// What each feature is there for has happened, in the scene that has been looked at.
+/// Checks that the scene has exercised the effect of each feature.
 void expect_exercised(const BookCase& c, const BookedRun& run) {
     const SimulationStatistics& statistics = run.simulation().statistics();
     EXPECT_GT(statistics.contacts, 5U);
@@ -57,8 +57,8 @@ void expect_closed(const BookCase& c, const BookedRun& run) {
     EXPECT_LT(energy, bounds.energy + bounds.launched);
 }
 
-// A flow's particles have no momentum: walls get none, and nobody is lost. What materials and masses decide elsewhere
-// they do not decide here.
+// Particles in a flow have no momentum: the walls receive none, and no particle is lost. Materials and masses have no
+// effect here.
 void expect_carried(const BookedRun& run) {
     EXPECT_EQ(run.walls(), Vec3{});
     EXPECT_EQ(run.living().count, run.start().count + run.born().count);
@@ -81,7 +81,7 @@ void check_cell(const BookCase& c) {
     }
 }
 
-/// All pairs, and each feature alone.
+/// Returns all pairs of features, and each feature alone.
 std::vector<std::uint32_t> feature_sets() {
     std::vector<std::uint32_t> sets;
     for (std::size_t a = 0; a < test::kFeatures.size(); ++a) {
@@ -92,10 +92,10 @@ std::vector<std::uint32_t> feature_sets() {
     return sets;
 }
 
-/// Every response, every integrator and every pair, but not all together: of those a step of 7, which meets all.
+/// The full matrix has every response, integrator and pair. Every 7th cell is enough to include all of each.
 constexpr std::size_t kStride = 7;
 
-TEST(Books, OfMassMomentumAndEnergyAreClosedForEveryPairOfFeatures) {
+TEST(Books, BalancesAreClosedForEveryPairOfFeatures) {
     const std::size_t stride = test::is_long_run() ? 1 : kStride;
     std::size_t cells = 0;
     for (const std::uint32_t features : feature_sets()) {
@@ -107,8 +107,8 @@ TEST(Books, OfMassMomentumAndEnergyAreClosedForEveryPairOfFeatures) {
     EXPECT_EQ(cells, 15U * 5U * 8U);
 }
 
-// Bounds of springs are of the square of the step, or of its own order.
-TEST(Books, OfSpringsAreClosedTheBetterTheShorterTheStep) {
+// The bounds for springs are second order in the step, or of the order of the method.
+TEST(Books, BalancesOfSpringsImproveWithShorterSteps) {
     for (BookCase c : test::all_methods()) {
         if (c.response != ResponseKind::exact && !test::is_long_run()) continue;
         c.features = static_cast<std::uint32_t>(Feature::springs);
@@ -117,8 +117,8 @@ TEST(Books, OfSpringsAreClosedTheBetterTheShorterTheStep) {
     }
 }
 
-// Other directions, and so other impacts.
-TEST(BooksLong, OfManyScenesAreClosed) {
+// Uses other directions, and therefore other impacts.
+TEST(BooksLong, BalancesOfManyScenesAreClosed) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         for (const std::uint32_t features : feature_sets()) {
             for (BookCase c : test::all_methods()) {

@@ -31,7 +31,7 @@ Particle ball(const Vec3& position, const Vec3& velocity = {}) {
     return particle;
 }
 
-/// Balls that bounce and come to rest in a box without a lid.
+/// Returns balls that bounce and come to rest in a box without a lid.
 SimulationSetup box_of_balls(std::size_t count) {
     SimulationSetup setup;
     setup.options.time_step = 0.01;
@@ -50,7 +50,7 @@ SimulationSetup box_of_balls(std::size_t count) {
     return setup;
 }
 
-/// Adds and removes particles and changes forces between steps; the state's hash at the end.
+/// Adds and removes particles and changes forces between steps. Returns the final state hash.
 std::uint64_t changing_run(SimulationSetup setup, int threads, bool at_once) {
     const ThreadLimit limit(threads);
     Simulation simulation(std::move(setup));
@@ -80,7 +80,7 @@ std::uint64_t changing_run(SimulationSetup setup, int threads, bool at_once) {
     return simulation.state_hash() ^ contacts;
 }
 
-TEST(Changes, GiveTheSameBitsForAnyThreadsSwitchesAndCalls) {
+TEST(Changes, BitsDoNotDependOnThreadsSwitchesOrCalls) {
     const std::uint64_t expected = changing_run(box_of_balls(700), 1, false);
     for (const int threads : {2, 7}) EXPECT_EQ(changing_run(box_of_balls(700), threads, false), expected) << threads;
     EXPECT_EQ(changing_run(box_of_balls(700), 2, true), expected);
@@ -95,7 +95,7 @@ TEST(Changes, GiveTheSameBitsForAnyThreadsSwitchesAndCalls) {
     }
 }
 
-TEST(Changes, AParticleIsBornWhenItIsAdded) {
+TEST(Changes, ParticleIsBornWhenItIsAdded) {
     SimulationSetup setup = box_of_balls(1);
     Simulation simulation(std::move(setup));
     simulation.advance(10);
@@ -116,7 +116,7 @@ TEST(Changes, AParticleIsBornWhenItIsAdded) {
     simulation.step();
 }
 
-TEST(Changes, NewForcesWakeSleepersAndTurnFreeFlights) {
+TEST(Changes, NewForcesWakeSleepersAndChangeFreeFlights) {
     SimulationSetup setup = box_of_balls(0);
     setup.particles.push_back(ball({0, 0, -1.99}));
     setup.particles.push_back(ball({1, 1, 1.9}, {0, 0, 0}));
@@ -136,7 +136,7 @@ TEST(Changes, NewForcesWakeSleepersAndTurnFreeFlights) {
     EXPECT_EQ(simulation.particles().velocity[0], velocity);
 }
 
-TEST(Changes, SurfacesCarryTheWeightOfSleepersUntilTheyAreRemoved) {
+TEST(Changes, WeightOfSleepersIsRecordedUntilTheyAreRemoved) {
     const auto impulse = [](bool sleeping) {
         SimulationSetup setup = box_of_balls(0);
         setup.materials[0].restitution = 0.0;
@@ -155,7 +155,7 @@ TEST(Changes, SurfacesCarryTheWeightOfSleepersUntilTheyAreRemoved) {
     EXPECT_NEAR(impulse(true).z, impulse(false).z, 1e-9);
 }
 
-TEST(Changes, AreInASavedStateButForForces) {
+TEST(Changes, SavedStateIncludesChangesExceptForces) {
     const auto finish = [](Simulation& simulation) {
         simulation.set_forces(gravity({1, 0, -5}));
         simulation.advance(simulation.step_count());
@@ -179,7 +179,7 @@ TEST(Changes, AreInASavedStateButForForces) {
     EXPECT_EQ(finish(second), finish(first));
 }
 
-TEST(Changes, JoinCoupledMotionAndLoseSprings) {
+TEST(Changes, AddedParticlesMoveCoupledAndRemovedOnesLoseTheirSprings) {
     SimulationSetup setup = box_of_balls(3);
     setup.springs.push_back({0, 1, 0.01, 10.0, 0.1});
     setup.springs.push_back({1, 2, 0.01, 10.0, 0.1});
@@ -201,7 +201,7 @@ std::string what_run_error_says(const std::function<void()>& call) {
     return "no RunError";
 }
 
-TEST(Changes, AreRefusedInAStepAndAfterOneThatFailedEachWithItsReason) {
+TEST(Changes, ChangesInAStepOrAfterAFailedOneAreRefusedWithTheReason) {
     SimulationSetup setup;
     Simulation* running = nullptr;
     std::string within;
@@ -223,7 +223,7 @@ TEST(Changes, AreRefusedInAStepAndAfterOneThatFailedEachWithItsReason) {
     }
 }
 
-TEST(OnContact, IsGivenTheRecordsOfEveryStepInTheirOrder) {
+TEST(OnContact, CallbackGetsTheRecordsOfEveryStepInOrder) {
     SimulationSetup setup = box_of_balls(300);
     setup.options.record_contacts = true;
     Simulation recorded(std::move(setup));
@@ -250,7 +250,7 @@ TEST(OnContact, IsGivenTheRecordsOfEveryStepInTheirOrder) {
     EXPECT_TRUE(called.contact_records().empty());
 }
 
-TEST(OnContact, MayChangeTheSimulationButNotStepIt) {
+TEST(OnContact, CallbackMayChangeTheSimulationButNotStepIt) {
     Simulation simulation(box_of_balls(20));
     std::size_t removed = 0;
     simulation.on_contact([&](std::span<const ContactRecord> records) {
@@ -264,7 +264,7 @@ TEST(OnContact, MayChangeTheSimulationButNotStepIt) {
     EXPECT_EQ(simulation.statistics().removed, removed);
 }
 
-TEST(OnContact, WhatItThrowsComesOutOfAStepThatIsDone) {
+TEST(OnContact, ExceptionOfACallbackLeavesACompletedStep) {
     Simulation plain(box_of_balls(20));
     Simulation simulation(box_of_balls(20));
     simulation.on_contact([](std::span<const ContactRecord>) { throw std::runtime_error("stop"); });
@@ -275,7 +275,7 @@ TEST(OnContact, WhatItThrowsComesOutOfAStepThatIsDone) {
     EXPECT_EQ(simulation.state_hash(), plain.state_hash());
 }
 
-TEST(ContactCallback, MayPutAnotherInItsPlaceOrEndItself) {
+TEST(ContactCallback, CallbackMayReplaceOrRemoveItself) {
     SimulationSetup setup;
     setup.options.time_step = 0.01;
     setup.options.duration = 2.0;
@@ -297,7 +297,7 @@ TEST(ContactCallback, MayPutAnotherInItsPlaceOrEndItself) {
     EXPECT_EQ(calls, (std::vector<std::string>{"first 1x", "second"}));
 }
 
-TEST(ReleasedParticles, KeepTheirMemoryAndValuesAndTheRunItsBits) {
+TEST(ReleasedParticles, ReleasedParticlesKeepTheirMemoryAndTheRunItsBits) {
     Simulation lending(box_of_balls(40));
     Simulation plain(box_of_balls(40));
     for (int round = 0; round < 4; ++round) {

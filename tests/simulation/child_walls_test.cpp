@@ -1,4 +1,5 @@
-// Particles spawned at walls, with every response: on their parent's side, and what surfaces get is counted once.
+// Particles spawned at walls, with every response: they start on their parent's side, and impulses on surfaces count
+// once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -69,7 +70,7 @@ Simulation finished(SimulationSetup setup) {
     return simulation;
 }
 
-TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndMeetItAgain) {
+TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndHitItAgain) {
     for (const Way& way : kWays) {
         for (const double radius : {0.0, 0.05}) {
             SCOPED_TRACE(name(way) + " radius " + std::to_string(radius));
@@ -89,9 +90,8 @@ TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndMeetItAgain) {
     }
 }
 
-// A trail, shards and dust of particles that bounce about in a closed mesh, some of which go into its wall by a
-// penalty.
-TEST(ChildrenAtWalls, BeginOnTheirParentsSideOfAClosedMesh) {
+// Particles with a trail, shards and dust bounce in a closed mesh. Some enter its wall under a penalty.
+TEST(ChildrenAtWalls, ChildrenStartOnTheirParentsSideOfAClosedMesh) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 1);
     const ParityOracle oracle(mesh);
     for (const Way& way : kWays) {
@@ -123,7 +123,7 @@ TEST(ChildrenAtWalls, BeginOnTheirParentsSideOfAClosedMesh) {
     }
 }
 
-TEST(ChildrenAtWalls, WhatAbsorbedParticlesShareOutPushesTheSurfaceOnce) {
+TEST(ChildrenAtWalls, SharedMomentumOfAbsorbedParticlesPushesTheSurfaceOnce) {
     for (const Way& way : kWays) {
         for (const double speed : {0.0, 0.7}) {
             for (const double absorption : {1.0, 0.5}) {

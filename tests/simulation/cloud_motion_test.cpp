@@ -1,4 +1,4 @@
-// Children that go with their parents: closed forms of their paths, walls, ends of parents, threads and saved states.
+// Children that move with their parents: closed forms of their paths, walls, ends of parents, threads and saved states.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -61,10 +61,10 @@ Simulation finished(SimulationSetup setup) {
 
 ColliderDescription floor_plane() { return {"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0}; }
 
-/// Of one parent, which has the first id.
+/// The cloud of one parent, which has the first id.
 struct Cloud {
     Vec3 parent;
-    std::map<std::uint64_t, Vec3> about;  ///< each child's position less the parent's
+    std::map<std::uint64_t, Vec3> about;  ///< position of each child relative to the parent
 };
 
 Cloud cloud_in(const Simulation& simulation) {
@@ -83,7 +83,7 @@ Vec3 turned(const Vec3& v, const Vec3& axis, double angle) {
     return std::cos(angle) * v + std::sin(angle) * cross(axis, v) + ((1.0 - std::cos(angle)) * dot(axis, v)) * axis;
 }
 
-TEST(CloudMotion, ACloudThatTurnsInFreeFallIsWhereItsPlacesAre) {
+TEST(CloudMotion, RotatingCloudInFreeFallFollowsItsOffsets) {
     const Vec3 axis = normalized(Vec3{1, 2, 3});
     for (const double step : {0.2, 0.07, 0.01}) {
         SimulationSetup setup = setup_of(step, 1.4);
@@ -106,7 +106,7 @@ TEST(CloudMotion, ACloudThatTurnsInFreeFallIsWhereItsPlacesAre) {
     }
 }
 
-TEST(CloudMotion, ACloudThatIsLaunchedOutwardExpandsSteadilyAboutItsParent) {
+TEST(CloudMotion, CloudLaunchedOutwardExpandsSteadilyAboutItsParent) {
     SimulationSetup setup = setup_of(0.05, 2.0);
     setup.emitters = {parents(1, {0, 0, 0}, {3, 0, 5}), cloud_of(SphereShape{{0, 0, 0}, 0.2, true}, 30)};
     setup.emitters[1].speed = {1.5, 0.0};
@@ -114,7 +114,7 @@ TEST(CloudMotion, ACloudThatIsLaunchedOutwardExpandsSteadilyAboutItsParent) {
     for (const auto& [id, about] : cloud_in(simulation).about) EXPECT_NEAR(length(about), 0.2 + 1.5 * 2.0, 1e-12);
 }
 
-/// m, of what is launched from its place with 1 m/s.
+/// Returns the displacement, in m, of a child that is launched from its offset with 1 m/s.
 double pulled_back(double pull, double damping, double t) {
     const double half = 0.5 * damping;
     const double square = pull - half * half;
@@ -123,7 +123,7 @@ double pulled_back(double pull, double damping, double t) {
     return t * std::exp(-half * t);
 }
 
-TEST(CloudMotion, WhatIsOffItsPlaceSwingsBackAsTheOscillatorDoes) {
+TEST(CloudMotion, DisplacedChildMovesLikeADampedOscillator) {
     const std::pair<double, double> rules[] = {{30.0, 0.0}, {30.0, 4.0},         {25.0, 10.0},       {4.0, 9.0},
                                                {0.0, 3.0},  {25.0, 10.0 + 1e-7}, {25.0, 10.0 - 1e-7}};
     for (const auto& [pull, damping] : rules) {
@@ -141,7 +141,7 @@ TEST(CloudMotion, WhatIsOffItsPlaceSwingsBackAsTheOscillatorDoes) {
     }
 }
 
-TEST(CloudMotion, ACloudKeepsItsPlacesWhereItsParentBouncesAndFallsThroughAir) {
+TEST(CloudMotion, OffsetsAreKeptWhileTheParentBouncesAndFallsThroughAir) {
     SimulationSetup setup = setup_of(0.03, 3.0);
     setup.colliders = {floor_plane()};
     setup.materials = {{.name = "wall", .restitution = 0.8, .friction = 0.3}};
@@ -159,7 +159,7 @@ TEST(CloudMotion, ACloudKeepsItsPlacesWhereItsParentBouncesAndFallsThroughAir) {
     EXPECT_GT(simulation.statistics().contacts, 4U);
 }
 
-TEST(CloudMotion, AChildThatHitsTheFloorFirstBouncesAndIsGivenItsParentsReboundToo) {
+TEST(CloudMotion, ChildThatHitsTheFloorFirstBouncesAndGetsItsParentsReboundToo) {
     for (const double step : {0.11, 0.013}) {
         const double end = 0.66;
         SimulationSetup setup = setup_of(step, end);
@@ -167,7 +167,7 @@ TEST(CloudMotion, AChildThatHitsTheFloorFirstBouncesAndIsGivenItsParentsReboundT
         setup.emitters = {parents(1, {0, 0, 1.1}, {}, 0.1), cloud_of(one_place({0, 0, -0.5}), 1)};
         const Simulation simulation = finished(std::move(setup));
         const double first = std::sqrt(2.0 * 0.6 / kG);   // the child falls from 0.6 m
-        const double second = std::sqrt(2.0 * 1.0 / kG);  // its parent touches at 0.1 m
+        const double second = std::sqrt(2.0 * 1.0 / kG);  // the parent touches at 0.1 m
         const double up = kG * first;
         const double at_second = up * (second - first) - 0.5 * kG * (second - first) * (second - first);
         const double then = up - kG * (second - first) + 2.0 * kG * second;
@@ -179,7 +179,7 @@ TEST(CloudMotion, AChildThatHitsTheFloorFirstBouncesAndIsGivenItsParentsReboundT
     }
 }
 
-TEST(CloudMotion, WhatAWallHasPushedOffItsPlaceComesBackToIt) {
+TEST(CloudMotion, ChildDisplacedByAWallReturnsToItsOffset) {
     SimulationSetup setup = setup_of(0.01, 8.0);
     setup.colliders = {floor_plane()};
     setup.materials = {{.name = "wall", .restitution = 0.3, .friction = 0.1}};
@@ -193,9 +193,9 @@ TEST(CloudMotion, WhatAWallHasPushedOffItsPlaceComesBackToIt) {
     while (!simulation.finished()) simulation.step();
     const Cloud last = cloud_in(simulation);
     EXPECT_NEAR(last.parent.z, 0.5, 1e-6);
-    // The lowest place is 0.4 m below the parent's middle, which is half a metre high in the end; the peg stands aside.
+    // The lowest offset is 0.4 m below the parent's centre, which ends up half a metre high. The peg is out of reach.
     for (const auto& [id, about] : first.about) EXPECT_LT(length(last.about.at(id) - about), 1e-5);
-    EXPECT_GT(simulation.statistics().contacts, 12U);  // 8 of them the parent's
+    EXPECT_GT(simulation.statistics().contacts, 12U);  // 8 of them by the parent
 }
 
 SimulationSetup crowded_box(double step) {
@@ -225,7 +225,7 @@ TEST(CloudMotion, NothingLeaksFromABoxThatIsTooNarrowForTheCloud) {
     }
 }
 
-TEST(CloudMotion, NothingLeaksFromABoxThatTurns) {
+TEST(CloudMotion, NothingLeaksFromABoxThatRotates) {
     SimulationSetup setup = crowded_box(0.02);
     FrameDescription frame;
     frame.name = "drum";
@@ -238,7 +238,7 @@ TEST(CloudMotion, NothingLeaksFromABoxThatTurns) {
     for (const Vec3& x : simulation.particles().position) EXPECT_LT(length(x), std::sqrt(3.0));
 }
 
-TEST(CloudMotion, BirthsBehindAWallAreRefusedOrPlacedElsewhere) {
+TEST(CloudMotion, BirthsBehindAWallAreRefusedOrMoved) {
     SimulationSetup setup = setup_of(0.1, 0.1, false);
     setup.colliders = {floor_plane()};
     setup.emitters = {parents(1, {0, 0, 0.2}, {}), cloud_of(SphereShape{{0, 0, 0}, 1.0, false}, 200),
@@ -252,7 +252,7 @@ TEST(CloudMotion, BirthsBehindAWallAreRefusedOrPlacedElsewhere) {
     for (const Vec3& x : simulation.particles().position) EXPECT_GT(x.z, 0.0);
 }
 
-TEST(CloudMotion, WhenItsParentEndsACloudIsSetFreeOrEndsToo) {
+TEST(CloudMotion, CloudIsReleasedOrEndsWithItsParent) {
     const double end = 0.9;
     for (const CloudEnd rule : {CloudEnd::free, CloudEnd::die}) {
         SimulationSetup setup = setup_of(0.04, end);
@@ -274,7 +274,7 @@ TEST(CloudMotion, WhenItsParentEndsACloudIsSetFreeOrEndsToo) {
     }
 }
 
-TEST(CloudMotion, WhatASurfaceOrTheBoundsTakeLeavesItsCloudToTheSameRule) {
+TEST(CloudMotion, CloudOfAnAbsorbedOrOutOfBoundsParentFollowsTheSameRule) {
     for (const bool by_surface : {true, false}) {
         for (const CloudEnd rule : {CloudEnd::free, CloudEnd::die}) {
             SimulationSetup setup = setup_of(0.03, 1.0, false);
@@ -290,7 +290,7 @@ TEST(CloudMotion, WhatASurfaceOrTheBoundsTakeLeavesItsCloudToTheSameRule) {
     }
 }
 
-TEST(CloudMotion, AParentThatIsTakenAwayLeavesItsCloudFree) {
+TEST(CloudMotion, RemovedParentReleasesItsCloud) {
     SimulationSetup setup = setup_of(0.1, 1.0, false);
     setup.emitters = {parents(1, {0, 0, 0}, {1, 0, 0}), cloud_of(one_place({0, 1, 0}), 2, {{0, 0, 2}})};
     Simulation simulation(std::move(setup));
@@ -306,7 +306,7 @@ TEST(CloudMotion, AParentThatIsTakenAwayLeavesItsCloudFree) {
     }
 }
 
-TEST(CloudMotion, ACloudOfCloudsGoesRoundItsParentsParent) {
+TEST(CloudMotion, CloudOfCloudsOrbitsItsParentsParent) {
     SimulationSetup setup = setup_of(0.05, 1.0);
     setup.emitters = {parents(1, {0, 0, 0}, {0, 0, 4}), cloud_of(one_place({1, 0, 0}), 1, {{0, 0, 2}}),
                       cloud_of(one_place({0.2, 0, 0}), 1, {{0, 0, -7}})};
@@ -317,11 +317,12 @@ TEST(CloudMotion, ACloudOfCloudsGoesRoundItsParentsParent) {
     ASSERT_EQ(p.size(), 3U);
     const Vec3 moon = Vec3{0, 0, 4 - 0.5 * kG} + Vec3{std::cos(2.0), std::sin(2.0), 0};
     EXPECT_LT(length(p.position[1] - moon), 1e-12);
-    // The moon's arc is a cubic in each piece, which its own moons see: within 1e-5 of their rate's part.
+    // The arc of the moon is a cubic in each piece, and its own moons follow that. The error is within 1e-5 of their
+    // rate.
     EXPECT_LT(length(p.position[2] - (moon + 0.2 * Vec3{std::cos(-7.0), std::sin(-7.0), 0})), 1e-9);
 }
 
-TEST(CloudMotion, ChildrenOfALifeJoinTheirParentWhereItIsAtTheirBirth) {
+TEST(CloudMotion, ChildrenOfALifeJoinTheParentAtItsPositionAtTheirBirth) {
     SimulationSetup setup = setup_of(0.3, 0.9);
     setup.emitters = {parents(1, {0, 0, 0}, {1, 0, 3}), cloud_of(one_place({0, 0.4, 0}), 0, {{3, 0, 0}})};
     setup.emitters[1].parent->on = BirthEvent::life;
@@ -336,7 +337,7 @@ TEST(CloudMotion, ChildrenOfALifeJoinTheirParentWhereItIsAtTheirBirth) {
     }
 }
 
-TEST(CloudMotion, ThreadsChangeNoBit) {
+TEST(CloudMotion, BitsDoNotDependOnTheNumberOfThreads) {
     const auto hash = [](int threads) {
         const ThreadLimit limit(threads);
         return finished(crowded_box(0.02)).state_hash();
@@ -345,7 +346,7 @@ TEST(CloudMotion, ThreadsChangeNoBit) {
     EXPECT_EQ(hash(1), hash(7));
 }
 
-TEST(CloudMotion, ASavedRunGoesOnWithTheSameBits) {
+TEST(CloudMotion, SavedRunContinuesWithTheSameBits) {
     Simulation whole(crowded_box(0.02));
     for (int k = 0; k < 40; ++k) whole.step();
     std::vector<std::byte> bytes;
@@ -375,7 +376,7 @@ void expect_refusal(const std::function<void(SimulationSetup&)>& spoil, const st
     }
 }
 
-TEST(CloudMotion, WhatCannotBeIsRefusedInOneLine) {
+TEST(CloudMotion, InvalidCloudsAreRefusedInOneLine) {
     using Setup = SimulationSetup;
     expect_refusal([](Setup& s) { s.options.response = ResponseKind::project; }, "response");
     expect_refusal([](Setup& s) { s.options.particle_contacts.emplace(); }, "particle_contacts");
@@ -387,7 +388,7 @@ TEST(CloudMotion, WhatCannotBeIsRefusedInOneLine) {
     expect_refusal([](Setup& s) { s.emitters[1].parent->share = true; }, "");
 }
 
-TEST(CloudMotion, AnyIntegratorOfTheParentWillDo) {
+TEST(CloudMotion, ParentMayUseAnyIntegrator) {
     for (const IntegratorKind kind : {IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
                                       IntegratorKind::implicit_euler, IntegratorKind::dormand_prince}) {
         SimulationSetup setup = crowded_box(0.02);

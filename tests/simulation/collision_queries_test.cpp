@@ -1,4 +1,4 @@
-// Questions about colliders, against every triangle asked one by one.
+// Queries on colliders, compared with a test of every single triangle.
 #include "ricochet/collision_queries.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ ColliderDescription mesh_collider(TriangleMesh mesh) {
     return {"mesh", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, ""}, 0};
 }
 
-/// A closed lump of 2 * 24 * 24 triangles.
+/// Returns a closed lump of 2 * 24 * 24 triangles.
 TriangleMesh lump() {
     constexpr std::uint32_t kN = 24;
     TriangleMesh mesh;
@@ -43,7 +43,8 @@ TriangleMesh lump() {
     return mesh;
 }
 
-/// s along origin + s * direction of the triangle's plane where that is inside the triangle, in long doubles.
+/// Returns s of the point origin + s * direction in the triangle's plane, if it is inside the triangle. Uses long
+/// doubles.
 double hit_of(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
     using Real = long double;
     struct V {
@@ -76,7 +77,7 @@ Vec3 random_point(RandomSequence& random, double size) {
     return {x, y, next()};
 }
 
-TEST(CollisionQueries, FindTheFirstHitThatEveryTriangleTogetherGives) {
+TEST(CollisionQueries, FirstHitMatchesATestOfEveryTriangle) {
     const TriangleMesh mesh = lump();
     const CollisionQueries queries({mesh_collider(mesh)});
     RandomSequence random(5, 0, 0);
@@ -109,7 +110,7 @@ TEST(CollisionQueries, FindTheFirstHitThatEveryTriangleTogetherGives) {
     EXPECT_GT(hits, count / 10);
 }
 
-TEST(CollisionQueries, FindTheClosestPointThatEveryTriangleTogetherGives) {
+TEST(CollisionQueries, ClosestPointMatchesATestOfEveryTriangle) {
     const TriangleMesh mesh = lump();
     const CollisionQueries queries({mesh_collider(mesh)});
     RandomSequence random(6, 0, 0);
@@ -129,7 +130,7 @@ TEST(CollisionQueries, FindTheClosestPointThatEveryTriangleTogetherGives) {
     }
 }
 
-TEST(CollisionQueries, TellInsideFromOutside) {
+TEST(CollisionQueries, InsideIsToldFromOutside) {
     const CollisionQueries queries({mesh_collider(lump()),
                                     {"ball", BallShape{0.5, {{5, 0, 0}}}, 0},
                                     {"box", CuboidShape{{1, 2, 3}, {{0, 5, 0}}}, 0},
@@ -144,7 +145,7 @@ TEST(CollisionQueries, TellInsideFromOutside) {
     RandomSequence random(7, 0, 0);
     for (int k = 0; k < test::scaled(500); ++k) {
         const Vec3 p = random_point(random, 1.6);
-        std::size_t crossed = 0;  // along a ray of its own
+        std::size_t crossed = 0;  // counted along an independent ray
         Vec3 at = p;
         for (const Vec3 along{0.31, -0.72, 0.53}; const auto hit = queries.first_hit(at, along, 4.0);) {
             if (hit->surface.collider == 0) ++crossed;
@@ -154,13 +155,13 @@ TEST(CollisionQueries, TellInsideFromOutside) {
     }
 }
 
-TEST(CollisionQueries, AnOpenMeshHasNoInside) {
+TEST(CollisionQueries, OpenMeshHasNoInside) {
     TriangleMesh mesh = lump();
     mesh.triangles.pop_back();
     EXPECT_FALSE(CollisionQueries({mesh_collider(mesh)}).is_inside({1, 0, 0}));
 }
 
-TEST(CollisionQueries, CoverPlanesAndShapesToo) {
+TEST(CollisionQueries, PlanesAndShapesAreIncluded) {
     const CollisionQueries queries(
         {{"floor", PlaneShape{{0, 0, -1}, {0, 0, 2}}, 0}, {"ball", BallShape{1.0, {{0, 0, 3}}}, 0}});
     const auto down = queries.first_hit({1, 2, 0}, {0, 0, -7});
@@ -176,13 +177,13 @@ TEST(CollisionQueries, CoverPlanesAndShapesToo) {
     EXPECT_FALSE(queries.first_hit({9, 0, 0}, {1, 0, 0}).has_value());
     EXPECT_FALSE(queries.first_hit({9, 0, 0}, {1, 0, 1e-3}).has_value());
     EXPECT_NEAR(queries.first_hit({9, 0, 0}, {1, 0, -1e-9})->distance, 1e9, 1.0);
-    EXPECT_EQ(queries.first_hit({9, 0, -1}, {1, 0, 0.1})->distance, 0.0);  // begins on the floor
+    EXPECT_EQ(queries.first_hit({9, 0, -1}, {1, 0, 0.1})->distance, 0.0);  // starts on the floor
     EXPECT_NEAR(queries.closest_point({0, 0, 0})->distance, 1.0, 1e-15);
     EXPECT_NEAR(queries.closest_point({0, 0, 1.5})->distance, 0.5, 1e-15);
     EXPECT_EQ(queries.closest_point({0, 0, 1.5})->surface.collider, 1U);
 }
 
-TEST(CollisionQueries, FaceTheRayAlsoFromVeryFarAway) {
+TEST(CollisionQueries, NormalFacesTheRayEvenFromVeryFarAway) {
     const CollisionQueries queries({{"ball", BallShape{1.0, {}}, 0}});
     for (const double away : {10.0, 1e6, 1e9, 1e12}) {
         const auto hit = queries.first_hit({away, 0, 0}, {-1, 0, 0});
@@ -196,14 +197,14 @@ TEST(CollisionQueries, FaceTheRayAlsoFromVeryFarAway) {
     }
 }
 
-TEST(CollisionQueries, CanStillBeAskedAfterAMove) {
+TEST(CollisionQueries, QueriesStayValidAfterAMove) {
     CollisionQueries queries({{"ball", BallShape{1.0, {}}, 0}});
     const CollisionQueries moved = std::move(queries);
     EXPECT_TRUE(moved.is_inside({}));
     EXPECT_TRUE(queries.is_inside({}));  // NOLINT(bugprone-use-after-move,hicpp-invalid-access-moved)
 }
 
-TEST(CollisionQueries, OfNothingFindNothing) {
+TEST(CollisionQueries, EmptyQueriesFindNothing) {
     const CollisionQueries queries(std::vector<ColliderDescription>{});
     EXPECT_FALSE(queries.first_hit({0, 0, 0}, {1, 0, 0}).has_value());
     EXPECT_FALSE(queries.closest_point({0, 0, 0}).has_value());
@@ -211,7 +212,7 @@ TEST(CollisionQueries, OfNothingFindNothing) {
     EXPECT_TRUE(queries.colliders().empty());
 }
 
-TEST(CollisionQueries, OfASimulationOutliveIt) {
+TEST(CollisionQueries, QueriesOutliveTheirSimulation) {
     SimulationSetup setup;
     setup.materials.emplace_back();
     setup.colliders.push_back(mesh_collider(lump()));

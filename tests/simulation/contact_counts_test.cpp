@@ -1,5 +1,4 @@
-// What is counted: an impact is one contact, and one row and one hit for every surface that answers it, in all
-// responses.
+// Counting rules: an impact is one contact, and one row and one hit for every surface involved, with all responses.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -16,15 +15,15 @@ namespace RICOCHET_FILE {
 
 struct Counts {
     std::uint64_t contacts = 0;
-    std::uint64_t impacts = 0;  ///< different times and particles of rows
+    std::uint64_t impacts = 0;  ///< distinct pairs of time and particle in the rows
     std::uint64_t rows = 0;
     std::uint64_t hits = 0;
-    double impulse = 0.0;  ///< N s, all rows together, upwards
-    double given = 0.0;    ///< and all triangles
-    double lasting = 0.0;  ///< the part of it that no hit gave
+    double impulse = 0.0;  ///< N s, sum over all rows, upwards
+    double given = 0.0;    ///< the same sum over all triangles
+    double lasting = 0.0;  ///< the part of it that belongs to no hit
 };
 
-/// Points or spheres that bounce about in a box, in a fine ball of triangles, or on a plane.
+/// Returns points or spheres that bounce in a box, in a fine ball of triangles, or on a plane.
 SimulationSetup bouncing(ResponseKind kind, int shape, double radius) {
     SimulationSetup setup;
     setup.options.response = kind;
@@ -71,7 +70,7 @@ Counts counts_of(SimulationSetup setup) {
     return counts;
 }
 
-TEST(ContactCounts, AnImpactIsOneContactAndARowAndAHitOfEverySurface) {
+TEST(ContactCounts, ImpactIsOneContactAndARowAndAHitOfEverySurface) {
     for (const ResponseKind kind : response_kinds()) {
         for (int shape = 0; shape < 3; ++shape) {
             for (const double radius : {0.0, 0.04}) {
@@ -81,14 +80,14 @@ TEST(ContactCounts, AnImpactIsOneContactAndARowAndAHitOfEverySurface) {
                 EXPECT_GT(counts.rows, 20U);
                 EXPECT_EQ(counts.hits, counts.rows);
                 EXPECT_EQ(counts.impacts, counts.contacts);
-                EXPECT_TRUE(shape != 2 || counts.rows == counts.contacts);  // there is but one surface
+                EXPECT_TRUE(shape != 2 || counts.rows == counts.contacts);  // there is only one surface
             }
         }
     }
 }
 
-// Nothing rests or slides where restitution is 1: what the rows say is all that the surfaces get.
-TEST(ContactCounts, RowsHoldTheImpulsesOfTheTotalsAndThoseOfPenaltyNone) {
+// With restitution 1 nothing rests or slides, so the rows contain all impulses on the surfaces.
+TEST(ContactCounts, RowsContainTheImpulsesOfTheTotalsExceptForPenalty) {
     for (const ResponseKind kind : response_kinds()) {
         for (int shape = 0; shape < 3; ++shape) {
             SCOPED_TRACE(std::string(name_of(kind)) + " shape " + std::to_string(shape));
@@ -99,7 +98,7 @@ TEST(ContactCounts, RowsHoldTheImpulsesOfTheTotalsAndThoseOfPenaltyNone) {
     }
 }
 
-/// A point that lies 1e-10 m above the common vertex of the triangles of a slope, on which it would rest.
+/// Returns a point 1e-10 m above the common vertex of a slope's triangles. The point can rest there.
 SimulationSetup lying_on_a_slope(std::uint64_t number) {
     RandomSequence random(137, 0, number);
     const Vec3 up = random.unit_vector();
@@ -125,17 +124,17 @@ SimulationSetup lying_on_a_slope(std::uint64_t number) {
     return setup;
 }
 
-// The slide of the landing stops within microseconds of a long step. Where the clock rounded its duration up, a speed
-// of 1e-19 m/s was left, whose direction is rounding too, and took the point off the slope for another landing.
-TEST(ContactCounts, WhatLandsAndStaysHasLandedOnce) {
+// The slide after the landing stops within microseconds of a long step. If its duration were rounded up, a speed of
+// 1e-19 m/s in a random direction would remain. It would lift the point off the slope for another landing.
+TEST(ContactCounts, ParticleThatLandsAndStaysHasLandedOnce) {
     for (std::uint64_t k = 0; k < 300; ++k) {
         SCOPED_TRACE(k);
         EXPECT_EQ(counts_of(lying_on_a_slope(k)).contacts, 1U);
     }
 }
 
-// Spheres that slide, roll and come to rest: rows hold one part of the totals, lasting contact the other.
-TEST(ContactCounts, RowsAndLastingContactTogetherAreTheTotals) {
+// Spheres slide, roll and come to rest. The rows contain one part of the totals, lasting contact the other.
+TEST(ContactCounts, RowsAndLastingContactAddUpToTheTotals) {
     for (const ResponseKind kind : response_kinds()) {
         for (int shape = 0; shape < 3; ++shape) {
             for (const double radius : {0.0, 0.04}) {
@@ -153,8 +152,8 @@ TEST(ContactCounts, RowsAndLastingContactTogetherAreTheTotals) {
     }
 }
 
-// The floor carries the weight of both all the time, in contact that is planned or slept through; none of it is a hit.
-TEST(ContactCounts, TheWeightOfAStackAtRestIsLastingContact) {
+// The floor supports the weight of both spheres all the time, in planned contact or asleep. None of this is a hit.
+TEST(ContactCounts, WeightOfAStackAtRestIsLastingContact) {
     for (const bool sleeping : {true, false}) {
         SimulationSetup setup;
         setup.options.time_step = 0.01;

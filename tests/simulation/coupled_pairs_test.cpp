@@ -1,4 +1,4 @@
-// Spheres that meet each other and act on each other from afar: by forces between particles, by springs.
+// Colliding spheres that also interact at a distance: by forces between particles or by springs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -78,19 +78,19 @@ const std::vector<IntegratorKind>& explicit_kinds() {
     return kinds;
 }
 
-// Closed forms of two.
+// Closed forms of two particles.
 
-constexpr double kFrom = 1.0;  // m, between the centres at the begin of a fall
+constexpr double kFrom = 1.0;  // m, between the centres at the start of a fall
 constexpr double kPull = 3.0;  // m^3/s^2, G times both masses
 
-/// s, of two that fall onto each other from rest: a degenerate ellipse of Kepler's.
+/// Returns the time, in s, of two spheres that fall onto each other from rest: a degenerate Kepler ellipse.
 double time_of_fall() {
     const double part = 2.0 * kRadius / kFrom;
     const double angle = std::acos(std::sqrt(part)) + std::sqrt(part * (1.0 - part));
     return std::sqrt(kFrom * kFrom * kFrom / (2.0 * kPull)) * angle;
 }
 
-/// Two that fall onto each other and rebound, back to where they were.
+/// Returns two spheres that fall onto each other and rebound to their initial positions.
 SimulationSetup falling_pair(double steps, IntegratorKind kind) {
     const double period = 2.0 * time_of_fall();
     SimulationSetup setup = scene_of(period / steps, period, {}, kind);
@@ -99,7 +99,7 @@ SimulationSetup falling_pair(double steps, IntegratorKind kind) {
     return setup;
 }
 
-TEST(CoupledPairs, ThatFallOntoEachOtherByGravityComeBackAfterKeplersPeriodToSecondOrder) {
+TEST(CoupledPairs, PairThatFallsByGravityReturnsAfterKeplersPeriodToSecondOrder) {
     for (const IntegratorKind kind :
          {IntegratorKind::velocity_verlet, IntegratorKind::ballistic, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         SCOPED_TRACE(name_of(kind));
@@ -116,11 +116,11 @@ TEST(CoupledPairs, ThatFallOntoEachOtherByGravityComeBackAfterKeplersPeriodToSec
     }
 }
 
-/// Wherever in a step the impact falls, not at its end alone: every eighth of one.
-TEST(CoupledPairs, ThatFallOntoEachOtherKeepTheirEnergyWhereverInAStepTheyMeet) {
+/// The impact falls into every eighth of a step, not only at its end.
+TEST(CoupledPairs, FallingPairKeepsItsEnergyForAnyTimeOfImpactInAStep) {
     struct Case {
         IntegratorKind kind;
-        double largest;  // of the table in docs/particle-forces.md, at 200 steps a period
+        double largest;  // from the table in docs/particle-forces.md, at 200 steps per period
     };
     const double energy = -2.0 * kPull / 3.0 / kFrom;
     for (const Case& c : {Case{IntegratorKind::velocity_verlet, 8.0e-3}, Case{IntegratorKind::midpoint, 1.9e-2},
@@ -136,8 +136,8 @@ TEST(CoupledPairs, ThatFallOntoEachOtherKeepTheirEnergyWhereverInAStepTheyMeet) 
     }
 }
 
-/// Bound to each other in the well, and rebounding where it is still below zero.
-TEST(CoupledPairs, ThatBounceInAWellOfLennardJonesKeepTheirEnergyToSecondOrder) {
+/// The pair is bound in the well and rebounds at negative potential energy.
+TEST(CoupledPairs, PairInALennardJonesWellKeepsItsEnergyToSecondOrder) {
     std::vector<double> errors;
     for (const double time_step : {4e-3, 1e-3}) {
         SimulationSetup setup = scene_of(time_step, 4.0, {});
@@ -159,7 +159,7 @@ TEST(CoupledPairs, ThatBounceInAWellOfLennardJonesKeepTheirEnergyToSecondOrder) 
     EXPECT_GT(errors[0] / errors[1], 12.0);
 }
 
-TEST(CoupledPairs, KeepTheirMomentumWithEveryIntegratorFrictionAndLossesToo) {
+TEST(CoupledPairs, MomentumIsConservedWithEveryIntegratorFrictionAndLosses) {
     for (const IntegratorKind kind : explicit_kinds()) {
         for (const double restitution : {1.0, 0.4}) {
             SCOPED_TRACE(std::string(name_of(kind)) + ", restitution " + std::to_string(restitution));
@@ -176,9 +176,9 @@ TEST(CoupledPairs, KeepTheirMomentumWithEveryIntegratorFrictionAndLossesToo) {
     }
 }
 
-// What presses.
+// Pressing contact.
 
-TEST(CoupledPairs, ThatASpringPressesTogetherComeToRestWhereTheyTouch) {
+TEST(CoupledPairs, PairPressedByASpringComesToRestInContact) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::rk4}) {
         SimulationSetup setup = scene_of(2e-3, 2.0, {.restitution = 0.5}, kind);
         setup.particles = {sphere({0, 0, 0}, {}, 1.0), sphere({0.4, 0, 0}, {}, 2.0)};
@@ -191,9 +191,9 @@ TEST(CoupledPairs, ThatASpringPressesTogetherComeToRestWhereTheyTouch) {
     }
 }
 
-/// With the forces of the step's end in the velocities they would lose their turning by half of h times the pull over
-/// the distance: nine tenths of it here.
-TEST(CoupledPairs, ThatTurnAroundEachOtherPressedByGravityGoOnTurning) {
+/// If the velocities included the forces of the step's end, the rotation would decay by half of h times the pull over
+/// the distance. That is nine tenths of it here.
+TEST(CoupledPairs, PairPressedByGravityKeepsRotating) {
     SimulationSetup setup = scene_of(2e-3, 6.0, {.restitution = 0.5});
     setup.particles = {sphere({0, 0, 0}, {0, 0.1, 0}, 1.0), sphere({kFrom, 0, 0}, {0, -0.05, 0}, 2.0)};
     setup.particles_forces.push_back(gravity(1.0));
@@ -205,8 +205,8 @@ TEST(CoupledPairs, ThatTurnAroundEachOtherPressedByGravityGoOnTurning) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
 }
 
-/// A pile that its own gravity makes, and one that flies by: what is given to those that press is taken from it.
-TEST(CoupledPairs, OfAPileAndWhatFliesByKeepTheirMomentum) {
+/// A pile forms by its own gravity, and one sphere flies by. The impulses on the pile come from the sphere.
+TEST(CoupledPairs, PileAndPassingSphereConserveMomentum) {
     SimulationSetup setup = scene_of(2e-3, 0.8, {.restitution = 0.3, .friction = 0.5});
     RandomSequence random(3, 1, 0);
     for (int k = 0; k < 27; ++k) {
@@ -224,7 +224,7 @@ TEST(CoupledPairs, OfAPileAndWhatFliesByKeepTheirMomentum) {
     EXPECT_EQ(simulation.statistics().unsolved_steps, 0U);
 }
 
-/// m, of the mean of the centres of a block of grains that has been let go on a floor.
+/// Returns the mean height, in m, of the centres of a block of grains that was released on a floor.
 double height_of_heap(double stiffness) {
     constexpr double kGrain = 0.005;
     SimulationSetup setup = setup_of(5e-4, 0.4, {"", 0.2, 0.4}, {0, 0, -9.81});
@@ -250,7 +250,7 @@ double height_of_heap(double stiffness) {
     return sum;
 }
 
-TEST(CoupledPairs, OfCohesiveGrainsStandSteeperThanLooseOnes) {
+TEST(CoupledPairs, CohesiveGrainsFormSteeperHeapsThanLooseOnes) {
     const double loose = height_of_heap(0.0);
     const double sticky = height_of_heap(600.0);
     EXPECT_LT(loose, 0.016);
@@ -259,7 +259,7 @@ TEST(CoupledPairs, OfCohesiveGrainsStandSteeperThanLooseOnes) {
 
 // Cloth.
 
-/// Spheres that fall onto a sheet that hangs on two of its sides.
+/// Returns spheres that fall onto a sheet fixed at two of its sides.
 SimulationSetup spheres_on_cloth(double restitution) {
     SimulationSetup setup = setup_of(5e-4, 0.3, {}, {0, 0, -9.81});
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -285,7 +285,7 @@ double energy_on_cloth(const Simulation& simulation) {
     return simulation.kinetic_energy() + simulation.potential_energy().value();
 }
 
-TEST(CoupledPairs, OfClothAndSpheresThatFallOntoItDoNotGainEnergyOrOverlap) {
+TEST(CoupledPairs, SpheresOnClothGainNoEnergyAndDoNotOverlap) {
     for (const double restitution : {1.0, 0.3}) {
         SCOPED_TRACE("restitution " + std::to_string(restitution));
         SimulationSetup setup = spheres_on_cloth(restitution);
@@ -310,9 +310,9 @@ TEST(CoupledPairs, OfClothAndSpheresThatFallOntoItDoNotGainEnergyOrOverlap) {
     }
 }
 
-// What cannot be.
+// Invalid combinations.
 
-TEST(CoupledPairs, AreRefusedWithOneLineWhereNobodyStepsThemExplicitly) {
+TEST(CoupledPairs, SettingsWithoutExplicitStepsAreRefusedInOneLine) {
     const auto expect_refused = [](const char* words, const auto& change) {
         SimulationSetup setup = falling_pair(10, IntegratorKind::velocity_verlet);
         setup.particles_forces.clear();

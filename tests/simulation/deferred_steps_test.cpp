@@ -21,7 +21,7 @@ std::array<std::uint64_t, 6> bits(const PhaseState& state) {
             of(state.velocity.x), of(state.velocity.y), of(state.velocity.z)};
 }
 
-/// Ordinary numbers, both zeros, tiny ones, and such as bring a coordinate back to exactly zero.
+/// Returns ordinary numbers, both zeros, tiny numbers, and numbers that bring a coordinate back to exactly zero.
 double odd_number(RandomSequence& random) {
     const auto kind = static_cast<int>(8.0 * random.uniform());
     if (kind == 0) return 0.0;
@@ -38,7 +38,7 @@ Vec3 odd_vector(RandomSequence& random) {
     return {x, y, odd_number(random)};
 }
 
-TEST(DeferredSteps, MadeAtOnceLeadToTheSameBitsAsMadeOneByOne) {
+TEST(DeferredSteps, DeferredStepsGiveTheBitsOfSingleSteps) {
     RandomSequence random(11, 0, 0);
     for (int i = 0; i < test::scaled(3000); ++i) {
         SCOPED_TRACE("case " + std::to_string(i));
@@ -60,7 +60,7 @@ TEST(DeferredSteps, MadeAtOnceLeadToTheSameBitsAsMadeOneByOne) {
     }
 }
 
-TEST(DeferredSteps, StartAfterTheLastOneThatWasMade) {
+TEST(DeferredSteps, DeferredStepsStartAfterTheLastOneMade) {
     DeferredSteps deferred(2);
     const FreeFlight step(IntegratorKind::ballistic, {}, 1.0);
     deferred.add(step);

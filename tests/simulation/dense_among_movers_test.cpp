@@ -51,7 +51,7 @@ void run(Simulation& simulation) {
     while (!simulation.finished()) simulation.step();
 }
 
-/// A heap in a drum that turns.
+/// Returns a heap in a rotating drum.
 SimulationSetup drum_setup(double duration, int count) {
     SimulationSetup setup = moving_setup(duration, Spin{{0, 1, 0}, 90.0}, 0.5);
     setup.options.particle_contacts->method = PairMethod::automatic;
@@ -70,17 +70,17 @@ SimulationSetup drum_setup(double duration, int count) {
     return setup;
 }
 
-TEST(DenseAmongMovers, AHeapInADrumIsLiftedAndLeaksNothing) {
+TEST(DenseAmongMovers, HeapInADrumIsLiftedAndLeaksNothing) {
     Simulation simulation(drum_setup(0.7, 84));
     run(simulation);
     expect_sound(simulation);
     EXPECT_LT(simulation.statistics().overlap_largest, 5e-3);
     double side = 0.0;
     for (const Vec3& position : simulation.particles().position) side += position.x / 84.0;
-    EXPECT_LT(side, -0.01);  // about +y by the right-hand rule: the lowest wall goes to -x
+    EXPECT_LT(side, -0.01);  // about +y by the right-hand rule: the lowest wall moves to -x
 }
 
-TEST(DenseAmongMovers, SameBitsForAnyNumberOfThreads) {
+TEST(DenseAmongMovers, BitsDoNotDependOnTheNumberOfThreads) {
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 7}) {
         const ThreadLimit limit(threads);
@@ -92,8 +92,8 @@ TEST(DenseAmongMovers, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hashes[2], hashes[0]);
 }
 
-/// It stands on the piston as on a floor, and the piston carries its weight.
-TEST(DenseAmongMovers, AColumnRidesOnAPiston) {
+/// The column stands on the piston like on a floor, and the piston supports its weight.
+TEST(DenseAmongMovers, ColumnRidesOnAPiston) {
     for (const double speed : {0.5, -0.3}) {
         SimulationSetup setup = moving_setup(0.4, steady({0.1, 0, speed}), 0.5);
         setup.colliders = {{"piston", CuboidShape{{0.2, 0.2, 0.02}, {{0, 0, -0.01}}}, 0, "mover"}};
@@ -118,16 +118,16 @@ TEST(DenseAmongMovers, AColumnRidesOnAPiston) {
     }
 }
 
-/// A floor that pushes stands where it was at the step's begin, middle and end, and has been up and down in between by
-/// more than a radius. What it throws up flies on with the speed that the floor has at first, 2 pi A over the step.
-TEST(DenseAmongMovers, AFloorThatGoesToAndFroWithinAStepComesToNoSphere) {
+/// A pushing floor is at its initial position at the start, middle and end of the step, and moves up and down by more
+/// than a radius in between. A sphere thrown up keeps the initial speed of the floor, 2 pi A over the step.
+TEST(DenseAmongMovers, FloorThatOscillatesWithinAStepEntersNoSphere) {
     constexpr double kStep = 1e-3;
     constexpr double kAmplitude = 1.5 * kRadius;
     SimulationSetup setup = moving_setup(kStep, Oscillation{{0, 0, kAmplitude}, 1.0 / kStep, 0.0}, 0.3);
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0, "mover"}};
     for (const int k : {-1, 0, 1}) {
         setup.particles.push_back(grain({0, 2.0 * kRadius * k, kRadius}));
-        setup.particles.back().velocity = {0, -1e-6 * k, 0};  // the middle one is hit twice: they are planned together
+        setup.particles.back().velocity = {0, -1e-6 * k, 0};  // two hits on the middle one: planned together
     }
     Simulation simulation(std::move(setup));
     run(simulation);
@@ -137,9 +137,9 @@ TEST(DenseAmongMovers, AFloorThatGoesToAndFroWithinAStepComesToNoSphere) {
     }
 }
 
-/// Two spheres side by side across a belt slip on it until they roll: 2/7 of its speed, whatever the friction. A belt
-/// is a collider that moves, or a material that does.
-TEST(DenseAmongMovers, ABeltGivesSpheresTwoSeventhsOfItsSpeed) {
+/// Two spheres side by side across a belt slip on it until they roll, with 2/7 of its speed for any friction. The belt
+/// is a moving collider or a moving material.
+TEST(DenseAmongMovers, BeltGivesSpheresTwoSeventhsOfItsSpeed) {
     for (const bool by_material : {false, true}) {
         const Vec3 velocity{0.2, 0, 0};
         SimulationSetup setup = moving_setup(0.2, steady(by_material ? Vec3{} : velocity), 0.3);
@@ -150,7 +150,7 @@ TEST(DenseAmongMovers, ABeltGivesSpheresTwoSeventhsOfItsSpeed) {
         Simulation simulation(std::move(setup));
         run(simulation);
         expect_sound(simulation);
-        // Slipping for 2 v / (7 mu g), on a path at a time of u (t - t_slip / 2).
+        // The spheres slip for 2 v / (7 mu g). Their path at a time t is then u (t - t_slip / 2).
         const double slips = 2.0 * 0.2 / (7.0 * 0.3 * kG);
         for (std::size_t k = 0; k < 2; ++k) {
             EXPECT_NEAR(simulation.particles().velocity[k].x, 0.4 / 7.0, 1e-9);
@@ -160,7 +160,7 @@ TEST(DenseAmongMovers, ABeltGivesSpheresTwoSeventhsOfItsSpeed) {
     }
 }
 
-/// A straight column between plates that close on it faster than it can part, and one sphere alone.
+/// Returns a straight column between plates that close faster than it can separate, or a single sphere.
 SimulationSetup pressed_setup(int count) {
     SimulationSetup setup = moving_setup(0.25, steady({0, 0, -0.1}), 0.3);
     const double top = 2.0 * kRadius * count + 0.005;
@@ -170,7 +170,7 @@ SimulationSetup pressed_setup(int count) {
     return setup;
 }
 
-TEST(DenseAmongMovers, WhatAPressLeavesNoRoomIsGivenNoMoreThanItsSpeed) {
+TEST(DenseAmongMovers, PinchedSphereGetsNoMoreThanTheSpeedOfThePress) {
     Simulation simulation(pressed_setup(1));
     run(simulation);
     EXPECT_GT(simulation.statistics().squeezed, 0U);
@@ -179,8 +179,8 @@ TEST(DenseAmongMovers, WhatAPressLeavesNoRoomIsGivenNoMoreThanItsSpeed) {
     for (const std::size_t plate : {0U, 1U}) EXPECT_LT(length(simulation.collider_totals()[plate].impulse), 4.0 * most);
 }
 
-/// Its spheres are pressed into each other, which is counted; they part by no more than 0.01 of a radius a step.
-TEST(DenseAmongMovers, AColumnUnderAPressIsNotThrown) {
+/// The spheres of the column overlap, which is counted. They separate by at most 0.01 of a radius per step.
+TEST(DenseAmongMovers, ColumnUnderAPressIsNotThrown) {
     Simulation simulation(pressed_setup(5));
     while (!simulation.finished()) {
         simulation.step();
@@ -191,8 +191,8 @@ TEST(DenseAmongMovers, AColumnUnderAPressIsNotThrown) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
-/// A press that closes on what fills it has nowhere to put it: clocks stand still, nothing goes through.
-TEST(DenseAmongMovers, APressLetsNothingThrough) {
+/// A closing press leaves no space for its content. The particles stall, and nothing passes through.
+TEST(DenseAmongMovers, PressLetsNothingThrough) {
     SimulationSetup setup = moving_setup(0.25, steady({0, 0, -0.3}), 0.3);
     setup.colliders = {{"anvil", CuboidShape{{0.2, 0.2, 0.02}, {{0, 0, -0.01}}}, 0},
                        {"press", CuboidShape{{0.2, 0.2, 0.02}, {{0, 0, 0.07}}}, 0, "mover"}};

@@ -1,5 +1,5 @@
-// Who is planned together in a dense island depends on the state alone: on nothing that makes runs faster, not on where
-// a run is taken up again, not on threads. Random scenes, by seeds that are printed.
+// The set of particles planned together in an island depends on the state alone. It does not depend on optimisations,
+// on resuming, or on threads. Random scenes, with printed seeds.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -24,7 +24,7 @@ using testing::setup_of;
 constexpr double kRadius = 0.005;
 constexpr std::uint64_t kSeeds = 2;
 
-/// Spheres of several sizes loosely on a grid of 3 x 3, with small velocities of their own.
+/// Adds spheres of several sizes with small velocities on a loose grid of 3 x 3.
 void add_spheres(SimulationSetup& setup, std::uint64_t seed, int count, const Vec3& corner, double pitch) {
     RandomSequence random(seed, 7, 0);
     for (int k = 0; k < count; ++k) {
@@ -53,7 +53,7 @@ void add_box(SimulationSetup& setup, double half) {
                        {"back", PlaneShape{{0, half, 0}, {0, -1, 0}}}};
 }
 
-/// Those that fall are free, or not known to be; those that lie press on each other.
+/// Falling spheres are free, or not known to be. Lying spheres press on each other.
 SimulationSetup pouring(std::uint64_t seed) {
     SimulationSetup setup = empty_scene(seed, 0.12);
     add_box(setup, 4.5 * kRadius);
@@ -61,7 +61,7 @@ SimulationSetup pouring(std::uint64_t seed) {
     return setup;
 }
 
-/// The same of two materials.
+/// Returns pouring() with two materials.
 SimulationSetup pouring_of_two_materials(std::uint64_t seed) {
     SimulationSetup setup = pouring(seed);
     PairContactSettings& contacts = *setup.options.particle_contacts;
@@ -72,7 +72,7 @@ SimulationSetup pouring_of_two_materials(std::uint64_t seed) {
     return setup;
 }
 
-/// A pile that falls asleep, single spheres on the floor that sleep beside it, and one that hits it.
+/// Returns a pile that falls asleep, single sleeping spheres beside it on the floor, and one sphere that hits it.
 SimulationSetup sleeping_pile(std::uint64_t seed) {
     SimulationSetup setup = empty_scene(seed, 0.2);
     setup.options.particle_contacts->method = PairMethod::contacts;
@@ -107,7 +107,7 @@ SimulationSetup drum(std::uint64_t seed) {
     return setup;
 }
 
-/// A wall pushes a heap along the floor, and lifts it.
+/// Returns a wall that pushes a heap along the floor and lifts it.
 SimulationSetup moving_wall(std::uint64_t seed) {
     SimulationSetup setup = empty_scene(seed, 0.1);
     add_frame(setup, KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.2, {0.1, 0.0, 0.02}}})});
@@ -117,7 +117,7 @@ SimulationSetup moving_wall(std::uint64_t seed) {
     return setup;
 }
 
-/// Grains that stick, and are pulled together.
+/// Returns cohesive grains that attract each other.
 SimulationSetup cohesive_pouring(std::uint64_t seed) {
     SimulationSetup setup = pouring(seed);
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -129,7 +129,7 @@ SimulationSetup cohesive_pouring(std::uint64_t seed) {
     return setup;
 }
 
-/// Two of the pile stick, and do not sleep; all others do.
+/// Returns a pile in which two grains stick and do not sleep. All others sleep.
 SimulationSetup pile_with_two_that_stick(std::uint64_t seed) {
     SimulationSetup setup = sleeping_pile(seed);
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -137,7 +137,7 @@ SimulationSetup pile_with_two_that_stick(std::uint64_t seed) {
     return setup;
 }
 
-/// Onto a net that hangs on its corners; some of what falls is pulled at by nothing.
+/// Pours spheres onto a net that is fixed at its corners. Some of the falling spheres have no force on them.
 SimulationSetup pouring_onto_a_net(std::uint64_t seed) {
     SimulationSetup setup = empty_scene(seed, 0.08);
     setup.options.integrator = IntegratorKind::velocity_verlet;
@@ -175,7 +175,7 @@ const std::vector<Named>& scenes() {
     return all;
 }
 
-/// After every step.
+/// Returns the state hash after every step.
 std::vector<std::uint64_t> hashes_of(SimulationSetup setup) {
     std::vector<std::uint64_t> hashes;
     Simulation simulation(std::move(setup));
@@ -196,8 +196,8 @@ void for_all_scenes(const Check& check) {
     }
 }
 
-/// All off, and each alone on.
-TEST(DenseBits, WhatMakesRunsFasterChangesNoBit) {
+/// Tests all optimisations off, and each of them alone on.
+TEST(DenseBits, OptimisationsChangeNoBit) {
     for_all_scenes([](const auto& made) {
         const std::vector<std::uint64_t> expected = hashes_of(made());
         for (const unsigned bits : {0U, 1U, 2U, 4U, 8U}) {
@@ -209,7 +209,7 @@ TEST(DenseBits, WhatMakesRunsFasterChangesNoBit) {
     });
 }
 
-TEST(DenseBits, AVerifiedRunHasTheSame) {
+TEST(DenseBits, VerificationChangesNoBit) {
     for_all_scenes([](const auto& made) {
         SimulationSetup setup = made();
         setup.options.verify = true;
@@ -217,8 +217,8 @@ TEST(DenseBits, AVerifiedRunHasTheSame) {
     });
 }
 
-/// Each step by a simulation that has just been restored.
-TEST(DenseBits, RunsThatAreResumedAfterEveryStepHaveTheSame) {
+/// Each step is made by a simulation that has just been restored.
+TEST(DenseBits, ResumingAfterEveryStepChangesNoBit) {
     for_all_scenes([](const auto& made) {
         const std::vector<std::uint64_t> expected = hashes_of(made());
         auto simulation = std::make_unique<Simulation>(made());
@@ -238,7 +238,7 @@ TEST(DenseBits, RunsThatAreResumedAfterEveryStepHaveTheSame) {
     });
 }
 
-TEST(DenseBits, AnyNumberOfThreadsGivesTheSame) {
+TEST(DenseBits, NumberOfThreadsChangesNoBit) {
     for_all_scenes([](const auto& made) {
         std::vector<std::vector<std::uint64_t>> hashes;
         for (const int threads : {1, 2, 7}) {

@@ -22,7 +22,7 @@ using testing::setup_of;
 
 constexpr double kRadius = 0.005;
 
-/// Spheres of 5 mm in a box of 12 radii, open above.
+/// Returns spheres of 5 mm in a box of 12 radii, open above.
 SimulationSetup box_setup(double duration, PairMethod method) {
     Material rough{"", 0.5, 0.5};
     SimulationSetup setup = setup_of(1e-3, duration, rough, {0, 0, -9.81});
@@ -49,8 +49,8 @@ void advance(Simulation& simulation, int steps) {
     for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
 }
 
-// A burst that fits, and one that does not.
-TEST(DenseContacts, EmittersGiveBirthOnlyWhereThereIsRoom) {
+// Uses a burst that fits, and one that does not.
+TEST(DenseContacts, EmittersSpawnOnlyIntoFreeSpace) {
     for (const std::uint64_t burst : {60U, 4000U}) {
         SimulationSetup setup = box_setup(0.02, PairMethod::automatic);
         EmitterDescription emitter;
@@ -69,7 +69,7 @@ TEST(DenseContacts, EmittersGiveBirthOnlyWhereThereIsRoom) {
     }
 }
 
-TEST(DenseContacts, WhatIsPouredIntoABoxSettlesThereWithHardlyAnyOverlap) {
+TEST(DenseContacts, PouredSpheresSettleInABoxWithHardlyAnyOverlap) {
     SimulationSetup setup = box_setup(0.75, PairMethod::automatic);
     fill_loosely(setup, 96);
     Simulation simulation(std::move(setup));
@@ -79,14 +79,14 @@ TEST(DenseContacts, WhatIsPouredIntoABoxSettlesThereWithHardlyAnyOverlap) {
     EXPECT_EQ(statistics.energy_violations, 0U);
     EXPECT_EQ(statistics.unsimulated_time, 0.0);
     EXPECT_LT(statistics.overlap_largest, 5e-3);
-    // Without rolling friction one in fifty may go on rolling in its hollow.
+    // Without rolling friction one in fifty may still roll in its hollow.
     const std::vector<Vec3>& velocity = simulation.particles().velocity;
     EXPECT_LE(std::count_if(velocity.begin(), velocity.end(), [](const Vec3& v) { return length(v) > 0.01; }), 2);
 }
 
-/// What is to be dense from the begin does not overlap; by itself it becomes so with the second step, and what has
-/// fallen in the first is undone.
-TEST(DenseContacts, AColumnStands) {
+/// With the method "contacts" the island is dense from the start and does not overlap. With "automatic" it becomes
+/// dense in the second step, and the fall of the first step is corrected.
+TEST(DenseContacts, ColumnStands) {
     for (const PairMethod method : {PairMethod::contacts, PairMethod::automatic}) {
         SimulationSetup setup = box_setup(0.3, method);
         for (int i = 0; i < 20; ++i) {
@@ -105,9 +105,9 @@ TEST(DenseContacts, AColumnStands) {
     }
 }
 
-/// A heavy sphere drives a light one that is at rest onto a floor that is farther away than the light one comes by
-/// itself.
-TEST(DenseContacts, WhatIsPushedFartherThanItComesByItselfFindsWhatIsThere) {
+/// A heavy sphere drives a light one at rest onto a floor. The floor is farther away than the light sphere's own
+/// motion.
+TEST(DenseContacts, SpherePushedBeyondItsOwnMotionFindsTheFloor) {
     SimulationSetup setup = box_setup(0.05, PairMethod::contacts);
     Particle light = particle_of({0.03, 0.03, 1.3 * kRadius}, {}, kRadius);
     light.mass = 1e-3;
@@ -120,7 +120,7 @@ TEST(DenseContacts, WhatIsPushedFartherThanItComesByItselfFindsWhatIsThere) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
-/// In a closed box, packing 0.15, with steps in which a third of the spheres meet others.
+/// Returns a gas in a closed box with packing 0.15. In each step a third of the spheres collide.
 SimulationSetup gas_setup() {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.colliders = {mesh_collider(testing::flipped(testing::box_mesh({0, 0, 0}, {1, 1, 1})))};
@@ -139,7 +139,7 @@ double kinetic_energy(const Simulation& simulation) {
     return sum;
 }
 
-TEST(DenseContacts, AnElasticGasKeepsItsEnergy) {
+TEST(DenseContacts, ElasticGasKeepsItsEnergy) {
     Simulation simulation(gas_setup());
     const double before = kinetic_energy(simulation);
     advance(simulation, 100);
@@ -148,7 +148,7 @@ TEST(DenseContacts, AnElasticGasKeepsItsEnergy) {
     EXPECT_EQ(simulation.statistics().unsolved_steps, 0U);
 }
 
-TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
+TEST(DenseContacts, BitsDoNotDependOnThreadsOrResume) {
     const auto made = [] {
         SimulationSetup setup = box_setup(0.3, PairMethod::automatic);
         fill_loosely(setup, 96);
@@ -176,14 +176,14 @@ TEST(DenseContacts, SameBitsForAnyNumberOfThreadsAndAfterResume) {
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
-/// J over the mass.
+/// Returns the energy over the mass, in J/kg.
 double energy_of(const Particles& p, std::size_t i) {
     return 0.5 * length_squared(p.velocity[i]) + 9.81 * p.position[i].z;
 }
 
-// Two that touch swing through the bottom as one does, with the error of the step: every straight line along the wall
-// leads into it.
-TEST(DenseContacts, SpheresThatTouchSwingInAHollowSphereAndInAMeshOfIt) {
+// Two touching spheres swing through the bottom like one, with the error of the step. Every straight line along the
+// wall leads into it.
+TEST(DenseContacts, TouchingSpheresSwingInAHollowSphereAndInAMeshOfIt) {
     for (const double time_step : {1e-3, 2.5e-4}) {
         SimulationSetup setup = setup_of(time_step, 0.6, {"", 0.0}, {0, 0, -9.81});
         setup.options.particle_contacts = PairContactSettings{.restitution = 0.0};
@@ -210,7 +210,7 @@ TEST(DenseContacts, SpheresThatTouchSwingInAHollowSphereAndInAMeshOfIt) {
     }
 }
 
-TEST(DenseContacts, WhatIsPouredIntoAFormulasCylinderSettlesThere) {
+TEST(DenseContacts, PouredSpheresSettleInAnAnalyticCylinder) {
     SimulationSetup setup = setup_of(2e-3, 0.6, {"", 0.3, 0.4}, {0, 0, -9.81});
     setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = 0.4};
     setup.colliders = {{"silo", CylinderShape{0.1, 4.0, {{0, 0, 2}}}}};

@@ -1,5 +1,5 @@
-// Spheres that stand in each other: what parts them gives them no speed to speak of, however short steps are, and who
-// has gone stands in nobody.
+// Overlapping spheres separate without gaining a significant speed, for any time step. A removed sphere overlaps
+// nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ SimulationSetup on_a_floor(double time_step, double duration) {
     return setup;
 }
 
-/// J, of motion and height.
+/// Returns kinetic plus potential energy, in J.
 double energy_of(const Simulation& simulation) {
     const Particles& particles = simulation.particles();
     double energy = 0.0;
@@ -40,9 +40,9 @@ void run(Simulation& simulation) {
     while (!simulation.finished()) simulation.step();
 }
 
-// Parting lifts the second and the third layer by 0.1 and 0.2 radii: 2.7 m g r in all. With v = 0.2 sqrt(g r) between
-// neighbours it leaves them v and 2 v upward, 0.9 m g r, and the outer ones v to each side, 0.72.
-TEST(DenseOverlaps, APackingWhoseGrainsOverlapGrowsApartWithoutBeingThrown) {
+// Separation lifts the second and the third layer by 0.1 and 0.2 radii: 2.7 m g r in all. A speed of v = 0.2 sqrt(g r)
+// between neighbours leaves them with v and 2 v upward, 0.9 m g r. The outer spheres keep v to each side, 0.72 m g r.
+TEST(DenseOverlaps, OverlappingPackingExpandsWithoutBeingThrown) {
     constexpr double kRadius = 0.005;
     constexpr double kMass = 1e-3;
     for (const double time_step : {1e-3, 1e-4}) {
@@ -62,7 +62,7 @@ TEST(DenseOverlaps, APackingWhoseGrainsOverlapGrowsApartWithoutBeingThrown) {
     }
 }
 
-TEST(DenseOverlaps, HowFastTwoPartDoesNotDependOnTheStep) {
+TEST(DenseOverlaps, SeparationSpeedDoesNotDependOnTheStep) {
     constexpr double kRadius = 0.1;
     std::vector<double> heights;
     for (const double time_step : {1e-3, 1e-4, 2e-5}) {
@@ -79,7 +79,7 @@ TEST(DenseOverlaps, HowFastTwoPartDoesNotDependOnTheStep) {
     EXPECT_NEAR(heights[0], heights[2], 1e-2 * kRadius);
 }
 
-TEST(DenseOverlaps, WhoseLifeHasEndedStandsInNobody) {
+TEST(DenseOverlaps, ExpiredSphereOverlapsNothing) {
     SimulationSetup setup = setup_of(0.01, 0.05, {"", 1.0, 0.0}, {});
     setup.options.particle_contacts = PairContactSettings{};
     setup.particles.push_back(particle_of({0, 0, 0}, {}, 0.1));

@@ -36,7 +36,7 @@ void add_plane(SimulationSetup& setup, const Vec3& point, const Vec3& normal) {
     setup.colliders.push_back({"", PlaneShape{point, normal}, 0});
 }
 
-/// A square of 8 x 8 cells of 0.1 m, each cut by a diagonal, around the origin.
+/// Returns a square of 8 x 8 cells of 0.1 m around the origin, each cut by a diagonal.
 TriangleMesh triangulated_floor() {
     TriangleMesh mesh;
     constexpr std::uint32_t kCells = 8;
@@ -53,8 +53,8 @@ TriangleMesh triangulated_floor() {
     return mesh;
 }
 
-// On a face, an edge and a vertex, alone and with a second one on top, which is a problem of contacts.
-TEST(DensePiles, AFloorOfTrianglesAnswersOnFacesEdgesAndVerticesAlike) {
+// Spheres are on a face, an edge and a vertex, alone and with a second sphere on top, which makes a contact problem.
+TEST(DensePiles, FloorOfTrianglesActsAlikeOnFacesEdgesAndVertices) {
     for (const bool has_second : {false, true}) {
         SimulationSetup setup = pile_setup(0.25, 0.3);
         setup.colliders = {mesh_collider(triangulated_floor())};
@@ -76,13 +76,13 @@ TEST(DensePiles, AFloorOfTrianglesAnswersOnFacesEdgesAndVerticesAlike) {
                 fastest = std::max(fastest, p.velocity[i].z);
             }
         }
-        EXPECT_GT(fastest, 0.3);  // it has bounced
+        EXPECT_GT(fastest, 0.3);  // the sphere has bounced
         EXPECT_EQ(simulation.statistics().violations, 0U);
         EXPECT_EQ(simulation.statistics().pair_violations, 0U);
     }
 }
 
-/// How far spheres have come from where they stood, over their radius.
+/// Returns the distance of the spheres from their initial positions, over their radius.
 double drift(const Particles& particles, const std::vector<Vec3>& start) {
     double largest = 0.0;
     for (std::size_t i = 0; i < start.size(); ++i) {
@@ -91,9 +91,9 @@ double drift(const Particles& particles, const std::vector<Vec3>& start) {
     return largest;
 }
 
-// Of square section, one thousandth wider than the spheres, which stand in it to and fro: they lean on the walls, where
-// they sink by a part of that; then they stay.
-TEST(DensePiles, AColumnInATubeStands) {
+// The tube has a square section, one thousandth wider than the spheres, which are displaced to alternating sides. The
+// spheres lean on the walls, sink by part of the gap, and then stay.
+TEST(DensePiles, ColumnInATubeStands) {
     SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 1.0, 0.3);
     const double half = 1.001 * kRadius;
     add_plane(setup, {}, {0, 0, 1});
@@ -117,7 +117,7 @@ TEST(DensePiles, AColumnInATubeStands) {
     EXPECT_EQ(simulation.statistics().pair_violations, 0U);
 }
 
-/// By the verifier's search, over the smaller radius.
+/// Returns the overlap from the verifier's search, over the smaller radius.
 double overlap_now(const Particles& particles) {
     std::vector<StandingSphere> spheres;
     for (std::size_t i = 0; i < particles.size(); ++i)
@@ -127,7 +127,8 @@ double overlap_now(const Particles& particles) {
     return overlaps.largest();
 }
 
-/// Runs it; nothing sinks or drifts by more than 1e-3 of a radius from where it begins. How many sleep at the end.
+/// Runs the setup and checks that nothing sinks or drifts by more than 1e-3 of a radius. Returns the number of spheres
+/// asleep at the end.
 std::uint64_t asleep_after_standing(SimulationSetup setup, const std::vector<Vec3>& start) {
     Simulation simulation(std::move(setup));
     while (!simulation.finished()) simulation.step();
@@ -141,9 +142,8 @@ std::uint64_t asleep_after_standing(SimulationSetup setup, const std::vector<Vec
     return simulation.statistics().asleep;
 }
 
-// Layers of squares in each other's hollows, held by friction against sliding and rolling: 55 spheres, 1240 in a long
-// run.
-TEST(DensePiles, APyramidStands) {
+// Square layers in each other's hollows, held by friction against sliding and rolling: 55 spheres, 1240 in a long run.
+TEST(DensePiles, PyramidStands) {
     const int layers = test::is_long_run() ? 15 : 5;
     SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 1.0, 0.8);
     setup.materials[0].rolling_friction = 0.3;
@@ -164,15 +164,15 @@ TEST(DensePiles, APyramidStands) {
     static_cast<void>(asleep_after_standing(std::move(setup), start));
 }
 
-// Layers of a square lattice, each in the hollows of the one below, that walls hold on all sides: all of it begins to
+// Layers of a square lattice, each in the hollows of the layer below, with walls on all sides. All contacts begin to
 // press in the first step. 1 005 spheres, 100 520 in a long run.
-TEST(DensePiles, ABoxOfThemStandsAndSleeps) {
+TEST(DensePiles, BoxOfSpheresStandsAndSleeps) {
     const int side = test::is_long_run() ? 50 : 10;
     const int layers = test::is_long_run() ? 41 : 11;
     SimulationSetup setup = pile_setup(test::is_long_run() ? 10.0 : 0.2, 0.5);
     const double pitch = 2.0 * kRadius * (1.0 + 1e-9);
     const double wall = 0.5 * side * pitch;
-    setup.options.verify = !test::is_long_run();  // which looks at all of them in each of ten thousand steps
+    setup.options.verify = !test::is_long_run();  // the verifier checks all spheres in each of ten thousand steps
     add_plane(setup, {}, {0, 0, 1});
     for (const Vec3& normal : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}})
         add_plane(setup, -wall * normal, normal);
@@ -189,7 +189,8 @@ TEST(DensePiles, ABoxOfThemStandsAndSleeps) {
     EXPECT_EQ(asleep_after_standing(std::move(setup), start), start.size());
 }
 
-/// Degrees, slope of the cone that has the mean height and mean distance from the axis of a column that has fallen.
+/// Returns the slope, in degrees, of the cone with the mean height and the mean distance from the axis of a collapsed
+/// column.
 double angle_of_repose(double friction, std::uint64_t seed) {
     SimulationSetup setup = pile_setup(1.0, friction);
     setup.materials[0].rolling_friction = 0.1;
@@ -211,12 +212,12 @@ double angle_of_repose(double friction, std::uint64_t seed) {
         height += p.position[i].z - kRadius;
         distance += std::hypot(p.position[i].x, p.position[i].y);
     }
-    // Of a cone of height h and radius R they are h / 4 and R / 2.
+    // For a cone of height h and radius R the means are h / 4 and R / 2.
     return std::atan(2.0 * height / distance) * 180.0 / 3.14159265358979;
 }
 
-/// Of so small heaps the angle is known to 0.3 degrees only, so two are taken; with little friction all lie on the
-/// floor.
+/// For such small heaps the angle has an error of 0.3 degrees, so two heaps are averaged. With little friction all
+/// spheres lie on the floor.
 TEST(DensePiles, HeapsAreSteeperWithMoreFriction) {
     std::array<double, 3> angles{};
     const std::array<double, 3> frictions = {0.05, 0.3, 0.8};

@@ -1,5 +1,5 @@
-// Spheres of very different radii that press on each other: what is light and caught between heavy ones, or between one
-// and a floor, is not pressed into them, and nothing gains energy.
+// Spheres of very different radii that press on each other. A light sphere between heavy ones, or between one and a
+// floor, is not pressed into them. Nothing gains energy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ SimulationSetup setup_with(double time_step, double duration, double restitution
     return setup;
 }
 
-/// J, of motion and height.
+/// Returns kinetic plus potential energy, in J.
 double energy_of(const Simulation& simulation, double gravity) {
     const Particles& particles = simulation.particles();
     double energy = 0.0;
@@ -52,8 +52,8 @@ void expect_no_overlap(const Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-// The big one falls two small radii onto 25 small ones, at 0.2 m/s: it rebounds to 0.2^2 of that height at most.
-TEST(DenseUnlike, ABigBallOnSmallOnesIsHeldByThemAtAnyStep) {
+// The big ball falls two small radii onto 25 small ones, at 0.2 m/s. It rebounds to at most 0.2^2 of that height.
+TEST(DenseUnlike, BigBallIsSupportedBySmallOnesAtAnyStep) {
     for (const double step : {2e-3, 1e-4}) {
         SCOPED_TRACE(step);
         SimulationSetup setup = setup_with(step, 0.1, 0.2, 0.3, true);
@@ -75,9 +75,9 @@ TEST(DenseUnlike, ABigBallOnSmallOnesIsHeldByThemAtAnyStep) {
     }
 }
 
-// Two of 1 m/s meet with a light one between them, a little aside, which friction pinches: all of their energy can go,
-// none can come, and momentum stays.
-TEST(DenseUnlike, WhatIsPinchedBetweenBigBallsIsInNoneOfThem) {
+// Two spheres of 1 m/s collide with a light one between them, slightly off-centre, and friction pinches it. All energy
+// may be lost and none gained, and momentum is conserved.
+TEST(DenseUnlike, PinchedSphereOverlapsNoBigBall) {
     for (const double ratio : {10.0, 100.0, 1000.0}) {
         for (const double step : {1e-4, 2e-3}) {
             for (const double restitution : {0.0, 0.5}) {

@@ -1,4 +1,4 @@
-// Cloth that implicit_euler lays down on surfaces: its energy falls whatever the step, and no step takes an age.
+// Cloth that implicit_euler drapes over surfaces. Its energy falls for any time step, and no step takes very long.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A sheet of 1.4 m, stiff and without restitution, over a ball and a floor.
+/// Returns a stiff sheet of 1.4 m without restitution, over a ball and a floor.
 SimulationSetup sheet_over_a_ball(double time_step, double friction, double radius, std::size_t cells = 12) {
     SimulationSetup setup;
     setup.options.time_step = time_step;
@@ -38,7 +38,7 @@ SimulationSetup sheet_over_a_ball(double time_step, double friction, double radi
     return setup;
 }
 
-/// J, all of it; in `rise` by how much it grew in the step in which it grew most.
+/// Returns the total energy, in J. `rise` is its largest increase in one step.
 double final_energy(SimulationSetup setup, double& rise) {
     Simulation simulation(std::move(setup));
     rise = 0.0;
@@ -54,9 +54,9 @@ double final_energy(SimulationSetup setup, double& rise) {
     return last;
 }
 
-// It falls from 3.2 J to 2. The surfaces that stop some of its nodes are in the equations of all: without that the
-// springs to them were stretched in every step by all that the step did not know.
-TEST(DrapedCloth, LosesEnergyByImplicitEulerWhateverTheStep) {
+// The energy falls from 3.2 J to 2 J. The surfaces that stop some nodes are part of the equations of all nodes.
+// Otherwise every step would stretch the springs to these nodes by the unpredicted displacement.
+TEST(DrapedCloth, ImplicitEulerLosesEnergyAtAnyStep) {
     for (const auto& [friction, radius] : {std::pair(0.0, 0.0), std::pair(0.4, 0.005)}) {
         SCOPED_TRACE("friction " + std::to_string(friction) + " radius " + std::to_string(radius));
         double rise = 0.0;
@@ -68,9 +68,9 @@ TEST(DrapedCloth, LosesEnergyByImplicitEulerWhateverTheStep) {
     }
 }
 
-// Friction holds points, which tell their neighbours over stiff springs, which tell other points: what is held settles
-// in a part of the step.
-TEST(DrapedCloth, OfPointsThatFrictionHoldsLosesEnergyWhateverTheStep) {
+// Friction stops points, which affect their neighbours over stiff springs, and these affect other points. The set of
+// stopped points settles within a part of the step.
+TEST(DrapedCloth, SheetHeldByFrictionLosesEnergyAtAnyStep) {
     for (const double friction : {0.1, 0.4, 1.0}) {
         SCOPED_TRACE(friction);
         for (const double time_step : {0.01, 0.005}) {
@@ -83,7 +83,7 @@ TEST(DrapedCloth, OfPointsThatFrictionHoldsLosesEnergyWhateverTheStep) {
     }
 }
 
-/// A coarse sheet that falls over a ball onto a slope at long steps.
+/// Returns a coarse sheet that falls over a ball onto a slope at long steps.
 SimulationSetup stiff_sheet(double stiffness, double friction, double restitution, std::size_t cells, double radius) {
     SimulationSetup setup;
     setup.options.time_step = 0.02;
@@ -104,7 +104,7 @@ SimulationSetup stiff_sheet(double stiffness, double friction, double restitutio
     return setup;
 }
 
-/// What steps add to the energy, J: the most that one does which has settled, and how many have not.
+/// Energy gain of steps, in J: the largest gain of a settled step, and the number of unsettled steps.
 struct Gains {
     double settled = 0.0;
     std::uint64_t unsolved = 0;
@@ -126,9 +126,9 @@ Gains gains_of(SimulationSetup setup) {
     return gains;
 }
 
-// Where a surface bends, a step at 1 m/s ends 0.7 mm beside the plane that it began on, and springs of 1e8 N/m hold 20
-// J at that: what is foreseen has to be what happens, or a part of the step is taken, or it is said.
-TEST(DrapedCloth, AtAnyStiffnessGainsNoEnergyInAStepThatSettles) {
+// On a curved surface a step at 1 m/s ends 0.7 mm beside its initial plane, and springs of 1e8 N/m store 20 J at that.
+// The prediction must come true, or a shorter substep is taken, or the step is counted as unsolved.
+TEST(DrapedCloth, SettledStepsGainNoEnergyAtAnyStiffness) {
     struct Case {
         double friction;
         double restitution;
@@ -145,11 +145,12 @@ TEST(DrapedCloth, AtAnyStiffnessGainsNoEnergyInAStepThatSettles) {
     }
 }
 
-// Friction as strong as what presses, at long steps: which points it holds does not settle, and that is counted.
-TEST(DrapedCloth, ThatDoesNotSettleIsCounted) { EXPECT_GT(gains_of(stiff_sheet(1e8, 1.0, 0.2, 3, 0.0)).unsolved, 0U); }
+// Friction is as strong as the normal force, at long steps. The set of stopped points does not settle, and that is
+// counted.
+TEST(DrapedCloth, UnsettledStepsAreCounted) { EXPECT_GT(gains_of(stiff_sheet(1e8, 1.0, 0.2, 3, 0.0)).unsolved, 0U); }
 
-// A point on an edge is led from each of its faces to the other: that is no reason to cut the step to nothing.
-TEST(DrapedRope, OnTheEdgesOfAMeshTakesSomeIterationsAStep) {
+// A point on an edge is led from each of its faces to the other. That must not shrink the step to zero.
+TEST(DrapedRope, RopeOnTheEdgesOfAMeshTakesFewIterationsPerStep) {
     for (const double friction : {0.0, 0.4}) {
         SCOPED_TRACE(friction);
         SimulationSetup setup;
@@ -171,7 +172,7 @@ TEST(DrapedRope, OnTheEdgesOfAMeshTakesSomeIterationsAStep) {
         setup.particles = std::move(body.particles);
         setup.springs = std::move(body.springs);
         Simulation simulation(std::move(setup));
-        // Asked in every iteration, and some times for each of 201 particles in every part of a step.
+        // The callback is called in every iteration, and a few times for each of 201 particles in every substep.
         std::uint64_t asked = 0;
         const ThreadLimit one(1);
         simulation.advance(
@@ -182,8 +183,9 @@ TEST(DrapedRope, OnTheEdgesOfAMeshTakesSomeIterationsAStep) {
     }
 }
 
-// A long step can be stopped between its iterations, and a run goes on from the state before it to the same bits.
-TEST(DrapedCloth, CanBeStoppedWithinAStep) {
+// A long step can be stopped between its iterations. The run continues from the state before the step with the same
+// bits.
+TEST(DrapedCloth, StepCanBeStopped) {
     const auto setup = [] { return sheet_over_a_ball(0.01, 0.4, 0.005, 6); };
     Simulation whole(setup());
     whole.advance(40);

@@ -1,4 +1,4 @@
-// When a part of a step ends, by the impacts that a preview has shown: a plate on a slider, and grains that fall on it.
+// The impacts of a preview determine the end of a substep. A plate on a slider, and grains that fall on it.
 #include "ricochet/simulation/driven_motion.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ struct Plate {
     }
 };
 
-/// What a grain that comes down on the plate, which is at rest, gives it.
+/// Returns the load of a grain that hits the plate at rest.
 ColliderLoad hit(std::uint64_t particle, double time, double approach, double restitution) {
     const double yielding = 1.0 / kGrain + 1.0 / kMass;
     const double impulse = (1.0 + restitution) * approach / yielding;
@@ -69,7 +69,7 @@ ColliderLoad hit(std::uint64_t particle, double time, double approach, double re
     return load;
 }
 
-TEST(DrivenMotion, EndsAPartSoonerTheLessItsImpactsTakeOff) {
+TEST(DrivenMotion, SubstepEndsSoonerTheLessSpeedItsImpactsRemove) {
     Plate plate;
     plate.motion->begin_step();
     plate.plan(0.0, 0.01);
@@ -77,7 +77,7 @@ TEST(DrivenMotion, EndsAPartSoonerTheLessItsImpactsTakeOff) {
     const double time = 0.002;
     EXPECT_NEAR(plate.motion->cut_by({hit(1, time, 2.0, 0.3)}) - time, 1e-3 * 0.008, 1e-15);
     EXPECT_NEAR(plate.motion->cut_by({hit(1, time, 2.0, 1.0)}) - time, 1e-9 * 0.008, 1e-15);
-    // Two that are elastic are two parts, however near they come.
+    // Two elastic impacts need two substeps, however close they are.
     for (const double later : {1e-3, 1e-9, 1e-14}) {
         const double cut = plate.motion->cut_by({hit(1, time, 2.0, 1.0), hit(2, time + later, 2.0, 1.0)});
         EXPECT_GT(cut, time);
@@ -85,8 +85,9 @@ TEST(DrivenMotion, EndsAPartSoonerTheLessItsImpactsTakeOff) {
     }
 }
 
-// Fast ones jolt the plate; a slow one that is none of what has lain on it would meet another plate, and is kept apart.
-TEST(DrivenMotion, IsNotCutByWhatComesBackToABodyThatHasJumpedAwayFromIt) {
+// Fast impacts jolt the plate. A slow particle that rested on the plate before does not cut the step. Any other slow
+// particle would hit a displaced plate and cuts it.
+TEST(DrivenMotion, ReturningParticlesDoNotCutTheStepAfterAJolt) {
     const std::vector<ColliderLoad> impacts{hit(1, 0.002, 2.0, 0.3), hit(7, 0.004, 5e-3, 0.3), hit(2, 0.006, 2.0, 0.3)};
     for (const bool has_touched : {false, true}) {
         Plate plate;
@@ -96,7 +97,7 @@ TEST(DrivenMotion, IsNotCutByWhatComesBackToABodyThatHasJumpedAwayFromIt) {
         resting.impact = false;
         const std::vector<ColliderLoad> before{resting};
         plate.motion->follow(has_touched ? before : std::vector<ColliderLoad>{});
-        plate.motion->begin_step();  // it remembers the last one
+        plate.motion->begin_step();  // the motion stores the last step
         plate.plan(0.001, 0.01);
         const double cut = plate.motion->cut_by(impacts);
         if (has_touched) {
@@ -104,14 +105,15 @@ TEST(DrivenMotion, IsNotCutByWhatComesBackToABodyThatHasJumpedAwayFromIt) {
         } else {
             EXPECT_NEAR(cut, 0.002 + 1e-3 * 0.002, 1e-15);
         }
-        // As slow as that, but faster than the plate can have jumped: it is what it is.
+        // This impact is slow, but faster than the jolt of the plate, so it counts.
         const double other = plate.motion->cut_by({hit(1, 0.002, 2.0, 0.3), hit(7, 0.004, 0.02, 0.3)});
         EXPECT_NEAR(other, 0.002 + 1e-3 * 0.002, 1e-15);
     }
 }
 
-// About its centre, which does not move: a particle beside it would be swept past its turns for ever.
-TEST(DrivenMotion, HasDivergedWhereABodyTurnsFasterThanThereAreTurns) {
+// The centre of the body does not move. A particle beside it would otherwise be swept through its rotations without
+// end.
+TEST(DrivenMotion, BodyThatRotatesTooFastCountsAsDiverged) {
     for (const double drive : {1.0, 1e30}) {
         SimulationSetup setup;
         setup.options.time_step = 0.01;

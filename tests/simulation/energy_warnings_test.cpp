@@ -1,4 +1,4 @@
-// Integrators that do not keep the energy of a force are warned of where the energy grows in a run, and nowhere else.
+// Integrators that do not conserve the energy of a force give a warning if the energy grows in the run, and only then.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,12 +34,12 @@ constexpr std::array kKinds{IntegratorKind::ballistic,
                             IntegratorKind::rk4,
                             IntegratorKind::dormand_prince};
 
-/// A motion with an energy to keep, of an angular frequency near 1.
+/// A motion with a conserved energy and an angular frequency near 1.
 struct Motion {
     std::string name;
     std::function<std::unique_ptr<Force>()> force;
     Particle particle;
-    double kinetic;  // J, about the largest
+    double kinetic;  // J, about the largest value
 };
 
 std::vector<Motion> motions() {
@@ -72,8 +72,8 @@ double energy_of(const Simulation& simulation) {
     return simulation.kinetic_energy() + simulation.potential_energy().value();
 }
 
-/// By which the energy grows in a run, over the largest kinetic energy of the true motion: of the last third of the run
-/// over the first.
+/// Returns the growth of the energy in a run, over the largest kinetic energy of the true motion. It compares the last
+/// third of the run with the first.
 double growth_of(SimulationSetup setup, double kinetic) {
     Simulation simulation(std::move(setup));
     const double before = energy_of(simulation);
@@ -99,14 +99,14 @@ bool has_warning(const std::vector<std::string>& warnings, const std::string& pa
                        [&](const std::string& line) { return line.find(part) != std::string::npos; });
 }
 
-// Steps from a fiftieth of an oscillation to beyond the end of stability, in runs of 10 to 100 oscillations.
-TEST(EnergyWarnings, ComeWhereTheEnergyGrowsAndNowhereElse) {
+// Steps range from a fiftieth of an oscillation to beyond the stability limit, in runs of 10 to 100 oscillations.
+TEST(EnergyWarnings, WarningsAppearExactlyIfTheEnergyGrows) {
     for (const Motion& motion : motions()) {
         for (const IntegratorKind kind : kKinds) {
             for (const double step : {0.01, 0.05, 0.2, 0.5, 1.0, 2.5}) {
                 for (const double duration : {60.0, 300.0}) {
                     if (duration / step > 10000.0) continue;
-                    // Damped orbits end in the middle, from where particles are thrown.
+                    // Damped orbits end in the centre, and particles are thrown out from there.
                     if (kind == IntegratorKind::implicit_euler && motion.name == "inverse square") continue;
                     SCOPED_TRACE(motion.name + ", " + std::string(name_of(kind)) + ", step " + std::to_string(step) +
                                  ", duration " + std::to_string(duration));
@@ -114,7 +114,7 @@ TEST(EnergyWarnings, ComeWhereTheEnergyGrowsAndNowhereElse) {
                     const bool warns =
                         has_warning(Simulation(setup_with(motion, kind, step, duration)).warnings(), "keep the energy");
                     const double growth = growth_of(std::move(setup), motion.kinetic);
-                    // What is bounded may be large in steps that are nearly too long.
+                    // A bounded error may be large if the steps are almost too long.
                     const bool is_symplectic =
                         kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::symplectic_euler;
                     if (growth > (is_symplectic && motion.name != "magnetic field" ? 20.0 : 0.03)) {
@@ -128,7 +128,7 @@ TEST(EnergyWarnings, ComeWhereTheEnergyGrowsAndNowhereElse) {
     }
 }
 
-TEST(EnergyWarnings, NameTheForceTheParticleAndAnIntegratorThatKeepsIt) {
+TEST(EnergyWarnings, WarningNamesTheForceTheParticleAndAConservingIntegrator) {
     SimulationSetup setup = setup_of(0.05, 60.0, {}, {0, 0, -9.81});
     setup.forces.push_back(make_anchor({.position = {0, 0, 3}, .stiffness = 9.0}));
     setup.particles = {particle_of({1, 0, 3})};
@@ -143,7 +143,7 @@ TEST(EnergyWarnings, NameTheForceTheParticleAndAnIntegratorThatKeepsIt) {
         << warnings[0];
 }
 
-TEST(EnergyWarnings, AreNoneForTheIntegratorThatIsNamed) {
+TEST(EnergyWarnings, RecommendedIntegratorGivesNoWarning) {
     SimulationSetup setup = setup_of(0.05, 60.0, {}, {0, 0, -9.81});
     setup.options.integrator.kind = IntegratorKind::velocity_verlet;
     setup.forces.push_back(make_anchor({.position = {0, 0, 3}, .stiffness = 9.0}));
@@ -151,7 +151,7 @@ TEST(EnergyWarnings, AreNoneForTheIntegratorThatIsNamed) {
     EXPECT_TRUE(Simulation(std::move(setup)).warnings().empty());
 }
 
-TEST(EnergyWarnings, CountWhatDragTakesAway) {
+TEST(EnergyWarnings, DissipationByDragIsTakenIntoAccount) {
     for (const double coefficient : {0.0, 0.5}) {
         SimulationSetup setup = setup_of(0.05, 60.0);
         setup.forces.push_back(make_anchor({.position = {}, .stiffness = 1.0}));
@@ -161,7 +161,7 @@ TEST(EnergyWarnings, CountWhatDragTakesAway) {
     }
 }
 
-TEST(EnergyWarnings, AreForParticlesOfEmittersToo) {
+TEST(EnergyWarnings, ParticlesOfEmittersGiveWarningsToo) {
     SimulationSetup setup = setup_of(0.05, 60.0);
     setup.forces.push_back(make_point_gravity({{{0, 0, 0}, 10.0, 0.1}}));
     EmitterDescription emitter;
@@ -174,7 +174,7 @@ TEST(EnergyWarnings, AreForParticlesOfEmittersToo) {
     EXPECT_TRUE(has_warning(Simulation(std::move(setup)).warnings(), "a particle of 'planets' would gain"));
 }
 
-TEST(EnergyWarnings, TellOfAParticleThatFallsIntoAPointMass) {
+TEST(EnergyWarnings, ParticleThatFallsIntoAPointMassGivesAWarning) {
     for (const IntegratorKind kind : kKinds) {
         SCOPED_TRACE(name_of(kind));
         for (const double softening : {0.0, 0.2}) {
@@ -187,7 +187,7 @@ TEST(EnergyWarnings, TellOfAParticleThatFallsIntoAPointMass) {
     }
 }
 
-/// Two balls on an undamped spring, or one that damps.
+/// Returns two balls on a spring, with or without damping.
 SimulationSetup on_a_spring(IntegratorKind kind, double step, double damping) {
     SimulationSetup setup = setup_of(step, 100.0);
     setup.options.integrator.kind = kind;
@@ -197,7 +197,7 @@ SimulationSetup on_a_spring(IntegratorKind kind, double step, double damping) {
 }
 
 // The spring's own oscillation is the fastest: omega = 1.
-TEST(EnergyWarnings, OfSpringsComeWhereTheEnergyGrows) {
+TEST(EnergyWarnings, SpringsGiveWarningsIfTheEnergyGrows) {
     for (const IntegratorKind kind : {IntegratorKind::midpoint, IntegratorKind::velocity_verlet,
                                       IntegratorKind::symplectic_euler, IntegratorKind::rk4}) {
         for (const double step : {0.01, 0.05, 0.2, 0.6}) {
@@ -207,7 +207,7 @@ TEST(EnergyWarnings, OfSpringsComeWhereTheEnergyGrows) {
                 const bool warns =
                     has_warning(Simulation(on_a_spring(kind, step, damping)).warnings(), "keep the energy");
                 const double growth = growth_of(on_a_spring(kind, step, damping), 0.0025);
-                // Energies of symplectic methods swing within bounds.
+                // The energies of symplectic methods oscillate within bounds.
                 const bool grows = growth > 0.03 && (kind == IntegratorKind::midpoint || kind == IntegratorKind::rk4);
                 if (grows) {
                     EXPECT_TRUE(warns) << growth;
@@ -220,7 +220,7 @@ TEST(EnergyWarnings, OfSpringsComeWhereTheEnergyGrows) {
     }
 }
 
-TEST(EnergyWarnings, OfForcesBetweenParticlesComeWithMidpoint) {
+TEST(EnergyWarnings, ForcesBetweenParticlesGiveAWarningWithMidpoint) {
     for (const IntegratorKind kind : {IntegratorKind::midpoint, IntegratorKind::velocity_verlet}) {
         SimulationSetup setup = setup_of(0.03, 100.0);
         setup.options.integrator.kind = kind;

@@ -1,5 +1,5 @@
-// Laws that dense grains are known by: what the floor of a silo carries, how fast a hopper runs out, how steep a drum's
-// surface is.
+// Known laws of dense grains: the load on the floor of a silo, the discharge rate of a hopper, and the slope of the
+// surface in a drum.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using testing::mesh_collider;
 using testing::setup_of;
 
 constexpr double kDiameter = 0.01;  // m, of the mean grain
-constexpr double kSpread = 0.1;     // of the diameters, to either side, so that grains do not form crystals
+constexpr double kSpread = 0.1;     // relative spread of the diameters, so that grains do not form crystals
 constexpr double kG = 9.81;
 constexpr double kPi = std::numbers::pi;
 
@@ -42,7 +42,7 @@ SimulationSetup grain_setup(double duration, double friction, FrameMotion motion
 
 double grain_mass(double radius) { return 2500.0 * 4.0 / 3.0 * kPi * radius * radius * radius; }
 
-/// Grains that do not touch, on the points of a lattice around an axis up to the distance `reach`, layer on layer.
+/// Adds separate grains on a lattice around an axis up to the distance `reach`, layer by layer.
 void add_cloud(SimulationSetup& setup, std::size_t count, double reach, double bottom, std::uint64_t seed) {
     constexpr double kPitch = (1.0 + kSpread) * 1.02 * kDiameter;
     RandomSequence random(seed, 0, 0);
@@ -62,7 +62,7 @@ void add_cloud(SimulationSetup& setup, std::size_t count, double reach, double b
     }
 }
 
-/// An upright tube of 48 sides around the axis, in rings of two diameters.
+/// Returns an upright tube of 48 sides around the axis, in rings of two diameters.
 TriangleMesh tube_mesh(double radius, double bottom, double top) {
     constexpr std::uint32_t kSides = 48;
     const auto rings = static_cast<std::uint32_t>(std::ceil((top - bottom) / (2.0 * kDiameter)));
@@ -92,14 +92,14 @@ void expect_sound(const Simulation& simulation) {
 
 struct SiloLoad {
     double filled = 0.0;   // kg
-    double carried = 0.0;  // kg, by the floor
+    double carried = 0.0;  // kg, supported by the floor
     double density = 0.0;  // kg/m^3, of the column
 };
 
 constexpr double kSiloFriction = 0.5;
 
-/// The floor goes down slowly, by one diameter before it is weighed and on while it is, so that friction on the wall is
-/// fully turned up. Where it stops the column lands on it, and less hangs on the wall.
+/// The floor moves down slowly, by one diameter before the measurement and further during it, so that wall friction is
+/// fully mobilised. If the floor stops, the column lands on it, and less weight hangs on the wall.
 SiloLoad silo_load(double width, std::size_t grains, std::uint64_t seed) {
     constexpr double kSettled = 0.4;
     constexpr double kWeighed = 0.9;
@@ -128,16 +128,16 @@ SiloLoad silo_load(double width, std::size_t grains, std::uint64_t seed) {
     return load;
 }
 
-/// kg, what a floor carries under a column of a mass (Janssen), by what it carries at most.
+/// Returns the load, in kg, on the floor under a column of a given mass (Janssen). `most` is the largest possible load.
 double janssen(double filled, double most) { return most * (1.0 - std::exp(-filled / most)); }
 
-/// kg, what it carries at most: the wall holds 4 mu K / D of the stress a metre, K being the stress across over the
-/// stress along the axis.
+/// Returns the largest possible load, in kg. The wall supports 4 mu K / D of the stress per metre. K is the ratio of
+/// the stress across the axis to the stress along it.
 double most_by(double ratio, double density, double width) {
     return density * kPi * width * width * width / (16.0 * kSiloFriction * ratio);
 }
 
-/// kg, the most with which the curve is nearest to all loads, by their relative distances.
+/// Returns the largest load, in kg, whose curve is nearest to all measured loads by relative distance.
 double fitted_most(std::span<const SiloLoad> loads) {
     double best = 0.0;
     double nearest = INFINITY;
@@ -152,10 +152,10 @@ double fitted_most(std::span<const SiloLoad> loads) {
     return best;
 }
 
-// H. A. Janssen, Z. Ver. Dtsch. Ing. 39 (1895); that the floor is lowered first: L. Vanel, E. Clement, Eur. Phys. J. B
-// 11 (1999); that it carries the same while it goes on: Y. Bertho, F. Giorgiutti-Dauphine, J.-P. Hulin, Phys. Rev.
-// Lett. 90 (2003). In a short run one narrow column, whose wall must carry what a K between 0.3 and 1 says.
-TEST(GranularLaws, TheFloorOfASiloCarriesWhatJanssenSays) {
+// H. A. Janssen, Z. Ver. Dtsch. Ing. 39 (1895). The floor is lowered first: L. Vanel, E. Clement, Eur. Phys. J. B 11
+// (1999). The load is the same while the floor moves: Y. Bertho, F. Giorgiutti-Dauphine, J.-P. Hulin, Phys. Rev. Lett.
+// 90 (2003). A short run has one narrow column, with a load that must correspond to a K between 0.3 and 1.
+TEST(GranularLaws, LoadOnASiloFloorFollowsJanssensLaw) {
     if (!test::is_long_run()) {
         if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
         constexpr double kNarrow = 4.0 * kDiameter;
@@ -186,7 +186,7 @@ TEST(GranularLaws, TheFloorOfASiloCarriesWhatJanssenSays) {
     RecordProperty("silo", report);
 }
 
-/// A flat sheet around a round hole; the hole is a polygon of the circle's area.
+/// Returns a flat sheet around a round hole. The hole is a polygon of the circle's area.
 TriangleMesh sheet_with_hole(double width, double outer) {
     constexpr std::uint32_t kCorners = 48;
     const double turn = 2.0 * kPi / kCorners;
@@ -206,13 +206,13 @@ TriangleMesh sheet_with_hole(double width, double outer) {
 }
 
 struct Outflow {
-    double begin = 0.0;     // s, of what is counted
-    double duration = 0.0;  // s, of that
+    double begin = 0.0;     // s, start of the measurement
+    double duration = 0.0;  // s, duration of the measurement
     double bin = 0.0;       // m, width of the flat-bottomed bin
     double height = 0.0;    // m, of the filling
 };
 
-/// Grains a second that leave a bin through a hole in its floor.
+/// Returns the grains per second that leave a bin through a hole in its floor.
 double outflow(double hole, const Outflow& flow) {
     SimulationSetup setup = grain_setup(flow.begin + flow.duration, 0.5, Spin{});
     setup.colliders = {mesh_collider(sheet_with_hole(hole, flow.bin)),
@@ -231,7 +231,7 @@ double outflow(double hole, const Outflow& flow) {
     return static_cast<double>(simulation.statistics().out_of_bounds - before) / flow.duration;
 }
 
-/// Slope and intercept of the line of least squares.
+/// Returns slope and intercept of the least-squares line.
 std::pair<double, double> line_through(std::span<const double> x, std::span<const double> y) {
     const auto n = static_cast<double>(x.size());
     double sx = 0.0;
@@ -244,8 +244,8 @@ std::pair<double, double> line_through(std::span<const double> x, std::span<cons
 }
 
 // W. A. Beverloo, H. A. Leniger, J. van de Velde, Chem. Eng. Sci. 15 (1961): the rate is C sqrt(g) (D - k d)^(5/2)
-// times the density, C 0.58, k 1.4 for spheres. In a short run one hole.
-TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
+// times the density, with C 0.58 and k 1.4 for spheres. A short run has one hole.
+TEST(GranularLaws, DischargeOfAHopperFollowsBeverloosLaw) {
     if (!test::is_long_run()) {
         if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
         const double rate = outflow(6.0 * kDiameter, {0.15, 0.15, 11.0 * kDiameter, 8.0 * kDiameter});
@@ -256,7 +256,7 @@ TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
     const std::vector<double> holes = {5.0, 6.5, 8.0, 10.0};
     std::vector<double> rates(holes.size());
     parallel_for_blocks(holes.size(), 1, [&](std::size_t k, std::size_t, std::size_t) {
-        // Five hundred grains and more each, of bins that are not half empty then.
+        // Each measurement counts five hundred grains or more, and the bins are still more than half full.
         const double hole = holes[k];
         const Outflow flow{0.3, std::clamp(1.5 * std::pow(5.0 / hole, 2.5), 0.25, 1.5), (hole + 10.0) * kDiameter,
                            (hole + 5.0) * kDiameter};
@@ -280,8 +280,8 @@ TEST(GranularLaws, AHopperRunsOutAsBeverlooSays) {
     EXPECT_NEAR(exponent, 2.5, 0.1);
 }
 
-/// Degrees, by which the centre of the grains in a drum is turned from below its axis, on the mean over the last half:
-/// the slope of a flat surface.
+/// Returns the angle, in degrees, between the vertical and the line from the axis of the drum to the centre of the
+/// grains. It equals the slope of a flat surface, and is the mean over the last half of the run.
 double flowing_angle(double radius, double length, double friction, double duration, std::uint64_t seed = 4) {
     constexpr double kRate = 30.0;  // degrees/s
     SimulationSetup setup = grain_setup(duration, friction, Spin{{0, 1, 0}, kRate});
@@ -289,7 +289,7 @@ double flowing_angle(double radius, double length, double friction, double durat
     CylinderShape shell{radius, 2.0 * length, {}};
     shell.placement.rotation_axis = {1, 0, 0};
     shell.placement.rotation_degrees = 90.0;
-    // Smooth walls in front and behind, which hold nothing up.
+    // Smooth walls in front and behind support nothing.
     setup.colliders = {{"shell", shell, 0, "mover"},
                        {"front", PlaneShape{{0, -0.5 * length, 0}, {0, 1, 0}}, 1},
                        {"behind", PlaneShape{{0, 0.5 * length, 0}, {0, -1, 0}}, 1}};
@@ -324,15 +324,15 @@ double flowing_angle(double radius, double length, double friction, double durat
 }
 
 // Steady flows of glass beads have friction between tan 20.9 (slow) and tan 32.8 degrees (fast): P. Jop, Y. Forterre,
-// O. Pouliquen, Nature 441 (2006). With less friction of the grains on each other they flow on less steep surfaces.
-TEST(GranularLaws, ADrumFlowsAsSteeplyAsGlassBeadsDo) {
+// O. Pouliquen, Nature 441 (2006). With less friction between the grains, the surface is less steep.
+TEST(GranularLaws, SlopeInADrumMatchesGlassBeads) {
     if (test::scaled(10) < 10) GTEST_SKIP() << "too many grains for such a build";
     const bool is_long = test::is_long_run();
     const double radius = (is_long ? 15.0 : 6.0) * kDiameter;
     const double length = (is_long ? 7.0 : 3.0) * kDiameter;
     const double duration = is_long ? 5.0 : 2.4;
     double angle = flowing_angle(radius, length, 0.5, duration);
-    // So few grains for so short a time slump by some degrees more or less: three drums agree to less than that.
+    // With so few grains and so short a time, the angle varies by some degrees. The mean of three drums varies less.
     if (!is_long) {
         angle += flowing_angle(radius, length, 0.5, duration, 5) + flowing_angle(radius, length, 0.5, duration, 6);
         angle /= 3.0;

@@ -1,4 +1,4 @@
-// Temperatures in a running simulation: saved and restored, handed on to children, for particles that come and go.
+// Temperatures in a running simulation: saved and restored, inherited by children, and for particles that come and go.
 #include "ricochet/simulation/heat_stage.h"
 
 #include <gtest/gtest.h>
@@ -21,9 +21,9 @@ namespace RICOCHET_FILE {
 using testing::particle_of;
 using testing::setup_of;
 
-constexpr double kRate = 0.8;  // 1/s, of every ball of radius r and mass 4 pi r^2
+constexpr double kRate = 0.8;  // 1/s, for every ball of radius r and mass 4 pi r^2
 
-/// What cools by exp(-kRate t) to 300 K, where its mass is that of its surface.
+/// Returns heat settings that cool a ball by exp(-kRate t) to 300 K, if its mass equals its surface.
 HeatSettings steady_cooling() {
     HeatSettings heat;
     heat.specific_heat = 1.0;
@@ -42,7 +42,7 @@ SimulationSetup cooling_setup(double time_step, double duration) {
     return setup;
 }
 
-/// What is left of 200 K above the surroundings.
+/// Returns the temperature of a ball that started 200 K above the surroundings.
 double after(double seconds) { return 300.0 + 200.0 * std::exp(-kRate * seconds); }
 
 double temperature(const Simulation& simulation, std::size_t i) {
@@ -57,7 +57,7 @@ EmitterDescription balls(double radius) {
     return emitter;
 }
 
-TEST(HeatStage, CoolsEachParticleFromItsBirthToItsDeath) {
+TEST(HeatStage, ParticlesCoolFromBirthToDeath) {
     SimulationSetup setup = cooling_setup(0.25, 1.0);
     EmitterDescription emitter = balls(0.1);
     emitter.rate = {3.0, 0.0};  // born at 1/6, 1/2 and 5/6 s
@@ -70,7 +70,7 @@ TEST(HeatStage, CoolsEachParticleFromItsBirthToItsDeath) {
     }
 }
 
-TEST(HeatStage, GivesChildrenOfADeathTheTemperatureOfTheirParentThere) {
+TEST(HeatStage, ChildrenOfADeathInheritTheTemperatureOfTheirParent) {
     SimulationSetup setup = cooling_setup(0.25, 1.0);
     setup.emitters.push_back(balls(0.1));
     setup.emitters[0].burst = 1;
@@ -87,7 +87,7 @@ TEST(HeatStage, GivesChildrenOfADeathTheTemperatureOfTheirParentThere) {
     EXPECT_NEAR(temperature(simulation, 1), after(1.0), 1e-9);
 }
 
-TEST(HeatStage, LeavesPointsThatAreAddedLaterTheirHeat) {
+TEST(HeatStage, AddedPointsKeepTheirTemperature) {
     SimulationSetup setup = cooling_setup(0.1, 1.0);
     setup.particles.push_back(particle_of({0, 0, 9}, {}, 0.1));
     setup.particles[0].mass = mass_of(0.1);
@@ -105,7 +105,7 @@ std::vector<std::byte> saved(const Simulation& simulation) {
     return bytes;
 }
 
-/// Balls that bounce and slide on a floor, and lose heat to a wind and to radiation.
+/// Returns balls that bounce and slide on a floor and lose heat to a wind and by radiation.
 SimulationSetup busy_setup() {
     SimulationSetup setup = cooling_setup(0.01, 1.0);
     setup.colliders.push_back({"floor", PlaneShape{{}, {0, 0, 1}}, 0});
@@ -122,7 +122,7 @@ SimulationSetup busy_setup() {
     return setup;
 }
 
-TEST(HeatStage, GoesOnFromASavedStateToTheSameBits) {
+TEST(HeatStage, SavedStateContinuesWithTheSameBits) {
     Simulation whole(busy_setup());
     while (whole.step_index() < 50) whole.step();
     const std::vector<std::byte> bytes = saved(whole);
@@ -138,7 +138,7 @@ TEST(HeatStage, GoesOnFromASavedStateToTheSameBits) {
     EXPECT_EQ(saved(resumed), saved(whole));
 }
 
-TEST(HeatStage, RefusesSetupsInWhichItCannotWork) {
+TEST(HeatStage, InvalidSetupsAreRefused) {
     const auto refusal = [](auto change) {
         SimulationSetup setup = cooling_setup(0.1, 1.0);
         setup.particles.push_back(particle_of({0, 0, 9}, {}, 0.1));

@@ -34,7 +34,7 @@ SimulationSetup setup_with(const EmitterDescription& emitter) {
     return setup;
 }
 
-/// Particles that an estimate counts for the one emitter.
+/// Returns the particles that an estimate counts for the only emitter.
 std::uint64_t population(const SimulationSetup& setup) {
     std::uint64_t count = 0;
     for (const MemoryNeed& need : estimate_memory(setup).needs) count += need.part == Part::emitter ? need.count : 0;
@@ -50,7 +50,7 @@ std::string refusal_of(SimulationSetup setup) {
     return "it was taken";
 }
 
-TEST(MemoryEstimate, CountsMoreForSpheresThatMeet) {
+TEST(MemoryEstimate, CollidingSpheresNeedMore) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 1000;
     SimulationSetup setup = setup_with(emitter);
@@ -59,7 +59,7 @@ TEST(MemoryEstimate, CountsMoreForSpheresThatMeet) {
     EXPECT_GT(estimate_memory(setup).bytes(), alone + 1000.0 * 500.0);
 }
 
-TEST(MemoryEstimate, CountsMoreForParticlesThatActOnEachOther) {
+TEST(MemoryEstimate, InteractingParticlesNeedMore) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 1000;
     SimulationSetup setup = setup_with(emitter);
@@ -68,7 +68,7 @@ TEST(MemoryEstimate, CountsMoreForParticlesThatActOnEachOther) {
     EXPECT_GT(estimate_memory(setup).bytes(), alone + 1000.0 * 500.0);
 }
 
-TEST(MemoryEstimate, CountsBurstsAndRatesWithTheirTimesLifetimesAndLimits) {
+TEST(MemoryEstimate, BurstsAndRatesCountWithTheirTimesLifetimesAndLimits) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 500;
     EXPECT_EQ(population(setup_with(emitter)), 500U);
@@ -86,7 +86,7 @@ TEST(MemoryEstimate, CountsBurstsAndRatesWithTheirTimesLifetimesAndLimits) {
     EXPECT_EQ(population(setup_with(emitter)), 0U) << "it begins when the run ends";
 }
 
-TEST(MemoryEstimate, CountsRatesPerFrameAndPerScreenArea) {
+TEST(MemoryEstimate, RatesPerFrameAndPerScreenAreaCount) {
     EmitterDescription emitter = source("tap");
     emitter.rate_per_frame = {10.0, 0.0};
     EXPECT_EQ(population(setup_with(emitter)), 2'400U);
@@ -98,7 +98,7 @@ TEST(MemoryEstimate, CountsRatesPerFrameAndPerScreenArea) {
     EXPECT_EQ(population(setup), static_cast<std::uint64_t>(240.0 * area));
 }
 
-TEST(MemoryEstimate, CountsOfARateOneStepWhereSomethingMayEndParticlesEarly) {
+TEST(MemoryEstimate, RateCountsForOneStepIfParticlesMayEndEarly) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 7;
     emitter.rate = {1000.0, 0.0};
@@ -110,7 +110,7 @@ TEST(MemoryEstimate, CountsOfARateOneStepWhereSomethingMayEndParticlesEarly) {
     EXPECT_EQ(population(absorbing), 17U);
 }
 
-TEST(MemoryEstimate, CountsNoMoreThanMayLive) {
+TEST(MemoryEstimate, CountStopsAtTheLargestPopulation) {
     EmitterDescription emitter = source("tap");
     emitter.burst = 0xFFFFFFFFU;
     EXPECT_EQ(population(setup_with(emitter)), kDefaultMostParticles);
@@ -121,7 +121,7 @@ TEST(MemoryEstimate, CountsNoMoreThanMayLive) {
     EXPECT_NE(refusal_of(std::move(setup)), "") << "it fits";
 }
 
-TEST(MemoryEstimate, GrowsWithTrianglesAttributesSidesAndVerification) {
+TEST(MemoryEstimate, EstimateGrowsWithTrianglesAttributesSidesAndVerification) {
     SimulationSetup setup = setup_with(source("tap"));
     setup.emitters[0].burst = 1000;
     setup.materials = {{}};
@@ -143,7 +143,7 @@ TEST(MemoryEstimate, GrowsWithTrianglesAttributesSidesAndVerification) {
     EXPECT_EQ(estimate.needs.back().count, 12U);
 }
 
-TEST(MemoryEstimate, ASimulationThatDoesNotFitIsRefusedByThePartThatAsksForMost) {
+TEST(MemoryEstimate, SimulationThatDoesNotFitIsRefusedByItsLargestPart) {
     EmitterDescription burst = source("big bang");
     burst.burst = 4'000'000'000U;
     EmitterDescription rate = source("tap");
@@ -162,8 +162,8 @@ TEST(MemoryEstimate, ASimulationThatDoesNotFitIsRefusedByThePartThatAsksForMost)
     EXPECT_EQ(refusal_of(setup_with(rate)), "it was taken");
 }
 
-TEST(MemoryEstimate, ParticlesThatAreAddedAndDoNotFitAreRefusedAllTogether) {
-    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
+TEST(MemoryEstimate, AddedParticlesThatDoNotFitAreAllRefused) {
+    if (test::kSanitized) GTEST_SKIP() << "the memory of sanitizers is not estimated";
     const std::vector<Particle> many(200'000);
     const MemoryCeiling ceiling(60e6);
     Simulation simulation(setup_with(source("none")));
@@ -172,9 +172,9 @@ TEST(MemoryEstimate, ParticlesThatAreAddedAndDoNotFitAreRefusedAllTogether) {
     EXPECT_EQ(simulation.add_particles(std::span(many).first(10)).size(), 10U);
 }
 
-// Two children for every particle that dies, and so on: 2^17 and more would live. Nobody can count them beforehand.
-TEST(MemoryEstimate, ChildrenThatMultiplyBeyondTheMemoryEndTheRunWithALine) {
-    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
+// Every particle that dies has two children, and so on. More than 2^17 would live, which cannot be counted in advance.
+TEST(MemoryEstimate, MultiplyingChildrenThatExceedTheMemoryEndTheRunWithALine) {
+    if (test::kSanitized) GTEST_SKIP() << "the memory of sanitizers is not estimated";
     EmitterDescription parents = source("parents");
     parents.burst = 100;
     parents.lifetime = {0.1, 0.0};
@@ -195,12 +195,12 @@ TEST(MemoryEstimate, ChildrenThatMultiplyBeyondTheMemoryEndTheRunWithALine) {
     }
 }
 
-TEST(MemoryEstimate, BirthsThatAreNotCountedBeforehandEndTheRunWithALine) {
-    if (test::kSanitized) GTEST_SKIP() << "what sanitizers take for themselves is not estimated";
+TEST(MemoryEstimate, UncountedBirthsThatExceedTheMemoryEndTheRunWithALine) {
+    if (test::kSanitized) GTEST_SKIP() << "the memory of sanitizers is not estimated";
     EmitterDescription rate = source("tap");
     rate.rate = {1e6, 0.0};
     SimulationSetup setup = setup_with(rate);
-    setup.bounds = Box3{{-1, -1, -1}, {1, 1, 1}};  // which nothing leaves
+    setup.bounds = Box3{{-1, -1, -1}, {1, 1, 1}};  // nothing leaves these bounds
     const MemoryCeiling ceiling(50e6);
     Simulation simulation(std::move(setup));
     EXPECT_THROW(simulation.advance(simulation.step_count()), RunError);

@@ -1,4 +1,4 @@
-// Forces, flows and solvers that give numbers that are not finite end the step with their name and the particle's id.
+// Forces, flows and solvers that return non-finite numbers end the step with their name and the id of the particle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ using testing::setup_of;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A thousand particles above a floor, under gravity.
+/// Returns a thousand particles above a floor, under gravity.
 SimulationSetup many(IntegratorKind kind) {
     SimulationSetup setup = setup_of(0.01, 1.0, {}, {0, 0, -9.81});
     setup.options.integrator.kind = kind;
@@ -48,7 +48,7 @@ std::string error_of(SimulationSetup setup) {
     return {};
 }
 
-TEST(NotFiniteForces, EndTheStepWithTheForceAndTheFirstParticleForAnyThreadCount) {
+TEST(NotFiniteForces, ErrorNamesTheForceAndTheFirstParticleForAnyThreads) {
     for (const double wrong : {kNan, kInfinity, -kInfinity}) {
         for (const IntegratorKind kind :
              {IntegratorKind::ballistic, IntegratorKind::forward_euler, IntegratorKind::symplectic_euler,
@@ -70,7 +70,7 @@ TEST(NotFiniteForces, EndTheStepWithTheForceAndTheFirstParticleForAnyThreadCount
     }
 }
 
-TEST(NotFiniteForces, AreNamedUnderEveryResponse) {
+TEST(NotFiniteForces, ErrorNamesTheForceUnderEveryResponse) {
     for (const ResponseKind kind : response_kinds()) {
         SCOPED_TRACE(name_of(kind));
         SimulationSetup setup = many(IntegratorKind::rk4);
@@ -84,7 +84,7 @@ TEST(NotFiniteForces, AreNamedUnderEveryResponse) {
     }
 }
 
-/// Pulls at one particle with what is no number.
+/// A force that gives a non-finite pull on one particle.
 class Broken final : public ParticlesForce {
 public:
     explicit Broken(std::string name) : name_(std::move(name)) {}
@@ -100,7 +100,7 @@ private:
     std::string name_;
 };
 
-TEST(NotFiniteForces, BetweenParticlesAreNamed) {
+TEST(NotFiniteForces, ForcesBetweenParticlesAreNamed) {
     for (const auto& [name, shown] :
          {std::pair<std::string, std::string>("", "particle_forces[1]: "), {"flock", "flock: "}}) {
         SimulationSetup setup = many(IntegratorKind::velocity_verlet);
@@ -112,7 +112,7 @@ TEST(NotFiniteForces, BetweenParticlesAreNamed) {
     }
 }
 
-TEST(NotFiniteForces, OfALawOfPairsAreNamed) {
+TEST(NotFiniteForces, PairLawIsNamed) {
     SimulationSetup setup = many(IntegratorKind::velocity_verlet);
     setup.particles = {particle_of({0, 0, 5}), particle_of({0, 0, 1}), particle_of({0.1, 0, 1})};
     PairLaw law;
@@ -124,7 +124,7 @@ TEST(NotFiniteForces, OfALawOfPairsAreNamed) {
     EXPECT_NE(line.find(" particle 1 at "), std::string::npos) << line;
 }
 
-TEST(NotFiniteForces, OfASolverAreNamed) {
+TEST(NotFiniteForces, SolverIsNamed) {
     SimulationSetup setup = many(IntegratorKind::rk4);
     setup.particles.resize(4);
     setup.solver = [](ParticleSystem& system, double) {
@@ -137,7 +137,7 @@ TEST(NotFiniteForces, OfASolverAreNamed) {
     EXPECT_NE(line.find("solver: found particle 2 at "), std::string::npos) << line;
 }
 
-/// A flow with a hole.
+/// A flow with a hole of non-finite values.
 class Torn final : public FlowField {
 public:
     [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
@@ -146,7 +146,7 @@ public:
     [[nodiscard]] bool is_steady() const override { return true; }
 };
 
-TEST(NotFiniteForces, OfAFlowThatCarriesParticlesAreNamed) {
+TEST(NotFiniteForces, FlowThatMovesParticlesIsNamed) {
     for (const IntegratorKind kind : {IntegratorKind::forward_euler, IntegratorKind::midpoint, IntegratorKind::rk4,
                                       IntegratorKind::dormand_prince}) {
         SCOPED_TRACE(name_of(kind));
@@ -160,7 +160,7 @@ TEST(NotFiniteForces, OfAFlowThatCarriesParticlesAreNamed) {
     }
 }
 
-TEST(NotFiniteForces, OfADragsFlowAreNamedByTheDrag) {
+TEST(NotFiniteForces, FlowOfADragIsNamedByTheDrag) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.forces.push_back(make_linear_drag(1.0, std::make_shared<Torn>()));
     setup.particles = {particle_of({0.9, 0, 0}, {1, 0, 0})};
@@ -168,7 +168,7 @@ TEST(NotFiniteForces, OfADragsFlowAreNamedByTheDrag) {
     EXPECT_NE(line.find("forces[0]: "), std::string::npos) << line;
 }
 
-TEST(NotFiniteForces, OfOneThatSaysItIsTheSameForAllAreRefusedAtTheBegin) {
+TEST(NotFiniteForces, NonFiniteCommonForceIsRefusedAtTheStart) {
     class Common final : public Force {
     public:
         [[nodiscard]] Vec3 acceleration(const ForceInput&) const override { return {kNan, 0, 0}; }
@@ -180,8 +180,8 @@ TEST(NotFiniteForces, OfOneThatSaysItIsTheSameForAllAreRefusedAtTheBegin) {
     EXPECT_THROW(Simulation simulation(std::move(setup)), InputError);
 }
 
-// What a method only tries is nobody's fault: a spring's force out there is more than doubles hold.
-TEST(NotFiniteForces, AreNoneWhereThePositionThatIsTriedIsOutOfRange) {
+// Trial states of a method do not count: the force of a spring that far out exceeds the range of doubles.
+TEST(NotFiniteForces, TrialPositionsOutOfRangeAreNoError) {
     SimulationSetup setup = setup_of(1e30, 1e31);
     setup.options.integrator.kind = IntegratorKind::rk4;
     setup.forces.push_back(make_radial_force({.center = {}, .strength = 1.0, .exponent = 12.0}));

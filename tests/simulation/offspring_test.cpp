@@ -70,7 +70,7 @@ double mass_of(const Particles& particles) {
     return sum;
 }
 
-TEST(Offspring, FragmentsOfADeathCarryMassAndMomentumOnAndStartInsideTheStep) {
+TEST(Offspring, FragmentsOfADeathKeepMassAndMomentumAndStartInsideTheStep) {
     SimulationSetup setup = setup_of(0.1, 1.0);
     setup.emitters = {parents(5, {0, 0, 1}, {1, 2, 3}), children(BirthEvent::death, true, {20.0, 10.0})};
     setup.emitters[0].lifetime = {0.437, 0.0};
@@ -80,17 +80,17 @@ TEST(Offspring, FragmentsOfADeathCarryMassAndMomentumOnAndStartInsideTheStep) {
     EXPECT_EQ(simulation.statistics().children, particles.size());
     EXPECT_GT(particles.size(), 5U * 9U);
     EXPECT_NEAR(mass_of(particles), 10.0,
-                1e-13);  // exact for each parent, see ChildEmitter; here sums of several round
+                1e-13);  // exact for each parent, see ChildEmitter; sums over several parents round
     EXPECT_LT(length(momentum_of(particles) - Vec3{10, 20, 30}), 1e-12);
     for (std::size_t i = 0; i < particles.size(); ++i) {
         ASSERT_EQ(particles.birth_time[i], 0.437);
-        // Straight on from the parent's position at its death.
+        // Fragments fly straight from the parent's position at its death.
         const Vec3 start = Vec3{0, 0, 1} + 0.437 * Vec3{1, 2, 3};
         ASSERT_LT(length(particles.position[i] - (start + 0.563 * particles.velocity[i])), 1e-12);
     }
 }
 
-TEST(Offspring, AShatteringImpactHandsOnTheMomentumAfterIt) {
+TEST(Offspring, ShatteringImpactTransfersTheMomentumAfterIt) {
     SimulationSetup setup = setup_of(0.1, 0.52);  // the impact is at 0.5 s: z = 1.1 at -2 m/s, radius 0.1
     setup.emitters = {parents(4, {0, 0, 1.1}, {0.3, 0, -2}), children(BirthEvent::impact, true, {15.0, 5.0})};
     setup.emitters[1].parent->threshold_impulse = 7.9;  // 2 kg, 4 m/s
@@ -102,12 +102,12 @@ TEST(Offspring, AShatteringImpactHandsOnTheMomentumAfterIt) {
     EXPECT_EQ(statistics.absorbed, 0U);
     EXPECT_EQ(statistics.emitted, simulation.particles().size() + 4);
     EXPECT_NEAR(mass_of(simulation.particles()), 8.0, 1e-13);
-    // What the floor has got since, from fragments too, and what is left add up to what there was: nothing is lost.
+    // The later impulses on the floor, also from fragments, and the remaining momentum add up to the initial momentum.
     const TriangleTotals totals = simulation.triangle_totals(0);
     EXPECT_LT(length(momentum_of(simulation.particles()) + totals.impulse[0] - Vec3{2.4, 0, -16}), 1e-9);
 }
 
-TEST(Offspring, AnImpactBelowTheThresholdShattersNothing) {
+TEST(Offspring, ImpactBelowTheThresholdShattersNothing) {
     SimulationSetup setup = setup_of(0.1, 0.6);
     setup.emitters = {parents(4, {0, 0, 1.1}, {0.3, 0, -2}), children(BirthEvent::impact, true, {15.0, 5.0})};
     setup.emitters[1].parent->threshold_impulse = 8.1;
@@ -124,7 +124,7 @@ TEST(Offspring, EveryResponseShatters) {
             setup.options.response = kind;
             setup.options.rollback.global = global;
             setup.emitters = {parents(4, {0, 0, 1.1}, {0.3, 0, -2}), children(BirthEvent::impact, true, {15.0, 5.0})};
-            setup.emitters[1].parent->threshold_impulse = 3.9;  // penalty: what arrives, 2 kg times 2 m/s
+            setup.emitters[1].parent->threshold_impulse = 3.9;  // penalty: the arriving momentum, 2 kg times 2 m/s
             setup.colliders = {floor_plane()};
             const Simulation simulation = finished(std::move(setup));
             EXPECT_EQ(simulation.statistics().shattered, 4U) << name_of(kind);
@@ -133,7 +133,7 @@ TEST(Offspring, EveryResponseShatters) {
     }
 }
 
-TEST(Offspring, SparksOfAnImpactLeaveTheParentAsItIs) {
+TEST(Offspring, SparksOfAnImpactLeaveTheParentUnchanged) {
     SimulationSetup setup = setup_of(0.1, 0.6);
     setup.emitters = {parents(3, {0, 0, 1.1}, {0.3, 0, -2}), children(BirthEvent::impact, false, {6.0, 0.0})};
     setup.colliders = {floor_plane()};
@@ -143,7 +143,7 @@ TEST(Offspring, SparksOfAnImpactLeaveTheParentAsItIs) {
     EXPECT_EQ(simulation.particles().velocity[0], (Vec3{0.3, 0, 2}));
 }
 
-TEST(Offspring, ATrailIsSpawnedOnTheParentsParabolaAtTimesThatTheStepDoesNotChange) {
+TEST(Offspring, TrailIsOnTheParentsParabolaAtTimesIndependentOfTheStep) {
     std::vector<double> times;
     for (const double time_step : {0.5, 0.1, 1.0 / 60.0}) {
         SimulationSetup setup = setup_of(time_step, 1.0);
@@ -156,7 +156,7 @@ TEST(Offspring, ATrailIsSpawnedOnTheParentsParabolaAtTimesThatTheStepDoesNotChan
         std::vector<double> births;
         for (std::size_t i = 1; i < particles.size(); ++i) {
             births.push_back(particles.birth_time[i]);
-            // With the parent's velocity at its birth it stays where the parent is.
+            // A child with the parent's velocity at its birth stays at the parent.
             ASSERT_LT(length(particles.position[i] - particles.position[0]), 1e-12) << i;
             ASSERT_LT(length(particles.velocity[i] - particles.velocity[0]), 1e-12) << i;
         }
@@ -169,8 +169,8 @@ TEST(Offspring, ATrailIsSpawnedOnTheParentsParabolaAtTimesThatTheStepDoesNotChan
     }
 }
 
-// Springs make an adaptive method cut the step into parts, each with an active set in an order of its own.
-TEST(Offspring, ATrailStaysOnItsParentsTrajectoryWhereSpringsCutTheStepIntoParts) {
+// With springs, an adaptive method divides the step into substeps. Each has an active set in its own order.
+TEST(Offspring, TrailStaysOnItsParentsTrajectoryIfSpringsDivideTheStep) {
     SimulationSetup setup = setup_of(0.1, 0.1);
     setup.options.integrator = IntegratorKind::dormand_prince;
     for (const double x : {10.0, 11.1}) {
@@ -184,7 +184,7 @@ TEST(Offspring, ATrailStaysOnItsParentsTrajectoryWhereSpringsCutTheStepIntoParts
     setup.emitters[0].radius = {};
     setup.emitters[1].rate = {20.0, 10.0};
     setup.emitters[1].speed = {};
-    // Only beside a mesh of many triangles are particles moved in spatial order.
+    // Particles are moved in spatial order only beside a mesh of many triangles.
     const auto shell = std::make_shared<const TriangleMesh>(testing::flipped(testing::sphere_mesh({}, 20.0, 4)));
     setup.colliders = {
         floor_plane(), {"ceiling", PlaneShape{{0, 0, 1}, {0, 0, -1}}, 0}, {"shell", MeshShape{shell, {}, ""}, 0}};
@@ -197,7 +197,7 @@ TEST(Offspring, ATrailStaysOnItsParentsTrajectoryWhereSpringsCutTheStepIntoParts
     for (std::size_t i = 802; i < particles.size(); ++i) {
         const auto parent = parent_over.find({particles.position[i].x, particles.position[i].y});
         ASSERT_NE(parent, parent_over.end()) << i;
-        // With the parent's velocity at its birth it stays where the parent is.
+        // A child with the parent's velocity at its birth stays at the parent.
         ASSERT_LT(length(particles.position[i] - particles.position[parent->second]), 1e-10) << i;
         ASSERT_LT(length(particles.velocity[i] - particles.velocity[parent->second]), 1e-10) << i;
     }
@@ -233,7 +233,7 @@ SimulationSetup busy_setup(double time_step) {
     return setup;
 }
 
-TEST(Offspring, TheSameBitsForAnyNumberOfThreadsWithAndWithoutVerificationAndCulling) {
+TEST(Offspring, BitsDoNotDependOnThreadsVerificationOrCulling) {
     std::set<std::uint64_t> hashes;
     for (const int threads : {1, 2, 5}) {
         const ThreadLimit limit(threads);
@@ -279,7 +279,7 @@ TEST(Offspring, GenerationsEndAtTheDepthAndAreCounted) {
     }
 }
 
-TEST(Offspring, ThePopulationLimitRefusesAndCountsAndStillConservesMass) {
+TEST(Offspring, PopulationLimitRefusesAndCountsAndConservesMass) {
     SimulationSetup setup = setup_of(0.1, 1.0);
     setup.emitters = {parents(10, {0, 0, 1}, {1, 2, 3}), children(BirthEvent::death, true, {20.0, 0.0})};
     setup.emitters[0].lifetime = {0.45, 0.0};
@@ -291,7 +291,7 @@ TEST(Offspring, ThePopulationLimitRefusesAndCountsAndStillConservesMass) {
     EXPECT_LT(length(momentum_of(simulation.particles()) - Vec3{20, 40, 60}), 1e-11);
 }
 
-// Millions of births in a step, of which few find room: the others are counted without being made.
+// A step has millions of births, of which few fit. The others are counted without being made.
 TEST(Offspring, BirthsOfALifeBeyondThePopulationLimitAreCountedOneByOne) {
     for (const std::uint64_t most : {10U, 13U, 500U}) {
         SimulationSetup setup = setup_of(0.1, 0.1);
@@ -311,7 +311,7 @@ TEST(Offspring, BirthsOfALifeBeyondThePopulationLimitAreCountedOneByOne) {
     EXPECT_EQ(finished(std::move(setup)).statistics().births_refused_by_depth, 10'000'000U);
 }
 
-TEST(Offspring, ThePopulationLimitHoldsForEmittersToo) {
+TEST(Offspring, PopulationLimitAppliesToEmittersToo) {
     SimulationSetup setup = setup_of(0.1, 1.0);
     setup.emitters = {parents(10, {0, 0, 1}, {1, 2, 3})};
     setup.options.most_particles = 7;
@@ -320,7 +320,7 @@ TEST(Offspring, ThePopulationLimitHoldsForEmittersToo) {
     EXPECT_EQ(simulation.statistics().births_refused_by_population, 3U);
 }
 
-TEST(Offspring, ParentsThatAreNotThereAndTwoSharesAreRefused) {
+TEST(Offspring, MissingParentsAndTwoSharesAreRefused) {
     SimulationSetup missing = setup_of(0.1, 1.0);
     missing.emitters = {children(BirthEvent::death, true, {2.0, 0.0})};
     missing.emitters[0].parent->emitter = 5;
@@ -331,7 +331,7 @@ TEST(Offspring, ParentsThatAreNotThereAndTwoSharesAreRefused) {
     EXPECT_THROW(Simulation{std::move(twice)}, InputError);
 }
 
-TEST(Offspring, CurvesOverLifeChangeWhatIsShownAndNothingElse) {
+TEST(Offspring, CurvesOverLifeChangeTheDisplayOnly) {
     SimulationSetup setup = setup_of(0.1, 0.5);
     setup.attributes = {{"heat", 1, {}}, *looks_attribute("size")};
     setup.emitters = {parents(3, {}, {})};
@@ -343,10 +343,10 @@ TEST(Offspring, CurvesOverLifeChangeWhatIsShownAndNothingElse) {
     EXPECT_EQ(simulation.particles().attributes.value(0, 1).x, 80.0);
     EXPECT_EQ(simulation.shown_attributes().value(0, 1).x, 60.0);
     EXPECT_EQ(simulation.particles().attributes.value(1, 1).x, 0.1);     // the radius
-    EXPECT_DOUBLE_EQ(simulation.shown_attributes().value(1, 1).x, 0.1);  // at 0.5 s the factor is 1
+    EXPECT_DOUBLE_EQ(simulation.shown_attributes().value(1, 1).x, 0.1);  // the factor is 1 at 0.5 s
 }
 
-TEST(Offspring, NothingIsKeptForScenesThatDoNotAsk) {
+TEST(Offspring, UnusedColumnsStayEmpty) {
     SimulationSetup setup = setup_of(0.1, 0.5);
     setup.emitters = {parents(3, {}, {})};
     const Simulation simulation = finished(std::move(setup));

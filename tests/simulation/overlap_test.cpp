@@ -1,4 +1,4 @@
-// Spheres and surfaces that overlap at birth: what emitters do about it, and what becomes of the spheres that do.
+// Spheres that overlap surfaces at birth: the reaction of emitters, and the motion of such spheres.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ EmitterDescription spheres_from(EmitterShape shape, std::uint64_t burst, double 
     return emitter;
 }
 
-/// With names of their own.
+/// Gives each emitter its own name.
 std::vector<EmitterDescription> named(std::vector<EmitterDescription> emitters) {
     for (std::size_t k = 0; k < emitters.size(); ++k) emitters[k].name += std::to_string(k);
     return emitters;
@@ -55,7 +55,7 @@ double clearance(const Simulation& simulation, std::size_t i) {
 
 double energy(const Simulation& simulation) { return simulation.kinetic_energy() + *simulation.potential_energy(); }
 
-/// Two plates, closed boxes of their own, with a gap between z = -half and z = half.
+/// Returns two plates, each a closed box, with a gap between z = -half and z = half.
 SimulationSetup slot(double half) {
     SimulationSetup setup = testing::setup_of(0.01, 0.1, {"", 0.5, 0.3});
     setup.colliders = {mesh_collider(testing::box_mesh({-2, -2, half}, {2, 2, half + 1})),
@@ -63,7 +63,7 @@ SimulationSetup slot(double half) {
     return setup;
 }
 
-TEST(BirthsOfSpheres, AreARadiusAwayFromEverySurfaceForAnyNumberOfThreads) {
+TEST(BirthsOfSpheres, SpheresAreBornARadiusAwayFromEverySurfaceForAnyThreads) {
     std::set<std::uint64_t> hashes;
     for (const int threads : {1, 2, 5}) {
         const ThreadLimit limit(threads);
@@ -88,7 +88,7 @@ TEST(BirthsOfSpheres, AreARadiusAwayFromEverySurfaceForAnyNumberOfThreads) {
     EXPECT_EQ(hashes.size(), 1U);
 }
 
-TEST(BirthsOfSpheres, AreRefusedAndCountedWhereNothingFits) {
+TEST(BirthsOfSpheres, BirthsAreRefusedAndCountedIfNothingFits) {
     SimulationSetup setup = slot(0.09);
     setup.emitters =
         named({spheres_from(BoxShape{{}, {1, 1, 0.18}}, 20, 0.1), spheres_from(PointShape{{0, 0, 0.05}}, 7, 0.05),
@@ -101,7 +101,7 @@ TEST(BirthsOfSpheres, AreRefusedAndCountedWhereNothingFits) {
     EXPECT_EQ(simulation.statistics().emitted, 30U);
 }
 
-TEST(BirthsOfSpheres, RefusedByOverlapAndByThePopulationAddUp) {
+TEST(BirthsOfSpheres, RefusalsByOverlapAndByThePopulationAddUp) {
     SimulationSetup setup = slot(0.2);
     setup.options.most_particles = 50;
     setup.emitters =
@@ -114,7 +114,7 @@ TEST(BirthsOfSpheres, RefusedByOverlapAndByThePopulationAddUp) {
     EXPECT_EQ(counts.emitted + counts.births_refused_by_overlap + counts.births_refused_by_population, 81U);
 }
 
-TEST(BirthsOfSpheres, MayBeWhollyInsideASolidAndMayTouch) {
+TEST(BirthsOfSpheres, SpheresMayBeBornInsideASolidAndMayTouch) {
     SimulationSetup setup = testing::setup_of(0.01, 0.01, {"", 0.5, 0.0});
     setup.colliders = {mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1}))};
     setup.emitters = named({spheres_from(PointShape{}, 3, 0.5), spheres_from(PointShape{{0.75, 0, 0}}, 4, 0.25)});
@@ -124,8 +124,8 @@ TEST(BirthsOfSpheres, MayBeWhollyInsideASolidAndMayTouch) {
     EXPECT_EQ(simulation.statistics().births_refused_by_overlap, 0U);
 }
 
-TEST(BirthsOfSpheres, OnAMeshOverlapNeitherTheirTriangleNorItsNeighbours) {
-    // From the inside of a box, beside whose edges a sphere above one face overlaps the next.
+TEST(BirthsOfSpheres, BirthsOnAMeshOverlapNeitherTheirTriangleNorItsNeighbours) {
+    // The spheres are inside a box. Near its edges, a sphere above one face overlaps the next face.
     const auto box = std::make_shared<const TriangleMesh>(testing::flipped(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     for (const bool volume : {false, true}) {
         SimulationSetup setup = testing::setup_of(0.01, 0.01, {"", 0.5, 0.0});
@@ -147,7 +147,7 @@ TEST(BirthsOfSpheres, OnAMeshOverlapNeitherTheirTriangleNorItsNeighbours) {
 
 // Explicit spheres.
 
-TEST(SphereInOverlap, NeverGainsEnergyNorDeepensAndCostsAFewContacts) {
+TEST(SphereInOverlap, OverlapNeverGainsEnergyNorDeepensAndCostsFewContacts) {
     constexpr std::uint64_t kSeed = 5;
     SCOPED_TRACE(::testing::Message() << "seed " << kSeed);
     for (const double friction : {0.0, 0.4}) {
@@ -180,7 +180,7 @@ TEST(SphereInOverlap, NeverGainsEnergyNorDeepensAndCostsAFewContacts) {
     }
 }
 
-TEST(SphereInOverlap, LeavesAsIfTheSurfaceWereNotThere) {
+TEST(SphereInOverlap, SphereLeavesAsIfTheSurfaceWereAbsent) {
     SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.5, 0.3}, {0, 0, kG});
     setup.colliders = {mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 0}))};
     setup.particles = {sphere({0.1, 0.2, 0.03}, 0.1, {0.3, 0, 0}, {1, 2, 3})};
@@ -191,8 +191,9 @@ TEST(SphereInOverlap, LeavesAsIfTheSurfaceWereNotThere) {
     EXPECT_EQ(simulation.statistics().contacts, 0U);
 }
 
-// Half sunk into a slope it goes as one that lies on it: g sin without friction, 5/7 g sin rolling, spin v / r.
-TEST(SphereInOverlap, SlidesAndRollsLikeOneThatTouches) {
+// A sphere half sunk into a slope moves like one on its surface: g sin without friction, 5/7 g sin when rolling, with
+// spin v / r.
+TEST(SphereInOverlap, SphereSlidesAndRollsLikeATouchingOne) {
     for (const double friction : {0.0, 1.0}) {
         const double angle = 0.3;
         SimulationSetup setup =
@@ -211,7 +212,7 @@ TEST(SphereInOverlap, SlidesAndRollsLikeOneThatTouches) {
     }
 }
 
-TEST(SphereInOverlap, RestsAndSleepsWhereItIs) {
+TEST(SphereInOverlap, SphereRestsAndSleepsAtItsPosition) {
     SimulationSetup setup = testing::setup_of(0.01, 0.5, {"", 0.5, 0.3}, {0, 0, -kG});
     setup.colliders = {{"floor", PlaneShape{}, 0}};
     setup.particles = {sphere({0.5, 0, 0.04}, 0.1), sphere({1.5, 0, 0}, 0.1), sphere({2.5, 0, -0.04}, 0.1, {0, 0, 3})};
@@ -224,7 +225,7 @@ TEST(SphereInOverlap, RestsAndSleepsWhereItIs) {
     EXPECT_LE(simulation.statistics().contacts, 10U);
 }
 
-TEST(SphereInOverlap, IsItselfAgainOnceItHasBeenFree) {
+TEST(SphereInOverlap, SphereHasItsFullRadiusOnceItHasBeenFree) {
     SimulationSetup setup = testing::setup_of(0.01, 2.0, {"", 0.0, 0.3}, {0, 0, -kG});
     setup.options.verify = true;
     setup.colliders = {{"floor", PlaneShape{}, 0}};
@@ -236,7 +237,7 @@ TEST(SphereInOverlap, IsItselfAgainOnceItHasBeenFree) {
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
-TEST(SphereInOverlap, ShowsForcesItsWholeRadius) {
+TEST(SphereInOverlap, ForcesSeeTheWholeRadius) {
     std::atomic<int> others{0};
     SimulationSetup setup = testing::setup_of(0.01, 0.3, {"", 0.5, 0.3});
     setup.forces.push_back(make_acceleration([&](const ForceInput& input) {
@@ -250,7 +251,7 @@ TEST(SphereInOverlap, ShowsForcesItsWholeRadius) {
     EXPECT_EQ(others, 0);
 }
 
-TEST(SphereInOverlap, IsKeptInASavedState) {
+TEST(SphereInOverlap, SavedStateKeepsTheOverlap) {
     const auto make = [] {
         SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.8, 0.2}, {0.5, 0, -kG});
         setup.colliders = {{"floor", PlaneShape{}, 0}};
@@ -274,7 +275,7 @@ TEST(SphereInOverlap, IsKeptInASavedState) {
     EXPECT_EQ(second.statistics().started_in_overlap, 1U);
 }
 
-TEST(SphereInOverlap, IsNamedInALine) {
+TEST(SphereInOverlap, WarningNamesTheSphere) {
     SimulationSetup setup = testing::setup_of(0.01, 1.0, {"", 0.8, 0.2}, {0, 0, -kG});
     setup.colliders = {{"floor", PlaneShape{}, 0}};
     setup.particles = {sphere({0, 0, 5}, 0.5), sphere({0, 0, 0.25}, 0.5), sphere({3, 0, 0.125}, 0.5)};

@@ -1,4 +1,4 @@
-// Spheres between the edge of a box that moves and the floor: a wedge, one side of which comes on.
+// Spheres between the edge of a moving box and the floor: a wedge with one advancing side.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ void expect_no_time_lost(const Simulation& simulation) {
     EXPECT_EQ(simulation.statistics().energy_violations, 0U);
 }
 
-TEST(APaddleOverTheFloor, PushesOnAtItsEdgeWhatIsLowerThanHalfAsHighAgain) {
+TEST(APaddleOverTheFloor, EdgePushesSpheresLowerThanOneAndAHalfTimesItsHeight) {
     for (const bool meets_others : {false, true}) {
         SCOPED_TRACE(meets_others ? "among spheres that meet" : "alone");
         SimulationSetup setup = paddle_setup(
@@ -79,7 +79,7 @@ TEST(APaddleOverTheFloor, PushesOnAtItsEdgeWhatIsLowerThanHalfAsHighAgain) {
         run(simulation);
         expect_no_time_lost(simulation);
         EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
-        // The face is at 0.305 m; about the edge, the centre is where their distance is the radius.
+        // The face is at 0.305 m. At the edge, the distance of the centre is the radius.
         const double before_face = std::sqrt(0.017 * 0.017 - (kSlit - 0.017) * (kSlit - 0.017));
         EXPECT_NEAR(simulation.particles().position[0].x, 0.305 + before_face, 1e-5);
         EXPECT_NEAR(simulation.particles().position[0].z, 0.017, 1e-9);
@@ -87,14 +87,14 @@ TEST(APaddleOverTheFloor, PushesOnAtItsEdgeWhatIsLowerThanHalfAsHighAgain) {
     }
 }
 
-TEST(APaddleOverTheFloor, ThatTurnsLosesNoTimeOfWhatItPushes) {
+TEST(APaddleOverTheFloor, RotatingPaddleLosesNoTimeOfPushedSpheres) {
     Simulation simulation(turning_setup(0.8, 60));
     run(simulation);
     expect_no_time_lost(simulation);
     EXPECT_LE(simulation.statistics().bounces_per_step_max, 20U);
 }
 
-TEST(APaddleOverTheFloor, ThatTurnsPushesSpheresIntoNoOthers) {
+TEST(APaddleOverTheFloor, RotatingPaddlePushesNoSphereIntoAnother) {
     SimulationSetup setup = turning_setup(0.8, 60);
     setup.options.particle_contacts = PairContactSettings{.restitution = 0.4, .friction = 0.3};
     Simulation simulation(std::move(setup));

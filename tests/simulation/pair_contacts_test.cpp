@@ -54,8 +54,8 @@ Sums sums_of(const Particles& p) {
     return sums;
 }
 
-// With every method: nobody else is near.
-TEST(PairContacts, TwoSpheresMeetHeadOnAsTheClosedFormSays) {
+// Every method must give the same result, because no other sphere is near.
+TEST(PairContacts, HeadOnCollisionMatchesTheClosedForm) {
     for (const auto& [e, method] : {std::pair{0.0, PairMethod::automatic},
                                     {0.4, PairMethod::events},
                                     {0.4, PairMethod::contacts},
@@ -83,8 +83,8 @@ TEST(PairContacts, TwoSpheresMeetHeadOnAsTheClosedFormSays) {
     }
 }
 
-// Friction changes the velocities along the surface by the smaller of what stops the slip and what it can.
-TEST(PairContacts, AnObliqueImpactWithFrictionAndSpinIsThatOfTheClosedForm) {
+// Friction changes the tangential velocities by the impulse that stops the slip, or by its limit if that is smaller.
+TEST(PairContacts, ObliqueImpactWithFrictionAndSpinMatchesTheClosedForm) {
     for (const double mu : {0.05, 0.3, 10.0}) {
         SCOPED_TRACE("friction " + std::to_string(mu));
         const double e = 0.7;
@@ -98,7 +98,7 @@ TEST(PairContacts, AnObliqueImpactWithFrictionAndSpinIsThatOfTheClosedForm) {
         const double rb = 0.25;
         const double time = 0.0533;
         const Vec3 fall = (0.5 * time * time) * Vec3{0, 0, -9.81};
-        const Vec3 meeting{0.2, -0.1, 0.4};  // of a's centre
+        const Vec3 meeting{0.2, -0.1, 0.4};  // a's centre at the impact
         Particle a = particle_of(meeting - time * va - fall, va, ra, wa);
         Particle b = particle_of(meeting + (ra + rb) * n - time * vb - fall, vb, rb, wb);
         a.mass = 0.8;
@@ -121,7 +121,7 @@ TEST(PairContacts, AnObliqueImpactWithFrictionAndSpinIsThatOfTheClosedForm) {
     }
 }
 
-TEST(PairContacts, SpheresThatOnlyPassKeepTheirBits) {
+TEST(PairContacts, SpheresThatMissEachOtherKeepTheirBits) {
     SimulationSetup with = pair_setup(0.1, 2.0, {});
     with.particles = {particle_of({0, 0, 0}, {1, 0, 0}, 0.1), particle_of({2, 0.2001, 0}, {-1, 0, 0}, 0.1)};
     SimulationSetup without = setup_of(0.1, 2.0);
@@ -132,14 +132,14 @@ TEST(PairContacts, SpheresThatOnlyPassKeepTheirBits) {
     EXPECT_EQ(first.state_hash(), second.state_hash());
 }
 
-TEST(PairContacts, PointsNeverMeet) {
+TEST(PairContacts, PointsNeverCollide) {
     SimulationSetup setup = pair_setup(0.1, 1.0, {});
     setup.particles = {particle_of({0, 0, 0}, {1, 0, 0}), particle_of({1, 0, 0}, {-1, 0, 0})};
     EXPECT_EQ(run(std::move(setup)).statistics().pair_impacts, 0U);
 }
 
-// One ball in, one out, also where they touch.
-TEST(PairContacts, ACradleGivesOneBallOutForOneIn) {
+// One ball goes out for one ball in, even if the balls touch.
+TEST(PairContacts, CradleReleasesOneBallForOne) {
     for (const double gap : {0.0, 1e-9}) {
         SCOPED_TRACE("gap " + std::to_string(gap));
         SimulationSetup setup = pair_setup(0.05, 0.2, {});
@@ -149,7 +149,7 @@ TEST(PairContacts, ACradleGivesOneBallOutForOneIn) {
         }
         setup.particles.front().position.x = -0.13;
         setup.particles.front().velocity.x = 1.0;
-        std::swap(setup.particles[0], setup.particles[3]);  // ids must not decide
+        std::swap(setup.particles[0], setup.particles[3]);  // ids must not matter
         const Simulation simulation = run(std::move(setup));
         const Particles& p = simulation.particles();
         for (std::size_t i = 0; i < 5; ++i) EXPECT_NEAR(p.velocity[i].x, i == 4 ? 1.0 : 0.0, 1e-12) << i;
@@ -175,8 +175,8 @@ SimulationSetup rack(double e, std::uint64_t order) {
     return setup;
 }
 
-// Each ball has its mirror image, whatever the order of their ids.
-TEST(PairContacts, ASymmetricRackBreaksSymmetrically) {
+// Each ball has its mirror image, for any order of ids.
+TEST(PairContacts, SymmetricRackBreaksSymmetrically) {
     for (const double e : {1.0, 0.9}) {
         for (const std::uint64_t order : {0, 1, 2}) {
             SCOPED_TRACE("restitution " + std::to_string(e) + ", order " + std::to_string(order));
@@ -201,7 +201,7 @@ TEST(PairContacts, ASymmetricRackBreaksSymmetrically) {
     }
 }
 
-/// Spheres in a closed box.
+/// Returns spheres in a closed box.
 SimulationSetup gas(const PairContactSettings& contacts, std::size_t count, double radius, double time_step,
                     double duration) {
     SimulationSetup setup = pair_setup(time_step, duration, contacts);
@@ -233,7 +233,7 @@ SimulationSetup gas(const PairContactSettings& contacts, std::size_t count, doub
     return setup;
 }
 
-TEST(PairContacts, AnElasticGasKeepsItsEnergyAndNobodyLeavesTheBox) {
+TEST(PairContacts, ElasticGasKeepsItsEnergyAndStaysInTheBox) {
     SimulationSetup setup = gas({}, 500, 0.03, 0.01, 2.0);
     setup.options.verify = true;
     const double before = Simulation(gas({}, 500, 0.03, 0.01, 2.0)).kinetic_energy();
@@ -246,10 +246,10 @@ TEST(PairContacts, AnElasticGasKeepsItsEnergyAndNobodyLeavesTheBox) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-TEST(PairContacts, ARoughGasKeepsMomentumAndAngularMomentumAndLosesEnergy) {
+TEST(PairContacts, RoughGasConservesMomentumAndAngularMomentumAndLosesEnergy) {
     SimulationSetup setup = gas({.restitution = 0.8, .friction = 0.4, .rolling_friction = 0.1}, 400, 0.02, 0.02, 1.0);
     setup.colliders.clear();
-    // Contacts that are planned before they close turn with arms that are too short by part of the gap.
+    // Contacts planned before they close use lever arms that are too short by part of the gap.
     setup.options.particle_contacts->method = PairMethod::events;
     for (Particle& particle : setup.particles) particle.velocity = -3.0 * particle.position + 0.2 * particle.velocity;
     Simulation simulation(std::move(setup));
@@ -262,7 +262,7 @@ TEST(PairContacts, ARoughGasKeepsMomentumAndAngularMomentumAndLosesEnergy) {
     EXPECT_LT(last.energy, first.energy);
 }
 
-TEST(PairContacts, HaveTheSameBitsForAnyNumberOfThreads) {
+TEST(PairContacts, BitsDoNotDependOnTheNumberOfThreads) {
     std::vector<std::uint64_t> hashes;
     for (const int threads : {1, 2, 7}) {
         const ThreadLimit limit(threads);
@@ -272,7 +272,7 @@ TEST(PairContacts, HaveTheSameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(hashes[2], hashes[0]);
 }
 
-TEST(PairContacts, AVerifiedRunHasTheSameBits) {
+TEST(PairContacts, VerificationChangesNoBit) {
     SimulationSetup verified = gas({.restitution = 0.95}, 300, 0.02, 0.02, 1.0);
     verified.options.verify = true;
     const Simulation first = run(std::move(verified));
@@ -281,7 +281,7 @@ TEST(PairContacts, AVerifiedRunHasTheSameBits) {
     EXPECT_EQ(first.state_hash(), second.state_hash());
 }
 
-TEST(PairContacts, WhatMakesRunsFasterChangesNoBit) {
+TEST(PairContacts, OptimisationsChangeNoBit) {
     SimulationSetup plain = gas({.restitution = 0.95, .friction = 0.1}, 300, 0.02, 0.02, 1.0);
     plain.forces.push_back(make_gravity({0, 0, -1}));
     plain.acceleration = {.look_ahead = false, .deferred_steps = false, .sleeping = false, .spatial_order = false};
@@ -290,7 +290,7 @@ TEST(PairContacts, WhatMakesRunsFasterChangesNoBit) {
     EXPECT_EQ(run(std::move(plain)).state_hash(), run(std::move(fast)).state_hash());
 }
 
-TEST(PairContacts, ARunThatIsResumedHasTheSameBits) {
+TEST(PairContacts, ResumedRunHasTheSameBits) {
     const auto setup = [] { return gas({.restitution = 0.9, .friction = 0.3}, 200, 0.03, 0.02, 0.6); };
     Simulation whole(setup());
     std::vector<std::byte> bytes;
@@ -312,8 +312,8 @@ TEST(PairContacts, ARunThatIsResumedHasTheSameBits) {
     EXPECT_GT(whole.statistics().pair_impacts, 100U);
 }
 
-// Where the acceleration is uniform the length of the step decides nothing, until rounding has grown.
-TEST(PairContacts, TheTimeStepChangesNoImpact) {
+// Under a uniform acceleration the time step changes nothing, until rounding errors have grown.
+TEST(PairContacts, TimeStepChangesNoImpact) {
     const auto positions = [](double time_step) {
         SimulationSetup setup = gas({.restitution = 0.9, .friction = 0.2}, 60, 0.04, time_step, 0.5);
         setup.forces.push_back(make_gravity({0, 0, -2}));
@@ -326,7 +326,7 @@ TEST(PairContacts, TheTimeStepChangesNoImpact) {
     for (std::size_t i = 0; i < coarse.size(); ++i) EXPECT_LT(largest(coarse[i] - fine[i]), 1e-9) << i;
 }
 
-/// Time of a pair's impact under the spring force a = -k x, by bisection on the exact motion.
+/// Returns the time of a pair's impact under the spring force a = -k x, by bisection on the exact motion.
 double meeting_of_oscillators(double x, double v, double rate, double distance) {
     double low = 0.0;
     double high = 0.5;
@@ -338,7 +338,7 @@ double meeting_of_oscillators(double x, double v, double rate, double distance) 
     return 0.5 * (low + high);
 }
 
-// The relative motion of two in one field of springs is that of one; elastic equals exchange their velocities.
+// The relative motion of two particles in one spring field is that of one. Equal elastic spheres exchange velocities.
 TEST(PairContacts, OtherIntegratorsFindTheImpactWithTheirOwnOrder) {
     const double rate = 3.0;
     const double time = meeting_of_oscillators(1.0, -2.0, rate, 0.2);
@@ -367,7 +367,7 @@ TEST(PairContacts, OtherIntegratorsFindTheImpactWithTheirOwnOrder) {
     }
 }
 
-TEST(PairContacts, SpheresThatOverlapFromTheStartPartAndGetNoDeeper) {
+TEST(PairContacts, InitiallyOverlappingSpheresSeparateAndGetNoDeeper) {
     SimulationSetup setup = pair_setup(0.05, 1.0, {.restitution = 0.5});
     setup.particles = {particle_of({0, 0, 0}, {0.5, 0, 0}, 0.1), particle_of({0.15, 0, 0}, {-0.5, 0, 0}, 0.1),
                        particle_of({5, 0, 0}, {-0.1, 0, 0}, 0.1), particle_of({5.1, 0, 0}, {0.1, 0, 0}, 0.1)};
@@ -379,7 +379,7 @@ TEST(PairContacts, SpheresThatOverlapFromTheStartPartAndGetNoDeeper) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1.0);
 }
 
-TEST(PairContacts, WhatSpendsItsBudgetIsCountedAndStays) {
+TEST(PairContacts, SphereThatSpendsItsBudgetIsCountedAndStays) {
     SimulationSetup setup = pair_setup(0.5, 0.5, {.restitution = 0.5, .impact_budget = 3});
     ColliderDescription floor;
     floor.shape = PlaneShape{{0, 0, 0}, {0, 0, 1}};
@@ -392,7 +392,7 @@ TEST(PairContacts, WhatSpendsItsBudgetIsCountedAndStays) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-9);
 }
 
-TEST(PairContacts, ABallAtRestOnTheFloorRollsAwayWhenItIsHit) {
+TEST(PairContacts, BallAtRestOnTheFloorRollsAwayWhenHit) {
     SimulationSetup setup = pair_setup(0.02, 1.0, {.restitution = 0.9, .friction = 0.1}, {0, 0, -9.81});
     setup.options.resting_speed = 1e-3;
     setup.options.verify = true;
@@ -409,10 +409,10 @@ TEST(PairContacts, ABallAtRestOnTheFloorRollsAwayWhenItIsHit) {
     EXPECT_GT(p.position[0].x, 0.5);
     EXPECT_GT(p.position[0].x, p.position[1].x + 0.06);
     EXPECT_NEAR(p.position[0].z, 0.03, 1e-6);
-    EXPECT_NEAR(p.spin[0].y, p.velocity[0].x / 0.03, 1e-6);  // it rolls
+    EXPECT_NEAR(p.spin[0].y, p.velocity[0].x / 0.03, 1e-6);  // the ball rolls
 }
 
-TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
+TEST(PairContacts, IncompatibleFeaturesAreRefusedByName) {
     const auto complaint = [](const std::function<void(SimulationSetup&)>& change) {
         SimulationSetup setup = pair_setup(0.1, 1.0, {});
         setup.particles = {particle_of({0, 0, 0}, {}, 0.1), particle_of({1, 0, 0}, {}, 0.1)};
@@ -445,8 +445,8 @@ TEST(PairContacts, WhatDoesNotGoTogetherIsRefusedByName) {
                     "integrator"));
 }
 
-// The upper one gives its momentum to the lower, which bounces off the floor at once and gives it back.
-TEST(PairContacts, WhatFallsOnASphereThatLiesOnTheFloorComesBack) {
+// The upper sphere gives its momentum to the lower one, which bounces off the floor at once and returns it.
+TEST(PairContacts, SphereThatFallsOnOneOnTheFloorRebounds) {
     for (const PairMethod method : {PairMethod::automatic, PairMethod::events, PairMethod::contacts}) {
         for (const double aside : {0.0, 0.05}) {
             SimulationSetup setup = pair_setup(1e-3, 0.6, {.method = method}, {0, 0, -9.81});
@@ -469,8 +469,8 @@ TEST(PairContacts, WhatFallsOnASphereThatLiesOnTheFloorComesBack) {
     }
 }
 
-// Friction that is found from the slip before the impact may act against another one after it.
-TEST(PairContacts, NothingIsGainedWhereFrictionActsInSeveralContactsAtOnce) {
+// Friction computed from the slip before the impact may act in the wrong direction after it.
+TEST(PairContacts, NoEnergyIsGainedIfFrictionActsInSeveralContactsAtOnce) {
     for (const double e : {0.0, 0.5, 1.0}) {
         for (const double friction : {0.1, 0.3, 1.0}) {
             SimulationSetup setup = pair_setup(0.01, 0.05, {.restitution = e, .friction = friction});
@@ -485,7 +485,7 @@ TEST(PairContacts, NothingIsGainedWhereFrictionActsInSeveralContactsAtOnce) {
     }
 }
 
-TEST(PairContacts, MassesThatTheArithmeticCannotCompareAreRefused) {
+TEST(PairContacts, IncomparableMassesAreRefused) {
     for (const double mass : {1e-300, 1e200}) {
         SimulationSetup setup = pair_setup(0.01, 0.05, {});
         setup.particles = {particle_of({0, 0, 0}, {1, 0, 0}, 0.1), particle_of({1, 0, 0}, {}, 0.1)};
@@ -494,8 +494,8 @@ TEST(PairContacts, MassesThatTheArithmeticCannotCompareAreRefused) {
     }
 }
 
-// Many as few: as long as impacts do not crowd nothing is planned.
-TEST(PairContacts, AGasThatLosesEnergyDoesSoImpactByImpactHoweverManyThereAre) {
+// Nothing is planned as long as impacts are sparse, with few or many spheres.
+TEST(PairContacts, DissipativeGasUsesSingleImpactsForAnyNumberOfSpheres) {
     for (const std::size_t count : {200U, 600U}) {
         const auto energy_by = [&](PairMethod method) {
             return run(gas({.restitution = 0.95, .method = method}, count, 0.03, 0.02, 0.3)).kinetic_energy();

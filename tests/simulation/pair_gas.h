@@ -1,5 +1,5 @@
 /// \file
-/// A gas of hard spheres in a closed box, and what is known of it.
+/// A gas of hard spheres in a closed box, and its known properties.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace ricochet::testing {
 
-/// Smooth spheres of radius 1 and mass 1 in a closed box with elastic walls, all of one speed at first.
+/// Smooth spheres of radius 1 and mass 1 in a closed box with elastic walls. All have the same initial speed.
 struct Gas {
     double packing;
     std::size_t count;
@@ -51,8 +51,8 @@ struct Gas {
     }
 };
 
-/// Enskog's rate of impacts a particle at temperature 1 and a number density: sqrt(2) n pi d^2 chi times the mean
-/// speed.
+/// Returns Enskog's rate of impacts per particle at temperature 1 and a number density: sqrt(2) n pi d^2 chi times the
+/// mean speed.
 inline double enskog_rate(double density) {
     const double packing = density * 4.0 / 3.0 * std::numbers::pi;
     const double chi = (1.0 - 0.5 * packing) / std::pow(1.0 - packing, 3);
@@ -60,13 +60,13 @@ inline double enskog_rate(double density) {
     return std::sqrt(2.0) * density * std::numbers::pi * 4.0 * chi * mean_speed;
 }
 
-/// Whether a place is in the inner half of the box's volume.
+/// Returns true if a position is in the inner half of the box's volume.
 inline bool is_inner(const Vec3& x, double edge) {
     const double half = 0.5 * edge * std::cbrt(0.5);
     return std::fabs(x.x) < half && std::fabs(x.y) < half && std::fabs(x.z) < half;
 }
 
-/// How many centres lie in the inner half of the box's volume, over that volume.
+/// Returns the number of centres in the inner half of the box's volume, over that volume.
 inline double inner_density(const Particles& particles, double edge) {
     std::size_t inside = 0;
     for (const Vec3& x : particles.position) inside += is_inner(x, edge) ? 1 : 0;

@@ -21,9 +21,9 @@ using testing::Gas;
 using testing::inner_density;
 using testing::is_inner;
 
-// From one speed to Maxwell's distribution: the fourth moment of a component is three times the square of the second,
-// 9/5 of it at first.
-TEST(PairGas, MomentsOfVelocitiesBecomeMaxwells) {
+// The gas evolves from one speed to Maxwell's distribution. The fourth moment of a component becomes three times the
+// square of the second; initially it is 9/5 of it.
+TEST(PairGas, MomentsOfVelocitiesBecomeMaxwellian) {
     const Gas gas{0.1, static_cast<std::size_t>(test::scaled(2000)), 1.0};
     Simulation simulation(gas.setup(0.2, 20.0));
     double second = 0.0;
@@ -44,8 +44,8 @@ TEST(PairGas, MomentsOfVelocitiesBecomeMaxwells) {
     EXPECT_NEAR(simulation.kinetic_energy(), 1.5 * static_cast<double>(gas.count), 1e-9);
 }
 
-// Components in twenty classes of equal probability, at the end alone, so that samples are independent.
-TEST(PairGas, VelocitiesBecomeMaxwells) {
+// Components are counted in twenty classes of equal probability, only at the end, so that samples are independent.
+TEST(PairGas, VelocitiesBecomeMaxwellian) {
     const Gas gas{0.1, static_cast<std::size_t>(test::scaled(2000)), 1.0};
     Simulation simulation(gas.setup(0.2, 16.0));
     while (!simulation.finished()) simulation.step();
@@ -63,15 +63,15 @@ TEST(PairGas, VelocitiesBecomeMaxwells) {
     EXPECT_LT(chi_square, test::chi_square_limit(kClasses - 1));
 }
 
-// Impacts and density are those of the inner half, off the walls' layer. A long run has so many impacts that Enskog's
-// rate stands to 1 %; the short one has 9 000 of them, and a density that wanders by 1 %.
-TEST(PairGas, MeanFreePathIsThatOfEnskog) {
+// Impacts and density are measured in the inner half, away from the layer at the walls. A long run has enough impacts
+// to test Enskog's rate to 1 %. The short run has 9 000 impacts, and its density fluctuates by 1 %.
+TEST(PairGas, MeanFreePathMatchesEnskog) {
     const bool is_long = test::is_long_run();
     const Gas gas{0.05, is_long ? 21952 : static_cast<std::size_t>(test::scaled(4096)), 1.0};
     SimulationSetup setup = gas.setup(0.3, is_long ? 90.0 : 30.0);
     setup.options.record_contacts = true;
     Simulation simulation(std::move(setup));
-    double inner_time = 0.0;  // of spheres
+    double inner_time = 0.0;  // summed over spheres
     double impacts = 0.0;
     double density = 0.0;
     int samples = 0;
@@ -93,9 +93,9 @@ TEST(PairGas, MeanFreePathIsThatOfEnskog) {
     EXPECT_NEAR(rate / enskog_rate(density), 1.0, is_long ? 0.01 : gas.count >= 4096 ? 0.04 : 0.3) << density;
 }
 
-// Each impact takes (1 - e^2) of the temperature on average, so that the temperature falls exponentially with the
-// number of impacts, which Enskog's rate turns into Haff's law.
-TEST(PairGas, AnInelasticGasCoolsAsHaffSays) {
+// Each impact removes (1 - e^2) of the temperature on average. The temperature therefore falls exponentially with the
+// number of impacts, and Enskog's rate gives Haff's law.
+TEST(PairGas, InelasticGasCoolsByHaffsLaw) {
     const Gas gas{0.05, static_cast<std::size_t>(test::scaled(8000)), 0.9};
     Simulation simulation(gas.setup(0.3, 30.0));
     double first_energy = 0.0;

@@ -1,5 +1,4 @@
-// Spheres of several materials: what two do to each other is that of the pair of their materials, in impacts and where
-// they press on each other.
+// Spheres of several materials. The pair of materials determines impacts and pressing contact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +19,7 @@ using testing::setup_of;
 constexpr double kSteel = 0.0;
 constexpr double kGlass = 1.0;
 
-/// Steel, and glass.
+/// Returns a setup with the materials steel and glass.
 SimulationSetup two_materials(double time_step, double duration, std::vector<MaterialPair> pairs,
                               const Vec3& gravity = {}) {
     SimulationSetup setup = setup_of(time_step, duration, {}, gravity);
@@ -47,7 +46,7 @@ Simulation run(SimulationSetup setup) {
     return simulation;
 }
 
-TEST(PairMaterials, SpheresPartWithTheRestitutionOfTheirPair) {
+TEST(PairMaterials, SpheresReboundWithTheRestitutionOfTheirPair) {
     SimulationSetup setup =
         two_materials(0.25, 1.0, {{"glass", "glass", {0.25, 0.0, 0.0}}, {"glass", "steel", {0.5, 0.0, 0.0}}});
     const std::vector<std::pair<double, double>> pairs = {
@@ -65,8 +64,9 @@ TEST(PairMaterials, SpheresPartWithTheRestitutionOfTheirPair) {
     }
 }
 
-// Grazing by 45 degrees: the normal impulse of equal spheres of 1 kg is (1 + e) times half the approach.
-TEST(PairMaterials, FrictionAndWhatResistsRollingAreThoseOfThePair) {
+// The spheres graze at 45 degrees. The normal impulse of equal spheres of 1 kg is (1 + e) times half the approach
+// speed.
+TEST(PairMaterials, FrictionAndRollingResistanceFollowThePair) {
     SimulationSetup setup =
         two_materials(0.25, 0.5, {{"steel", "steel", {0.75, 0.1, 0.0}}, {"steel", "glass", {0.75, 0.05, 0.0}}});
     const double a = 0.2 / std::sqrt(2.0);
@@ -87,9 +87,9 @@ TEST(PairMaterials, FrictionAndWhatResistsRollingAreThoseOfThePair) {
     }
 }
 
-// On a sphere of 10 m, which stands still, a small one slides where friction cannot make it roll, and rolls where it
-// can, at first as on a slope.
-TEST(PairMaterials, WhatPressesSlidesOrRollsByThePair) {
+// A small sphere lies on a fixed sphere of 10 m, at first like on a slope. It slides if friction cannot make it roll,
+// and rolls if it can.
+TEST(PairMaterials, PressingSphereSlidesOrRollsByThePair) {
     SimulationSetup setup = two_materials(
         1e-4, 0.02, {{"steel", "steel", {0.0, 0.05, 0.0}}, {"steel", "glass", {0.0, 0.5, 0.0}}}, {0, 0, -9.81});
     setup.options.particle_contacts->method = PairMethod::contacts;
@@ -110,7 +110,7 @@ TEST(PairMaterials, WhatPressesSlidesOrRollsByThePair) {
     EXPECT_NEAR(0.1 * simulation.particles().spin[3].y, rolls, 1e-4 * rolls);
 }
 
-TEST(PairMaterials, ChildrenAreOfWhatTheirParentIs) {
+TEST(PairMaterials, ChildrenHaveTheMaterialOfTheirParent) {
     SimulationSetup setup = two_materials(0.05, 0.5, {});
     setup.colliders = {{"wall", PlaneShape{{1, 0, 0}, {-1, 0, 0}}}};
     EmitterDescription source;
@@ -143,7 +143,7 @@ std::string refusal_of(SimulationSetup setup) {
     return {};
 }
 
-TEST(PairMaterials, WhatIsNoMaterialIsRefusedByName) {
+TEST(PairMaterials, InvalidMaterialIsRefusedByName) {
     EXPECT_EQ(refusal_of(two_materials(0.25, 1.0, {})), "");
     const auto expect = [&](const auto& change, const char* part) {
         SimulationSetup setup = two_materials(0.25, 1.0, {});

@@ -1,5 +1,5 @@
-// Spheres that forces press on each other in places where no plan has been made yet: in the air, on one that is pinned,
-// from the first step on.
+// Spheres that forces press on each other before any plan exists: in the air, on a pinned sphere, and from the first
+// step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ Simulation run(SimulationSetup setup) {
     return simulation;
 }
 
-TEST(PairPressing, ASphereLiesOnOneThatIsPinned) {
+TEST(PairPressing, SphereLiesOnAPinnedOne) {
     SimulationSetup setup = two_spheres(0.01, 2.0, {0, 0, 0}, {0, 0, 2.0 * kRadius}, 0.3);
     setup.particles[0].pinned = true;
     const Simulation simulation = run(std::move(setup));
@@ -38,9 +38,9 @@ TEST(PairPressing, ASphereLiesOnOneThatIsPinned) {
     EXPECT_NEAR(simulation.particles().position[1].z, 2.0 * kRadius, 1e-6);
 }
 
-// Where its speed's square over the distance of the centres is the pull's part along it: at two thirds of the height
-// that it begins at.
-TEST(PairPressing, ASphereSlidesDownOneThatIsPinnedUntilItLeaves) {
+// The sphere leaves when its squared speed over the distance of the centres equals the normal component of gravity.
+// That is at two thirds of its initial height.
+TEST(PairPressing, SphereSlidesDownAPinnedOneUntilItLeaves) {
     const double begin = 0.2;
     const Vec3 place = 2.0 * kRadius * Vec3{std::sin(begin), 0.0, std::cos(begin)};
     SimulationSetup setup = two_spheres(1e-4, 1.0, {0, 0, 0}, place, 0.3);
@@ -56,8 +56,8 @@ TEST(PairPressing, ASphereSlidesDownOneThatIsPinnedUntilItLeaves) {
     EXPECT_NEAR(leaves, std::cos(begin) * 2.0 / 3.0, 0.02);
 }
 
-// Drag holds the light one back: the common fall is that of both masses with the drag of two spheres.
-TEST(PairPressing, AHeavySphereAndALightOneFallTogetherThroughAir) {
+// Drag holds the light sphere back. The common fall is that of both masses with the drag of two spheres.
+TEST(PairPressing, HeavyAndLightSphereFallTogetherThroughAir) {
     for (const double time_step : {0.01, 0.001}) {
         SimulationSetup setup = two_spheres(time_step, 2.0, {0, 0, 0}, {0, 0, 2.1 * kRadius}, 0.5);
         setup.particles[0].mass = 0.05;
@@ -72,7 +72,7 @@ TEST(PairPressing, AHeavySphereAndALightOneFallTogetherThroughAir) {
     }
 }
 
-TEST(PairPressing, WhatTouchesFromTheBeginningDoesNotFallIntoEachOther) {
+TEST(PairPressing, InitiallyTouchingSpheresDoNotFallIntoEachOther) {
     for (const double mass : {1.0, 1e-6}) {
         SimulationSetup setup = two_spheres(0.01, 1.0, {0, 0, kRadius}, {0, 0, 3.0 * kRadius}, 0.0);
         setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
@@ -83,7 +83,7 @@ TEST(PairPressing, WhatTouchesFromTheBeginningDoesNotFallIntoEachOther) {
     }
 }
 
-TEST(PairPressing, AnElasticSphereLiesOnOneOnADeadFloor) {
+TEST(PairPressing, ElasticSphereLiesOnOneOnAnInelasticFloor) {
     SimulationSetup setup = two_spheres(0.01, 4.0, {0, 0, kRadius}, {0, 0, 8.0 * kRadius}, 1.0);
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
     const Simulation simulation = run(std::move(setup));

@@ -18,15 +18,15 @@ namespace RICOCHET_FILE {
 
 using testing::Gas;
 
-/// P / (n T) of hard spheres. Source: N. F. Carnahan, K. E. Starling, J. Chem. Phys. 51 (1969).
+/// Returns P / (n T) of hard spheres. Source: N. F. Carnahan, K. E. Starling, J. Chem. Phys. 51 (1969).
 double carnahan_starling(double packing) {
     return (1.0 + packing + packing * packing - packing * packing * packing) / std::pow(1.0 - packing, 3);
 }
 
-/// P / (n T) on walls, less that of the fluid far from them, of spheres of radius 1 at temperature 1 in a cube in which
-/// their centres have the edge `free`: -4 gamma / free, with the tension gamma of the surface that centres reach, by
-/// scaled particle theory. Sources: H. Reiss, H. L. Frisch, J. L. Lebowitz, J. Chem. Phys. 31 (1959); held against
-/// simulations by M. Heni, H. Lowen, Phys. Rev. E 60 (1999).
+/// Returns P / (n T) on walls, minus that of the fluid far from them. The spheres have radius 1 and temperature 1, and
+/// their centres are in a cube of edge `free`. The excess is -4 gamma / free. gamma is the tension of the surface that
+/// centres reach, by scaled particle theory. Sources: H. Reiss, H. L. Frisch, J. L. Lebowitz, J. Chem. Phys. 31 (1959);
+/// compared with simulations by M. Heni, H. Lowen, Phys. Rev. E 60 (1999).
 double wall_excess(double packing, double density, double free) {
     const double tension =
         -9.0 * packing * packing * (1.0 + packing) / (2.0 * std::numbers::pi * std::pow(1.0 - packing, 3)) / 4.0;
@@ -35,9 +35,9 @@ double wall_excess(double packing, double density, double free) {
 
 struct Pressures {
     double density = 0.0;      ///< of the inner part
-    double temperature = 0.0;  ///< there
-    double virial = 0.0;       ///< by the impacts there
-    double walls = 0.0;        ///< by what the walls were given
+    double temperature = 0.0;  ///< of the inner part
+    double virial = 0.0;       ///< from the impacts in the inner part
+    double walls = 0.0;        ///< from the impulses on the walls
     double impacts = 0.0;      ///< in the inner part
 };
 
@@ -49,12 +49,12 @@ double given_to_walls(const Simulation& simulation) {
 
 struct Schedule {
     double time_step;
-    double before;    ///< until the gas has come to rest as a whole
-    double measured;  ///< after that
+    double before;    ///< duration until the gas as a whole is at rest
+    double measured;  ///< duration of the measurement
 };
 
-/// The inner part is half of the volume, or what lies five diameters from all walls where that is less: spheres lie in
-/// layers beside walls, and what is cut through a layer counts too many of them, or too few.
+/// Returns the edge of the inner part. It is half of the volume, or the region five diameters from all walls if that is
+/// smaller. Spheres form layers at walls, and a boundary through a layer would count too many or too few of them.
 double inner_edge(double edge) { return std::min(edge * std::cbrt(0.5), edge - 20.0); }
 
 Pressures pressures_of(const Gas& gas, const Schedule& schedule, double inner) {
@@ -91,7 +91,7 @@ Pressures pressures_of(const Gas& gas, const Schedule& schedule, double inner) {
     sums.density = inside / samples / volume;
     sums.temperature = energy / (1.5 * inside);
     sums.virial = sums.density * sums.temperature + sums.virial / (3.0 * volume * elapsed);
-    // Centres come up to a radius to the walls.
+    // Centres are at least a radius from the walls.
     const double area = 6.0 * (gas.edge() - 2.0) * (gas.edge() - 2.0);
     sums.walls = (given_to_walls(simulation) - wall_impulse) / (area * elapsed);
     return sums;
@@ -112,18 +112,17 @@ void expect_carnahan_starling(const Gas& gas, const Pressures& found, double bou
     EXPECT_NEAR(walls, 1.0, bound) << found.impacts;
 }
 
-// About 20 000 impacts in the inner half and as many on walls; the density of the inner half, which holds 860 spheres,
-// wanders by 1 to 2 %, and so does what is expected of it.
-TEST(PairPressure, IsThatOfCarnahanAndStarling) {
+// There are about 20 000 impacts in the inner half and as many on walls. The inner half contains 860 spheres. Its
+// density fluctuates by 1 to 2 %, and so does the expected pressure.
+TEST(PairPressure, PressureMatchesCarnahanAndStarling) {
     if (test::scaled(10) < 10) GTEST_SKIP() << "too few impacts in such a build";
     const Gas gas{0.2, 1728, 1.0};
     expect_carnahan_starling(gas, pressures_of(gas, {0.15, 6.0, 24.0}, gas.edge() * std::cbrt(0.5)), 0.05);
 }
 
-// 21 952 spheres: the density of the inner part wanders by 0.3 % or less on the mean, and 200 000 impacts and more give
-// 0.3 %. Sound goes to and fro some times before it is measured; heat does not, so that the temperature is measured
-// too.
-TEST(PairPressureLong, IsThatOfCarnahanAndStarlingAtAnyPacking) {
+// With 21 952 spheres the mean density of the inner part fluctuates by at most 0.3 %, and 200 000 impacts or more give
+// 0.3 %. Sound crosses the box several times before the measurement. Heat does not, so the temperature is measured too.
+TEST(PairPressureLong, PressureMatchesCarnahanAndStarlingAtAnyPacking) {
     const std::vector<Gas> gases = {
         {0.01, 21952, 1.0}, {0.1, 21952, 1.0}, {0.2, 21952, 1.0}, {0.3, 21952, 1.0}, {0.4, 21952, 1.0}};
     const std::vector<Schedule> schedules = {

@@ -1,4 +1,4 @@
-// What is recorded of spheres that meet each other, and what --verify says to it.
+// Records of collisions between spheres, and their verification with --verify.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace RICOCHET_FILE {
 using testing::particle_of;
 using testing::setup_of;
 
-constexpr double kHalf = 0.5;  // m, of the box
+constexpr double kHalf = 0.5;  // m, half edge of the box
 
 SimulationSetup box_of_spheres(const PairContactSettings& contacts, std::size_t count, const Vec3& gravity) {
     SimulationSetup setup = setup_of(0.01, 0.5, Material{"", 0.8, 0.2}, gravity);
@@ -43,7 +43,7 @@ SimulationSetup box_of_spheres(const PairContactSettings& contacts, std::size_t 
     return setup;
 }
 
-TEST(PairRecords, HoldEveryImpactInTheOrderOfTime) {
+TEST(PairRecords, EveryImpactIsRecordedInTheOrderOfTime) {
     Simulation simulation(box_of_spheres({.restitution = 0.9, .friction = 0.3}, 200, {}));
     std::size_t rows = 0;
     while (!simulation.finished()) {
@@ -58,7 +58,7 @@ TEST(PairRecords, HoldEveryImpactInTheOrderOfTime) {
             EXPECT_GE(record.time, simulation.time() - 0.01 - 1e-12);
             EXPECT_LE(record.time, simulation.time());
             EXPECT_NEAR(length(record.normal), 1.0, 1e-14);
-            EXPECT_LT(dot(record.impulse, record.normal), 0.0);  // on the second, away from the first
+            EXPECT_LT(dot(record.impulse, record.normal), 0.0);  // on the second sphere, away from the first
             EXPECT_LT(length(record.mass * (record.velocity_before - record.velocity_after) - record.impulse), 1e-13);
         }
     }
@@ -66,7 +66,7 @@ TEST(PairRecords, HoldEveryImpactInTheOrderOfTime) {
     EXPECT_GT(rows, 300U);
 }
 
-TEST(PairRecords, AreEmptyWhereNobodyAsks) {
+TEST(PairRecords, RecordsAreEmptyUnlessRequested) {
     SimulationSetup setup = box_of_spheres({}, 100, {});
     setup.options.record_contacts = false;
     Simulation simulation(std::move(setup));
@@ -75,8 +75,8 @@ TEST(PairRecords, AreEmptyWhereNobodyAsks) {
     EXPECT_TRUE(simulation.pair_records().empty());
 }
 
-// Rough, rolling, heavy on light, round after round; and what is planned together.
-TEST(PairRecords, VerifiedImpactsAddUpAndNobodyStandsInAnother) {
+// Covers rough spheres, rolling friction, heavy on light spheres over many rounds, and contacts planned together.
+TEST(PairRecords, VerifiedImpactsAddUpAndNoSpheresOverlap) {
     for (const PairContactSettings& contacts :
          {PairContactSettings{}, PairContactSettings{.restitution = 0.7, .friction = 0.4},
           PairContactSettings{.restitution = 0.5, .friction = 0.2, .rolling_friction = 0.1},
@@ -94,8 +94,8 @@ TEST(PairRecords, VerifiedImpactsAddUpAndNobodyStandsInAnother) {
     }
 }
 
-// A cradle, and a row that is hit from both ends, answer several contacts at once.
-TEST(PairRecords, VerifiedImpactsOfManyAtOnceAddUp) {
+// A cradle, and a row that is hit from both ends, resolve several contacts at once.
+TEST(PairRecords, VerifiedSimultaneousImpactsAddUp) {
     SimulationSetup setup = setup_of(0.05, 1.0);
     setup.options.particle_contacts = PairContactSettings{};
     setup.options.verify = true;

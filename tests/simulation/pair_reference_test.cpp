@@ -25,7 +25,7 @@ struct PreciseBall {
     Digits radius;
 };
 
-/// Smooth balls without walls, all events one after the other, in fifty digits.
+/// Smooth balls without walls. Resolves all events one after the other, in fifty digits.
 class Reference {
 public:
     Reference(const std::vector<Particle>& particles, const Digits& restitution) : restitution_(restitution) {
@@ -37,7 +37,7 @@ public:
         }
     }
 
-    /// Returns how many impacts there were.
+    /// Runs for a duration. Returns the number of impacts.
     std::size_t run(const Digits& duration) {
         std::size_t impacts = 0;
         Digits now = 0;
@@ -83,7 +83,7 @@ private:
         }
     }
 
-    /// -1 where they do not meet.
+    /// Returns the time of impact, or -1 if the balls do not meet.
     static Digits time_of(const PreciseBall& a, const PreciseBall& b, const Digits& now) {
         std::array<Digits, 3> d;
         std::array<Digits, 3> u;
@@ -112,7 +112,7 @@ private:
     Digits restitution_;
 };
 
-/// A cloud that falls in on itself.
+/// Returns a cloud that implodes.
 std::vector<Particle> imploding_cloud(std::uint64_t seed) {
     RandomSequence random(seed, 1, 0);
     std::vector<Particle> particles;
@@ -130,8 +130,8 @@ std::vector<Particle> imploding_cloud(std::uint64_t seed) {
     return particles;
 }
 
-// Each impact multiplies what is wrong by several times; the same impacts in the same order leave this.
-TEST(PairReference, AHundredSpheresGoTheWayOfAReferenceInFiftyDigits) {
+// Each impact multiplies an error several times. This is the error left after the same impacts in the same order.
+TEST(PairReference, HundredSpheresFollowAReferenceInFiftyDigits) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         const std::vector<Particle> particles = imploding_cloud(seed);

@@ -1,4 +1,4 @@
-// Impacts at the very moment at which one step ends and the next begins.
+// Impacts at exactly the moment when one step ends and the next begins.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -44,13 +44,13 @@ Simulation run(const HeadOn& scene, const PairContactSettings& contacts, Integra
     return simulation;
 }
 
-/// One of a list.
+/// Returns a random element of a list.
 template <class List>
 auto one_of(const List& list, RandomSequence& random) {
     return list[static_cast<std::size_t>(random.uniform() * static_cast<double>(list.size()))];
 }
 
-/// Numbers as people write them: the impact is where a step ends, but for rounding.
+/// Returns a scene of round numbers, as users write them. The impact is at the end of a step, up to rounding.
 HeadOn round_scene(RandomSequence& random) {
     HeadOn scene;
     scene.time_step = one_of(std::array{0.1, 0.05, 0.025, 0.02, 0.01}, random);
@@ -73,14 +73,14 @@ void expect_impact(const HeadOn& scene, const PairContactSettings& contacts, Int
     EXPECT_EQ(simulation.statistics().pair_violations, 0U);
 }
 
-TEST(PairStepEnds, ASphereAtRestIsHitWhereAStepEnds) {
+TEST(PairStepEnds, SphereAtRestIsHitAtTheEndOfAStep) {
     for (const PairMethod method : {PairMethod::automatic, PairMethod::events, PairMethod::contacts}) {
         SCOPED_TRACE(static_cast<int>(method));
         expect_impact({}, {.method = method}, IntegratorKind::ballistic);
     }
 }
 
-TEST(PairStepEnds, RoundNumbersMissNoImpactWhateverTheMethodAndTheIntegrator) {
+TEST(PairStepEnds, RoundNumbersMissNoImpactWithAnyMethodAndIntegrator) {
     for (std::uint64_t number = 0; number < 150; ++number) {
         RandomSequence random(kSeed, 0, number);
         const HeadOn scene = round_scene(random);

@@ -20,7 +20,7 @@ using testing::setup_of;
 
 constexpr double kRadius = 0.005;
 
-/// Three spheres in a row on a floor and two on top of them, which lean on nothing: a wall on each side holds them.
+/// Returns three spheres in a row on a floor and two on top, which support themselves. A wall on each side holds them.
 SimulationSetup pile_setup(double duration) {
     SimulationSetup setup = setup_of(1e-3, duration, {"", 0.3, 0.5}, {0, 0, -9.81});
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
@@ -45,7 +45,7 @@ void advance(Simulation& simulation, int steps) {
     for (int k = 0; k < steps && !simulation.finished(); ++k) simulation.step();
 }
 
-TEST(PileSleep, APileThatLiesStillSleepsAndStaysToTheLastBit) {
+TEST(PileSleep, PileAtRestSleepsAndStaysToTheLastBit) {
     Simulation simulation(pile_setup(1.0));
     advance(simulation, 100);
     EXPECT_EQ(simulation.statistics().asleep, 5U);
@@ -60,7 +60,7 @@ TEST(PileSleep, APileThatLiesStillSleepsAndStaysToTheLastBit) {
     EXPECT_EQ(simulation.statistics().energy_violations, 0U);
 }
 
-TEST(PileSleep, WhatHitsItWakesIt) {
+TEST(PileSleep, ImpactWakesThePile) {
     SimulationSetup setup = pile_setup(1.0);
     Particle falling = particle_of({0.1 * kRadius, 0, 0.2}, {}, 0.9 * kRadius);
     falling.mass = 1e-3;
@@ -69,13 +69,13 @@ TEST(PileSleep, WhatHitsItWakesIt) {
     advance(simulation, 180);
     EXPECT_EQ(simulation.statistics().asleep, 5U);
     const Vec3 before = simulation.particles().position[3];
-    advance(simulation, 30);  // it falls for 0.192 s
+    advance(simulation, 30);  // the sphere falls for 0.192 s
     EXPECT_LT(simulation.statistics().asleep, 5U);
     EXPECT_GT(length(simulation.particles().position[3] - before), 0.0);
     EXPECT_EQ(simulation.statistics().violations, 0U);
 }
 
-TEST(PileSleep, TheLossOfASupportWakesIt) {
+TEST(PileSleep, LossOfASupportWakesThePile) {
     Simulation simulation(pile_setup(1.0));
     advance(simulation, 100);
     ASSERT_EQ(simulation.statistics().asleep, 5U);
@@ -84,7 +84,7 @@ TEST(PileSleep, TheLossOfASupportWakesIt) {
     EXPECT_LT(simulation.particles().position[2].z, 0.9 * kRadius * 2.7320508075688772);
 }
 
-TEST(PileSleep, OtherForcesWakeIt) {
+TEST(PileSleep, OtherForcesWakeThePile) {
     Simulation simulation(pile_setup(1.0));
     advance(simulation, 100);
     ASSERT_EQ(simulation.statistics().asleep, 5U);
@@ -95,7 +95,7 @@ TEST(PileSleep, OtherForcesWakeIt) {
     for (const Vec3& velocity : simulation.particles().velocity) EXPECT_NEAR(velocity.z, 0.1, 1e-3);
 }
 
-TEST(PileSleep, SameBitsWhetherOthersMaySleepAndAfterResume) {
+TEST(PileSleep, BitsDoNotDependOnSleepingOrResume) {
     std::vector<std::uint64_t> hashes;
     const auto made = [](bool sleeping) {
         SimulationSetup setup = pile_setup(0.4);
@@ -129,8 +129,8 @@ TEST(PileSleep, SameBitsWhetherOthersMaySleepAndAfterResume) {
     for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }
 
-// Without friction three balls on a floor that hold nothing roll apart under a fourth, in however short steps.
-TEST(PileSleep, WhatBeginsToMoveFallsAsleepInNoStep) {
+// Without friction, three balls on a floor roll apart under a fourth, for any time step.
+TEST(PileSleep, ParticleThatBeginsToMoveNeverFallsAsleep) {
     for (const double time_step : {1e-3, 5e-5}) {
         SimulationSetup setup = setup_of(time_step, 0.25, {"", 0.0, 0.9}, {0, 0, -9.81});
         setup.options.particle_contacts = PairContactSettings{.restitution = 0.0};
@@ -149,7 +149,7 @@ TEST(PileSleep, WhatBeginsToMoveFallsAsleepInNoStep) {
     }
 }
 
-/// What all colliders have been given, N s.
+/// Returns the impulse on all colliders, in N s.
 Vec3 given_to_colliders(const Simulation& simulation, std::size_t colliders) {
     Vec3 sum;
     for (std::size_t c = 0; c < colliders; ++c) {
@@ -165,8 +165,8 @@ Vec3 momentum_of(const Simulation& simulation) {
     return sum;
 }
 
-// Of spheres without rolling friction some go on rolling on those that sleep.
-TEST(PileSleep, WhatRollsOnSleepersWeighsOnTheFloorThroughThem) {
+// Without rolling friction, some spheres keep rolling on sleeping ones.
+TEST(PileSleep, WeightOfRollingSpheresReachesTheFloorThroughSleepers) {
     SimulationSetup setup = setup_of(1e-3, 10.0, {"", 0.3, 0.5}, {0, 0, -9.81});
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
                        {"left", PlaneShape{{-0.03, 0, 0}, {1, 0, 0}}},
@@ -185,7 +185,7 @@ TEST(PileSleep, WhatRollsOnSleepersWeighsOnTheFloorThroughThem) {
         weight += 9.81 * setup.particles.back().mass;
     }
     Simulation simulation(std::move(setup));
-    std::uint64_t together = 0;  // steps in which some slept and others did not
+    std::uint64_t together = 0;  // number of steps with both sleeping and moving spheres
     for (int part = 0; part < 30; ++part) {
         const Vec3 given = given_to_colliders(simulation, 5);
         const Vec3 before = momentum_of(simulation);
@@ -201,8 +201,8 @@ TEST(PileSleep, WhatRollsOnSleepersWeighsOnTheFloorThroughThem) {
     EXPECT_EQ(simulation.statistics().asleep, 100U);
 }
 
-// Without others it sleeps by itself, and is in no pile.
-TEST(PileSleep, WhatSleepsAloneHasWeighedOnTheFloorUntilItIsHit) {
+// A single sphere sleeps by itself and belongs to no pile.
+TEST(PileSleep, SingleSleeperWeighsOnTheFloorUntilItIsHit) {
     for (const PairMethod method : {PairMethod::automatic, PairMethod::contacts, PairMethod::events}) {
         SCOPED_TRACE(static_cast<int>(method));
         for (const Vec3& velocity : {Vec3{2, 0, 0}, Vec3{0, 0, -0.5}}) {
@@ -219,7 +219,8 @@ TEST(PileSleep, WhatSleepsAloneHasWeighedOnTheFloorUntilItIsHit) {
             double mass = 0.0;
             for (const double m : simulation.particles().mass) mass += m;
             const Vec3 missing = given_to_colliders(simulation, 1) + momentum_of(simulation) - before;
-            // With the method "events" what rattles on the other one spends its impacts, and nothing pulls it then.
+            // With the method "events" a sphere that rattles on the other spends its impact budget, and no force acts
+            // on it then.
             const double lived = 2.0 * simulation.time() - simulation.statistics().unsimulated_time;
             const double weight = 9.81 * 0.5 * mass * lived;
             EXPECT_LT(length(missing + Vec3{0, 0, weight}), 1e-11 * weight);

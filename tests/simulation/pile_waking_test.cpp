@@ -1,4 +1,4 @@
-// Spheres that sleep beside each other are hit and pushed: they wake in the same step, and momentum is kept.
+// Sleeping neighbours that are hit and pushed wake in the same step, and momentum is conserved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ double momentum_along_x(const Simulation& simulation) {
     return sum;
 }
 
-/// Spheres of 1 kg that touch, n by m of them from the origin on, on a smooth floor.
+/// Returns touching spheres of 1 kg, n by m of them from the origin, on a smooth floor.
 SimulationSetup layer_setup(int n, int m, double duration, const PairContactSettings& contacts) {
     SimulationSetup setup = setup_of(2e-3, duration, {"", 0.3, 0.0}, {0, 0, -9.81});
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}}};
@@ -37,7 +37,7 @@ SimulationSetup layer_setup(int n, int m, double duration, const PairContactSett
     return setup;
 }
 
-TEST(PileWaking, ALayerThatSleepsTakesTheMomentumOfWhatHitsIt) {
+TEST(PileWaking, SleepingLayerTakesTheMomentumOfAnImpact) {
     for (const PairMethod method : {PairMethod::automatic, PairMethod::contacts}) {
         SCOPED_TRACE(static_cast<int>(method));
         SimulationSetup setup = layer_setup(8, 8, 0.6, {.restitution = 0.3, .method = method});
@@ -52,12 +52,12 @@ TEST(PileWaking, ALayerThatSleepsTakesTheMomentumOfWhatHitsIt) {
             ASSERT_NEAR(momentum_along_x(simulation), 50.0, 1e-10) << simulation.time();
         }
         EXPECT_GE(asleep, 64U);
-        // Rows beside those that are hit are touched at a graze, which pushes nobody.
+        // Rows beside the hit ones are only grazed, without an impulse.
         EXPECT_LE(simulation.statistics().asleep, 24U);
     }
 }
 
-TEST(PileWaking, ARowThatSleepsWithoutWeightKeepsTheMomentumOfWhatHitsIt) {
+TEST(PileWaking, SleepingRowWithoutWeightConservesMomentum) {
     SimulationSetup setup = setup_of(1e-3, 0.6);
     setup.options.particle_contacts = PairContactSettings{.method = PairMethod::contacts};
     setup.particles = {particle_of({-1, 0, 0}, {2, 0, 0}, kRadius)};
@@ -67,8 +67,8 @@ TEST(PileWaking, ARowThatSleepsWithoutWeightKeepsTheMomentumOfWhatHitsIt) {
     EXPECT_NEAR(momentum_along_x(simulation), 2.0, 1e-12);
 }
 
-// Slower than what falls 1 % of a radius.
-TEST(PileWaking, ASlowSphereMovesOneThatSleepsBesideAnother) {
+// The sphere is slower than a fall of 1 % of a radius.
+TEST(PileWaking, SlowSphereMovesASleepingPair) {
     SimulationSetup setup = layer_setup(2, 1, 3.0, {.restitution = 0.3});
     setup.particles.push_back(particle_of({-2.5 * kRadius, 0, kRadius}, {0.05, 0, 0}, kRadius));
     setup.particles.back().position.x -= 0.05;
@@ -78,7 +78,7 @@ TEST(PileWaking, ASlowSphereMovesOneThatSleepsBesideAnother) {
     EXPECT_GT(simulation.particles().velocity[1].x, 0.01);
 }
 
-TEST(PileWaking, SpheresOnAFloorAnswerEachOtherWithTheirRestitution) {
+TEST(PileWaking, SpheresOnAFloorReboundWithTheirRestitution) {
     for (const double e : {0.0, 0.5, 1.0}) {
         SCOPED_TRACE("restitution " + std::to_string(e));
         SimulationSetup setup = layer_setup(1, 1, 0.5, {.restitution = e, .method = PairMethod::contacts});
@@ -90,7 +90,7 @@ TEST(PileWaking, SpheresOnAFloorAnswerEachOtherWithTheirRestitution) {
     }
 }
 
-TEST(PileWaking, APileFallsWhereItsLowestSphereHasLivedItsLife) {
+TEST(PileWaking, PileFallsWhenItsLowestSphereExpires) {
     SimulationSetup setup = setup_of(2e-3, 0.5, {"", 0.3, 0.4}, {0, 0, -9.81});
     setup.options.particle_contacts = PairContactSettings{.restitution = 0.3, .friction = 0.3};
     setup.options.verify = true;
@@ -106,7 +106,7 @@ TEST(PileWaking, APileFallsWhereItsLowestSphereHasLivedItsLife) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
 }
 
-/// A layer of ten by ten in a bin, and one of nine by nine in its hollows.
+/// Returns a layer of ten by ten in a bin, and one of nine by nine in its hollows.
 SimulationSetup bed_setup(double duration) {
     SimulationSetup setup = setup_of(1e-3, duration, {"", 0.3, 0.5}, {0, 0, -9.81});
     const double side = 20 * kRadius;
@@ -128,7 +128,8 @@ SimulationSetup bed_setup(double duration) {
     return setup;
 }
 
-/// N s, upwards: what the colliders have been given and the spheres have, less what gravity has given since they stood.
+/// Returns the missing upward momentum, in N s: impulses on the colliders plus momentum of the spheres, minus the
+/// impulse of gravity.
 double momentum_missing(const Simulation& simulation) {
     const Particles& p = simulation.particles();
     double sum = 0.0;
@@ -139,13 +140,13 @@ double momentum_missing(const Simulation& simulation) {
     return sum;
 }
 
-TEST(PileWaking, WhatFallsOntoAPileWakesWhatIsNearItAlone) {
+TEST(PileWaking, ImpactOnAPileWakesOnlyTheSpheresNearIt) {
     SimulationSetup setup = bed_setup(2.0);
     const std::uint64_t bed = setup.particles.size();
     setup.particles.push_back(particle_of({10.3 * kRadius, 9.8 * kRadius, 0.5}, {}, kRadius));
     Simulation simulation(std::move(setup));
     std::uint64_t most = 0;
-    std::uint64_t least = bed;  // asleep since all of the bed have been
+    std::uint64_t least = bed;  // smallest number asleep since the whole bed slept
     while (!simulation.finished()) {
         simulation.step();
         const std::uint64_t asleep = simulation.statistics().asleep;
@@ -161,7 +162,7 @@ TEST(PileWaking, WhatFallsOntoAPileWakesWhatIsNearItAlone) {
     EXPECT_LT(simulation.statistics().overlap_largest, 1e-3);
 }
 
-/// Spheres of 4.3 to 5.7 mm that fall into a bin of one layer, and others that drip onto them one after the other.
+/// Returns spheres of 4.3 to 5.7 mm that fall into a bin of one layer, and others that drip onto them one by one.
 SimulationSetup dripping_setup(std::uint64_t seed) {
     SimulationSetup setup = setup_of(1e-3, 2.5, {"", 0.2, 0.4}, {0, 0, -9.81});
     setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}},
@@ -190,8 +191,8 @@ SimulationSetup dripping_setup(std::uint64_t seed) {
     return setup;
 }
 
-// Smooth walls carry none of it, whatever has been woken and has fallen asleep again meanwhile.
-TEST(PileWaking, TheFloorOfASmoothBinCarriesAllThatSleeps) {
+// Smooth walls support no weight, even if spheres have woken and fallen asleep again.
+TEST(PileWaking, FloorOfASmoothBinSupportsAllSleepers) {
     std::uint64_t most = 0;
     for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
         SCOPED_TRACE(seed);
@@ -212,8 +213,8 @@ TEST(PileWaking, TheFloorOfASmoothBinCarriesAllThatSleeps) {
     EXPECT_GT(most, 20U);
 }
 
-// Between a sleeper and a wall it has no room to part, and each that drips would drive it in deeper.
-TEST(PileWaking, WhatIsDrivenIntoASleeperWakesIt) {
+// A sphere between a sleeper and a wall cannot separate, and each dripping sphere would drive it in deeper.
+TEST(PileWaking, SphereDrivenIntoASleeperWakesIt) {
     for (const std::uint64_t seed : {20U, 45U, 85U, 106U}) {
         Simulation simulation(dripping_setup(seed));
         while (!simulation.finished()) simulation.step();
@@ -222,8 +223,8 @@ TEST(PileWaking, WhatIsDrivenIntoASleeperWakesIt) {
     }
 }
 
-// It is held by what sleeps around it, or falls with what is woken below it.
-TEST(PileWaking, WhatNothingHoldsAnyMoreFalls) {
+// The upper spheres are supported by sleepers around them, or fall with the woken ones below.
+TEST(PileWaking, SpheresWithoutSupportFall) {
     SimulationSetup setup = bed_setup(1.5);
     const std::size_t bed = setup.particles.size();
     for (std::size_t i = 0; i < 100; ++i) setup.particles[i].lifetime = 0.6;  // the whole lower layer

@@ -1,4 +1,4 @@
-// What ranks that are behind give, and which of their particles: by closed forms.
+// Transfers from slow ranks and the choice of their particles, compared with closed forms.
 #include "ricochet/simulation/rank_balance.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace RICOCHET_FILE {
 
 using Work = std::vector<std::uint64_t>;
 
-/// What each has once all have given.
+/// Returns the work of each rank after all transfers.
 std::vector<double> after_gifts(const Work& work) {
     std::vector<double> after(work.begin(), work.end());
     for (std::size_t from = 0; from < work.size(); ++from) {
@@ -31,7 +31,7 @@ std::vector<double> after_gifts(const Work& work) {
     return after;
 }
 
-TEST(RankGifts, AreWhatMakesAllTheSame) {
+TEST(RankGifts, GiftsEqualiseTheWork) {
     EXPECT_EQ(gifts_of(0, {300, 100}), (RankGifts{0.0, 1.0 / 3.0}));
     EXPECT_EQ(gifts_of(1, {300, 100}), (RankGifts{0.0, 0.0}));
     EXPECT_EQ(gifts_of(2, {0, 0, 900}), (RankGifts{1.0 / 3.0, 1.0 / 3.0, 0.0}));
@@ -47,7 +47,7 @@ TEST(RankGifts, AreWhatMakesAllTheSame) {
     }
 }
 
-TEST(GiftChoice, TakesTheSamePartOfEachCostAndNothingThatIsIdle) {
+TEST(GiftChoice, EqualShareOfEachCostIsChosenAndNoIdleParticles) {
     GiftChoice choice({0.0, 0.25, 0.1});
     std::vector<std::vector<int>> gone(2, std::vector<int>(3, 0));
     constexpr int kEach = 10'000;
@@ -65,7 +65,8 @@ TEST(GiftChoice, TakesTheSamePartOfEachCostAndNothingThatIsIdle) {
     }
 }
 
-/// Whether ranks with so much work a step, and so many particles, have given any in this many steps.
+/// Returns true if ranks with the given work per step and number of particles transfer any particles in this many
+/// steps.
 bool is_moved(const Work& each_step, std::size_t particles, std::uint64_t steps) {
     bool is_moved = false;
     testing::on_ranks(each_step.size(), [&](const std::shared_ptr<Ranks>& ranks) {
@@ -82,14 +83,14 @@ bool is_moved(const Work& each_step, std::size_t particles, std::uint64_t steps)
     return is_moved;
 }
 
-TEST(RankBalancer, ActsWhereOneIsMoreThanATenthBehind) {
+TEST(RankBalancer, TransferStartsIfARankIsMoreThanATenthBehind) {
     constexpr std::uint64_t kMany = 1'000'000;
     EXPECT_FALSE(is_moved({kMany, kMany}, 100, 40));
     EXPECT_FALSE(is_moved({kMany * 109, kMany * 91}, 100, 40));
     EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, 40));
     EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 100, RankBalancer::kSteps + 1)) << "at the first look";
     EXPECT_FALSE(is_moved({100, 0}, 100, 40)) << "a microsecond is not worth it";
-    // Room among so many particles costs more than is won in a few steps, not in sixteen.
+    // For so many particles, the storage costs more than a few steps gain, but not more than sixteen.
     EXPECT_FALSE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kSteps + 1));
     EXPECT_TRUE(is_moved({kMany * 112, kMany * 88}, 10 * kMany, RankBalancer::kLooks * RankBalancer::kSteps + 1));
 }

@@ -1,5 +1,5 @@
-// Spheres that slide on a disc that turns fast. Their ways consist of arcs, which are planned anew up to the time of an
-// impact: an impact happens where both are then, not where they were expected.
+// Spheres that slide on a fast rotating disc. Their paths consist of arcs, which are planned anew up to the time of an
+// impact. The impact must happen at the actual positions at that time, not at the predicted ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +25,7 @@ using testing::setup_of;
 constexpr double kStep = 0.02;  // s
 constexpr std::uint64_t kSeed = 1053;
 
-/// Spheres of all sizes on a rough table that turns about z at 30 to 80 rad/s.
+/// Returns spheres of all sizes on a rough table that rotates about z at 30 to 80 rad/s.
 SimulationSetup spheres_on_a_turning_table(std::uint64_t number) {
     SimulationSetup setup = setup_of(kStep, 4 * kStep, {"", 0.5, 0.3}, {0, 0, -9.81});
     RandomSequence random(kSeed, 0, number);
@@ -47,7 +47,7 @@ SimulationSetup spheres_on_a_turning_table(std::uint64_t number) {
     return setup;
 }
 
-TEST(SpheresOnATableThatTurnsFast, MeetWhereTheyTouch) {
+TEST(SpheresOnATableThatTurnsFast, SpheresCollideWhenTheyTouch) {
     std::uint64_t impacts = 0;
     for (int k = 0; k < test::scaled(40); ++k) {
         SCOPED_TRACE(k);

@@ -1,4 +1,5 @@
-// Runs that verify themselves: nothing is found, in closed and open meshes, planes, shapes, for points and spheres.
+// Runs that verify themselves report no violation, in closed and open meshes, planes and shapes, for points and
+// spheres.
 #include "ricochet/simulation/run_recorder.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +20,7 @@ ColliderDescription mesh_collider(TriangleMesh mesh) {
     return {"", MeshShape{std::make_shared<const TriangleMesh>(std::move(mesh)), {}, "", {}}, 0};
 }
 
-/// `count` particles that start in a ball about `center` and fly everywhere.
+/// Returns `count` particles that start in a ball about `center` and fly in all directions.
 SimulationSetup crowd(int count, const Vec3& center, double spread, MeanSpread radius) {
     SimulationSetup setup;
     setup.options.time_step = 0.05;
@@ -36,7 +37,7 @@ SimulationSetup crowd(int count, const Vec3& center, double spread, MeanSpread r
     return setup;
 }
 
-/// Runs to the end; returns what was found wrong. At least one impact and one step must have been judged.
+/// Runs to the end. Returns the number of violations. At least one impact and one step must have been checked.
 std::uint64_t violations_of(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     while (!simulation.finished()) simulation.step();
@@ -50,13 +51,13 @@ class VerifiedRun : public ::testing::TestWithParam<MeanSpread> {};  // radii
 INSTANTIATE_TEST_SUITE_P(Of, VerifiedRun, ::testing::Values(MeanSpread{0, 0}, MeanSpread{0.05, 0.04}),
                          [](const auto& radius) { return radius.param.mean > 0.0 ? "Spheres" : "Points"; });
 
-TEST_P(VerifiedRun, InAClosedMeshFindsNothingWrong) {
+TEST_P(VerifiedRun, ClosedMeshHasNoViolation) {
     SimulationSetup setup = crowd(300, {0, 0, 0}, 0.5, GetParam());
     setup.colliders.push_back(mesh_collider(testing::sphere_mesh({0, 0, 0}, 1.0, 3)));
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-TEST_P(VerifiedRun, OnAnOpenMeshFindsNothingWrong) {
+TEST_P(VerifiedRun, OpenMeshHasNoViolation) {
     SimulationSetup setup = crowd(300, {0, 0, 0}, 0.5, GetParam());
     TriangleMesh bowl = testing::sphere_mesh({0, 0, 0}, 1.0, 3);
     std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.vertices[t[0]].z > 0.3; });
@@ -64,7 +65,7 @@ TEST_P(VerifiedRun, OnAnOpenMeshFindsNothingWrong) {
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-TEST_P(VerifiedRun, AmongPlanesBallsCylindersAndBoxesFindsNothingWrong) {
+TEST_P(VerifiedRun, PlanesBallsCylindersAndBoxesHaveNoViolation) {
     SimulationSetup setup = crowd(300, {0, 0, 2}, 0.3, GetParam());
     Placement tilted;
     tilted.rotation_axis = {1, 2, 3};
@@ -80,7 +81,7 @@ TEST_P(VerifiedRun, AmongPlanesBallsCylindersAndBoxesFindsNothingWrong) {
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-TEST_P(VerifiedRun, GivesTheSameBitsAsAnUnverifiedOneForAnyNumberOfThreads) {
+TEST_P(VerifiedRun, VerificationAndThreadsChangeNoBit) {
     const auto hash = [&](bool verify, int threads) {
         const ThreadLimit limit(threads);
         SimulationSetup setup = crowd(600, {0, 0, 0}, 0.5, GetParam());
@@ -94,7 +95,7 @@ TEST_P(VerifiedRun, GivesTheSameBitsAsAnUnverifiedOneForAnyNumberOfThreads) {
     EXPECT_EQ(hash(true, 3), hash(false, 1));
 }
 
-TEST(VerifiedRun, FollowsParticlesThroughBirthsAndDeaths) {
+TEST(VerifiedRun, BirthsAndDeathsAreTracked) {
     SimulationSetup setup = crowd(1, {0, 0, 0}, 0.5, {0, 0});
     setup.emitters[0].burst = 0;
     setup.emitters[0].rate = {static_cast<double>(test::scaled(500)), 0.0};
@@ -104,8 +105,8 @@ TEST(VerifiedRun, FollowsParticlesThroughBirthsAndDeaths) {
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-// Born on a surface (an open and a closed one), on a vertex, on a ball, and in overlap.
-TEST(VerifiedRun, AcceptsParticlesThatStartOnSurfaces) {
+// Particles are born on a surface (an open and a closed one), on a vertex, on a ball, and in overlap.
+TEST(VerifiedRun, ParticlesThatStartOnSurfacesAreAccepted) {
     SimulationSetup setup = crowd(1, {0, 0, 0}, 0.1, {0, 0});
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     TriangleMesh square = testing::moved(box, {0, 0, 5});
@@ -125,9 +126,10 @@ TEST(VerifiedRun, AcceptsParticlesThatStartOnSurfaces) {
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-// A light ball is struck at the begin of a step in which particles are born later: where it would be by then had it not
-// been struck, where it is, and off both. Each is on the side on which it finds itself at its birth.
-TEST(VerifiedRun, TakesTheSideOfABodyAtTheTimeOfBirthAfterImpactsInTheSameStep) {
+// A light ball is struck at the start of a step in which particles are born later. They are born at the position the
+// ball would have without the strike, at its actual position, and away from both. Each gets the side of its position at
+// its birth.
+TEST(VerifiedRun, ParticleBornAfterAnImpactInTheSameStepGetsItsSideOfTheBody) {
     SimulationSetup setup;
     setup.options.time_step = 0.05;
     setup.options.duration = 0.2;
@@ -159,7 +161,7 @@ TEST(VerifiedRun, TakesTheSideOfABodyAtTheTimeOfBirthAfterImpactsInTheSameStep) 
     EXPECT_EQ(violations_of(std::move(setup)), 0U);
 }
 
-TEST(RunCheck, TellsWhatAParticleDidWrong) {
+TEST(RunCheck, ViolationsOfAParticleAreReported) {
     const CollisionWorld world({mesh_collider(testing::box_mesh({0, 0, 0}, {4, 4, 4})),
                                 {"floor", PlaneShape{{0, 0, -1}, {0, 0, 3}}, 0},
                                 {"ball", BallShape{2.0, {{20, 0, 0}}}, 0}});
@@ -195,7 +197,7 @@ TEST(RunCheck, TellsWhatAParticleDidWrong) {
     EXPECT_EQ(violations[0].particle, 8U);
     EXPECT_EQ(violations[0].collider, 0U);
     EXPECT_EQ(move(2, {20, 0, 1.5}), 0U);
-    EXPECT_EQ(move(2, {20, 0, -2.5}), 5U);  // not from where it was, through plane and ball
+    EXPECT_EQ(move(2, {20, 0, -2.5}), 5U);  // not from its last position, through plane and ball
     EXPECT_EQ(violations[0].kind, ViolationKind::gap);
     EXPECT_EQ(violations[1].collider, 1U);
     EXPECT_EQ(violations[2].collider, 2U);

@@ -1,4 +1,4 @@
-// What a run says where a particle has come beyond the speed of light: its speed then, and what has done it.
+// The error of a run when a particle exceeds the speed of light: its speed, and the cause.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -31,7 +31,7 @@ std::string end_of(SimulationSetup setup) {
 
 void add_floor(SimulationSetup& setup) { setup.colliders = {{"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0}}; }
 
-TEST(Runaways, AreThrownByABeltThatIsNearlyAsFastAsLight) {
+TEST(Runaways, BeltAtAlmostTheSpeedOfLightIsNamed) {
     Material belt{.name = "belt", .restitution = 1.0, .friction = 1e9};
     belt.motion.velocity = {2.9e8, 0, 0};
     SimulationSetup setup = setup_of(1e-8, 1e-7, belt);
@@ -41,8 +41,8 @@ TEST(Runaways, AreThrownByABeltThatIsNearlyAsFastAsLight) {
     EXPECT_NE(line.find("a surface has thrown particle 0 at 3.07e+08 m/s"), std::string::npos) << line;
 }
 
-// The belt moves, but it is not what throws.
-TEST(Runaways, OfForcesAreOfForcesOnABeltToo) {
+// The belt moves, but it does not cause the speed.
+TEST(Runaways, ForceIsNamedEvenOnABelt) {
     Material slow{.name = "belt", .restitution = 1.0};
     slow.motion.velocity = {1, 0, 0};
     for (const bool is_alone : {true, false}) {
@@ -67,7 +67,7 @@ TEST(Runaways, OfForcesAreOfForcesOnABeltToo) {
     }
 }
 
-TEST(Runaways, OfSpheresThatAreHitNameTheSphereOrTheOneThatSetOutTooFast) {
+TEST(Runaways, CollisionNamesTheSphereOrTheFasterOneThatHitIt) {
     for (const double speed : {2.5e8, 1e9}) {
         SimulationSetup setup = setup_of(1e-9, 1e-7);
         setup.options.particle_contacts = PairContactSettings{};
@@ -81,7 +81,7 @@ TEST(Runaways, OfSpheresThatAreHitNameTheSphereOrTheOneThatSetOutTooFast) {
     }
 }
 
-TEST(Runaways, OfThePenaltyResponseAreOfItsContacts) {
+TEST(Runaways, PenaltyResponseNamesTheContact) {
     SimulationSetup setup = setup_of(0.01, 1.0, {}, {0, 0, -9.81});
     add_floor(setup);
     setup.options.response = ResponseKind::penalty;
@@ -92,7 +92,7 @@ TEST(Runaways, OfThePenaltyResponseAreOfItsContacts) {
     EXPECT_NE(line.find("penalty"), std::string::npos) << line;
 }
 
-TEST(Runaways, OfAMethodThatChoosesItsStepsAreNotToldToTakeShorterOnes) {
+TEST(Runaways, AdaptiveMethodGetsNoAdviceToShortenTheStep) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.options.integrator.kind = IntegratorKind::dormand_prince;
     setup.forces.push_back(make_radial_force({.center = {}, .strength = 1e14, .exponent = 1.0}));

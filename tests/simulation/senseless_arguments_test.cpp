@@ -1,4 +1,4 @@
-// What makes no sense is refused with one line that names the object and the value: no crash, no hang, no silence.
+// Invalid arguments are refused in one line that names the object and the value: no crash, no hang, no silence.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ namespace RICOCHET_FILE {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// One of everything, all of it sensible.
+/// Returns a setup with one of everything, all of it valid.
 SimulationSetup sensible() {
     SimulationSetup setup;
     setup.options.duration = 0.05;
@@ -50,7 +50,7 @@ SimulationSetup sensible() {
 }
 
 struct Refusal {
-    std::string name;  ///< what the message must hold
+    std::string name;  ///< text that the message must contain
     std::function<void(SimulationSetup&)> spoil;
 };
 
@@ -68,7 +68,7 @@ void expect_refused(const Refusal& refusal) {
     }
 }
 
-/// A refusal for each of the values of one number.
+/// Expects a refusal for each of the values of one number.
 void expect_values_refused(const std::string& name, const std::vector<double>& values,
                            const std::function<void(SimulationSetup&, double)>& set) {
     for (const double value : values) {
@@ -76,7 +76,7 @@ void expect_values_refused(const std::string& name, const std::vector<double>& v
     }
 }
 
-TEST(SenselessArguments, TheSensibleOnesAreTaken) {
+TEST(SenselessArguments, ValidSetupIsAccepted) {
     Simulation simulation(sensible());
     while (!simulation.finished()) simulation.step();
     EXPECT_GT(simulation.particles().size(), 3U);
@@ -248,7 +248,7 @@ private:
     std::string name_;
 };
 
-TEST(SenselessArguments, ForcesOnAllTogetherAreRefusedByTheirName) {
+TEST(SenselessArguments, ForcesOnAllParticlesAreRefusedByTheirName) {
     const auto beside_implicit = [](const std::string& name) {
         return [name](SimulationSetup& s) {
             s.options.integrator = IntegratorKind::implicit_euler;
@@ -260,7 +260,7 @@ TEST(SenselessArguments, ForcesOnAllTogetherAreRefusedByTheirName) {
     expect_refused({"force between particles 0: force", [](auto& s) { s.particles_forces.push_back({nullptr}); }});
 }
 
-TEST(SenselessArguments, FunctionsOfASimulationRefuseThem) {
+TEST(SenselessArguments, FunctionsOfASimulationRefuseInvalidArguments) {
     Simulation simulation(sensible());
     simulation.step();
     const std::uint64_t hash = simulation.state_hash();
@@ -292,7 +292,7 @@ TEST(SenselessArguments, FunctionsOfASimulationRefuseThem) {
     EXPECT_THROW((void)restored.add_particle(Particle{}), RunError);
 }
 
-TEST(SenselessArguments, ThereIsRoomForMostParticlesOnly) {
+TEST(SenselessArguments, PopulationIsLimitedToMostParticles) {
     SimulationSetup setup = sensible();
     setup.emitters.clear();
     setup.options.most_particles = 4;
@@ -303,7 +303,7 @@ TEST(SenselessArguments, ThereIsRoomForMostParticlesOnly) {
     (void)simulation.add_particle(Particle{});
 }
 
-TEST(SenselessArguments, AStepThatHasFailedCannotBeSaved) {
+TEST(SenselessArguments, FailedStepCannotBeSaved) {
     SimulationSetup setup = sensible();
     setup.forces.push_back(make_force([](const ForceInput&) -> Vec3 { throw RunError("no force today"); }));
     Simulation simulation(std::move(setup));
@@ -317,7 +317,7 @@ TEST(SenselessArguments, AStepThatHasFailedCannotBeSaved) {
     EXPECT_EQ(bytes, 0U);
 }
 
-// A burst of four thousand million particles, of which a thousand find room.
+// A burst of four thousand million particles, of which a thousand fit.
 TEST(SenselessArguments, BirthsBeyondMostParticlesTakeNoMemory) {
     SimulationSetup setup = sensible();
     setup.options.most_particles = 1000;
@@ -329,7 +329,7 @@ TEST(SenselessArguments, BirthsBeyondMostParticlesTakeNoMemory) {
     EXPECT_EQ(simulation.statistics().births_refused_by_population, 0xFFFFFFFFU - 997U);
 }
 
-TEST(SenselessArguments, CollisionQueriesRefuseThem) {
+TEST(SenselessArguments, CollisionQueriesRefuseInvalidArguments) {
     EXPECT_THROW(CollisionQueries({{"ball", BallShape{-1.0, {}}, 0}}), InputError);
     EXPECT_THROW(CollisionQueries({{"ball", BallShape{1e160, {}}, 0}}), InputError);
     EXPECT_THROW(CollisionQueries({{"can", CylinderShape{1e160, 1.0, {}}, 0}}), InputError);
@@ -361,7 +361,7 @@ std::string message_of(const std::function<void()>& call) {
     return "not refused";
 }
 
-TEST(SenselessArguments, ANumberOfWhatThereIsNoneOfIsNotAskedToBeBelowZero) {
+TEST(SenselessArguments, MessageForAnEmptyListDoesNotAskForANegativeIndex) {
     SimulationSetup setup = sensible();
     setup.materials.clear();
     EXPECT_EQ(message_of([&] { const Simulation simulation(std::move(setup)); }),

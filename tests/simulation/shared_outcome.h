@@ -1,5 +1,5 @@
 /// \file
-/// Runs that ranks share, as threads of the test, and everything that they leave; scenes that try them.
+/// Runs shared by ranks, which are threads of the test, and their complete outcome. Scenes for such runs.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,15 @@ namespace ricochet::testing {
 
 using Bytes = std::vector<std::byte>;
 
-/// Everything that a run leaves.
+/// The complete outcome of a run.
 struct Outcome {
     std::uint64_t state = 0;
-    std::uint64_t contacts = 0;  ///< hash of all contact records in their order
+    std::uint64_t contacts = 0;  ///< hash of all contact records in order
     Bytes saved;                 ///< counters, particles, totals, loads
     bool operator==(const Outcome&) const = default;
 };
 
-/// A state: all of it, or all but the particles and those of each rank.
+/// A state: either complete, or split into the particles of each rank and the rest.
 struct State {
     Bytes rest;
     std::vector<Bytes> particles;
@@ -57,7 +57,7 @@ inline void add(StateHash& hash, const ContactRecord& record) {
 
 using MakeSetup = std::function<SimulationSetup()>;
 
-/// Steps up to `until` steps; the outcome is that of the first rank.
+/// Runs at most `until` steps. Returns the outcome of the first rank.
 inline Outcome run(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks, const State& from = {},
                    std::uint64_t until = ~std::uint64_t{0}) {
     SimulationSetup setup = make();
@@ -96,7 +96,7 @@ inline Outcome run_on(std::size_t count, const MakeSetup& make, const State& fro
     return outcome;
 }
 
-/// After so many steps, as each of the ranks saves it.
+/// Returns the state after the given number of steps, as each rank saves it.
 inline State saved_by_each(std::size_t count, const MakeSetup& make, std::uint64_t steps) {
     State state;
     state.particles.resize(count);
@@ -115,7 +115,7 @@ inline State saved_by_each(std::size_t count, const MakeSetup& make, std::uint64
     return state;
 }
 
-/// The message with which a run that diverges ends; "none" where it does not.
+/// Returns the message of a run that diverges, or "none" if it does not.
 inline std::string divergence_of(const MakeSetup& make, const std::shared_ptr<Ranks>& ranks) {
     try {
         (void)run(make, ranks);
@@ -125,7 +125,7 @@ inline std::string divergence_of(const MakeSetup& make, const std::shared_ptr<Ra
     return "none";
 }
 
-/// What differs, in words: for a message.
+/// Describes the difference in words, for a message.
 inline std::string difference(const Outcome& a, const Outcome& b) {
     if (a.state != b.state) return "states differ";
     if (a.contacts != b.contacts) return "contacts differ";
@@ -136,7 +136,7 @@ inline std::string difference(const Outcome& a, const Outcome& b) {
     return "none";
 }
 
-/// Drops that bounce, burst and shed others while they fly, with little room for all of them.
+/// Returns drops that bounce, burst and spawn others in flight, with a limit below their number.
 inline SimulationSetup busy_setup() {
     Material rough;
     rough.restitution = 0.6;
@@ -172,7 +172,7 @@ inline SimulationSetup busy_setup() {
     return setup;
 }
 
-/// Many that rest, sleep and wake on a belt, and some that spend their budget of bounces in a wedge.
+/// Returns particles that rest, sleep and wake on a belt, and some that spend their bounce budget in a wedge.
 inline SimulationSetup belt_setup() {
     Material belt;
     belt.restitution = 0.3;
@@ -191,7 +191,7 @@ inline SimulationSetup belt_setup() {
     return setup;
 }
 
-/// Children of few parents make up the run: they live where those live, which are on one of any number of ranks.
+/// Returns a run of mostly children of few parents. They live on the ranks of their parents.
 inline SimulationSetup family_setup() {
     Material soft;
     soft.restitution = 0.5;

@@ -1,4 +1,4 @@
-// A run that ranks share has the bits of one process: particles, contacts, counters, totals, saved states.
+// A run shared by ranks has the bits of one process: particles, contacts, counters, totals, saved states.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ using testing::State;
 const std::vector<std::pair<const char*, SimulationSetup (*)()>> kSetups = {
     {"busy", busy_setup}, {"belt", belt_setup}, {"family", family_setup}};
 
-TEST(SharedRun, HasTheBitsOfOneProcess) {
+TEST(SharedRun, BitsMatchOneProcess) {
     for (const auto& [name, make] : kSetups) {
         const Outcome alone = run(make, nullptr);
         for (const std::size_t count : {1U, 2U, 3U, 5U}) {
@@ -46,8 +46,8 @@ TEST(SharedRun, HasTheBitsOfOneProcess) {
     }
 }
 
-// The scenes do what they are there for.
-TEST(SharedRun, IsTriedWithChildrenLimitsAndLostTime) {
+// Checks that the scenes exercise their features.
+TEST(SharedRun, ChildrenLimitsAndLostTimeOccur) {
     Simulation busy(busy_setup());
     while (!busy.finished()) busy.step();
     EXPECT_GT(busy.statistics().children, 100U);
@@ -59,8 +59,8 @@ TEST(SharedRun, IsTriedWithChildrenLimitsAndLostTime) {
     EXPECT_GT(belt.collider_totals()[0].hits, 0U);
 }
 
-// With all of four parents on the first rank it would have twice, three and four times the mean.
-TEST(SharedRun, MovesParticlesFromRanksThatAreBehind) {
+// With all four parents on the first rank, that rank would have two, three and four times the mean work.
+TEST(SharedRun, ParticlesMoveFromOverloadedRanks) {
     for (const std::size_t count : {2U, 3U, 4U}) {
         RankBalance balance;
         on_ranks(count, [&](const std::shared_ptr<Ranks>& ranks) {
@@ -76,7 +76,7 @@ TEST(SharedRun, MovesParticlesFromRanksThatAreBehind) {
     }
 }
 
-TEST(SharedRun, GoesOnFromTheParticlesOfEachRank) {
+TEST(SharedRun, RunContinuesFromTheParticlesOfEachRank) {
     for (const auto& [name, make] : kSetups) {
         const Outcome alone = run(make, nullptr);
         const State four = saved_by_each(4, make, 40);
@@ -87,7 +87,7 @@ TEST(SharedRun, GoesOnFromTheParticlesOfEachRank) {
     }
 }
 
-TEST(SharedRun, GoesOnWithAnyNumberOfRanks) {
+TEST(SharedRun, RunContinuesWithAnyNumberOfRanks) {
     for (const auto& [name, make] : kSetups) {
         const Outcome alone = run(make, nullptr);
         const Outcome four = run_on(4, make, {}, 20);
@@ -100,7 +100,7 @@ TEST(SharedRun, GoesOnWithAnyNumberOfRanks) {
     }
 }
 
-TEST(SharedRun, EndsOnAllRanksWhereOneParticleDiverges) {
+TEST(SharedRun, DivergenceOfOneParticleEndsAllRanks) {
     const auto make = [] {
         SimulationSetup setup = setup_of(0.01, 1.0);
         setup.forces.push_back(make_gravity({1e11, 0, 0}));
@@ -112,7 +112,7 @@ TEST(SharedRun, EndsOnAllRanksWhereOneParticleDiverges) {
     on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(divergence_of(make, ranks), alone); });
 }
 
-TEST(SharedRun, RefusesByNameWhatOneProcessMustMoveTogether) {
+TEST(SharedRun, FeaturesThatNeedOneProcessAreRefusedByName) {
     const auto refusal_of = [](SimulationSetup setup) {
         std::string text;
         on_ranks(2, [&](const std::shared_ptr<Ranks>& ranks) {

@@ -1,4 +1,4 @@
-// Springs in a run that ranks share: what they join lives on the first rank, and the bits are those of one process.
+// Springs in a run shared by ranks. The connected particles live on the first rank, and the bits match one process.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ using testing::run;
 using testing::run_on;
 using testing::setup_of;
 
-/// What is joined by springs, some of which break and some of which lose an end, among drops that fly for themselves.
+/// Returns particles with springs among free drops. Some springs break, and some lose an end.
 SimulationSetup joined_setup(IntegratorKind kind) {
     SimulationSetup setup = busy_setup();
     setup.options.integrator.kind = kind;
@@ -49,7 +49,7 @@ const std::vector<std::pair<const char*, SimulationSetup (*)()>> kJoined = {
     {"adaptive", [] { return joined_setup(IntegratorKind::dormand_prince); }},
     {"explicit", [] { return joined_setup(IntegratorKind::velocity_verlet); }}};
 
-TEST(SharedSprings, HaveTheBitsOfOneProcess) {
+TEST(SharedSprings, BitsMatchOneProcess) {
     for (const auto& [name, make] : kJoined) {
         Simulation counted(make());
         while (!counted.finished()) counted.step();
@@ -62,7 +62,7 @@ TEST(SharedSprings, HaveTheBitsOfOneProcess) {
     }
 }
 
-TEST(SharedSprings, GoOnWithAnyNumberOfRanks) {
+TEST(SharedSprings, RunContinuesWithAnyNumberOfRanks) {
     for (const auto& [name, make] : kJoined) {
         const Outcome alone = run(make, nullptr);
         const Outcome three = run_on(3, make, {}, 20);
@@ -72,7 +72,7 @@ TEST(SharedSprings, GoOnWithAnyNumberOfRanks) {
     }
 }
 
-TEST(SharedSprings, StayOnTheFirstRankWhileOthersMove) {
+TEST(SharedSprings, SpringsStayOnTheFirstRankWhileOthersMove) {
     std::vector<std::size_t> joined(3);
     std::uint64_t moved = 0;
     on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) {
@@ -91,7 +91,7 @@ TEST(SharedSprings, StayOnTheFirstRankWhileOthersMove) {
     EXPECT_GT(moved, 0U);
 }
 
-TEST(SharedSprings, EndAllRanksWhereTheyDiverge) {
+TEST(SharedSprings, DivergingSpringsEndAllRanks) {
     const auto make = [] {
         SimulationSetup setup = setup_of(0.1, 20.0);
         setup.options.integrator.kind = IntegratorKind::velocity_verlet;
@@ -104,7 +104,7 @@ TEST(SharedSprings, EndAllRanksWhereTheyDiverge) {
     on_ranks(3, [&](const std::shared_ptr<Ranks>& ranks) { EXPECT_EQ(divergence_of(make, ranks), alone); });
 }
 
-TEST(SharedSprings, AreNotSavedByParts) {
+TEST(SharedSprings, SpringsAreNotSavedByParts) {
     const Simulation simulation(joined_setup(IntegratorKind::implicit_euler));
     EXPECT_THROW(simulation.save_particles([](std::span<const std::byte>) {}), InputError);
 }

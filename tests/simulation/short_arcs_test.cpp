@@ -1,4 +1,4 @@
-// Arcs that end after next to no time.
+// Arcs that end after almost no time.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -14,9 +14,9 @@ namespace RICOCHET_FILE {
 using testing::particle_of;
 using testing::setup_of;
 
-// A marble in the bowl of scenes/hopper.json comes to the rim of what it slides on 3e-86 s after it has landed there:
-// the cubic between two places that differ by rounding has coefficients of 1e239.
-TEST(ShortArcs, ThatEndAfterNextToNoTimeAreLeftAtOnce) {
+// A marble in the bowl of scenes/hopper.json reaches the rim of its surface 3e-86 s after it landed there. The cubic
+// between two positions that differ by rounding has coefficients of 1e239.
+TEST(ShortArcs, ArcsOfAlmostNoTimeEndAtOnce) {
     Placement parts;
     parts.scale = {0.7, 0.7, 0.6};
     SimulationSetup setup = setup_of(0.002, 0.06, {"", 0.3, 0.4}, {0, 0, -9.81});

@@ -53,7 +53,7 @@ std::string refusal(SimulationSetup setup) {
     return "";
 }
 
-TEST(Simulation, CountsStepsByTheRoundedUpRule) {
+TEST(Simulation, NumberOfStepsIsRoundedUp) {
     const auto steps = [](double time_step, double duration) {
         return Simulation(empty_setup(time_step, duration)).step_count();
     };
@@ -68,7 +68,7 @@ TEST(Simulation, CountsStepsByTheRoundedUpRule) {
     EXPECT_EQ(steps(1e300, 1e-300), 1U);
 }
 
-TEST(Simulation, EndsWhereItSaysWhateverTheRemainder) {
+TEST(Simulation, RunEndsExactlyAtItsDuration) {
     for (const double duration : {1e-9, 0.3, 1.0 - 1e-8, 1.0, 1.0 + 1e-8, 2.0 + 1e-7, 2.5}) {
         SimulationSetup setup = empty_setup(1.0, duration);
         setup.particles.push_back(particle({0, 0, 0}, {1, 0, 0}));
@@ -79,7 +79,7 @@ TEST(Simulation, EndsWhereItSaysWhateverTheRemainder) {
     }
 }
 
-TEST(Simulation, ShortensTheLastStepToTheDuration) {
+TEST(Simulation, LastStepIsShortenedToTheDuration) {
     SimulationSetup setup = empty_setup(0.4, 1.0);
     setup.particles.push_back(particle({0, 0, 0}, {1, 0, 0}));
     Simulation simulation(std::move(setup));
@@ -96,7 +96,7 @@ TEST(Simulation, ShortensTheLastStepToTheDuration) {
     EXPECT_EQ(simulation.state_hash(), hash);
 }
 
-TEST(Simulation, AParticleLivesExactlyAsLongAsItsLifetime) {
+TEST(Simulation, ParticleLivesExactlyAsLongAsItsLifetime) {
     SimulationSetup setup = empty_setup(0.1, 1.0);
     Particle short_lived = particle({0, 0, 0}, {1, 0, 0});
     short_lived.lifetime = 0.25;
@@ -117,8 +117,8 @@ TEST(Simulation, AParticleLivesExactlyAsLongAsItsLifetime) {
     EXPECT_EQ(simulation.particles().id[0], 2U);
 }
 
-// What a particle does in the part of its last step that it lives counts: here an impact at 0.22 s.
-TEST(Simulation, MovesADyingParticleToTheEndOfItsLife) {
+// A particle's actions in the lived part of its last step count. Here it has an impact at 0.22 s.
+TEST(Simulation, DyingParticleMovesToTheEndOfItsLife) {
     SimulationSetup setup = empty_setup(0.1, 1.0);
     setup.colliders.push_back({"wall", PlaneShape{{0.22, 0, 0}, {-1, 0, 0}}, 0});
     Particle hits = particle({0, 0, 0}, {1, 0, 0});
@@ -161,7 +161,7 @@ SimulationSetup fountain(double time_step) {
     return setup;
 }
 
-TEST(Simulation, GivesIdsInTheOrderOfBirthWhateverTheTimeStep) {
+TEST(Simulation, IdsFollowTheOrderOfBirthForAnyTimeStep) {
     std::map<std::uint64_t, std::pair<double, Vec3>> reference;
     for (const double time_step : {0.5, 0.1, 1.0 / 60.0, 0.003}) {
         SCOPED_TRACE(time_step);
@@ -180,7 +180,7 @@ TEST(Simulation, GivesIdsInTheOrderOfBirthWhateverTheTimeStep) {
     }
 }
 
-TEST(Simulation, MovesANewbornFromItsBirthOn) {
+TEST(Simulation, NewbornMovesFromItsBirthOn) {
     SimulationSetup setup = empty_setup(0.5, 0.5);
     setup.forces.push_back(make_gravity({0, 0, -kG}));
     EmitterDescription emitter;
@@ -199,8 +199,8 @@ TEST(Simulation, MovesANewbornFromItsBirthOn) {
     }
 }
 
-// Each bounce rounds the velocity; the roundings must not add up to a drift.
-TEST(Simulation, KeepsTheSpeedOfAnElasticParticleOverAMillionBounces) {
+// Each bounce rounds the velocity. The rounding errors must not add up to a drift.
+TEST(Simulation, ElasticParticleKeepsItsSpeedOverAMillionBounces) {
     SimulationSetup setup = empty_setup(10.0, 10.0 * test::scaled(20000));
     setup.colliders.push_back(
         {"box",
@@ -218,7 +218,7 @@ TEST(Simulation, KeepsTheSpeedOfAnElasticParticleOverAMillionBounces) {
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
 }
 
-TEST(Simulation, FreezesAndCountsStatesThatCannotBeFollowed) {
+TEST(Simulation, StatesOutOfRangeAreFrozenAndCounted) {
     SimulationSetup setup = empty_setup(0.1, 1.0);
     setup.colliders.push_back(mesh_collider(testing::sphere_mesh({}, 5.0, 2)));
     setup.forces.push_back(make_force([](const ForceInput& input) {
@@ -233,13 +233,13 @@ TEST(Simulation, FreezesAndCountsStatesThatCannotBeFollowed) {
     EXPECT_EQ(simulation.statistics().frozen, 3U);
     EXPECT_EQ(simulation.particles().frozen, (std::vector<std::uint8_t>{1, 1, 0, 1}));
     EXPECT_EQ(simulation.particles().position[0], Vec3{});
-    // The second got to where the force broke down, and no further.
+    // The second particle reached the position at which the force fails, and stopped there.
     EXPECT_GT(simulation.particles().position[1].x, 0.5);
     EXPECT_LT(simulation.particles().position[1].x, 0.8);
     EXPECT_NEAR(simulation.particles().position[2].y, 3.0, 1e-12);
 }
 
-TEST(Simulation, KnowsTheEnergyWhereItIsDefined) {
+TEST(Simulation, EnergyIsKnownIfItIsDefined) {
     SimulationSetup setup = empty_setup(0.1, 1.0);
     setup.forces.push_back(make_gravity({0, 0, -kG}));
     setup.forces.push_back(make_linear_drag(0.1));
@@ -279,7 +279,7 @@ TEST(Simulation, TotalsPerTriangleAddUpToTheMomentumGiven) {
     EXPECT_EQ(simulation.statistics().lost_impulses, 0U);
 }
 
-TEST(Simulation, ReportsParticlesBornOnASurface) {
+TEST(Simulation, ParticlesBornOnASurfaceAreReported) {
     SimulationSetup setup = empty_setup(0.1, 0.1);
     setup.colliders.push_back(mesh_collider(testing::box_mesh({-1, -1, -1}, {1, 1, 1})));
     setup.colliders.push_back({"floor", PlaneShape{{0, 0, -3}, {0, 0, 1}}, 0});
@@ -289,12 +289,12 @@ TEST(Simulation, ReportsParticlesBornOnASurface) {
     EXPECT_EQ(simulation.statistics().started_inside, 2U);
     run(simulation);
     EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
-    EXPECT_GT(simulation.particles().position[0].z, 1.0);  // outside, where the normal points
+    EXPECT_GT(simulation.particles().position[0].z, 1.0);  // outside, on the side of the normal
     EXPECT_GT(simulation.particles().position[1].z, -3.0);
 }
 
-// Particles in free flight may be ahead of what their look-ahead covers then.
-TEST(Simulation, DoesNotGoOnAfterAnErrorInsideAStep) {
+// After an error, particles in free flight may be beyond their look-ahead.
+TEST(Simulation, RunDoesNotContinueAfterAnErrorInsideAStep) {
     SimulationSetup setup;
     setup.options.time_step = 0.1;
     setup.options.duration = 2.0;
@@ -314,7 +314,7 @@ TEST(Simulation, DoesNotGoOnAfterAnErrorInsideAStep) {
     EXPECT_EQ(simulation.step_index(), 1U);
 }
 
-TEST(Simulation, RefusesOptionsThatCannotWork) {
+TEST(Simulation, InvalidOptionsAreRefused) {
     EXPECT_NE(refusal(empty_setup(0.0, 1.0)).find("time_step"), std::string::npos);
     EXPECT_NE(refusal(empty_setup(std::nan(""), 1.0)).find("time_step"), std::string::npos);
     EXPECT_NE(refusal(empty_setup(0.1, -1.0)).find("duration"), std::string::npos);

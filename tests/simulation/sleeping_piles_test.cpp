@@ -1,4 +1,4 @@
-// Who sleeps beside whom: a row of spheres, the first of which leans on a wall.
+// Neighbours of sleeping spheres: a row of spheres, the first of which leans on a wall.
 #include "ricochet/simulation/sleeping_piles.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,8 @@ NetworkMemory::Entry pair_of(std::uint64_t first, std::uint64_t second, double n
     return {NetworkKey::of_pair(first, second), {normal, {}, {}}, false};
 }
 
-/// 10 to 14, each pressed by the next with its number less 10, and 20, which is awake and presses 14 with 5.
+/// Returns spheres 10 to 14 and 20. Each of 10 to 14 is pressed by the next with its number minus 10. Sphere 20 is
+/// awake and presses 14 with 5.
 SleepingPiles row() {
     SleepingPiles piles;
     std::vector<NetworkMemory::Entry> contacts = {{NetworkKey::of_wall(10, 3), {9.0, {}, {}}, false}};
@@ -31,24 +32,24 @@ bool has(const std::vector<NetworkMemory::Entry>& entries, std::uint64_t first, 
     return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return entry.key == key; });
 }
 
-TEST(SleepingPiles, KnowWhoTouchesWhom) {
+TEST(SleepingPiles, NeighboursAreFound) {
     const SleepingPiles piles = row();
     EXPECT_EQ(piles.around({12}, 1), (Ids{11, 12, 13}));
     EXPECT_EQ(piles.around({10, 14}, 1), (Ids{10, 11, 13, 14}));
     EXPECT_EQ(piles.around({10}, 2), (Ids{10, 11, 12}));
-    EXPECT_EQ(piles.around({12}, 1 << 30), (Ids{10, 11, 12, 13, 14}));  // at once
+    EXPECT_EQ(piles.around({12}, 1 << 30), (Ids{10, 11, 12, 13, 14}));  // all at once
     EXPECT_EQ(piles.around({20}, 1), Ids{});
     EXPECT_EQ(piles.number_of(14), 10U);
 }
 
-TEST(SleepingPiles, KnowWhatPressesASleeperMost) {
+TEST(SleepingPiles, LargestLoadOnASleeperIsKnown) {
     const SleepingPiles piles = row();
     EXPECT_EQ(piles.load_of(10), 9.0);
     EXPECT_EQ(piles.load_of(12), 3.0);
     EXPECT_EQ(piles.load_of(14), 5.0);
 }
 
-TEST(SleepingPiles, ThoseThatNothingHoldsAreThoseBeyondWhatHasWoken) {
+TEST(SleepingPiles, SpheresBeyondAWokenOneLoseTheirSupport) {
     SleepingPiles piles = row();
     EXPECT_EQ(piles.not_joined_to({10}), Ids{});
     const std::vector<NetworkMemory::Entry> contacts = piles.wake({12});
@@ -56,11 +57,11 @@ TEST(SleepingPiles, ThoseThatNothingHoldsAreThoseBeyondWhatHasWoken) {
     EXPECT_TRUE(has(contacts, 11, 12) && has(contacts, 12, 13));
     EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
     EXPECT_EQ(piles.not_joined_to({10, 14}), Ids{});
-    // The one that is awake still presses those beside it.
+    // The sphere that is awake still presses its neighbours.
     EXPECT_TRUE(has(piles.edges(), 11, 12) && has(piles.edges(), 12, 13) && has(piles.edges(), 14, 20));
 }
 
-TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
+TEST(SleepingPiles, SphereThatFallsAsleepAgainForgetsItsFormerLoads) {
     SleepingPiles piles = row();
     static_cast<void>(piles.wake({12}));
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});
@@ -69,8 +70,9 @@ TEST(SleepingPiles, WhatFallsAsleepAgainForgetsWhatItsContactsDidBefore) {
     EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
 }
 
-// As it did not press it when it fell asleep again, it does not hold it either; yet where it goes it has to be woken.
-TEST(SleepingPiles, WhoHasLeantOnASleeperStaysBesideIt) {
+// The neighbour did not press it when it fell asleep again, so it does not support it. It must still be woken when it
+// moves.
+TEST(SleepingPiles, FormerNeighbourOfASleeperStaysANeighbour) {
     SleepingPiles piles = row();
     static_cast<void>(piles.wake({12}));
     piles.add({12}, {pair_of(11, 12, 7.0)}, {});

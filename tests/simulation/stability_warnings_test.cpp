@@ -1,4 +1,4 @@
-// Time steps too long for forces between particles: what is said, and that it is so.
+// Warnings about time steps that are too long for forces between particles, compared with the actual stability.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ Particle grain(const Vec3& position, double mass = 1.0) {
     return particle;
 }
 
-/// Grains at rest that stick, and stretch by little against the range: their forces are linear almost.
+/// Returns cohesive grains at rest with small stretches relative to the range, so that their forces are almost linear.
 SimulationSetup sticking(double time_step, double damping, IntegratorKind kind, std::vector<Particle> grains) {
     SimulationSetup setup = setup_of(time_step, 400.0 * time_step);
     setup.options.integrator.kind = kind;
@@ -43,7 +43,7 @@ SimulationSetup sticking(double time_step, double damping, IntegratorKind kind, 
 
 std::vector<Particle> pair_of(double second_mass) { return {grain({}), grain({1.0 + 1e-7, 0, 0}, second_mass)}; }
 
-/// The closest packing of 108 grains, their places off by some 1e-7 m.
+/// Returns the closest packing of 108 grains, with positions displaced by about 1e-7 m.
 std::vector<Particle> packing() {
     const double edge = std::sqrt(2.0);
     std::vector<Particle> grains;
@@ -65,7 +65,7 @@ bool explodes(SimulationSetup setup) {
 
 std::vector<std::string> warnings_of(SimulationSetup setup) { return Simulation(std::move(setup)).warnings(); }
 
-TEST(StabilityWarnings, OfCohesionBeginWhereTwoGrainsBeginToExplode) {
+TEST(StabilityWarnings, CohesionWarningStartsWhenTwoGrainsExplode) {
     for (const double mass : {1.0, 0.25}) {
         const double inverse = 1.0 + 1.0 / mass;
         for (const double damping : {0.0, 3.0, 100.0}) {
@@ -80,12 +80,12 @@ TEST(StabilityWarnings, OfCohesionBeginWhereTwoGrainsBeginToExplode) {
             EXPECT_FALSE(explodes(scene(0.99 * bound)));
             EXPECT_EQ(warnings_of(scene(1.02 * bound)).size(), 1U);
             EXPECT_TRUE(damping > 0.0 || explodes(scene(1.02 * bound)));
-            EXPECT_TRUE(explodes(scene(2.1 * bound)));  // the bound of a drag is safe by two
+            EXPECT_TRUE(explodes(scene(2.1 * bound)));  // the bound for damping has a safety factor of two
         }
     }
 }
 
-TEST(StabilityWarnings, OfCohesionAreSilentUpToWhereTheClosestPackingExplodes) {
+TEST(StabilityWarnings, CohesionGivesNoWarningUpToTheLimitOfTheClosestPacking) {
     const double bound = 2.0 / std::sqrt(8.0 * kStiffness);  // four times two over the mass
     const auto scene = [](double h) { return sticking(h, 0.0, IntegratorKind::velocity_verlet, packing()); };
     EXPECT_TRUE(warnings_of(scene(0.99 * bound)).empty());
@@ -94,7 +94,7 @@ TEST(StabilityWarnings, OfCohesionAreSilentUpToWhereTheClosestPackingExplodes) {
     EXPECT_TRUE(explodes(scene(1.1 * bound)));
 }
 
-TEST(StabilityWarnings, SayTheStepTheForceAndWhatToDo) {
+TEST(StabilityWarnings, WarningHasTheStepTheForceAndAdvice) {
     EXPECT_EQ(warnings_of(sticking(0.2, 2.0, IntegratorKind::velocity_verlet, pair_of(1.0))),
               (std::vector<std::string>{
                   "the time step of 0.2 s exceeds 0.123 s, up to which velocity_verlet is sure to be stable with what "
@@ -107,7 +107,7 @@ TEST(StabilityWarnings, SayTheStepTheForceAndWhatToDo) {
                   "times its stiffness, or use the integrator symplectic_euler or velocity_verlet"}));
 }
 
-TEST(StabilityWarnings, TellStepsApartThatAreAlmostTheSame) {
+TEST(StabilityWarnings, AlmostEqualStepsArePrintedWithEnoughDigits) {
     const double bound = 2.0 / std::sqrt(200.0);
     const auto lines =
         warnings_of(sticking(std::nextafter(bound, 1.0), 0.0, IntegratorKind::velocity_verlet, pair_of(1.0)));
@@ -118,7 +118,7 @@ TEST(StabilityWarnings, TellStepsApartThatAreAlmostTheSame) {
         << lines[0];
 }
 
-/// Two grains of 1 kg and two of 100 kg, with a step above the bound of the light ones alone, 0.141 s.
+/// Returns two grains of 1 kg and two of 100 kg. The step is above the bound of the light ones alone, 0.141 s.
 SimulationSetup light_and_heavy(std::vector<std::uint64_t> taking_part) {
     std::vector<Particle> grains = pair_of(1.0);
     grains.push_back(grain({5, 0, 0}, 100.0));
@@ -135,16 +135,16 @@ SimulationSetup emitted(double mass) {
     return setup;
 }
 
-TEST(StabilityWarnings, LookAtThoseThatTakePart) {
+TEST(StabilityWarnings, OnlyParticipatingParticlesCount) {
     EXPECT_EQ(warnings_of(light_and_heavy({})).size(), 1U);
     EXPECT_EQ(warnings_of(light_and_heavy({0, 1})).size(), 1U);
     EXPECT_TRUE(warnings_of(light_and_heavy({2, 3})).empty());
-    EXPECT_TRUE(warnings_of(light_and_heavy({0})).empty()) << "one has nobody to act on";
+    EXPECT_TRUE(warnings_of(light_and_heavy({0})).empty()) << "a single particle has no partner";
     EXPECT_EQ(warnings_of(emitted(1.0)).size(), 1U);
     EXPECT_TRUE(warnings_of(emitted(100.0)).empty());
 }
 
-TEST(StabilityWarnings, OfLennardJonesComeFromTheCurvatureOfTheWell) {
+TEST(StabilityWarnings, LennardJonesWarningUsesTheCurvatureOfTheWell) {
     const auto scene = [](double h) {
         SimulationSetup setup = setup_of(h, h);
         setup.particles = {grain({}), grain({2, 0, 0})};
@@ -157,7 +157,7 @@ TEST(StabilityWarnings, OfLennardJonesComeFromTheCurvatureOfTheWell) {
     EXPECT_EQ(warnings_of(scene(1.001 * bound)).size(), 1U);
 }
 
-/// Two that repel each other from a third of their distance at rest.
+/// Returns two particles that repel each other from a third of their equilibrium distance.
 SimulationSetup repelling(double time_step, double distance) {
     SimulationSetup setup = setup_of(time_step, 2000.0 * time_step);
     setup.options.integrator.kind = IntegratorKind::velocity_verlet;
@@ -174,7 +174,7 @@ double energy_gain(SimulationSetup setup) {
 }
 
 // U'' = 24 depth / r^2 (26 s^2 - 7 s) with s = (diameter / r)^6
-TEST(StabilityWarnings, OfParticlesThatBeginInOverlapAreForTheirFirstSteps) {
+TEST(StabilityWarnings, InitialOverlapGivesAWarningForTheFirstSteps) {
     for (const double distance : {0.5, 0.7, 0.9}) {
         SCOPED_TRACE(distance);
         const double s = std::pow(distance, -6.0);
@@ -192,9 +192,9 @@ TEST(StabilityWarnings, OfParticlesThatBeginInOverlapAreForTheirFirstSteps) {
     }
 }
 
-// Each of n grains about one place presses on all others: the stiffness of the mode in which one moves against them is
-// n k / 3 over its mass in a cloud that looks the same from all sides.
-TEST(StabilityWarnings, OfManyGrainsInOnePlaceCountAllNeighbours) {
+// Each of n grains at about one position presses on all others. In an isotropic cloud, the stiffness of the mode in
+// which one grain moves against the others is n k / 3 over its mass.
+TEST(StabilityWarnings, AllNeighboursCountForManyGrainsAtOnePosition) {
     std::vector<Particle> grains;
     for (int k = 0; k < 120; ++k) {
         grains.push_back(grain(0.2 * Vec3{std::sin(1.0 + 7.0 * k), std::sin(2.0 + 5.0 * k), std::sin(3.0 + 3.0 * k)}));
@@ -203,11 +203,11 @@ TEST(StabilityWarnings, OfManyGrainsInOnePlaceCountAllNeighbours) {
     const double closest_packing = 2.0 / std::sqrt(8.0 * kStiffness);
     EXPECT_EQ(warnings_of(scene(0.9 * closest_packing)).size(), 1U);
     EXPECT_TRUE(explodes(scene(0.9 * closest_packing)));
-    const double bound = 2.0 / std::sqrt(2.0 * 119.0 * kStiffness);  // if all were in one line
+    const double bound = 2.0 / std::sqrt(2.0 * 119.0 * kStiffness);  // as if all were in one line
     EXPECT_TRUE(warnings_of(scene(bound)).empty());
 }
 
-TEST(StabilityWarnings, OfTheStartPassPinnedOnesOverAndThoseThatTakeNoPart) {
+TEST(StabilityWarnings, PinnedAndUninvolvedParticlesGiveNoWarningAtTheStart) {
     SimulationSetup pinned = repelling(0.1, 0.5);
     pinned.particles[0].pinned = pinned.particles[1].pinned = true;
     EXPECT_TRUE(warnings_of(std::move(pinned)).empty());
@@ -217,7 +217,7 @@ TEST(StabilityWarnings, OfTheStartPassPinnedOnesOverAndThoseThatTakeNoPart) {
     EXPECT_TRUE(warnings_of(std::move(others)).empty());
 }
 
-/// What a run ends with; empty where it does not diverge.
+/// Returns the error that ends a run; empty if it does not diverge.
 std::string end_of(SimulationSetup setup) {
     Simulation simulation(std::move(setup));
     try {
@@ -228,7 +228,7 @@ std::string end_of(SimulationSetup setup) {
     return "";
 }
 
-/// Two spheres joined by a spring that explodes.
+/// Returns two spheres joined by a spring that explodes.
 SimulationSetup exploding_spring(IntegratorKind kind, bool with_contacts) {
     SimulationSetup setup = setup_of(0.1, 1e3);
     setup.options.integrator.kind = kind;
@@ -238,7 +238,7 @@ SimulationSetup exploding_spring(IntegratorKind kind, bool with_contacts) {
     return setup;
 }
 
-TEST(StabilityAdvice, NamesTheImplicitMethodOnlyWhereTheSceneMayUseIt) {
+TEST(StabilityAdvice, ImplicitMethodIsNamedOnlyIfTheSceneMayUseIt) {
     const IntegratorKind verlet = IntegratorKind::velocity_verlet;
     EXPECT_NE(warnings_of(exploding_spring(verlet, false)).at(0).find("implicit_euler"), std::string::npos);
     EXPECT_NE(end_of(exploding_spring(verlet, false)).find("more damping, or the integrator implicit_euler"),
@@ -251,7 +251,7 @@ TEST(StabilityAdvice, NamesTheImplicitMethodOnlyWhereTheSceneMayUseIt) {
     EXPECT_NE(undamped.at(0).find("use the integrator symplectic_euler or velocity_verlet"), std::string::npos);
 }
 
-/// Two that gravity, their own or that of all, brings beyond the speed of light.
+/// Returns two particles that gravity, mutual or uniform, accelerates beyond the speed of light.
 SimulationSetup thrown_by_gravity(bool between_particles) {
     SimulationSetup setup = setup_of(1.0, 100.0, {}, between_particles ? Vec3{} : Vec3{1e12, 0, 0});
     setup.options.integrator.kind = IntegratorKind::velocity_verlet;
@@ -262,7 +262,7 @@ SimulationSetup thrown_by_gravity(bool between_particles) {
     return setup;
 }
 
-TEST(StabilityAdvice, OfARunawayIsWhatTheSceneMayDo) {
+TEST(StabilityAdvice, AdviceForARunawayFitsTheScene) {
     EXPECT_NE(end_of(thrown_by_gravity(false)).find("a shorter time step, the integrator implicit_euler, or weaker"),
               std::string::npos);
     const std::string line = end_of(thrown_by_gravity(true));
@@ -270,7 +270,7 @@ TEST(StabilityAdvice, OfARunawayIsWhatTheSceneMayDo) {
     EXPECT_FALSE(line.empty());
 }
 
-TEST(StabilityAdvice, OfWhatAFasterOneHasHitNamesThatOne) {
+TEST(StabilityAdvice, SphereHitByAFasterOneNamesThatOne) {
     SimulationSetup setup = setup_of(1e-3, 1e-2);
     setup.options.particle_contacts = PairContactSettings{.restitution = 0.5};
     setup.particles = {grain({}), grain({2, 0, 0})};
@@ -281,7 +281,7 @@ TEST(StabilityAdvice, OfWhatAFasterOneHasHitNamesThatOne) {
         "at 1e+70 m/s: let no particle set out faster than light");
 }
 
-/// Six pieces of each sphere that hits something.
+/// Returns a setup in which each sphere breaks into six pieces at an impact.
 SimulationSetup pieces(double softening, double count, bool share) {
     SimulationSetup setup = setup_of(1e-3, 1e-2);
     setup.emitters.resize(2);
@@ -294,21 +294,21 @@ SimulationSetup pieces(double softening, double count, bool share) {
     return setup;
 }
 
-TEST(BirthWarnings, TellOfChildrenThatAForceWithoutSofteningThrowsApart) {
+TEST(BirthWarnings, ChildrenThatAForceWithoutSofteningThrowsApartGiveAWarning) {
     EXPECT_EQ(warnings_of(pieces(0.0, 6.0, true)),
               (std::vector<std::string>{
                   "children of 'pieces' begin where their parent is, in each other, and particle_forces[0], which has "
                   "no softening, may throw them apart at any speed: give it a softening of about their radius, or "
                   "leave them out of it"}));
     EXPECT_EQ(warnings_of(pieces(0.0, 1.0, false)).size(), 1U);  // beside the parent, which stays
-    EXPECT_TRUE(warnings_of(pieces(0.0, 1.0, true)).empty());    // in its place
+    EXPECT_TRUE(warnings_of(pieces(0.0, 1.0, true)).empty());    // instead of the parent
     EXPECT_TRUE(warnings_of(pieces(0.1, 6.0, true)).empty());
     SimulationSetup others = pieces(0.0, 6.0, true);
     others.particles_forces[0].emitters = {0};
     EXPECT_TRUE(warnings_of(std::move(others)).empty());
 }
 
-/// A ball of 1 kg and 1 m that a drag acts on, at that velocity, without gravity.
+/// Returns a ball of 1 kg and 1 m under a drag, with the given velocity, without gravity.
 SimulationSetup dragged(double time_step, IntegratorKind kind, std::unique_ptr<Force> drag, const Vec3& velocity) {
     SimulationSetup setup = setup_of(time_step, 8.0 * time_step);
     setup.options.integrator.kind = kind;
@@ -323,8 +323,8 @@ double last_speed(SimulationSetup setup) {
     return length(simulation.particles().velocity[0]);
 }
 
-// h c / m = 2, above which every step leaves a larger velocity
-TEST(StabilityWarnings, OfLinearDragBeginWhereItBeginsToAmplify) {
+// If h c / m exceeds 2, every step leaves a larger velocity.
+TEST(StabilityWarnings, LinearDragWarningStartsWhenTheStepAmplifies) {
     constexpr double kBound = 2.0 / 50.0;
     for (const IntegratorKind kind :
          {IntegratorKind::ballistic, IntegratorKind::velocity_verlet, IntegratorKind::symplectic_euler}) {
@@ -338,8 +338,8 @@ TEST(StabilityWarnings, OfLinearDragBeginWhereItBeginsToAmplify) {
     EXPECT_TRUE(warnings_of(dragged(1.0, IntegratorKind::dormand_prince, make_linear_drag(50.0), {3, 0, 0})).empty());
 }
 
-// With the force k |v| v one step turns v round where h k |v| / m = 1.
-TEST(StabilityWarnings, OfQuadraticDragBeginWhereAStepThrowsTheParticleBack) {
+// With the force k |v| v, one step reverses v at h k |v| / m = 1.
+TEST(StabilityWarnings, QuadraticDragWarningStartsWhenAStepReversesTheVelocity) {
     for (const double factor : {0.99, 1.01}) {
         const Vec3 velocity{3, 4, 0};
         SimulationSetup setup =
@@ -352,8 +352,8 @@ TEST(StabilityWarnings, OfQuadraticDragBeginWhereAStepThrowsTheParticleBack) {
     }
 }
 
-// It falls at sqrt(m g / k), at which 2 k v / m = 2 sqrt(k g / m).
-TEST(StabilityWarnings, OfDragCountTheSpeedAtWhichParticlesFall) {
+// The terminal speed is sqrt(m g / k), at which 2 k v / m = 2 sqrt(k g / m).
+TEST(StabilityWarnings, DragWarningConsidersTheTerminalSpeed) {
     for (const double factor : {0.98, 1.02}) {
         SimulationSetup setup =
             dragged(factor / std::sqrt(200.0), IntegratorKind::ballistic, make_quadratic_drag(20.0), {});
@@ -362,7 +362,7 @@ TEST(StabilityWarnings, OfDragCountTheSpeedAtWhichParticlesFall) {
     }
 }
 
-TEST(StabilityWarnings, OfDragAreForTheLightestAndLargestThatAnEmitterMakes) {
+TEST(StabilityWarnings, DragWarningUsesTheLightestAndLargestParticleOfAnEmitter) {
     SimulationSetup setup = setup_of(0.01, 0.1);
     EmitterDescription emitter;
     emitter.name = "mist";

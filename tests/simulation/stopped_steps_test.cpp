@@ -1,4 +1,4 @@
-// A step that is stopped leaves the state of the last whole step, from which the run goes on to the same bits.
+// A stopped step leaves the state of the last whole step. The run continues from there with the same bits.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -25,7 +25,7 @@ using testing::setup_of;
 constexpr double kStep = 0.01;
 constexpr std::uint64_t kSteps = 60;
 
-/// Particles that rain onto a floor.
+/// Returns particles that rain onto a floor.
 SimulationSetup rain(double radius) {
     SimulationSetup setup = setup_of(kStep, static_cast<double>(kSteps) * kStep,
                                      {.name = "floor", .restitution = 0.5, .friction = 0.2}, {0, 0, -9.81});
@@ -100,12 +100,12 @@ std::uint64_t hash_after(const Case& c, std::uint64_t steps) {
     return simulation.state_hash();
 }
 
-TEST(StoppedSteps, LeaveTheStateOfTheLastWholeStep) {
+TEST(StoppedSteps, StoppedStepLeavesTheStateOfTheLastWholeStep) {
     for (const Case& c : cases()) {
         for (const int threads : {1, 3}) {
             const ThreadLimit limit(threads);
             Simulation simulation(c.setup());
-            // Stopped again and again, each time at another question.
+            // The step is stopped repeatedly, each time at another call of the callback.
             std::atomic<std::uint64_t> asked = 0;
             std::uint64_t period = 1;
             std::uint64_t stops = 0;
@@ -130,7 +130,7 @@ TEST(StoppedSteps, LeaveTheStateOfTheLastWholeStep) {
     }
 }
 
-TEST(StoppedSteps, AreReportedOnceToWhoListensForContacts) {
+TEST(StoppedSteps, ContactsOfAStoppedStepAreReportedOnce) {
     const auto count_of = [](bool stops) {
         Simulation simulation(rain(0.0));
         std::uint64_t contacts = 0;
@@ -153,8 +153,8 @@ TEST(StoppedSteps, AreReportedOnceToWhoListensForContacts) {
     EXPECT_EQ(count_of(true), undisturbed);
 }
 
-// A state that was kept before a change is none to go back to.
-TEST(StoppedSteps, KeepWhatHasBeenChangedBetweenSteps) {
+// A state stored before a change must not be restored.
+TEST(StoppedSteps, ChangesBetweenStepsAreKept) {
     Simulation simulation(free_flight());
     bool has_changed = false;
     const auto change = [&] {

@@ -1,4 +1,4 @@
-// Lift by temperature in running simulations, against closed forms.
+// Thermal buoyancy in running simulations, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ using testing::setup_of;
 constexpr double kGravity = 9.81;   // m/s^2
 constexpr double kAmbient = 300.0;  // K
 
-/// A parcel of that temperature at the origin, with its weight and its lift.
+/// Returns a parcel of the given temperature at the origin, with gravity and buoyancy.
 SimulationSetup parcel(double temperature, double time_step, double duration) {
     SimulationSetup setup = setup_of(time_step, duration, {"floor", 0.6, 0.2}, {0, 0, -kGravity});
     setup.colliders.clear();
@@ -36,16 +36,16 @@ double height_of(SimulationSetup setup) {
     return simulation.particles().position[0].z;
 }
 
-TEST(ThermalBuoyancy, LiftsAParcelByWhatItsTemperatureIsAboveThatOfTheGasAround) {
+TEST(ThermalBuoyancy, LiftIsProportionalToTheTemperatureDifference) {
     for (const double temperature : {600.0, 330.0, 150.0}) {
         const double acceleration = kGravity * (temperature - kAmbient) / kAmbient;
         EXPECT_NEAR(height_of(parcel(temperature, 0.1, 2.0)), 0.5 * acceleration * 4.0, 1e-12) << temperature;
     }
-    EXPECT_EQ(height_of(parcel(kAmbient, 0.1, 2.0)), 0.0) << "as warm as the gas around, it floats";
-    EXPECT_NEAR(height_of(parcel(0.0, 0.1, 2.0)), -0.5 * kGravity * 4.0, 1e-12) << "without temperature it falls";
+    EXPECT_EQ(height_of(parcel(kAmbient, 0.1, 2.0)), 0.0) << "with the temperature of the gas it floats";
+    EXPECT_NEAR(height_of(parcel(0.0, 0.1, 2.0)), -0.5 * kGravity * 4.0, 1e-12) << "at 0 K it falls freely";
 }
 
-TEST(ThermalBuoyancy, RisesAtTheSpeedAtWhichTheDragIsTheLift) {
+TEST(ThermalBuoyancy, TerminalSpeedBalancesDragAndLift) {
     SimulationSetup setup = parcel(390.0, 0.01, 10.0);
     constexpr double kDrag = 4.0;
     setup.particles[0].mass = 2.0;
@@ -55,13 +55,14 @@ TEST(ThermalBuoyancy, RisesAtTheSpeedAtWhichTheDragIsTheLift) {
     EXPECT_NEAR(simulation.particles().velocity[0].z, kGravity * 90.0 / kAmbient * 2.0 / kDrag, 1e-4);
 }
 
-// Convection alone cools exactly, and within a step the lift is that of its begin: of first order in the time step.
-TEST(ThermalBuoyancy, FadesAsTheParcelCools) {
+// Convection alone cools exactly. Within a step the lift is that of its start, so the error is first order in the time
+// step.
+TEST(ThermalBuoyancy, LiftFadesAsTheParcelCools) {
     constexpr double kRate = 0.8;  // 1/s
     constexpr double kTime = 2.0;  // s
     const auto error = [&](double time_step) {
         SimulationSetup setup = parcel(500.0, time_step, kTime);
-        setup.particles[0].mass = 4.0 * std::acos(-1.0) * 0.01;  // that of its surface, in kg for m^2
+        setup.particles[0].mass = 4.0 * std::acos(-1.0) * 0.01;  // equal to its surface, in kg for m^2
         setup.heat = HeatSettings{};
         setup.heat->specific_heat = 1.0;
         setup.heat->ambient_temperature = kAmbient;
@@ -76,7 +77,7 @@ TEST(ThermalBuoyancy, FadesAsTheParcelCools) {
     EXPECT_NEAR(coarse / fine, 2.0, 0.05);
 }
 
-TEST(ThermalBuoyancy, IsRefusedWithoutTheAttributeAndAmongParticlesThatActOnEachOther) {
+TEST(ThermalBuoyancy, MissingAttributeAndInteractingParticlesAreRefused) {
     const auto message = [](SimulationSetup setup) -> std::string {
         try {
             const Simulation simulation(std::move(setup));

@@ -1,5 +1,5 @@
-// Spheres that have spent their bounces wait for the end of the step. Colliders that move take them along meanwhile,
-// and others meet them where they are then, not where the step will leave them.
+// Spheres that have spent their bounce budget wait for the end of the step. Moving colliders carry them meanwhile.
+// Other spheres must collide with them at their current position, not at the position at the end of the step.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -20,7 +20,7 @@ constexpr double kRadius = 0.05;  // m
 constexpr double kSpeed = 10.0;   // m/s
 constexpr double kStep = 0.05;    // s
 
-/// A sphere that bounces up and down in a box, which moves along y as it does, and has one bounce a step.
+/// Returns a sphere that bounces up and down in a box and moves along y with it. It has one bounce per step.
 SimulationSetup sphere_in_a_box() {
     SimulationSetup setup = setup_of(kStep, kStep, {"", 1.0, 0.0}, {});
     setup.options.verify = true;
@@ -37,7 +37,7 @@ SimulationSetup sphere_in_a_box() {
     return setup;
 }
 
-TEST(ASphereThatWaits, IsMetWhereMovingCollidersHaveTakenIt) {
+TEST(ASphereThatWaits, WaitingSphereIsHitAtItsCarriedPosition) {
     SimulationSetup alone = sphere_in_a_box();
     Simulation first(std::move(alone));
     first.step();
@@ -45,7 +45,7 @@ TEST(ASphereThatWaits, IsMetWhereMovingCollidersHaveTakenIt) {
     const Vec3 end = first.particles().position[0];
     ASSERT_GT(end.y, 0.5 * kStep * kSpeed);
 
-    // A sphere that flies past that place long before the other comes.
+    // Adds a sphere that flies past that position long before the other sphere arrives.
     SimulationSetup setup = sphere_in_a_box();
     setup.particles.push_back(particle_of({-0.3, end.y, 0}, {20, 0, 0}, kRadius));
     Simulation simulation(std::move(setup));

@@ -17,11 +17,12 @@ std::atomic<std::size_t> peak{0};
 
 constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
 std::atomic<std::uint64_t> calls_made{0};
-std::atomic<std::uint64_t> first_failure{kNever};  // of calls_made
+std::atomic<std::uint64_t> first_failure{kNever};  // as a value of calls_made
 std::atomic<bool> later_fail{false};
 
-// Embree 3.13 leaves a thread's allocator bound to one that is gone where it cannot note it, and the next hierarchy is
-// spoilt: nobody who calls it can mend that.
+// Returns true if the code belongs to Embree. If an allocation inside Embree 3.13 fails, a thread's allocator stays
+// bound to a destroyed one, and the next hierarchy is corrupt. The caller cannot repair that, so Embree's allocations
+// never fail.
 bool is_of_embree(const void* code) noexcept {
     Dl_info info{};
     return ::dladdr(code, &info) != 0 && info.dli_fname != nullptr &&
@@ -42,7 +43,7 @@ void* counted(void* memory) {
     return memory;
 }
 
-// Null where there is none.
+// Returns null if no memory is available.
 void* allocate(std::size_t size, const void* caller) noexcept {
     if (is_to_fail(caller)) return nullptr;
     void* memory = std::malloc(size == 0 ? 1 : size);
@@ -56,7 +57,7 @@ void* allocate(std::size_t size, std::align_val_t alignment, const void* caller)
     return counted(memory);
 }
 
-// As the standard library does it: whoever wants to know is told.
+// Follows the standard library: calls the new-handler before it throws.
 void* required(void* memory) {
     if (memory != nullptr) return memory;
     if (const std::new_handler handler = std::get_new_handler()) handler();
@@ -71,7 +72,8 @@ void release(void* memory) noexcept {
 
 }  // namespace RICOCHET_FILE
 
-// An allocation that requests far more than the machine has counts too, since it fails: bad_alloc is not InputError.
+// Allocations that request far more memory than the machine has count too, because they fail: bad_alloc is not
+// InputError.
 void* operator new(std::size_t size) { return required(allocate(size, __builtin_return_address(0))); }
 void* operator new[](std::size_t size) { return required(allocate(size, __builtin_return_address(0))); }
 void* operator new(std::size_t size, std::align_val_t alignment) {

@@ -1,5 +1,5 @@
 /// \file
-/// Counts the memory that a test program has in use, and lets allocations fail. One source file of the program must
+/// Counts the memory that a test program has in use, and makes allocations fail. One source file of the program must
 /// define the counting operators: allocation_guard.cpp.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace ricochet::test {
 
-/// Measures the largest amount of heap memory in use at one time, beyond what was in use when it was made, over all
-/// threads. One at a time.
+/// Measures the largest heap memory in use at one time, over all threads, beyond the memory in use at its construction.
+/// Only one guard may exist at a time.
 class AllocationGuard {
 public:
     AllocationGuard();
@@ -19,23 +19,24 @@ private:
     std::size_t start_;
 };
 
-/// Bytes that operator new has given and nobody has given back yet, of the whole program.
+/// Returns the bytes of the whole program that operator new has allocated and that are not freed yet.
 [[nodiscard]] std::size_t bytes_in_use();
 
-/// While it lives, the number-th call of operator new from now on, over all threads, throws std::bad_alloc, or gives
-/// null where it is of the kind that does not throw. Embree's own calls never fail. One at a time.
+/// Makes one call of operator new fail, over all threads, during the lifetime of the object. The call throws
+/// std::bad_alloc; its non-throwing form returns null. Embree's own calls never fail. Only one fault may exist at a
+/// time.
 class AllocationFault {
 public:
     enum class Later { succeed, fail };
-    /// number: from 1; later: what becomes of the calls after it.
+    /// number: the call that fails, counted from 1; later: the fate of the calls after it.
     explicit AllocationFault(std::uint64_t number, Later later = Later::succeed);
     ~AllocationFault();
     AllocationFault(const AllocationFault&) = delete;
     AllocationFault& operator=(const AllocationFault&) = delete;
 
-    /// Calls since it was made.
+    /// Returns the number of calls since construction.
     [[nodiscard]] std::uint64_t calls() const;
-    /// No more calls fail.
+    /// Lets all further calls succeed.
     void end();
 };
 

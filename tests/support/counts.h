@@ -1,6 +1,6 @@
 /// \file
-/// How many repetitions a random test makes: the full number in an optimised build, fewer where each one costs more,
-/// more in a long run.
+/// Numbers of repetitions for random tests: the full number in an optimised build, fewer in slower builds, more in a
+/// long run.
 #pragma once
 
 #include <algorithm>
@@ -26,19 +26,19 @@ inline constexpr bool kOptimised = true;
 inline constexpr bool kOptimised = false;
 #endif
 
-/// `full` in an optimised build, a tenth of it without optimisation, a fiftieth under a sanitizer; at least 1.
-/// A test must hold for every count: nothing that it claims may depend on the number of repetitions.
+/// Returns `full` in an optimised build, a tenth of it without optimisation, a fiftieth under a sanitizer, and at least
+/// 1. A test must be valid for every count, so none of its claims may depend on the number of repetitions.
 [[nodiscard]] constexpr int scaled(int full) {
     const int divisor = kSanitized ? 50 : (kOptimised ? 1 : 10);
     return std::max(1, full / divisor);
 }
 
-/// Whether the tests run with full counts: the environment variable RICOCHET_LONG_TESTS is set.
+/// Returns true if the tests run with full counts, that is, if the environment variable RICOCHET_LONG_TESTS is set.
 [[nodiscard]] inline bool is_long_run() noexcept {
     return std::getenv("RICOCHET_LONG_TESTS") != nullptr;  // NOLINT(concurrency-mt-unsafe): nothing sets it
 }
 
-/// How many times as many cases a long run makes: `in_a_long_run` there, else 1.
+/// Returns the factor for the number of cases: `in_a_long_run` in a long run, else 1.
 [[nodiscard]] inline int case_factor(int in_a_long_run) noexcept { return is_long_run() ? in_a_long_run : 1; }
 
 }  // namespace ricochet::test

@@ -13,7 +13,7 @@ namespace RICOCHET_FILE {
 using Integer = boost::multiprecision::cpp_int;
 using IntegerPoint = std::array<Integer, 3>;
 
-/// x = mantissa * 2^exponent, the mantissa a whole number.
+/// The number mantissa * 2^exponent with an integer mantissa.
 struct Dyadic {
     Integer mantissa;
     int exponent = 0;
@@ -25,7 +25,7 @@ struct Dyadic {
     }
 };
 
-/// The points multiplied by one power of two that makes all their coordinates whole.
+/// Returns the points multiplied by one power of two that makes all their coordinates integers.
 template <std::size_t N>
 std::array<IntegerPoint, N> whole_points(const std::array<Vec3, N>& points) {
     int least = std::numeric_limits<int>::max();
@@ -44,13 +44,14 @@ std::array<IntegerPoint, N> whole_points(const std::array<Vec3, N>& points) {
     return whole;
 }
 
-/// coefficients . variables + constant, either = 0 or >= 0.
+/// The form coefficients . variables + constant, which is constrained to be = 0 or >= 0.
 struct LinearForm {
     std::array<Integer, 3> coefficients;
     Integer constant;
 };
 
-/// Adds multiples of two forms such that variable v drops out; `of_form` is positive, so an inequality keeps its sense.
+/// Adds multiples of two forms such that variable v cancels. `of_form` is positive, so an inequality keeps its
+/// direction.
 LinearForm combined(const LinearForm& form, const Integer& of_form, const LinearForm& other, const Integer& of_other) {
     LinearForm sum;
     for (std::size_t v = 0; v < 3; ++v) {
@@ -60,14 +61,14 @@ LinearForm combined(const LinearForm& form, const Integer& of_form, const Linear
     return sum;
 }
 
-/// Removes variable v from the form by means of an equation that contains it.
+/// Eliminates variable v from the form with an equation that contains it.
 LinearForm substituted(const LinearForm& form, const LinearForm& equation, std::size_t v) {
     const Integer& pivot = equation.coefficients[v];
     const Integer factor = pivot > 0 ? -form.coefficients[v] : form.coefficients[v];
     return combined(form, boost::multiprecision::abs(pivot), equation, factor);
 }
 
-/// Removes variable v from a system of inequalities (Fourier-Motzkin).
+/// Eliminates variable v from a system of inequalities (Fourier-Motzkin).
 std::vector<LinearForm> without_variable(const std::vector<LinearForm>& inequalities, std::size_t v) {
     std::vector<LinearForm> reduced;
     for (const LinearForm& form : inequalities) {
@@ -105,7 +106,7 @@ Integer determinant3(const IntegerPoint& a, const IntegerPoint& b, const Integer
     return a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// exact_orient3d in the scale of whole_points.
+/// Returns exact_orient3d in the scale of whole_points.
 Integer whole_orient3d(const IntegerPoint& a, const IntegerPoint& b, const IntegerPoint& c, const IntegerPoint& d) {
     return determinant3(b, c, d) - determinant3(a, c, d) + determinant3(a, b, d) - determinant3(a, b, c);
 }
@@ -121,7 +122,7 @@ Rational exact(double x) {
 Rational exact(const DoubleDouble& x) { return exact(x.hi) + exact(x.lo); }
 
 Rational exact_orient3d(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    // One more point, of which a coordinate is 1, tells the scale.
+    // One more point with a coordinate of 1 gives the scale.
     const auto w = whole_points(std::array{a, b, c, d, Vec3{1.0, 0.0, 0.0}});
     return Rational(whole_orient3d(w[0], w[1], w[2], w[3]), w[4][0] * w[4][0] * w[4][0]);
 }
@@ -138,7 +139,7 @@ std::array<Rational, 3> exact_area_vector(const Vec3& a, const Vec3& b, const Ve
 
 bool exact_segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto w = whole_points(std::array{p, q, a, b, c});
-    // Variables t, beta, gamma: p + t (q - p) = a + beta (b - a) + gamma (c - a).
+    // The variables t, beta, gamma satisfy p + t (q - p) = a + beta (b - a) + gamma (c - a).
     std::vector<LinearForm> equations;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         equations.push_back(

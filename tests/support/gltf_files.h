@@ -1,5 +1,5 @@
 /// \file
-/// Small glTF files made by tests.
+/// Small glTF files for tests.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ namespace ricochet::test {
 
 using Json = nlohmann::json;
 
-/// A document and the bytes of its one buffer.
+/// A document and the bytes of its only buffer.
 struct GltfFile {
     Json document;
     std::string binary;
 };
 
-/// Adds an accessor of these bytes, with a buffer view of its own; its number.
+/// Adds an accessor for these bytes with its own buffer view. Returns the index of the accessor.
 inline std::size_t add_accessor(GltfFile& file, const std::string& bytes, int component_type, std::size_t count,
                                 const std::string& type) {
     Json& document = file.document;
@@ -51,7 +51,7 @@ std::string index_bytes(const std::vector<std::uint32_t>& indices) {
     return bytes.bytes();
 }
 
-/// One node with one mesh of these points and 16-bit indices.
+/// Returns a file with one node, whose mesh has these points and 16-bit indices.
 inline GltfFile gltf_of(const std::vector<Vec3>& points, const std::vector<std::uint32_t>& indices) {
     GltfFile file;
     file.document = Json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
@@ -62,7 +62,7 @@ inline GltfFile gltf_of(const std::vector<Vec3>& points, const std::vector<std::
     return file;
 }
 
-/// The corners of a cube of edge 1 about the origin, and its triangles by their numbers, wound outward.
+/// Corners of a cube of edge 1 centred at the origin. Its triangles, below, are wound outward.
 inline const std::array<Vec3, 8> kCubeCorners = {Vec3{-0.5, -0.5, -0.5}, Vec3{0.5, -0.5, -0.5}, Vec3{-0.5, 0.5, -0.5},
                                                  Vec3{0.5, 0.5, -0.5},   Vec3{-0.5, -0.5, 0.5}, Vec3{0.5, -0.5, 0.5},
                                                  Vec3{-0.5, 0.5, 0.5},   Vec3{0.5, 0.5, 0.5}};
@@ -79,8 +79,8 @@ inline constexpr std::array<std::array<std::uint32_t, 3>, 12> kCubeTriangles = {
                                                                                  {1, 3, 7},
                                                                                  {1, 7, 5}}};
 
-/// That cube as programs export it, every triangle with points of its own, below two nodes: the mesh is scaled by
-/// (2, 1, 4), then turned by a quarter about z and moved by (1, 2, 3).
+/// Returns the cube as programs export it: every triangle has its own points. Its mesh is below two nodes, which scale
+/// it by (2, 1, 4), rotate it by a quarter turn about z and move it by (1, 2, 3).
 inline GltfFile gltf_cube() {
     std::vector<Vec3> points;
     std::vector<std::uint32_t> indices;
@@ -100,14 +100,14 @@ inline GltfFile gltf_cube() {
     return file;
 }
 
-/// Where the corner of that cube is, with z up.
+/// Returns the position of a corner of gltf_cube(), with z up.
 inline Vec3 corner_of_gltf_cube(std::uint32_t corner) {
     const Vec3 p = kCubeCorners[corner];
     const Vec3 placed{-p.y + 1.0, 2.0 * p.x + 2.0, 4.0 * p.z + 3.0};
     return {placed.x, -placed.z, placed.y};
 }
 
-/// The bytes of a GLB file.
+/// Returns the bytes of a GLB file.
 inline std::string glb_of(const GltfFile& file) {
     std::string json = file.document.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
@@ -135,13 +135,13 @@ inline std::string base64_of(const std::string& bytes) {
     return text;
 }
 
-/// The text of a .gltf file that holds its buffer.
+/// Returns the text of a .gltf file with an embedded buffer.
 inline std::string gltf_text(GltfFile file) {
     file.document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64_of(file.binary);
     return file.document.dump();
 }
 
-/// The same whose buffer is the file of that name.
+/// Returns the text of a .gltf file whose buffer is the file with the given name.
 inline std::string gltf_text(GltfFile file, const std::string& buffer) {
     file.document["buffers"][0]["uri"] = buffer;
     return file.document.dump();

@@ -1,5 +1,5 @@
 /// \file
-/// All integrators, for tests of what each of them must do.
+/// List of all integrators, for tests of their common properties.
 #pragma once
 
 #include <array>

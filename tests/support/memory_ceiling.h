@@ -1,6 +1,6 @@
 /// \file
-/// A limit on the memory of this process and of those that it starts, so that what would take too much is seen to be
-/// refused before it takes it.
+/// Limit on the memory of this process and its child processes. It proves that excessive requests are refused before
+/// memory is allocated for them.
 #pragma once
 
 #include <sys/resource.h>
@@ -10,8 +10,8 @@
 
 namespace ricochet::test {
 
-/// While it lives, this process may take only so many bytes more, and one that it starts so many beside what this one
-/// holds (RLIMIT_DATA).
+/// Limits memory (RLIMIT_DATA) during its lifetime: this process may allocate the given bytes beyond its current use.
+/// Its child processes have the same absolute limit.
 class MemoryCeiling {
 public:
     explicit MemoryCeiling(double bytes) {

@@ -1,5 +1,5 @@
 /// \file
-/// Distance from a mesh by testing every triangle.
+/// Distance from a mesh, computed by testing every triangle.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace ricochet::testing {
 
-/// m.
+/// Returns the distance, in m.
 inline double distance_from(const TriangleMesh& mesh, const Vec3& p) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : mesh.triangles) {

@@ -1,5 +1,5 @@
 /// \file
-/// The parity oracle, which the library's own verifier uses too.
+/// The parity oracle, which the library's own verifier also uses.
 #pragma once
 
 #include "ricochet/verify/parity.h"

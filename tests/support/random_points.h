@@ -1,5 +1,5 @@
 /// \file
-/// Many points with weights, for sums over all of them.
+/// Many weighted points, for sums over all of them.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ struct WeightedPoints {
     std::vector<double> weights;
 };
 
-/// Points as in a globular cluster, of unit scale and out to ten times that, with weights that add up to 1 and differ
-/// by factors up to 3. Source: S. J. Aarseth, M. Henon, R. Wielen, Astron. Astrophys. 37, 1974.
+/// Returns points distributed as in a globular cluster, with unit scale and a radius of at most ten. The weights add up
+/// to 1 and differ by factors up to 3. Source: S. J. Aarseth, M. Henon, R. Wielen, Astron. Astrophys. 37, 1974.
 inline WeightedPoints plummer_ball(std::size_t count, std::uint64_t seed) {
     RandomSequence draws(seed, 1, 0);
     WeightedPoints points;
@@ -38,7 +38,7 @@ inline WeightedPoints plummer_ball(std::size_t count, std::uint64_t seed) {
     return points;
 }
 
-/// Uniform in a cube of unit side, with unit weights of both signs.
+/// Returns uniform points in a cube of unit side, with unit weights of both signs.
 inline WeightedPoints charges_in_cube(std::size_t count, std::uint64_t seed) {
     RandomSequence draws(seed, 2, 0);
     WeightedPoints points;

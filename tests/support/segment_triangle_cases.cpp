@@ -30,7 +30,7 @@ Vec3 random_point(RandomSequence& random) {
     return {x, y, between(random, -1.0, 1.0)};
 }
 
-/// A point of a coarse grid: coincidences of every kind are frequent.
+/// Returns a point of a coarse grid, so that coincidences of every kind are frequent.
 Vec3 grid_point(RandomSequence& random) {
     const int x = whole_between(random, -3, 3);
     const int y = whole_between(random, -3, 3);
@@ -51,7 +51,7 @@ Corners axis_aligned_triangle(RandomSequence& random) {
     return corners;
 }
 
-/// Exactly collinear corners, sometimes coincident.
+/// Returns a triangle with exactly collinear corners, which sometimes coincide.
 Corners degenerate_triangle(RandomSequence& random) {
     const Vec3 a = grid_point(random);
     const Vec3 step = grid_point(random);
@@ -81,21 +81,21 @@ Corners triangle_of_kind(std::uint64_t kind, RandomSequence& random) {
     }
 }
 
-/// A point of the triangle's plane, rounded; on_border: on the line of an edge.
+/// Returns a rounded point of the triangle's plane. With on_border it is on the line of an edge.
 Vec3 plane_point(const Corners& t, bool on_border, RandomSequence& random) {
     const double u = between(random, -0.5, 1.5);
     const double v = on_border ? 0.0 : between(random, -0.5, 1.5);
     return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
 
-/// A point of the plane that is exact for corners on the grid.
+/// Returns a point of the plane that is exact for corners on the grid.
 Vec3 whole_plane_point(const Corners& t, RandomSequence& random) {
     const int u = whole_between(random, -2, 4);
     const int v = whole_between(random, -2, 4);
     return t[0] + (0.5 * u) * (t[1] - t[0]) + (0.5 * v) * (t[2] - t[0]);
 }
 
-/// Moved by a few units in the last place.
+/// Returns the point moved by a few units in the last place.
 Vec3 nudged(Vec3 p, RandomSequence& random) {
     for (int axis = 0; axis < 3; ++axis) p[axis] += whole_between(random, -3, 3) * 0x1p-52 * p[axis];
     return p;
@@ -144,7 +144,7 @@ std::array<Vec3, 2> segment_of_kind(std::uint64_t kind, const Corners& t, Random
     }
 }
 
-/// Some placements round, which turns exact coincidences into near ones; that is wanted too.
+/// Some placements round. They deliberately turn exact coincidences into near ones.
 Vec3 placed(const Vec3& p, std::uint64_t placement) {
     switch (placement) {
         case 1:
@@ -159,7 +159,7 @@ Vec3 placed(const Vec3& p, std::uint64_t placement) {
             return p * 0x1p-285;
         case 6:
             return p * 0x1p290;
-        case 7:  // axes of very different size
+        case 7:  // axes of very different scale
             return {p.x * 0x1p200, p.y, p.z * 0x1p-200};
         case 8:  // both ends of the range at once
             return {p.x * 0x1p290, p.y * 0x1p-285, p.z};

@@ -19,11 +19,11 @@ struct SegmentTriangle {
     Vec3 c;
 };
 
-/// Case `index` of the family that `seed` stands for: every combination of a kind of triangle, a kind of segment and a
-/// placement comes round in turn. Coordinates keep within what the predicates promise to be exact for.
+/// Returns case `index` of the family that `seed` selects. Successive cases cycle through all combinations of a kind of
+/// triangle, a kind of segment and a placement. All coordinates are in the range for which the predicates are exact.
 [[nodiscard]] SegmentTriangle segment_triangle_case(std::uint64_t seed, std::uint64_t index);
 
-/// The case in words and in hexadecimal digits, for a failing test's message.
+/// Returns a description of the case in words and hexadecimal digits, for the message of a failing test.
 [[nodiscard]] std::string description(const SegmentTriangle& s);
 
 }  // namespace ricochet::testing

@@ -1,5 +1,5 @@
 /// \file
-/// Slow reference answers for shapes with a formula, to 50 digits, by halving.
+/// Slow oracles for shapes with a formula, to 50 digits, by bisection.
 #pragma once
 
 #include <array>
@@ -16,36 +16,36 @@ using RealVector = std::array<Real, 3>;
 [[nodiscard]] RealVector real(const Vec3& v);
 [[nodiscard]] Real dot(const RealVector& u, const RealVector& v);
 [[nodiscard]] Real length(const RealVector& v);
-/// u + s v.
+/// Returns u + s v.
 [[nodiscard]] RealVector sum(const RealVector& u, const Real& s, const RealVector& v);
 
-/// Position on the polynomial of the path's stored coefficients.
+/// Returns the position on the polynomial of the path's stored coefficients.
 [[nodiscard]] RealVector position(const Path& path, const Real& s);
 
-/// The shape that AnalyticShape documents: its axes are the columns of the map, orthonormalised in their order; its
-/// half axes are the columns' lengths rounded to doubles, and those that agree to 2^-49 are equal.
+/// The shape as documented for AnalyticShape. Its axes are the columns of the map, orthonormalised in their order. Its
+/// half axes are the lengths of the columns rounded to doubles; lengths that agree to 2^-49 count as equal.
 class ShapeOracle {
 public:
     ShapeOracle(const AffineMap& world_from_local, bool is_capped);
 
     struct Nearest {
         Real distance;      ///< signed, positive outside
-        RealVector normal;  ///< outward, world
+        RealVector normal;  ///< outward, in world coordinates
     };
     [[nodiscard]] Nearest nearest(const RealVector& p) const;
-    /// Negative inside, positive outside, 0 on the surface; smooth except at the edge.
+    /// Returns a signed value: negative inside, positive outside, 0 on the surface. It is smooth except at the edge.
     [[nodiscard]] Real value(const RealVector& p) const;
-    /// Has the closed segment a point on the surface?
+    /// Returns true if the closed segment has a point on the surface.
     [[nodiscard]] bool intersects(const RealVector& p, const RealVector& q) const;
 
     [[nodiscard]] const std::array<double, 3>& half_axes() const { return half_; }
-    /// World coordinates of a point given in the shape's frame.
+    /// Returns the world coordinates of a point given in the shape's frame.
     [[nodiscard]] RealVector world(const RealVector& local) const;
 
 private:
     [[nodiscard]] RealVector local(const RealVector& p) const;
     [[nodiscard]] Real form(const RealVector& y) const;
-    /// Nearest point of the ellipsoid or ellipse, in the frame.
+    /// Returns the nearest point of the ellipsoid or ellipse, in the shape's frame.
     [[nodiscard]] Nearest nearest_around(const RealVector& y) const;
 
     std::array<RealVector, 3> axes_;

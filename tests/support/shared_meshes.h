@@ -1,6 +1,6 @@
 /// \file
-/// Real meshes for tests: scans and CAD parts that are not part of the project. The folder that holds them is named by
-/// the environment variable RICOCHET_SHARED_MESHES, else it is ../shared/meshes beside the source tree.
+/// Real meshes for tests: scans and CAD parts that are not part of the project. The environment variable
+/// RICOCHET_SHARED_MESHES names their folder. The default is ../shared/meshes beside the source tree.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -11,13 +11,13 @@
 
 namespace ricochet::testing {
 
-/// The folder that is read, whether it exists or not.
+/// Returns the folder of the meshes, even if it does not exist.
 [[nodiscard]] std::filesystem::path shared_mesh_folder();
 
-/// The path of a file there; nothing when it is missing.
+/// Returns the path of a file in this folder, or nothing if it is missing.
 [[nodiscard]] std::optional<std::filesystem::path> shared_mesh(const std::string& name);
 
-/// One sentence for a skipped test.
+/// Returns one sentence for a skipped test.
 [[nodiscard]] std::string missing_mesh_sentence(const std::string& name);
 
 }  // namespace ricochet::testing

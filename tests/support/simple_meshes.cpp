@@ -10,7 +10,7 @@ namespace RICOCHET_FILE {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// One level of splitting on the unit sphere.
+/// Splits each triangle once into four on the unit sphere.
 TriangleMesh subdivided(const TriangleMesh& coarse) {
     TriangleMesh fine{coarse.vertices, {}};
     std::map<Edge, std::uint32_t> middles;

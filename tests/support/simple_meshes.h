@@ -1,5 +1,5 @@
 /// \file
-/// Small closed meshes, wound outward, for tests.
+/// Small closed meshes for tests, wound outward.
 #pragma once
 
 #include "ricochet/core/vec3.h"
@@ -7,19 +7,20 @@
 
 namespace ricochet::testing {
 
-/// Twelve triangles.
+/// Returns a box of twelve triangles.
 [[nodiscard]] TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper);
 
-/// An octahedron whose triangles are split `levels` times into four and pushed onto the sphere: 8 * 4^levels triangles.
+/// Returns an octahedron whose triangles are split `levels` times into four and projected onto the sphere. It has 8 *
+/// 4^levels triangles.
 [[nodiscard]] TriangleMesh sphere_mesh(const Vec3& center, double radius, int levels);
 
-/// Every face turned around.
+/// Returns the mesh with every face flipped.
 [[nodiscard]] TriangleMesh flipped(TriangleMesh mesh);
 
-/// Both meshes in one list; vertices are not joined.
+/// Returns both meshes in one list, without merging vertices.
 [[nodiscard]] TriangleMesh merged(TriangleMesh first, const TriangleMesh& second);
 
-/// Every vertex moved by `offset` and rounded.
+/// Returns the mesh with every vertex moved by `offset` and rounded.
 [[nodiscard]] TriangleMesh moved(TriangleMesh mesh, const Vec3& offset);
 
 }  // namespace ricochet::testing

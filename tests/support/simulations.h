@@ -1,5 +1,5 @@
 /// \file
-/// What tests of whole simulations begin with, in a line each.
+/// Short functions that start tests of whole simulations.
 #pragma once
 
 #include <utility>
@@ -9,7 +9,7 @@
 
 namespace ricochet::testing {
 
-/// Nothing yet in it but a material, elastic and smooth unless told, and gravity where there is any.
+/// Returns a setup with one material (default elastic and smooth), optional gravity, and nothing else.
 [[nodiscard]] inline SimulationSetup setup_of(double time_step, double duration, Material material = {},
                                               const Vec3& gravity = {}) {
     SimulationSetup setup;
@@ -20,7 +20,7 @@ namespace ricochet::testing {
     return setup;
 }
 
-/// A particle at a place, with a velocity, a radius and a spin.
+/// Returns a particle with a position, a velocity, a radius and a spin.
 [[nodiscard]] inline Particle particle_of(const Vec3& position, const Vec3& velocity = {}, double radius = 0.0,
                                           const Vec3& spin = {}) {
     Particle particle;

@@ -1,6 +1,6 @@
 /// \file
-/// Slow reference answers for swept spheres, in 100 decimal digits: the true distance function, without any
-/// feature's polynomial.
+/// Slow oracles for swept spheres, in 100 decimal digits. They use the exact distance function and no polynomials of
+/// features.
 #pragma once
 
 #include <array>
@@ -20,25 +20,25 @@ using Triangle = std::array<Vec3, 3>;
 [[nodiscard]] DigitsVec3 difference(const DigitsVec3& u, const DigitsVec3& v);
 [[nodiscard]] Digits length(const DigitsVec3& v);
 
-/// The path's polynomial at s.
+/// Returns the position on the path's polynomial at s.
 [[nodiscard]] DigitsVec3 position(const Path& path, const Digits& s);
 
-/// Nearest point of the closed triangle, degenerate ones included: the smallest of the distances from the three
-/// segments and, where the projection solves the Gram equations inside, from the plane.
+/// Returns the nearest point of the closed triangle, which may be degenerate. It is the nearest of the points on the
+/// three segments and, if the projection solves the Gram equations inside, the point in the plane.
 [[nodiscard]] DigitsVec3 nearest_point(const DigitsVec3& p, const Triangle& triangle);
 [[nodiscard]] Digits distance(const DigitsVec3& p, const Triangle& triangle);
 
-/// What the distance function tells.
+/// Result of the search along the distance function.
 struct OracleContact {
-    std::optional<Digits> time;  ///< first time at which the distance shrinks to the radius; none: it stays above
-    /// How close the distance comes to the radius before `time` without reaching it, or by how much it goes below soon
-    /// after `time`: where this is tiny, contact is a matter of rounding.
+    std::optional<Digits> time;  ///< first time at which the distance shrinks to the radius; empty if it stays above
+    /// Distance by which the path misses or enters the radius: the closest approach before `time`, or the depth shortly
+    /// after `time`. If it is tiny, rounding decides about contact.
     Digits margin = 0;
 };
 
-/// First contact of a sphere that starts clear of the triangle. Intervals of time are halved until the distance, which
-/// changes no faster than the path's speed, proves them clear; in what is left its minimum is found, and the root
-/// before that.
+/// Returns the first contact of a sphere that starts clear of the triangle. Bisects intervals of time until the bound
+/// on the speed proves them clear, because the distance changes at most at the speed of the path. In the remaining
+/// intervals it finds the minimum, and the root before it.
 [[nodiscard]] OracleContact first_contact(const Path& path, double radius, const Triangle& triangle);
 
 }  // namespace ricochet::testing

@@ -1,5 +1,5 @@
 /// \file
-/// Means with their standard errors, for tests against expected values of random quantities.
+/// Means with their standard errors, for comparisons with expected values of random quantities.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ public:
     }
     [[nodiscard]] std::size_t count() const { return count_; }
     [[nodiscard]] double mean() const { return mean_; }
-    /// Standard error of the mean.
+    /// Returns the standard error of the mean.
     [[nodiscard]] double error() const {
         const auto n = static_cast<double>(count_);
         return count_ < 2 ? INFINITY : std::sqrt(squares_ / (n - 1.0) / n);
@@ -30,7 +30,7 @@ private:
     double squares_ = 0.0;
 };
 
-/// Independent pairs (numerator, denominator) whose means have the wanted ratio.
+/// Independent pairs (numerator, denominator) whose means have the expected ratio.
 class RatioSample {
 public:
     explicit RatioSample(double expected) : expected_(expected) {}
@@ -40,7 +40,7 @@ public:
         numerator_.add(numerator);
     }
     [[nodiscard]] double ratio() const { return numerator_.mean() / denominator_.mean(); }
-    /// Standard error of the ratio, if the expected value is the true one.
+    /// Returns the standard error of the ratio, if the expected value is the true one.
     [[nodiscard]] double error() const { return difference_.error() / denominator_.mean(); }
 
 private:

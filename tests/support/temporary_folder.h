@@ -1,5 +1,5 @@
 /// \file
-/// A folder of a test's own that goes away with it.
+/// A folder for one test, deleted after it.
 #pragma once
 
 #include <unistd.h>
@@ -37,7 +37,7 @@ public:
         return path(name);
     }
 
-    /// A file's bytes.
+    /// Returns the bytes of a file.
     [[nodiscard]] std::string read(std::string_view name) const {
         std::ifstream in(path(name), std::ios::binary);
         return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

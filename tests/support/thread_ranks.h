@@ -1,5 +1,5 @@
 /// \file
-/// Ranks that are threads of the test: what processes do with MPI, without MPI.
+/// Ranks that are threads of the test. They replace MPI processes without MPI.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 
 namespace ricochet::testing {
 
-/// What the threads share.
+/// Data shared by the threads.
 struct ThreadRanksBoard {
     explicit ThreadRanksBoard(std::size_t size)
         : barrier(static_cast<std::ptrdiff_t>(size)), values(size), bytes(size), exchanged(size) {}
     std::barrier<> barrier;
     std::vector<std::vector<std::uint64_t>> values;
     std::vector<std::vector<std::byte>> bytes;
-    std::vector<std::vector<std::vector<std::byte>>> exchanged;  // by sender and receiver
+    std::vector<std::vector<std::vector<std::byte>>> exchanged;  // indexed by sender and receiver
 };
 
 class ThreadRanks final : public Ranks {
@@ -79,8 +79,8 @@ private:
     std::size_t rank_;
 };
 
-/// Runs `work` on so many ranks at once, and rethrows what the first of them that threw has thrown: all must throw, or
-/// none.
+/// Runs `work` on `count` ranks at once, and rethrows the exception of the first rank that failed. Either all ranks
+/// must throw, or none.
 inline void on_ranks(std::size_t count, const std::function<void(const std::shared_ptr<Ranks>&)>& work) {
     const auto board = std::make_shared<ThreadRanksBoard>(count);
     std::vector<std::exception_ptr> errors(count);

@@ -17,7 +17,7 @@ using testing::real;
 
 constexpr std::uint64_t kSeed = 81;
 
-/// Balls, ellipsoids and cylinders: turned, mirrored, far away.
+/// Returns a map to a ball, ellipsoid or cylinder: rotated, mirrored, or far away.
 AffineMap random_map(RandomSequence& random) {
     Placement placement;
     const double size = std::pow(10.0, 4.0 * random.uniform() - 2.0);
@@ -32,7 +32,7 @@ AffineMap random_map(RandomSequence& random) {
     return world_from_local(placement);
 }
 
-/// Positions at all scales of nearness to the surface.
+/// Returns a position at a distance of any scale from the surface.
 Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     Vec3 local = random.unit_vector();
     if (random.uniform() < 0.5) local.z = local.z < 0.0 ? -1.0 : 1.0;
@@ -40,7 +40,7 @@ Vec3 random_place(const AffineMap& map, RandomSequence& random) {
     return map.point((random.uniform() < 0.5 ? 1.0 + off : 1.0 - off) * local);
 }
 
-TEST(CheckedShape, HasTheSidesSegmentsAndDistancesOfFiftyDigits) {
+TEST(CheckedShape, SidesSegmentsAndDistancesMatchFiftyDigits) {
     int met = 0;
     int free = 0;
     for (int i = 0; i < test::scaled(4000); ++i) {
@@ -67,7 +67,7 @@ TEST(CheckedShape, HasTheSidesSegmentsAndDistancesOfFiftyDigits) {
     EXPECT_GT(free, 0);
 }
 
-TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
+TEST(CheckedShape, SegmentMayLeaveTheSurfaceButNotPassThrough) {
     const CheckedShape ball(AffineMap{}, false);
     EXPECT_EQ(ball.side({1, 0, 0}), 0);
     EXPECT_TRUE(ball.intersects({1, 0, 0}, {2, 0, 0}));
@@ -81,7 +81,7 @@ TEST(CheckedShape, LetsASegmentLeaveTheSurfaceButNotPassThrough) {
     EXPECT_FALSE(cylinder.intersects_after_start({0, 0, 1}, {5, 0, 2}));
     EXPECT_TRUE(cylinder.intersects_after_start({0, 0, 1}, {5, 0, 0.5}));
     EXPECT_FALSE(cylinder.intersects_after_start({0, 0, 1}, {0, 0, 0}));
-    // The tip of a segment that only just dips in.
+    // A segment that barely touches the inside, and one that just misses.
     EXPECT_TRUE(ball.intersects({-1, 1 - 0x1p-40, 0}, {1, 1 - 0x1p-40, 0}));
     EXPECT_FALSE(ball.intersects({-1, 1 + 0x1p-52, 0}, {1, 1 + 0x1p-52, 0}));
 }

@@ -1,4 +1,5 @@
-// What is planted beside and through a mesh that deforms is reported; what goes with it, or stays inside, is not.
+// Checks that planted faults beside and through a deforming mesh are reported, and that particles moving with it or
+// staying inside are not.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -35,7 +36,7 @@ std::vector<Violation> travel(const VerifiedDeformation& surface, const std::vec
     return violations;
 }
 
-/// A triangle that rises from 0 to 1 m in the first second, and falls again in the next.
+/// Returns a triangle that rises from 0 to 1 m in the first second and falls again in the next.
 VerifiedDeformation plate() {
     return {{{0, 1, 2}},
             {0.0, 1.0, 2.0},
@@ -43,7 +44,7 @@ VerifiedDeformation plate() {
             false};
 }
 
-/// A box that grows to twice its size in a second.
+/// Returns a box that grows to twice its size in a second.
 VerifiedDeformation growing_box() {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     VerifiedDeformation surface{box.triangles, {0.0, 1.0}, {box.vertices, box.vertices}, false};
@@ -51,25 +52,25 @@ VerifiedDeformation growing_box() {
     return surface;
 }
 
-TEST(ADeformingMesh, ThatHasPassedAParticleWhichStayedIsReported) {
+TEST(ADeformingMesh, MeshThatPassesARestingParticleIsReported) {
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.5}, 0.0}, {{0.2, 0.2, 0.5}, 0.4}}), ViolationKind::crossing), 0U);
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.5}, 0.0}, {{0.2, 0.2, 0.5}, 0.6}}), ViolationKind::crossing), 1U);
     EXPECT_EQ(count(travel(plate(), {{{0.9, 0.9, 0.5}, 0.0}, {{0.9, 0.9, 0.5}, 0.6}}), ViolationKind::crossing), 0U);
 }
 
-TEST(ADeformingMesh, IsKnownToTheLastPlace) {
+TEST(ADeformingMesh, PositionIsExactToTheLastBit) {
     EXPECT_TRUE(travel(plate(), {{{0.2, 0.2, 0x1p-60}, 0.0}, {{0.2, 0.2, 1.0 + 0x1p-52}, 1.0}}).empty());
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0x1p-60}, 0.0}, {{0.2, 0.2, 1.0}, 1.0}}), ViolationKind::crossing),
               1U);
 }
 
-// Both ends of the link are free, and the plate is where it was: at the key it was higher.
-TEST(ADeformingMesh, WantsLinksToEndAtItsKeysUnlessTheyAreFarAway) {
+// Both ends of the segment are free. At the key between them the plate was higher.
+TEST(ADeformingMesh, SegmentsMustEndAtItsKeysUnlessTheyAreFarAway) {
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.6}, 0.5}, {{0.2, 0.2, 0.6}, 1.5}}), ViolationKind::crossing), 1U);
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 1.1}, 0.5}, {{0.2, 0.2, 1.1}, 1.5}}), ViolationKind::crossing), 0U);
 }
 
-/// One step in which the clock stands still until `now`, and one in which it goes on to a stop.
+/// Checks one step in which the particle's time stalls until `now`, and one in which it advances to a stop.
 std::vector<Violation> wait_and_go(const VerifiedDeformation& surface, const Stop& from, double now, const Stop& to) {
     const Verifier verifier({surface});
     VerifiedParticle particle = verifier.watch(from.place, 0.0, from.time);
@@ -80,17 +81,17 @@ std::vector<Violation> wait_and_go(const VerifiedDeformation& surface, const Sto
     return violations;
 }
 
-// Its plate was above it meanwhile, or below.
-TEST(ADeformingMesh, LetsLinksOfAClockThatStoodStillLeadOverKeys) {
+// The plate was above or below the particle in the meantime.
+TEST(ADeformingMesh, SegmentsOfAStalledParticleMaySpanKeys) {
     const Vec3 above{0.2, 0.2, 0.6};
     EXPECT_TRUE(wait_and_go(plate(), {above, 0.5}, 1.4, {above, 1.5}).empty());
     EXPECT_EQ(count(wait_and_go(plate(), {above, 0.5}, 1.2, {above, 1.3}), ViolationKind::crossing), 1U);
     EXPECT_TRUE(wait_and_go(plate(), {above, 0.5}, 1.2, {{0.2, 0.2, 0.8}, 1.3}).empty());
-    // It stood still for no step.
+    // The particle was not stalled in any step.
     EXPECT_EQ(count(wait_and_go(plate(), {above, 0.5}, 0.5, {above, 1.5}), ViolationKind::crossing), 1U);
 }
 
-TEST(ADeformingMesh, ThatHasPassedAClockWhichStandsStillIsReportedWhereTheRunEnds) {
+TEST(ADeformingMesh, MeshThatPassesAStalledParticleIsReportedAtTheEndOfTheRun) {
     const Verifier verifier({growing_box()});
     const VerifiedParticle waiting = verifier.watch({1.5, 0, 0}, 0.0, 0.25);
     std::vector<Violation> violations;
@@ -102,9 +103,9 @@ TEST(ADeformingMesh, ThatHasPassedAClockWhichStandsStillIsReportedWhereTheRunEnd
     EXPECT_EQ(violations[0].particle, 7U);
 }
 
-// Its place is known in closed form: a plate at the height t^2 at 4097 keys, uneven in time, and on straight lines
-// between.
-TEST(ADeformingMesh, FindsItsPlaceAmongThousandsOfKeys) {
+// The position is known in closed form: a plate at the height t^2 at 4097 keys, uneven in time, with linear
+// interpolation between keys.
+TEST(ADeformingMesh, PositionIsFoundAmongThousandsOfKeys) {
     constexpr int kKeys = 4096;
     for (const bool repeats : {false, true}) {
         VerifiedDeformation surface{{{0, 1, 2}}, {}, {}, repeats};
@@ -131,7 +132,7 @@ TEST(ADeformingMesh, FindsItsPlaceAmongThousandsOfKeys) {
     }
 }
 
-TEST(ADeformingMesh, KeepsTheSideOfWhatItEncloses) {
+TEST(ADeformingMesh, EnclosedParticlesMustStayInside) {
     EXPECT_TRUE(travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{1.9, 0.1, 0}, 1.0}}).empty());
     const auto left = travel(growing_box(), {{{0.9, 0, 0}, 0.0}, {{2.1, 0.1, 0}, 1.0}});
     EXPECT_GE(count(left, ViolationKind::crossing), 1U);
@@ -140,15 +141,15 @@ TEST(ADeformingMesh, KeepsTheSideOfWhatItEncloses) {
     EXPECT_EQ(count(entered, ViolationKind::wrong_side), 1U);
 }
 
-TEST(ADeformingMesh, SeesASphereThatItHasReached) {
+TEST(ADeformingMesh, SphereReachedByTheMeshIsReported) {
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.6}, 0.0}, {{0.2, 0.2, 0.6}, 0.45}}, 0.1), ViolationKind::overlap),
               0U);
     EXPECT_EQ(count(travel(plate(), {{{0.2, 0.2, 0.6}, 0.0}, {{0.2, 0.2, 0.6}, 0.55}}, 0.1), ViolationKind::overlap),
               1U);
 }
 
-/// Each triangle has vertices of its own, as exporters write seams.
-TEST(DeformingVerifier, SeamsThatStayTogetherCloseAMeshAndThoseThatOpenDoNot) {
+/// Each triangle has its own vertices, as exporters write seams.
+TEST(DeformingVerifier, SeamsThatStayTogetherCloseAMeshAndOpeningSeamsDoNot) {
     const TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     VerifiedDeformation seamed;
     seamed.times = {0.0, 1.0};

@@ -1,4 +1,4 @@
-// Does the verifier see energy that comes from surfaces, and nothing else?
+// Checks that the verifier reports energy gained from surfaces, and nothing else.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ RecordedMotion motion(const Vec3& position, const Vec3& velocity, const Vec3& sp
     return {position, velocity, spin};
 }
 
-/// What is found wrong with parts of a particle of this radius in a large box.
+/// Returns the violations in parts of the motion of a particle of this radius in a large box.
 std::vector<Violation> found_in(const std::vector<MotionPart>& parts, const RecordedMotion& before,
                                 const RecordedMotion& after) {
     const Verifier verifier({testing::box_mesh({-100, -100, -100}, {100, 100, 100})});
@@ -44,7 +44,7 @@ MotionPart impact(const Vec3& before, const Vec3& after) {
     return {Kind::impact, 1.0, 0.0, 0.0, motion({1, 2, 3}, before), motion({1, 2, 3}, after), {}, true};
 }
 
-TEST(EnergyOfImpacts, MayFallAndStayAndNotGrowByMoreThanRounding) {
+TEST(EnergyOfImpacts, EnergyMayFallOrStayAndGrowByRoundingOnly) {
     EXPECT_FALSE(gains(impact({3, 0, -4}, {3, 0, 4})));
     EXPECT_FALSE(gains(impact({3, 0, -4}, {3, 0, 2})));
     EXPECT_FALSE(gains(impact({3, 0, -4}, {})));
@@ -53,7 +53,7 @@ TEST(EnergyOfImpacts, MayFallAndStayAndNotGrowByMoreThanRounding) {
     EXPECT_TRUE(gains(impact({}, {0, 0, 1e-9})));
 }
 
-TEST(EnergyOfImpacts, CountsWhatTurnsASolidSphere) {
+TEST(EnergyOfImpacts, RotationOfASolidSphereCounts) {
     MotionPart part = impact({1, 0, 0}, {5.0 / 7.0, 0, 0});
     part.radius = 0.1;
     part.end.spin = {0, 50.0 / 7.0, 0};  // rolls: 5/7 of the energy is left
@@ -64,13 +64,13 @@ TEST(EnergyOfImpacts, CountsWhatTurnsASolidSphere) {
     EXPECT_TRUE(gains(part));
 }
 
-TEST(EnergyOfImpacts, OfAWallOfItsOwnTemperatureMayGrow) {
+TEST(EnergyOfImpacts, EnergyMayGrowAtAWallWithItsOwnTemperature) {
     MotionPart part = impact({0, 0, -1}, {0, 0, 100});
     part.kind = Kind::driven;
     EXPECT_FALSE(gains(part));
 }
 
-/// Down a slope without friction for a second.
+/// Returns a frictionless slide down a slope for one second.
 MotionPart slide() {
     const double a = kG * std::sin(0.3);
     const Vec3 down{std::cos(0.3), 0, -std::sin(0.3)};
@@ -84,7 +84,7 @@ MotionPart slide() {
             true};
 }
 
-TEST(EnergyOfContact, GrowsByTheWorkOfTheForcesAndNoMore) {
+TEST(EnergyOfContact, EnergyGrowsByTheWorkOfTheForcesOnly) {
     EXPECT_FALSE(gains(slide()));
     MotionPart pushed = slide();
     pushed.end.velocity *= 1.0 + 1e-11;
@@ -93,11 +93,11 @@ TEST(EnergyOfContact, GrowsByTheWorkOfTheForcesAndNoMore) {
     lifted.end.position.z += 1e-11;
     EXPECT_TRUE(gains(lifted));
     lifted = slide();
-    lifted.end.position.z += 1e-13;  // a contact offset is 7e-15 m here
+    lifted.end.position.z += 1e-13;  // the contact offset is 7e-15 m here
     EXPECT_FALSE(gains(lifted));
 }
 
-TEST(EnergyOfContact, MayGrowWithForcesThatGrow) {
+TEST(EnergyOfContact, EnergyMayGrowWithGrowingForces) {
     MotionPart part = slide();
     part.forces_are_steady = false;
     part.forces[1] *= 1.005;
@@ -108,8 +108,8 @@ TEST(EnergyOfContact, MayGrowWithForcesThatGrow) {
     EXPECT_TRUE(gains(part));
 }
 
-// A spring that swings within the part: what it does half way lies beyond what it does at both ends.
-TEST(EnergyOfContact, MayGrowWithForcesThatAreLargerHalfWay) {
+// A spring oscillates within the part: its force half way is larger than at both ends.
+TEST(EnergyOfContact, EnergyMayGrowWithForcesThatPeakHalfWay) {
     MotionPart part = slide();
     part.forces_are_steady = false;
     part.end.velocity *= 1.2;
@@ -120,10 +120,10 @@ TEST(EnergyOfContact, MayGrowWithForcesThatAreLargerHalfWay) {
     EXPECT_TRUE(gains(part));
 }
 
-TEST(RecordedParts, MustJoinEachOtherAndTheStep) {
+TEST(RecordedParts, PartsMustConnectToEachOtherAndTheStep) {
     MotionPart flight = slide();
     flight.kind = Kind::flight;
-    flight.end.velocity *= 5.0;  // of no concern: what flies is the integrator's
+    flight.end.velocity *= 5.0;  // not checked: the integrator is responsible for flight
     MotionPart then = impact(flight.end.velocity, {});
     then.begin.position = then.end.position = flight.end.position;
     EXPECT_TRUE(found_in({flight, then}).empty());
@@ -139,7 +139,7 @@ TEST(RecordedParts, MustJoinEachOtherAndTheStep) {
     EXPECT_FALSE(violations[0].collider);
 }
 
-TEST(RecordedParts, ThatAreNotNumbersAreWrong) {
+TEST(RecordedParts, PartsThatAreNotFiniteAreReported) {
     MotionPart part = impact({1, 0, 0}, {NAN, 0, 0});
     EXPECT_FALSE(found_in({part}).empty());
 }

@@ -1,4 +1,5 @@
-// What is planted beside and through colliders that move is reported; what rides, stays off or stays inside is not.
+// Checks that planted faults beside and through moving colliders are reported, and that particles riding on them,
+// staying away or staying inside are not.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,13 +18,13 @@ namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 
-/// A place at a time.
+/// A position at a time.
 struct Stop {
     Vec3 place;
     double time;
 };
 
-/// A verifier of one surface in a frame of its own.
+/// A verifier of one surface in its own frame.
 class InAFrame {
 public:
     InAFrame(const VerifiedSurface& surface, std::vector<FrameMotion> motions)
@@ -31,11 +32,11 @@ public:
               std::vector<FrameDescription>{{"moving", "", {}, {0, 0, 1}, 0.0, std::move(motions)}})),
           verifier_({surface}, {frames_, {0}}) {}
 
-    /// Where a point of the frame is at a time.
+    /// Returns the world position of a point of the frame at a time.
     [[nodiscard]] Vec3 place(const Vec3& local, double time) const { return frames_->at(0, time).point(local); }
     [[nodiscard]] Stop stop(const Vec3& local, double time) const { return {place(local, time), time}; }
 
-    /// What is said of a particle that goes from stop to stop in one step.
+    /// Returns the violations of a particle that moves from stop to stop in one step.
     [[nodiscard]] std::vector<Violation> travel(const std::vector<Stop>& stops, double radius = 0.0) const {
         std::vector<Segment> segments;
         for (std::size_t k = 1; k < stops.size(); ++k) {
@@ -65,10 +66,10 @@ std::size_t count(const std::vector<Violation>& violations, ViolationKind kind) 
 
 KeyedTranslation steady(const Vec3& velocity) { return {KeyedCurve<Vec3>({{0.0, {}}, {100.0, 100.0 * velocity}})}; }
 
-/// A box of 2 m that comes along x at 1 m/s.
+/// Returns a box of 2 m that moves along x at 1 m/s.
 InAFrame coming_box() { return {box_mesh({-1, -1, -1}, {1, 1, 1}), {steady({1, 0, 0})}}; }
 
-TEST(AMovingFrame, CarriesWhatIsInsideAlong) {
+TEST(AMovingFrame, EnclosedParticlesMayMoveWithTheFrame) {
     EXPECT_TRUE(coming_box().travel({{{0, 0, 0}, 0.0}, {{0.5, 0, 0}, 0.5}, {{9.5, 0.5, 0}, 9.0}}).empty());
     const InAFrame spinning(box_mesh({-1, -1, -1}, {1, 1, 1}), {Spin{{1, 2, 3}, 90.0}});
     std::vector<Stop> ride;
@@ -77,14 +78,14 @@ TEST(AMovingFrame, CarriesWhatIsInsideAlong) {
     EXPECT_TRUE(coming_box().travel({{{5, 0, 0}, 0.0}, {{5, 0, 0}, 3.9}}).empty());
 }
 
-TEST(AMovingFrame, OfAWallThatHasPassedAParticleThatStayedIsReported) {
+TEST(AMovingFrame, WallThatPassesARestingParticleIsReported) {
     const auto violations = coming_box().travel({{{5, 0.5, 0}, 0.0}, {{5, 0.5, 0}, 4.5}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 1U);
     EXPECT_EQ(count(violations, ViolationKind::wrong_side), 1U);
     EXPECT_EQ(violations.size(), 2U);
     EXPECT_EQ(violations[0].collider, 0U);
     ASSERT_TRUE(violations[0].triangle);
-    // From inside, out of the wall behind it; and right through.
+    // The particle leaves through the rear wall from inside, then passes through the whole box.
     EXPECT_EQ(count(coming_box().travel({{{0, 0.5, 0}, 0.0}, {{0, 0.5, 0}, 1.5}}), ViolationKind::wrong_side), 1U);
     const auto through = coming_box().travel({{{5, 0.5, 0}, 0.0}, {{5, 0.5, 0}, 8.0}});
     EXPECT_EQ(count(through, ViolationKind::crossing), 2U);
@@ -97,8 +98,8 @@ TEST(AMovingFrame, OfAWallThatHasPassedAParticleThatStayedIsReported) {
     EXPECT_EQ(count(ball.travel({{{3, 0, 0}, 0.0}, {{3, 0, 0}, 2.1}}), ViolationKind::crossing), 1U);
 }
 
-// One that is caught up with by a unit in the last place, on its way or at its end.
-TEST(AMovingFrame, IsKnownToTheLastPlace) {
+// The wall overtakes the particle by one unit in the last place, on its path or at its end.
+TEST(AMovingFrame, PositionIsExactToTheLastBit) {
     const InAFrame wall(box_mesh({-1, -1, -1}, {1, 1, 1}), {Oscillation{{0.5, 0, 0}, 0.5, 0.0}});
     const double time = 0.25;
     const double face = wall.place({1, 0, 0}, time).x;
@@ -113,32 +114,32 @@ TEST(AMovingFrame, IsKnownToTheLastPlace) {
     EXPECT_EQ(count(ends_behind, ViolationKind::wrong_side), 1U);
 }
 
-// The same places are right at one time and wrong at another: a time that is not the position's own is found out.
-TEST(AMovingFrame, TellsAPlaceAtAnotherTime) {
+// The same positions are valid at one time and wrong at another, so a wrong time is detected.
+TEST(AMovingFrame, PositionAtAWrongTimeIsReported) {
     const InAFrame spinning(box_mesh({-1, -0.1, -1}, {1, 0.1, 1}), {Spin{{0, 0, 1}, 90.0}});
     const Vec3 local{0.7, 0.1 + 1e-6, 0.3};
     const std::vector<Stop> ride{spinning.stop(local, 0.0), spinning.stop(local, 0.05), spinning.stop(local, 0.1)};
     EXPECT_TRUE(spinning.travel(ride).empty());
     std::vector<Stop> late = ride;
-    late[1].time += 1e-5;  // the plate has turned on, over it
+    late[1].time += 1e-5;  // the plate has rotated further, past the point
     EXPECT_GE(count(spinning.travel(late), ViolationKind::crossing), 1U);
     std::vector<Stop> early = ride;
     early[1].time -= 1e-5;
     EXPECT_EQ(count(spinning.travel(early), ViolationKind::crossing), 0U);
 }
 
-TEST(AMovingFrame, SeesLinksThroughItThatMissItsPlaceAtTheStart) {
-    // Where the box was at 0 s the way is free; it is at 5 m when the particle passes there.
+TEST(AMovingFrame, SegmentThroughTheMovedBoxIsReported) {
+    // The box left its position at 0 s. It is at 5 m when the particle passes there.
     const auto violations = coming_box().travel({{{5, 3, 0}, 4.8}, {{5, -3, 0}, 5.2}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 2U);
     EXPECT_EQ(violations.size(), 2U);
     EXPECT_TRUE(coming_box().travel({{{5, 3, 0}, 0.0}, {{5, -3, 0}, 0.4}}).empty());
-    // And the other way round: where it was is free now.
+    // In reverse: the position of the box at 0 s is free now.
     EXPECT_TRUE(coming_box().travel({{{0, 3, 0}, 4.8}, {{0, -3, 0}, 5.2}}).empty());
 }
 
-// Of what turns far a link says nothing but that it has to be cut, unless the body stays away all the time.
-TEST(AMovingFrame, JudgesLongTurnsByWhereTheBodyCanBe) {
+// A segment beside a body that rotates far must be subdivided, unless the body stays away at all times.
+TEST(AMovingFrame, LongRotationsAreCheckedAgainstTheBodysReach) {
     const InAFrame spinning(box_mesh({-1, -1, -1}, {1, 1, 1}), {Spin{{0, 0, 1}, 180.0}});
     EXPECT_TRUE(spinning.travel({{{9, 0, 0}, 0.0}, {{9, 0.1, 0}, 1.0}}).empty());
     EXPECT_GE(count(spinning.travel({{{1.42, 0, 0}, 0.0}, {{1.42, 0, 0}, 1.0}}), ViolationKind::crossing), 1U);
@@ -147,7 +148,7 @@ TEST(AMovingFrame, JudgesLongTurnsByWhereTheBodyCanBe) {
     EXPECT_TRUE(spinning.travel(cut).empty());
 }
 
-TEST(AMovingFrame, SeesASphereItHasReached) {
+TEST(AMovingFrame, SphereReachedByTheFrameIsReported) {
     const Vec3 place{5, 0, 0};
     EXPECT_TRUE(coming_box().travel({{place, 0.0}, {place, 3.5}}, 0.5).empty());
     const auto violations = coming_box().travel({{place, 0.0}, {place, 3.5 + 1e-9}}, 0.5);
@@ -156,8 +157,8 @@ TEST(AMovingFrame, SeesASphereItHasReached) {
     EXPECT_EQ(violations[0].collider, 0U);
 }
 
-// Where something moves, times join as places do: a particle that was elsewhere meanwhile leaves a gap.
-TEST(AMovingFrame, WantsTheTimesOfLinksToJoin) {
+// Beside moving surfaces, times must connect like positions. A particle with unrecorded time leaves a gap.
+TEST(AMovingFrame, TimesOfSegmentsMustConnect) {
     const InAFrame box = coming_box();
     const Vec3 a{9, 0, 0};
     const Vec3 b{9, 1, 0};
@@ -169,7 +170,7 @@ TEST(AMovingFrame, WantsTheTimesOfLinksToJoin) {
     EXPECT_EQ(gaps(1.0, 2.0, 2.0), 0U);
     EXPECT_EQ(gaps(std::nextafter(1.0, 2.0), 2.0, 2.0), 1U);
     EXPECT_EQ(gaps(1.0, 2.0, std::nextafter(2.0, 3.0)), 1U);
-    EXPECT_EQ(box.check({a, 1.0}, {a, 2.0}, {}).size(), 1U);  // it stayed without a link
+    EXPECT_EQ(box.check({a, 1.0}, {a, 2.0}, {}).size(), 1U);  // time passes without a segment
 }
 
 }  // namespace RICOCHET_FILE

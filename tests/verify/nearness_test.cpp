@@ -13,7 +13,7 @@ namespace RICOCHET_FILE {
 
 constexpr std::uint64_t kSeed = 79;
 
-TEST(Nearness, KnowsFaceEdgeCornerAndPlane) {
+TEST(Nearness, FaceEdgeCornerAndPlaneAreDecided) {
     const Corners t{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};
     const auto expect_distance = [&](const Vec3& p, double distance) {
         EXPECT_FALSE(is_nearer(p, t, distance));
@@ -29,8 +29,9 @@ TEST(Nearness, KnowsFaceEdgeCornerAndPlane) {
     EXPECT_TRUE(is_nearer({0, 0, -1}, {0, 0, 1}, {0, 0, 7}, std::nextafter(2, 3)));
 }
 
-// Distances a little below and above the true one, down to the last place; slender triangles and far-away ones too.
-TEST(Nearness, AgreesWithAHundredDigits) {
+// Compares distances slightly below and above the true one, down to the last bit, for slender and far-away triangles
+// too.
+TEST(Nearness, ResultsMatchAHundredDigits) {
     for (int i = 0; i < test::scaled(3000); ++i) {
         RandomSequence random(kSeed, 0, static_cast<std::uint64_t>(i));
         const double thickness = std::pow(10.0, -8.0 * random.uniform());

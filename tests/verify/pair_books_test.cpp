@@ -13,7 +13,8 @@ namespace RICOCHET_FILE {
 using verify::is_wrong;
 using verify::PairBooks;
 
-/// Two spheres of 1 kg and 0.1 m that meet along x at 2 m/s, answered as e and the friction impulse along y say.
+/// Returns two spheres of 1 kg and 0.1 m that collide along x at 2 m/s, with restitution e and a friction impulse along
+/// y.
 PairMeeting meeting_of(double e, double drag) {
     PairMeeting meeting{0.5, {{}, {}}, {{0, 1, {}}}};
     MetSphere& a = meeting.spheres[0];
@@ -31,14 +32,15 @@ PairMeeting meeting_of(double e, double drag) {
 
 constexpr double kSticks = 1.0 / 7.0;  // N s: stops the slip of 1 m/s
 
-TEST(PairBooks, RightImpactsAddUp) {
+TEST(PairBooks, CorrectImpactsPass) {
     EXPECT_FALSE(is_wrong(meeting_of(1.0, 0.0), {}));
     EXPECT_FALSE(is_wrong(meeting_of(0.5, 0.0), {.restitution = 0.5}));
     EXPECT_FALSE(is_wrong(meeting_of(0.5, kSticks), {.restitution = 0.5, .friction = 0.3}));
     EXPECT_FALSE(is_wrong(meeting_of(0.0, 0.0), {.restitution = 0.5, .resting_speed = 1.5}));
 }
 
-/// A sphere that is held and turns about z at `spin`, rad/s, throws another one along y; both slide to the end.
+/// Returns a collision with a driven sphere that rotates about z at `spin`, rad/s, and throws another sphere along y.
+/// The spheres slide to the end of the impact.
 PairMeeting meeting_with_turning(double spin) {
     const Vec3 impulse{1.5, 2.25, 0};
     const Vec3 turn = (1.0 / (0.4 * 0.1 * 0.1)) * cross(Vec3{-0.1, 0, 0}, impulse);
@@ -49,14 +51,14 @@ PairMeeting meeting_with_turning(double spin) {
     return meeting;
 }
 
-TEST(PairBooks, AHeldSphereThatTurnsDoesWork) {
+TEST(PairBooks, DrivenSphereThatRotatesDoesWork) {
     const PairBooks books{.restitution = 0.5, .friction = 1.5};
-    EXPECT_FALSE(is_wrong(meeting_with_turning(100.0), books));  // it gives 22.5 J, of which 8.5 J are kept
+    EXPECT_FALSE(is_wrong(meeting_with_turning(100.0), books));  // does 22.5 J of work; 8.5 J remain
     EXPECT_TRUE(is_wrong(meeting_with_turning(-100.0), books));
     EXPECT_TRUE(is_wrong(meeting_with_turning(0.0), books));
 }
 
-TEST(PairBooks, EachKindOfMistakeIsSeen) {
+TEST(PairBooks, EveryKindOfMistakeIsReported) {
     const PairBooks books{.restitution = 0.5, .friction = 0.3};
     const std::vector<std::pair<std::string, std::function<void(PairMeeting&)>>> mistakes = {
         {"apart", [](PairMeeting& m) { m.spheres[1].before.position.x += 1e-8; }},
@@ -80,12 +82,12 @@ TEST(PairBooks, EachKindOfMistakeIsSeen) {
     }
 }
 
-TEST(PairBooks, EnergyThatIsLostIsSeenWhereNothingTakesAny) {
+TEST(PairBooks, LostEnergyIsReportedWithoutDissipation) {
     EXPECT_TRUE(is_wrong(meeting_of(0.9, 0.0), {}));
     EXPECT_FALSE(is_wrong(meeting_of(0.9, 0.0), {.restitution = 0.9}));
 }
 
-TEST(PairBooks, SpheresMayBeApartByTheErrorOfTheArcsThatTheyHaveRolledOnWalls) {
+TEST(PairBooks, SpheresMayBeApartByTheErrorOfTheirPathsOnWalls) {
     PairMeeting meeting = meeting_of(1.0, 0.0);
     meeting.spheres[1].before.position.x += 5e-9;
     EXPECT_TRUE(is_wrong(meeting, {}));
@@ -99,7 +101,7 @@ TEST(PairBooks, SpheresMayBeApartByTheErrorOfTheArcsThatTheyHaveRolledOnWalls) {
     EXPECT_TRUE(is_wrong(meeting, {}));
 }
 
-TEST(PairBooks, EachPairOfMaterialsIsHeldAgainstItsOwn) {
+TEST(PairBooks, EveryPairOfMaterialsIsCheckedAgainstItsOwnValues) {
     PairBooks books{.restitution = 1.0};
     books.materials = 2;
     books.by_materials = {{1.0, 0.0, 0.0}, {0.5, 0.3, 0.0}, {0.5, 0.3, 0.0}, {0.25, 0.0, 0.0}};
@@ -114,7 +116,7 @@ TEST(PairBooks, EachPairOfMaterialsIsHeldAgainstItsOwn) {
     EXPECT_FALSE(is_wrong(meeting, books));
 }
 
-TEST(PairBooks, OnPathsThatAreNotExactSpheresMayBeApart) {
+TEST(PairBooks, SpheresOnApproximatePathsMayBeApart) {
     PairMeeting meeting = meeting_of(1.0, 0.0);
     meeting.spheres[1].before.position.x += 1e-6;
     EXPECT_TRUE(is_wrong(meeting, {}));

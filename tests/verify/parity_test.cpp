@@ -18,7 +18,7 @@
 namespace ricochet::testing {
 namespace RICOCHET_FILE {
 
-/// Number of times the mesh winds around p: sum of solid angles over 4 pi.
+/// Returns the winding number of the mesh around p: the sum of the solid angles over 4 pi.
 /// Method: A. van Oosterom, J. Strackee, IEEE Trans. Biomed. Eng. 30, 1983.
 double winding_number(const TriangleMesh& mesh, const Vec3& p) {
     double angles = 0.0;
@@ -56,9 +56,9 @@ void expect_parity_of_winding(const TriangleMesh& mesh, int count) {
     EXPECT_GT(compared, count * 9 / 10);
 }
 
-TEST(ParityOracle, KnowsTheCubeFromInsideOutsideAndOnTheSurface) {
+TEST(ParityOracle, CubeIsDecidedInsideOutsideAndOnTheSurface) {
     const ParityOracle cube(box_mesh({0, 0, 0}, {4, 4, 4}));
-    // Whole coordinates: rays through edges, diagonals and vertices all the time.
+    // With integer coordinates, rays often pass through edges, diagonals and vertices.
     for (int x = -1; x <= 5; ++x) {
         for (int y = -1; y <= 5; ++y) {
             for (int z = -1; z <= 5; ++z) {
@@ -72,7 +72,7 @@ TEST(ParityOracle, KnowsTheCubeFromInsideOutsideAndOnTheSurface) {
     }
 }
 
-TEST(ParityOracle, SeparatesPointsOneRoundingStepOffTheSurface) {
+TEST(ParityOracle, PointsOneRoundingStepOffTheSurfaceAreSeparated) {
     const Vec3 offset{1e6, -2e6, 3e6};
     const ParityOracle cube(moved(box_mesh({0, 0, 0}, {1, 1, 1}), offset));
     const double top = offset.z + 1.0;
@@ -84,7 +84,7 @@ TEST(ParityOracle, SeparatesPointsOneRoundingStepOffTheSurface) {
     EXPECT_EQ(cube.side({std::nextafter(offset.x, 0.0), offset.y + 0.25, offset.z + 0.25}), Side::outside);
 }
 
-TEST(ParityOracle, FindsRaysThroughVerticesAndEdgesOnTheRightSide) {
+TEST(ParityOracle, RaysThroughVerticesAndEdgesGiveTheRightSide) {
     const TriangleMesh sphere = sphere_mesh({0.1, 0.2, 0.3}, 1.0, 3);
     const ParityOracle oracle(sphere);
     for (const Triangle& t : sphere.triangles) {
@@ -93,7 +93,8 @@ TEST(ParityOracle, FindsRaysThroughVerticesAndEdgesOnTheRightSide) {
             const Vec3& b = sphere.vertices[t[(i + 1) % 3]];
             ASSERT_EQ(oracle.side(a), Side::on_surface);
             for (int axis = 0; axis < 3; ++axis) {
-                // On the axis-parallel line through a vertex, and nearly on that through an edge's middle.
+                // The first point is on the axis-parallel line through a vertex, the second nearly on the line through
+                // an edge's middle.
                 Vec3 under_vertex = a;
                 under_vertex[axis] = 0.3;
                 Vec3 under_edge = 0.5 * a + 0.5 * b;
@@ -109,7 +110,7 @@ TEST(ParityOracle, FindsRaysThroughVerticesAndEdgesOnTheRightSide) {
     }
 }
 
-TEST(ParityOracle, CallsASurfacePointWhatTheExactIntersectionCallsOne) {
+TEST(ParityOracle, SurfacePointsAgreeWithTheExactIntersection) {
     const TriangleMesh sphere = sphere_mesh({0, 0, 0}, 1.0, 2);
     const ParityOracle oracle(sphere);
     RandomSequence random(5, 0, 0);
@@ -130,7 +131,7 @@ TEST(ParityOracle, CallsASurfacePointWhatTheExactIntersectionCallsOne) {
     EXPECT_GT(on_surface, 0);
 }
 
-TEST(ParityOracle, CountsNestedShellsByParity) {
+TEST(ParityOracle, NestedShellsAreCountedByParity) {
     TriangleMesh shells = sphere_mesh({0, 0, 0}, 3.0, 3);
     shells = merged(shells, flipped(sphere_mesh({0, 0, 0}, 2.0, 3)));
     shells = merged(shells, box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
@@ -142,7 +143,7 @@ TEST(ParityOracle, CountsNestedShellsByParity) {
     expect_parity_of_winding(shells, test::scaled(2000));
 }
 
-TEST(ParityOracle, AgreesWithTheWindingNumberOfOverlappingSpheresFarFromTheOrigin) {
+TEST(ParityOracle, ResultMatchesTheWindingNumberOfOverlappingSpheresFarFromTheOrigin) {
     TriangleMesh spheres;
     RandomSequence random(6, 0, 0);
     for (int i = 0; i < 5; ++i) {
@@ -154,8 +155,8 @@ TEST(ParityOracle, AgreesWithTheWindingNumberOfOverlappingSpheresFarFromTheOrigi
     expect_parity_of_winding(moved(spheres, {1e6, 1e6, -1e6}), test::scaled(5000));
 }
 
-TEST(ParityOracle, AnswersAlikeAlongEveryAxis) {
-    // The ray runs along the shortest side of the box; three flattened boxes make it each axis in turn.
+TEST(ParityOracle, ResultIsTheSameAlongEveryAxis) {
+    // The ray runs along the shortest side of the box. Three flattened boxes select each axis in turn.
     for (int axis = 0; axis < 3; ++axis) {
         Vec3 upper{3, 3, 3};
         upper[axis] = 1;
@@ -170,7 +171,7 @@ TEST(ParityOracle, AnswersAlikeAlongEveryAxis) {
 
 TEST(ParityOracle, AcceptsDegenerateAndDuplicateTriangles) {
     TriangleMesh mesh = box_mesh({0, 0, 0}, {2, 2, 2});
-    mesh.triangles.push_back({0, 0, 7});  // a segment across the inside: no surface
+    mesh.triangles.push_back({0, 0, 7});  // a segment across the inside, no surface
     const TriangleMesh flap{{{5, 0, 0}, {5, 1, 0}, {5, 0, 1}}, {{0, 1, 2}, {0, 1, 2}}};
     const ParityOracle oracle(merged(mesh, flap));
     EXPECT_EQ(oracle.side({1, 1, 1}), Side::inside);
@@ -179,7 +180,7 @@ TEST(ParityOracle, AcceptsDegenerateAndDuplicateTriangles) {
     EXPECT_EQ(oracle.side({4.5, 0.25, 0.25}), Side::outside);
 }
 
-TEST(ParityOracle, RefusesAnOpenMeshAndTreatsNothingAsOutside) {
+TEST(ParityOracle, OpenMeshIsRefusedAndInvalidPointsAreOutside) {
     TriangleMesh open = box_mesh({0, 0, 0}, {1, 1, 1});
     open.triangles.pop_back();
     EXPECT_EQ(count_open_edges(open), 3U);
@@ -191,7 +192,7 @@ TEST(ParityOracle, RefusesAnOpenMeshAndTreatsNothingAsOutside) {
 
 class RealMesh : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(RealMesh, HasTheParityOfItsWindingNumberHereAndFarAway) {
+TEST_P(RealMesh, ParityMatchesTheWindingNumberNearAndFarAway) {
     RICOCHET_SHARED_MESH_OR_SKIP(path, GetParam());
     const TriangleMesh mesh = read_mesh(path).mesh;
     expect_parity_of_winding(mesh, 40);
@@ -199,7 +200,7 @@ TEST_P(RealMesh, HasTheParityOfItsWindingNumberHereAndFarAway) {
     expect_parity_of_winding(moved(mesh, {far, -far, far}), 40);
 }
 
-TEST_P(RealMesh, HasItsVerticesOnTheSurfaceAndItsVolumeInside) {
+TEST_P(RealMesh, VerticesAreOnTheSurfaceAndTheVolumeIsInside) {
     RICOCHET_SHARED_MESH_OR_SKIP(path, GetParam());
     const TriangleMesh mesh = read_mesh(path).mesh;
     const ParityOracle oracle(mesh);
@@ -211,11 +212,11 @@ TEST_P(RealMesh, HasItsVerticesOnTheSurfaceAndItsVolumeInside) {
     for (int i = 0; i < count; ++i) inside += oracle.inside(point_in(box, random)) ? 1 : 0;
     const Vec3 size = box.size();
     const double expected = std::fabs(signed_volume(mesh)) / (size.x * size.y * size.z);
-    // Four standard errors of a count of independent points.
+    // The tolerance is four standard errors of a count of independent points.
     EXPECT_NEAR(inside / static_cast<double>(count), expected, 4.0 * std::sqrt(expected * (1.0 - expected) / count));
 }
 
-// Closed and free of self-intersections, so that volume and parity mean the same.
+// These meshes are closed and free of self-intersections, so that volume and parity agree.
 INSTANTIATE_TEST_SUITE_P(Closed, RealMesh,
                          ::testing::Values("bunny-closed.off", "armadillo.obj", "spot.obj", "fandisk.obj",
                                            "quadknot.obj", "ADIS16480.stl"),

@@ -1,4 +1,4 @@
-// One planted fault of every kind of violation: the verifier finds it, and finds nothing in the same motion without it.
+// Plants one fault of every kind of violation. The verifier must find it, and nothing in the same motion without it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// A particle or sphere inside a box from 0 to 4 that goes from (1, 1, 1) along these positions in one step.
+/// Returns the violations of a particle or sphere inside a box from 0 to 4. It moves from (1, 1, 1) along the positions
+/// in one step.
 std::vector<Violation> travel(const std::vector<Vec3>& positions, double radius, const RecordedParts& motion = {}) {
     const Verifier verifier({testing::box_mesh({0, 0, 0}, {4, 4, 4})});
     const Vec3 start{1, 1, 1};
@@ -26,14 +27,14 @@ std::vector<Violation> travel(const std::vector<Vec3>& positions, double radius,
     return violations;
 }
 
-/// A sphere falls on the floor at 4 m/s and leaves it with a speed, m/s.
+/// Returns the violations of a sphere that hits the floor at 4 m/s and leaves it at `speed`, m/s.
 std::vector<Violation> bounce(double speed) {
     const Vec3 at{1, 1, 1};
     MotionPart part{MotionPart::Kind::impact, 0.5, 0.0, 1.0, {at, {0, 0, -4}, {}}, {at, {0, 0, speed}, {}}, {}, true};
     return travel({at, at}, 1.0, {part.begin, part.end, {&part, 1}});
 }
 
-/// The same, judged by the restitution of the floor, 0.5.
+/// Returns the violations of such an impact against the restitution of the floor, 0.5.
 std::vector<Violation> rebound(double speed) {
     RecordedImpact impact;
     impact.before.velocity = {1, 0, -4};
@@ -44,7 +45,7 @@ std::vector<Violation> rebound(double speed) {
     return violations;
 }
 
-/// Two elastic spheres of 1 kg meet at 2 m/s, and the second one leaves with a speed, m/s.
+/// Returns the violations of two elastic spheres of 1 kg that collide at 2 m/s. The second one leaves at `speed`, m/s.
 std::vector<Violation> pair_impact(double speed) {
     PairMeeting meeting{0.5, {{}, {}}, {{0, 1, {2, 0, 0}}}};
     meeting.spheres[0] = {1, 1.0, 0.1, false, {{0, 0, 0}, {2, 0, 0}, {}}, {{0, 0, 0}, {0, 0, 0}, {}}};
@@ -52,7 +53,7 @@ std::vector<Violation> pair_impact(double speed) {
     return RunCheck::check_meetings({meeting}, {});
 }
 
-/// Two spheres of 0.5 m, a step after they were 2 m apart.
+/// Returns the violations of two spheres of 0.5 m radius, one step after they were 2 m apart.
 std::vector<Violation> pair_at(double distance) {
     RunCheck check(CollisionWorld({}), nullptr);
     Particles particles;
@@ -71,7 +72,8 @@ std::vector<Violation> pair_at(double distance) {
     return found;
 }
 
-/// Violations in a motion with or without a fault of a kind. Without a default: a new kind does not compile here.
+/// Returns the violations in a motion with or without a fault of a kind. The switch has no default, so that a new kind
+/// does not compile here.
 std::vector<Violation> found(ViolationKind kind, bool is_planted) {
     const Vec3 start{1, 1, 1};
     const Vec3 end{3, 2, 2};
@@ -97,7 +99,7 @@ std::vector<Violation> found(ViolationKind kind, bool is_planted) {
     return {};
 }
 
-TEST(PlantedFaults, OfEveryKindAreFoundAndSoundMotionIsNot) {
+TEST(PlantedFaults, EveryKindIsFoundAndSoundMotionPasses) {
     for (const ViolationKind kind :
          {ViolationKind::crossing, ViolationKind::gap, ViolationKind::wrong_side, ViolationKind::overlap,
           ViolationKind::energy, ViolationKind::pair_overlap, ViolationKind::pair_impact, ViolationKind::rebound}) {

@@ -5,7 +5,8 @@
 namespace ricochet::verify {
 namespace RICOCHET_FILE {
 
-/// Along x into a wall of restitution 0.7, on a floor of 0.3 that is approached by rounding.
+/// Returns an impact along x on a wall of restitution 0.7. The particle is on a floor of restitution 0.3, which it
+/// approaches only by rounding.
 RecordedImpact impact_on_wall(double rebound, bool floor_holds) {
     RecordedImpact impact;
     impact.before.velocity = {2, 0, -1e-16};
@@ -14,16 +15,16 @@ RecordedImpact impact_on_wall(double rebound, bool floor_holds) {
     return impact;
 }
 
-TEST(ReboundCheck, AsksForTheRestitutionOfTheSurfaceThatIsHit) {
+TEST(ReboundCheck, SurfaceThatIsHitDeterminesTheRestitution) {
     EXPECT_FALSE(has_wrong_rebound(impact_on_wall(0.7, true)));
     EXPECT_TRUE(has_wrong_rebound(impact_on_wall(0.3, true)));
     EXPECT_TRUE(has_wrong_rebound(impact_on_wall(0.0, true)));
     EXPECT_TRUE(has_wrong_rebound(impact_on_wall(0.9, true)));
 }
 
-TEST(ReboundCheck, KnowsWhatHasHeldTheParticleFromTheRecordOfContact) {
+TEST(ReboundCheck, SupportingSurfacesAreKnownFromTheContactRecord) {
     RecordedImpact wrong = impact_on_wall(0.3, false);
-    EXPECT_FALSE(has_wrong_rebound(wrong));  // as if it had flown in
+    EXPECT_FALSE(has_wrong_rebound(wrong));  // as if the particle had flown in
     wrong.held_by = {3};
     EXPECT_TRUE(has_wrong_rebound(wrong));
     RecordedImpact right = impact_on_wall(0.7, false);
@@ -31,19 +32,19 @@ TEST(ReboundCheck, KnowsWhatHasHeldTheParticleFromTheRecordOfContact) {
     EXPECT_FALSE(has_wrong_rebound(right));
 }
 
-TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsApproached) {
+TEST(ReboundCheck, ApproachedSurfaceTakenAsSupportIsReported) {
     RecordedImpact impact = impact_on_wall(0.7, true);
     impact.before.velocity.z = -0.5;
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-TEST(ReboundCheck, SeesASurfaceThatIsTakenForHoldingThoughItIsLeft) {
+TEST(ReboundCheck, SeparatingSurfaceTakenAsSupportIsReported) {
     RecordedImpact impact = impact_on_wall(0.7, true);
     impact.before.velocity.z = 0.01;
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-TEST(ReboundCheck, LetsASurfaceThatWasLeftBeApproachedByItsRestitutionAtMost) {
+TEST(ReboundCheck, SeparatingSurfaceMayBeApproachedByItsRestitutionAtMost) {
     RecordedImpact impact = impact_on_wall(0.3, false);
     impact.held_by = {3};
     impact.before.velocity.z = 0.01;
@@ -53,8 +54,9 @@ TEST(ReboundCheck, LetsASurfaceThatWasLeftBeApproachedByItsRestitutionAtMost) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-// The normal speed on a surface that holds counts as zero: a wall that is not at right angles to it may miss as much.
-TEST(ReboundCheck, AllowsForTheNormalSpeedOnWhatHolds) {
+// The normal speed on a supporting surface counts as zero. A wall that is not at right angles to it may err by that
+// speed.
+TEST(ReboundCheck, NormalSpeedOnASupportIsTolerated) {
     RecordedImpact impact = impact_on_wall(0.7, true);
     impact.before.velocity.z = 1e-7;
     impact.after.velocity = {-0.7 * 2 + 1e-7, 0, -1e-7};
@@ -63,7 +65,7 @@ TEST(ReboundCheck, AllowsForTheNormalSpeedOnWhatHolds) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-TEST(ReboundCheck, CountsTheThresholdAndTheMotionOfSurfaces) {
+TEST(ReboundCheck, ThresholdAndMotionOfSurfacesCount) {
     RecordedImpact impact;
     impact.before.velocity = {0, 0, -1};
     impact.surfaces = {{0, {0, 0, 1}, {0, 0, 1}, {0, 0, 0.9}, 0.8, 4.0, false}};
@@ -73,7 +75,7 @@ TEST(ReboundCheck, CountsTheThresholdAndTheMotionOfSurfaces) {
     EXPECT_TRUE(has_wrong_rebound(impact));
 }
 
-TEST(ReboundCheck, LetsASurfaceBeLeftFasterOnlyIfAnotherOneHasItsRebound) {
+TEST(ReboundCheck, SurfaceMayBeLeftFasterOnlyIfAnotherOneHasItsRebound) {
     RecordedImpact impact;
     impact.before.velocity = {1, 0, -1};
     impact.surfaces = {{0, {0, 0, 1}, {}, {}, 0.5, 0.0, false}, {1, {-1, 0, 0}, {}, {}, 0.5, 0.0, false}};

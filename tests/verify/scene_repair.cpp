@@ -24,7 +24,7 @@ std::vector<std::string> parts_of(const std::string& path) {
     return parts;
 }
 
-/// Removes the value at a path, or the nearest one above it that is there. Returns false for the scene itself.
+/// Removes the value at a path, or its nearest existing ancestor. Returns false for the scene itself.
 bool remove(Json& scene, const std::vector<std::string>& parts) {
     Json* parent = nullptr;
     Json* at = &scene;
@@ -40,7 +40,7 @@ bool remove(Json& scene, const std::vector<std::string>& parts) {
         last = part;
     }
     if (parent == nullptr) return false;
-    // A list that is refused as a whole loses its last item, round by round.
+    // A list that is refused as a whole loses its last item in each round.
     if (at->is_array() && at->size() > 1 && (*at)[0].is_object()) {
         at->erase(at->size() - 1);
         return true;
@@ -53,7 +53,7 @@ bool remove(Json& scene, const std::vector<std::string>& parts) {
     return true;
 }
 
-/// The path of a message "FILE:LINE:COLUMN: PATH: what"; of a value that is missing, its owner's.
+/// Returns the path in a message "FILE:LINE:COLUMN: PATH: reason". For a missing value it is the owner's path.
 std::string path_in(const std::string& message) {
     const std::size_t file = message.find("scene.json");
     const std::size_t begin = message.find(": ", file);
@@ -72,7 +72,8 @@ void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
     for (const Triangle& t : mesh.triangles) out << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
 }
 
-/// A sheet from -1 to 1 of cells^2 squares, with corners lifted by a fixed pattern of heights up to `height`.
+/// Returns a sheet from -1 to 1 of cells^2 squares. Its corners are lifted by a fixed pattern of heights up to
+/// `height`.
 TriangleMesh sheet(std::uint32_t cells, double height) {
     TriangleMesh mesh;
     for (std::uint32_t j = 0; j <= cells; ++j) {
@@ -91,7 +92,7 @@ TriangleMesh sheet(std::uint32_t cells, double height) {
     return mesh;
 }
 
-/// A cube's corners at three times, as a point cache of version 1.
+/// Writes the corners of a cube at three times, as a point cache of version 1.
 void write_cache(const std::filesystem::path& file, const TriangleMesh& cube) {
     std::string bytes("POINTCACHE2\0", 12);
     const auto add = [&](auto value) {
@@ -120,7 +121,7 @@ std::optional<SceneDescription> accepted(Json& scene, const std::filesystem::pat
         try {
             return parse_scene(scene.dump(), folder / "scene.json");
         } catch (const SceneError& error) {
-            // The last first, so that indices stay.
+            // Last paths are removed first, so that indices stay valid.
             std::set<std::string> paths;
             for (const std::string& message : error.messages()) paths.insert(path_in(message));
             bool helped = false;

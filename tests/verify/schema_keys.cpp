@@ -20,10 +20,10 @@ std::string named(const std::string& owner, const Json& rule) {
     return owner + "(" + rule["properties"]["type"]["const"].get<std::string>() + ")";
 }
 
-/// Whether a rule is one of several; objects also have lists of keys of which one is required.
+/// Returns true if a rule is one of several alternatives. Objects also have lists of keys of which one is required.
 bool has_alternatives(const Json& rule) { return rule.contains("oneOf") && !rule.contains("properties"); }
 
-/// Whether a value may be meant by one of several rules.
+/// Returns true if a value may match the rule.
 bool fits(const Json& rule, const Json& value) {
     if (rule.contains("$ref")) return value.is_object();
     const std::string type = rule.value("type", "");
@@ -81,18 +81,18 @@ void add_keys(const Json& schema, const Json& scene, std::set<std::string>& keys
 
 std::string reason_not_drawn(const std::string& key) {
     for (const char* const owner : {"camera.", "picture.", "drawing.", "stretch.", "collider_looks."}) {
-        if (key.starts_with(owner)) return "it is of pictures";
+        if (key.starts_with(owner)) return "it is for pictures";
     }
     for (const char* const name : {".camera", ".picture", ".looks", ".drawing"}) {
-        if (key.ends_with(name)) return "it is of pictures";
+        if (key.ends_with(name)) return "it is for pictures";
     }
     if (key == "scene.$schema") return "it is for editors";
     const bool is_of_output = key.starts_with("output.") && key != "output.contacts";
-    if (is_of_output) return "it says what is written; nothing is here";
+    if (is_of_output) return "it selects output files, which are not written here";
     for (const char* const name : {"burst", "frame", "rate_per_area", "rate_per_frame", "start", "stop"}) {
         if (key == std::string("emitter(child).") + name) return "the reader refuses it";
     }
-    if (key == "emitter(mesh).up" || key == "springs(cloth).up") return "it turns a mesh as it is read";
+    if (key == "emitter(mesh).up" || key == "springs(cloth).up") return "it rotates a mesh while it is read";
     return {};
 }
 

@@ -13,7 +13,7 @@
 namespace ricochet::test {
 namespace RICOCHET_FILE {
 
-/// Numbers of items by KEY; other lists have one or two.
+/// Returns the smallest and largest number of items by key. Lists not named here have one or two.
 std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
     static const std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> all = {
         {"particles", {1, 6}}, {"emitters", {1, 3}}, {"colliders", {1, 3}},
@@ -22,7 +22,7 @@ std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
     return found == all.end() ? std::pair<std::uint64_t, std::uint64_t>{1, 2} : found->second;
 }
 
-/// Keys that later ones must follow in time.
+/// Sorts keyframes by time, as the reader requires.
 void sort_by_time(nlohmann::json& list) {
     if (list.empty() || !list[0].is_object() || !list[0].contains("time")) return;
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a["time"] < b["time"]; });
@@ -46,13 +46,13 @@ nlohmann::json SchemaScene::draw() {
     return scene;
 }
 
-/// What has a temperature must be declared to have one, and heat goes by surfaces: there are no points.
+/// Declares the temperature that heat needs and replaces points by spheres, because heat flows through surfaces.
 void SchemaScene::make_heatable(Json& scene) {
     constexpr double kRadius = 0.1;
     scene["attributes"]["temperature"] = {{"default", 300.0}};
     for (const char* const key : {"emitters", "particles"}) {
         if (!scene.contains(key)) continue;
-        if (!scene[key].is_array()) {  // a table, of points as well
+        if (!scene[key].is_array()) {  // a table, which may contain points
             scene.erase(key);
             continue;
         }
@@ -60,7 +60,7 @@ void SchemaScene::make_heatable(Json& scene) {
     }
 }
 
-/// Particles that a flow carries have neither forces nor springs.
+/// Removes forces and springs, because a flow carries the particles.
 void SchemaScene::make_flow_scene(Json& scene) {
     constexpr std::array kIntegrators{"rk4", "midpoint", "dormand_prince", "forward_euler"};
     for (const char* const key : {"forces", "springs", "particle_forces", "particle_contacts"}) scene.erase(key);
@@ -94,7 +94,7 @@ nlohmann::json SchemaScene::value(const Json& rule, const std::string& owner, co
     if (rule.contains("oneOf")) return value(alternative(rule, key), owner, key);
     if (rule.contains("const")) return rule["const"];
     if (rule.contains("enum")) {
-        // Most scenes have the response that runs have unless they say otherwise.
+        // Most scenes get the default response.
         if (key == "response" && chance(0.6)) return rule["enum"][0];
         return rule["enum"][below(rule["enum"].size())];
     }
@@ -108,7 +108,7 @@ nlohmann::json SchemaScene::value(const Json& rule, const std::string& owner, co
 const nlohmann::json& SchemaScene::alternative(const Json& rule, const std::string& key) {
     if (!rule.contains("oneOf")) return rule;
     const Json& all = rule["oneOf"];
-    // A flow of flows ends somewhere, and named flows are there to be shared; tables of particles are all alike.
+    // Nesting of flows must end, and named flows should be shared. Tables of particles are all alike.
     if (key == "flow" && depth_ > 0) return all[below(all.size() - 2)];
     if (key == "particles" && chance(0.8)) return all[0];
     return all[below(all.size())];
@@ -136,18 +136,18 @@ void SchemaScene::keep_one(Json& made, const std::string& first, const std::stri
     if (made.contains(first) == made.contains(second)) made.erase(chance(0.5) ? first : second);
 }
 
-/// Rules of the reader that tie keys of an object together.
+/// Applies rules of the reader that tie keys of an object together.
 void SchemaScene::settle(const std::string& name, Json& made) {
     const auto is_any_of = [&](std::initializer_list<const char*> names) {
         return std::any_of(names.begin(), names.end(), [&](const char* other) { return name == other; });
     };
-    // Meshes at keys have the triangles of the collider's own.
+    // Meshes at keys need the triangles of the collider's own mesh.
     if (made.contains("deformation")) made["file"] = "cube.obj";
     if (name == "emitter(mesh)") {
         made["file"] = made.value("file", "ball.obj");
         keep_one(made, "file", "collider");
     }
-    if (name == "convection" && chance(0.7)) made.erase("coefficient");  // the others say how it is computed
+    if (name == "convection" && chance(0.7)) made.erase("coefficient");  // the other keys define how it is computed
     if (name == "force(quadratic_drag)") {
         made["coefficient"] = made.value("coefficient", 0.5);
         keep_one(made, "coefficient", "drag_coefficient");

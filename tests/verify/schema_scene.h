@@ -16,13 +16,13 @@
 
 namespace ricochet::test {
 
-/// Draws one scene from the JSON Schema of scene files. Each optional key is drawn with a probability; numbers come
-/// from ranges that make the objects of a scene meet each other. The same seed makes the same scene on every system.
+/// Draws scenes from the JSON Schema of scene files. Each optional key is drawn with a probability. The ranges of
+/// numbers make the objects of a scene collide. The same seed gives the same scene on every system.
 class SchemaScene {
 public:
     SchemaScene(const nlohmann::json& schema, std::uint64_t seed);
 
-    /// Returns the next scene. It may break rules that a schema cannot say; see accepted().
+    /// Returns the next scene. It may break rules that a schema cannot express; see accepted().
     [[nodiscard]] nlohmann::json draw();
 
 private:
@@ -49,24 +49,24 @@ private:
     RandomSequence random_;
     double duration_ = 0.0;  ///< s
     double step_ = 0.0;      ///< s
-    int depth_ = 0;          ///< of flows in flows
+    int depth_ = 0;          ///< nesting depth of flows in flows
 };
 
 /// Returns the names that a scene gives to the values of an object such as `materials` or `frames`.
 [[nodiscard]] std::vector<std::string> names_of(const std::string& owner, const std::string& key);
 
-/// Appends the keys of a scene as OWNER.KEY, where the owner is a definition of the schema, with its type in brackets
-/// for a definition of several types: `emitter(box).size`.
+/// Appends the keys of a scene as OWNER.KEY. The owner is a definition of the schema; a definition of several types has
+/// its type in brackets: `emitter(box).size`.
 void add_keys(const nlohmann::json& schema, const nlohmann::json& scene, std::set<std::string>& keys);
 
-/// All keys of the schema, named as add_keys() does.
+/// Returns all keys of the schema, named as in add_keys().
 [[nodiscard]] std::set<std::string> all_keys(const nlohmann::json& schema);
 
-/// Why a key named as add_keys() does is never drawn; empty for a key that concerns a run.
+/// Returns the reason why a key is never drawn, or nothing if it is. Keys are named as in add_keys().
 [[nodiscard]] std::string reason_not_drawn(const std::string& key);
 
-/// Removes the values that the reader refuses by path, as often as that helps. Returns the scene that it accepts, or
-/// nothing. folder: of the files that write_scene_files() has written.
+/// Repeatedly removes the values that the reader refuses by path. Returns the accepted scene, or nothing. folder: the
+/// folder of the files from write_scene_files().
 [[nodiscard]] std::optional<SceneDescription> accepted(nlohmann::json& scene, const std::filesystem::path& folder);
 
 /// Writes the meshes, tables and fields that drawn scenes name.

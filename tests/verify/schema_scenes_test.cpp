@@ -1,4 +1,4 @@
-// Random scenes over all keys of the scene schema: a run that verifies itself finds nothing wrong in them.
+// Random scenes over all keys of the scene schema. A run that verifies itself must find no violation in them.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -18,20 +18,20 @@
 namespace ricochet::test {
 namespace RICOCHET_FILE {
 
-/// Lost time and unsolved contact that the run itself has counted.
+/// Returns the number of time losses and unsolved contacts that the run itself has counted.
 std::uint64_t reported(const SimulationStatistics& statistics) {
     return statistics.budget_exhausted + statistics.squeezed + statistics.unsolved_steps;
 }
 
-/// Whether a violation is a limit that the documents state and that the run has reported as well.
-/// was_reported: the run has counted something in the step of the violation.
+/// Returns true if a violation is a limit that the documents state and that the run has also reported. was_reported:
+/// the run has counted a limit in the step of the violation.
 bool is_known_limit(const Violation& violation, const Simulation& simulation, bool was_reported) {
     const SimulationOptions& options = simulation.options();
-    // These two let particles pass walls that are thin for their step.
+    // These two responses let particles pass walls that are thin for the time step.
     if (options.response == ResponseKind::project || options.response == ResponseKind::penalty) return true;
     const SimulationStatistics& statistics = simulation.statistics();
     switch (violation.kind) {
-        case ViolationKind::wrong_side:  // a collider has passed a particle that it left no room (docs/moving.md)
+        case ViolationKind::wrong_side:  // a collider has passed a pinched particle (docs/moving.md)
             return statistics.squeezed > 0 && simulation.finished();
         case ViolationKind::pair_overlap:  // contact planned for a step (docs/particle-contacts.md)
             return was_reported || (options.particle_contacts->method != PairMethod::events &&
@@ -77,7 +77,8 @@ Outcome run(SimulationSetup setup) {
     return outcome;
 }
 
-/// Runs `count` scenes from a seed on. With RICOCHET_SEED only that one, whose text goes to RICOCHET_SCENE_FILE.
+/// Runs `count` scenes, beginning with a seed. With RICOCHET_SEED it runs only that scene and writes its text to
+/// RICOCHET_SCENE_FILE.
 void run_scenes(std::uint64_t count, std::set<std::string>* keys) {
     const ThreadLimit one_thread(1);
     const nlohmann::json schema = nlohmann::json::parse(scene_schema());
@@ -108,14 +109,15 @@ void run_scenes(std::uint64_t count, std::set<std::string>* keys) {
     EXPECT_GE(10 * with_impacts, 3 * count);
 }
 
-TEST(RandomSchemaScene, VerifiesWithoutAlarm) { run_scenes(static_cast<std::uint64_t>(scaled(60)), nullptr); }
+TEST(RandomSchemaScene, RunReportsNoViolation) { run_scenes(static_cast<std::uint64_t>(scaled(60)), nullptr); }
 
-TEST(RandomSchemaSceneLong, VerifiesWithoutAlarmWithEveryKeyOfTheSchema) {
+TEST(RandomSchemaSceneLong, RunsReportNoViolationAndCoverEveryKey) {
     std::set<std::string> drawn;
     run_scenes(3000, &drawn);
     for (const std::string& key : all_keys(nlohmann::json::parse(scene_schema()))) {
         EXPECT_TRUE(drawn.contains(key) || !reason_not_drawn(key).empty()) << key << " was never drawn";
-        EXPECT_TRUE(!drawn.contains(key) || reason_not_drawn(key).empty()) << key << " was drawn against the list";
+        EXPECT_TRUE(!drawn.contains(key) || reason_not_drawn(key).empty())
+            << key << " was drawn, although the list excludes it";
     }
 }
 

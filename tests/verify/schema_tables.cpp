@@ -158,7 +158,7 @@ constexpr Row<double> kProbabilities[] = {
     {"mass", 0.5},
 };
 
-/// Finds the row of the longest name.
+/// Returns the value of the most specific matching row.
 template <class Value>
 const Value* entry(std::span<const Row<Value>> table, const std::string& owner, const std::string& key) {
     for (const std::string& name : {owner + "." + key, owner.substr(0, owner.find('(')) + "." + key, key}) {

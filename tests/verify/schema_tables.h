@@ -1,6 +1,6 @@
 /// \file
-/// How likely and how large the values of random scenes are, by the keys of the scene schema. An owner is a definition
-/// of the schema, with its type in brackets for a definition of several types.
+/// Probabilities and ranges of the values in random scenes, by the keys of the scene schema. An owner is a definition
+/// of the schema; a definition of several types has its type in brackets.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace ricochet::test {
 
-/// A range of numbers that are drawn.
+/// A range of drawn numbers.
 struct Range {
     enum class Unit : std::uint8_t { plain, logarithm, of_duration, per_duration };
     double low = 0.0;
@@ -17,7 +17,7 @@ struct Range {
     Unit unit = Unit::plain;
 };
 
-/// Returns the range of a number, if the key has one of its own.
+/// Returns the range of a number, if the key has its own.
 [[nodiscard]] std::optional<Range> range_of(const std::string& owner, const std::string& key);
 /// Returns the probability with which an optional key is drawn.
 [[nodiscard]] double probability_of(const std::string& owner, const std::string& key);

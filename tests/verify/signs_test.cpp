@@ -16,8 +16,8 @@ using testing::sign_of;
 
 constexpr std::uint64_t kSeed = 77;
 
-// The cases hold flat, slender, collinear, tiny, huge and far-away triangles.
-TEST(Signs, OfTheVerifierAreThoseOfRationalNumbers) {
+// The cases include flat, slender, collinear, tiny, huge and far-away triangles.
+TEST(Signs, SignsMatchRationalNumbers) {
     for (int i = 0; i < test::scaled(20000); ++i) {
         const auto [p, q, a, b, c] = testing::segment_triangle_case(kSeed, static_cast<std::uint64_t>(i));
         SCOPED_TRACE(testing::description({p, q, a, b, c}));
@@ -35,7 +35,7 @@ TEST(Signs, OfTheVerifierAreThoseOfRationalNumbers) {
 }
 
 // Coordinates of very different sizes need more digits than the fixed-size integers have.
-TEST(Signs, HoldForCoordinatesFromTheSmallestToTheLargest) {
+TEST(Signs, SignsAreRightForCoordinatesOfExtremeSizes) {
     const Vec3 a{1e75, 0, 0}, b{0, 1e75, 0}, c{0, 0, 1e75};
     EXPECT_EQ(spatial_sign(a, b, c, {1e75, 0x1p-280, 0}), 1);
     EXPECT_EQ(spatial_sign(a, b, c, {1e75, -0x1p-280, 0}), -1);

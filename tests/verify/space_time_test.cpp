@@ -1,4 +1,5 @@
-// The verifier's own test of a moving point and a moving triangle, against the library's, which shares nothing with it.
+// Compares the verifier's test of a moving point and a moving triangle with the library's, which shares no code with
+// it.
 #include "ricochet/verify/space_time.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ Vec3 in_cube(RandomSequence& random) {
     return {random.uniform_around(0, 1), random.uniform_around(0, 1), random.uniform_around(0, 1)};
 }
 
-TEST(SpaceTime, AgreesWithAMethodOfItsOwn) {
+TEST(SpaceTime, ResultMatchesTheLibrarysMethod) {
     RandomSequence random(29, 0, 0);
     int apart = 0;
     const int count = test::scaled(400);
@@ -33,8 +34,8 @@ TEST(SpaceTime, AgreesWithAMethodOfItsOwn) {
     EXPECT_LT(apart, count);
 }
 
-// A touch at one end, in the middle, and a miss by the last place.
-TEST(SpaceTime, CountsATouchAsMeeting) {
+// A touch at one end, a touch in the middle, and a miss by the last bit.
+TEST(SpaceTime, TouchCountsAsContact) {
     const Corners flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const Corners risen{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
     const MovingCorners rising{flat, risen};
@@ -47,8 +48,8 @@ TEST(SpaceTime, CountsATouchAsMeeting) {
     EXPECT_FALSE(are_apart({{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}}, rising));  // on the rim
 }
 
-// Two corners are one at all times; the way is far longer than its distance from what is left, a segment.
-TEST(SpaceTime, TellsAPathFromATriangleThatNeverHasAnArea) {
+// Two corners always coincide, so the triangle is a segment. The path is far longer than its distance from the segment.
+TEST(SpaceTime, PathMissesATriangleThatNeverHasAnArea) {
     const Corners before{{0.34, 0.12, 0.31}, {-1.58, -0.39, -1.06}, {0.34, 0.12, 0.31}};
     const Corners after{{0.32, 0.11, 0.28}, {-1.59, -0.39, -1.08}, {0.32, 0.11, 0.28}};
     EXPECT_TRUE(are_apart({{-1.49, -0.46, -0.10}, {-1.34, -0.05, -0.49}}, {before, after}));
@@ -56,9 +57,9 @@ TEST(SpaceTime, TellsAPathFromATriangleThatNeverHasAnArea) {
     EXPECT_FALSE(are_apart({{1, -1, 0}, {1, 1, 0}}, {edge, edge}));
 }
 
-// As a particle that slides over a seam of a face that is scaled: at a height of 16 ulp, beside a triangle whose
-// corners stand on one line at all times, where its third corner is and where it is not.
-TEST(SpaceTime, TellsAPathFromAFlatTriangleThatItPassesCloselyOver) {
+// The path resembles a particle that slides over a seam of a scaled face: at a height of 16 ulp, beside a triangle with
+// collinear corners. The third corner coincides with others or lies between them.
+TEST(SpaceTime, PathMissesAFlatTriangleThatItPassesClosely) {
     RandomSequence random(31, 0, 0);
     const int count = test::scaled(200);
     for (int k = 0; k < count; ++k) {

@@ -25,7 +25,7 @@ std::vector<StandingSphere> random_spheres(int count, std::uint64_t seed) {
     return spheres;
 }
 
-TEST(SphereOverlaps, FindsWhatAllAgainstAllFinds) {
+TEST(SphereOverlaps, ResultsMatchABruteForceSearch) {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE(seed);
         const auto spheres = random_spheres(static_cast<int>(test::scaled(1500)), seed);
@@ -49,7 +49,7 @@ TEST(SphereOverlaps, FindsWhatAllAgainstAllFinds) {
     }
 }
 
-TEST(SphereOverlaps, WhatWasThereIsReportedOnlyWhereItGrows) {
+TEST(SphereOverlaps, ExistingOverlapIsReportedOnlyIfItGrows) {
     std::vector<StandingSphere> spheres = {{5, {0, 0, 0}, 1.0, true}, {2, {1.5, 0, 0}, 1.0, true}};
     SphereOverlaps overlaps;
     EXPECT_TRUE(overlaps.check(spheres, 1e-9).empty());

@@ -23,8 +23,8 @@ std::vector<NamedTriangle> triangles_of(const TriangleMesh& mesh) {
     return triangles;
 }
 
-// Small and large triangles, near the origin and far away; segments through vertices, along axes, points.
-TEST(TriangleTree, LeavesNoTriangleOutThatASegmentIntersects) {
+// Uses small and large triangles, near the origin and far away, and segments through vertices, along axes, and points.
+TEST(TriangleTree, SearchFindsEveryTriangleThatASegmentIntersects) {
     std::size_t met = 0;
     std::size_t visited = 0;
     for (const double distance : {0.0, 1e6}) {
@@ -58,7 +58,7 @@ TEST(TriangleTree, LeavesNoTriangleOutThatASegmentIntersects) {
     EXPECT_LT(visited, 100 * met);
 }
 
-TEST(TriangleTree, FindsWhatOverlapsABox) {
+TEST(TriangleTree, SearchFindsTheTrianglesThatOverlapABox) {
     const TriangleTree tree(triangles_of(testing::box_mesh({0, 0, 0}, {2, 2, 2})));
     const auto count = [&](const Vec3& lower, const Vec3& upper) {
         int found = 0;

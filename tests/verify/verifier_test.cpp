@@ -13,10 +13,10 @@ namespace RICOCHET_FILE {
 
 using testing::box_mesh;
 
-/// A box from 0 to 4.
+/// Returns the verifier of a box from 0 to 4.
 Verifier box_verifier() { return Verifier({box_mesh({0, 0, 0}, {4, 4, 4})}); }
 
-/// One step of a particle along the positions given, from the first to the last.
+/// Checks one step of a particle along the given positions, from the first to the last.
 std::vector<Violation> travel(const Verifier& verifier, VerifiedParticle& particle, const std::vector<Vec3>& places,
                               double radius = 0.0) {
     std::vector<Segment> segments;
@@ -31,23 +31,23 @@ std::vector<Violation> travel(const Verifier& verifier, const std::vector<Vec3>&
     return travel(verifier, particle, places, radius);
 }
 
-/// The number of violations of that kind.
+/// Returns the number of violations of a kind.
 std::size_t count(const std::vector<Violation>& violations, ViolationKind kind) {
     std::size_t found = 0;
     for (const Violation& v : violations) found += v.kind == kind ? 1 : 0;
     return found;
 }
 
-TEST(Verifier, FindsNothingWrongWithSegmentsInsideABox) {
+TEST(Verifier, SegmentsInsideABoxPass) {
     EXPECT_TRUE(travel(box_verifier(), {{1, 1, 1}, {3, 3, 0x1p-60}, {1, 2, 3}}).empty());
     EXPECT_TRUE(travel(box_verifier(), {{1, 1, 1}, {3, 3, 1}}, 1.0).empty());
     EXPECT_TRUE(travel(box_verifier(), {{9, 1, 1}, {9, 9, 9}}).empty());
 }
 
-TEST(Verifier, NamesParticlePositionTimeColliderAndTriangleOfACrossing) {
+TEST(Verifier, CrossingHasParticlePositionTimeColliderAndTriangle) {
     const TriangleMesh far = testing::moved(box_mesh({0, 0, 0}, {1, 1, 1}), {50, 0, 0});
     const TriangleMesh box = box_mesh({0, 0, 0}, {4, 4, 4});
-    // The same triangles: which of the box's two on the side x = 4 is hit tells its number.
+    // Both boxes have the same triangles. The expected number identifies the triangle hit on the box's side x = 4.
     const auto violations = travel(Verifier({far, box}), {{1, 1, 3}, {7, 1, 3}});
     ASSERT_EQ(violations.size(), 2U);
     const Violation& crossing = violations[0];
@@ -64,25 +64,25 @@ TEST(Verifier, NamesParticlePositionTimeColliderAndTriangleOfACrossing) {
     EXPECT_EQ(violations[1].collider, 1U);
 }
 
-TEST(Verifier, CatchesASegmentThroughAnEdgeAndACorner) {
-    // Both triangles of an edge are named; six share this corner at most.
+TEST(Verifier, SegmentThroughAnEdgeAndACornerIsReported) {
+    // Both triangles of an edge are reported. A corner has at most six triangles.
     EXPECT_EQ(count(travel(box_verifier(), {{3, 1, 3}, {5, 1, 5}}), ViolationKind::crossing), 2U);
     EXPECT_GE(count(travel(box_verifier(), {{3, 3, 3}, {5, 5, 5}}), ViolationKind::crossing), 3U);
 }
 
-TEST(Verifier, CatchesASegmentThatEndsOnATriangle) {
+TEST(Verifier, SegmentThatEndsOnATriangleIsReported) {
     const auto violations = travel(box_verifier(), {{1, 1, 3}, {4, 1, 3}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 1U);
     EXPECT_EQ(count(violations, ViolationKind::wrong_side), 1U);
 }
 
-TEST(Verifier, CatchesASegmentOutAndInAgainWithinOneStep) {
+TEST(Verifier, SegmentThatLeavesAndReturnsInOneStepIsReported) {
     const auto violations = travel(box_verifier(), {{1, 1, 3}, {5, 1, 3}, {5, 2, 3}, {1, 2, 3}});
     EXPECT_EQ(count(violations, ViolationKind::crossing), 2U);
     EXPECT_EQ(violations.size(), 2U);
 }
 
-TEST(Verifier, CatchesASegmentThroughAnOpenMesh) {
+TEST(Verifier, SegmentThroughAnOpenMeshIsReported) {
     TriangleMesh open = box_mesh({0, 0, 0}, {4, 4, 4});
     open.triangles.resize(2);  // the lower side only
     const Verifier verifier({open});
@@ -92,7 +92,7 @@ TEST(Verifier, CatchesASegmentThroughAnOpenMesh) {
     EXPECT_EQ(violations[0].kind, ViolationKind::crossing);
 }
 
-TEST(Verifier, CatchesGapsInTheChain) {
+TEST(Verifier, GapsBetweenSegmentsAreReported) {
     const Verifier verifier = box_verifier();
     const Vec3 a{1, 1, 1}, b{2, 2, 2}, c{3, 3, 3};
     const Vec3 a_little_off{1, 1, std::nextafter(1.0, 2.0)};
@@ -114,7 +114,7 @@ TEST(Verifier, CatchesGapsInTheChain) {
     EXPECT_EQ(gaps({0, 1, 1}, {-0.0, 1, 1}, {}, {-0.0, 1, 1}), 1U);
 }
 
-TEST(Verifier, CatchesAParticleThatIsSuddenlyOutside) {
+TEST(Verifier, ParticleThatJumpsOutsideIsReported) {
     const Verifier verifier = box_verifier();
     VerifiedParticle particle = verifier.watch({1, 1, 1}, 0.0);
     std::vector<Violation> violations;
@@ -123,11 +123,11 @@ TEST(Verifier, CatchesAParticleThatIsSuddenlyOutside) {
     EXPECT_EQ(violations[0].kind, ViolationKind::gap);
     EXPECT_EQ(violations[1].kind, ViolationKind::wrong_side);
     EXPECT_EQ(violations[1].collider, 0U);
-    // It is reported once.
+    // The jump is reported once.
     EXPECT_TRUE(travel(verifier, particle, {{9, 1, 1}, {9, 2, 1}}).empty());
 }
 
-TEST(Verifier, KnowsTheSidesOfPlanesAndShapes) {
+TEST(Verifier, SidesOfPlanesAndShapesAreKnown) {
     AffineMap far;
     far.translation = {10, 0, 0};
     const Verifier verifier({VerifiedPlane{{0, 0, 0}, {0, 0, 2}}, VerifiedShape{far, false}, VerifiedShape{{}, true}});
@@ -145,7 +145,7 @@ TEST(Verifier, KnowsTheSidesOfPlanesAndShapes) {
     EXPECT_EQ(count(travel(verifier, {{0, 0, 0.5}, {0, 0, 0}}), ViolationKind::crossing), 1U);    // ends on the plane
 }
 
-TEST(Verifier, CatchesASphereThatIsMovedIntoAWallByABillionth) {
+TEST(Verifier, SphereMovedIntoAWallByABillionthIsReported) {
     AffineMap far;
     far.translation = {20, 2, 2};
     const Verifier verifier({box_mesh({0, 0, 0}, {4, 4, 4}), VerifiedPlane{{0, 0, -9}, {0, 0, 1}},
@@ -172,7 +172,7 @@ TEST(Verifier, CatchesASphereThatIsMovedIntoAWallByABillionth) {
     }
 }
 
-TEST(Verifier, JudgesASphereBornInOverlapOnceItHasBeenFree) {
+TEST(Verifier, SphereSpawnedInOverlapIsCheckedOnceItHasBeenFree) {
     const Verifier verifier = box_verifier();
     VerifiedParticle particle = verifier.watch({0.3, 2, 2}, 0.5);
     EXPECT_FALSE(particle.has_been_free);
@@ -182,7 +182,7 @@ TEST(Verifier, JudgesASphereBornInOverlapOnceItHasBeenFree) {
     EXPECT_EQ(travel(verifier, particle, {{2, 2, 2}, {0.2, 2, 2}}, 0.5).size(), 1U);
 }
 
-TEST(Verifier, LetsAParticleBornOnASurfaceTakeASide) {
+TEST(Verifier, ParticleSpawnedOnASurfaceMayChooseItsSide) {
     const Verifier verifier({box_mesh({0, 0, 0}, {4, 4, 4}), VerifiedPlane{{0, 0, 0}, {0, 0, 1}}});
     const Vec3 birth{1, 2, 0};
     for (const double side : {1.0, -1.0}) {
@@ -190,28 +190,28 @@ TEST(Verifier, LetsAParticleBornOnASurfaceTakeASide) {
         EXPECT_TRUE(particle.is_on_surface);
         EXPECT_TRUE(travel(verifier, particle, {birth, {1, 2, side}}).empty());
         EXPECT_TRUE(travel(verifier, particle, {{1, 2, side}, {2, 2, side}}).empty());
-        // From then on that is its side.
+        // From then on the particle must stay on this side.
         EXPECT_EQ(count(travel(verifier, particle, {{2, 2, side}, {2, 2, -side}}), ViolationKind::wrong_side), 2U);
     }
-    // It may leave the surface, but not go through another one, nor along it.
+    // The particle may leave the surface, but not cross another one or move along this one.
     EXPECT_EQ(count(travel(verifier, {birth, {1, 2, 5}}), ViolationKind::crossing), 1U);
     EXPECT_GE(count(travel(verifier, {birth, {1, 3, 0}}), ViolationKind::crossing), 1U);
 }
 
-TEST(Verifier, LeavesTrianglesWithoutAreaOut) {
+TEST(Verifier, TrianglesWithoutAreaAreIgnored) {
     TriangleMesh mesh = box_mesh({0, 0, 0}, {4, 4, 4});
     mesh.triangles.push_back({0, 7, 7});  // a segment across the inside
     EXPECT_TRUE(travel(Verifier({mesh}), {{1, 1, 3}, {3, 3, 1}}).empty());
 }
 
-TEST(Verifier, JudgesNoParticleThatIsNowhere) {
+TEST(Verifier, ParticleThatIsNotFiniteIsNotChecked) {
     const Verifier verifier = box_verifier();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     VerifiedParticle particle = verifier.watch({nan, 0, 0}, 1.0);
     std::vector<Violation> violations;
     verifier.check({1, {nan, 0, 0}, {nan, 0, 0}, 1.0, 1.0, {}}, particle, violations);
     EXPECT_TRUE(violations.empty());
-    // But getting there is a violation.
+    // Becoming non-finite is a violation, however.
     EXPECT_GE(count(travel(verifier, {{1, 1, 1}, {nan, 0, 0}}), ViolationKind::gap), 1U);
 }
 

@@ -19,7 +19,7 @@ struct Wrench {
     }
 };
 
-/// Inverse mass and inverse inertia of a body, without the directions that a joint blocks.
+/// Inverse mass and inverse inertia of a body. They are zero in the directions that a joint blocks.
 struct Mobility {
     SymmetricMatrix of_mass;     ///< in 1/kg
     SymmetricMatrix of_inertia;  ///< in 1/(kg m^2), about the center

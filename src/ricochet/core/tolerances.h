@@ -55,9 +55,9 @@ inline constexpr double kRimTie = 0x1p-48;
 
 /// Distance from a surface's plane, in contact offsets, up to which a particle touches the surface. Sliding also
 /// continues until the particle is this far beyond the triangle's edge. Lossless bounces that rise no higher are
-/// contact too, and slip that ends within it is ignored. Smaller: sliding consists of more, shorter segments, and
-/// elastic bounces of the size of rounding use up the bounce budget. Larger: a particle slides on air beyond a convex
-/// edge by that distance (some 1e-14 of its coordinates).
+/// contact too, and slip that ends within this distance is ignored. Smaller: sliding consists of more, shorter
+/// segments, and elastic bounces of the size of rounding use up the bounce budget. Larger: a particle slides on air
+/// beyond a convex edge by that distance (some 1e-14 of its coordinates).
 inline constexpr double kTouchingOffsets = 8.0;
 
 /// Distance, in contact offsets, that a particle may slide beyond a triangle's edge before it leaves that triangle.
@@ -66,9 +66,9 @@ inline constexpr double kTouchingOffsets = 8.0;
 /// budget is spent. Larger: they slide on air beyond convex edges by that distance (some 1e-12 of the coordinates).
 inline constexpr double kEdgeOffsets = 256.0;
 
-/// Most projections of a particle out of the surfaces that it is behind, in one step. After that it returns to its last
-/// valid position. Reason: in a corner of several colliders one projection leads behind the next. Smaller: corners stop
-/// particles more often. Larger: sharp wedges cost more queries.
+/// Most projections of a particle out of the surfaces that it is behind, in one step. After that it returns to its
+/// position before the move. Reason: in a corner of several colliders one projection leads behind the next. Smaller:
+/// corners stop particles more often. Larger: sharp wedges cost more queries.
 inline constexpr int kMaxProjections = 16;
 
 /// Smallest restitution of a spring and damper. Reason: a smaller one would need unbounded damping, which no step can
@@ -105,7 +105,7 @@ inline constexpr double kStopRounding = 0x1p-40;
 /// depends on the time step by the angle's square.
 inline constexpr double kMaxHeadingTurn = 0.05;
 
-/// The same limit for a slip whose direction turns within a small part of the step, because such a slip is nearly over.
+/// The same limit for a slip whose direction turns within a small part of the step, because there is hardly any slip.
 /// Smaller: more segments for each reversal of a slip. Larger: the start of a slip depends on the time step.
 inline constexpr double kMostHeadingTurn = 0.5;
 
@@ -134,7 +134,7 @@ inline constexpr double kShortestRelease = 1.0 / 64.0;
 
 /// Part of a step below which a path along a wall is skipped if it moves the particle only by rounding. Smaller: the
 /// rest before a rim or a release is divided by times so short that velocities overflow. Larger: a particle leaves a
-/// wall earlier, by less than a quarter of a contact offset of its path.
+/// wall earlier, by a path of less than a quarter of a contact offset.
 inline constexpr double kNoProgress = 0x1p-20;
 
 // Broad phase and look-ahead
@@ -230,8 +230,8 @@ inline constexpr double kSameVelocity = 1e-12;
 /// (corners).
 inline constexpr double kSimultaneousUlps = 4.0;
 
-/// One minus the cosine of the angle between two normals that a sphere hits at the same time: one of a face, and one of
-/// an edge or vertex. Below it the edge is the face's own seam and is ignored. Reason: contacts tie while the closest
+/// One minus the cosine of the angle between the normals of a face and of an edge or vertex, if a sphere hits both at
+/// the same time. Below it the edge is the face's own seam and is ignored. Reason: contacts tie while the closest
 /// point is within sqrt(2 * rounding * radius) of the edge. For coordinates of a thousand radii this is an angle of
 /// 1e-6. Smaller: a grazing sphere is deflected by flat inner edges. Larger: blunt real edges act as faces.
 inline constexpr double kSeamTurn = 1e-11;
@@ -248,7 +248,8 @@ inline constexpr double kSphereTolerance = 1e-12;
 /// deflect by rounding errors. Larger: on a convex edge the normal is wrong by up to this length over the radius.
 inline constexpr double kSeamSlack = 0x1p-48;
 
-/// Fraction of its speed that an overlapping sphere's distance to the surface must shrink by to count as approaching.
+/// Least approach speed of a sphere that already overlaps a surface, as a fraction of its speed. A slower sphere does
+/// not count as approaching.
 /// Reason: a velocity along the surface has a normal component of rounding errors, which must not stop the sphere
 /// repeatedly. Larger: a sphere that overlaps at birth can sink in by that fraction of its path.
 inline constexpr double kMinApproach = 0x1p-48;
@@ -447,7 +448,7 @@ inline constexpr double kNetworkOverRelaxation = 1.2;
 inline constexpr double kNetworkOverlap = 2.5e-3;
 
 /// Speed by which the conditions of a contact network may be violated, as a fraction of the speed of its fastest
-/// sphere. So the solution becomes more exact as the network comes to rest. Smaller: more sweeps for networks in
+/// sphere. The solution thus becomes more exact as the network comes to rest. Smaller: more sweeps for networks in
 /// motion. Larger: piles creep.
 inline constexpr double kNetworkResidual = 1e-2;
 
@@ -482,9 +483,9 @@ inline constexpr double kSameDirection = 1e-9;
 inline constexpr double kEnergyRounding = 0x1p-44;
 
 /// Kinetic energy that an interval or arc of contact may gain before it is limited, in contact offsets times the force.
-/// Reason: beside a rim or in a narrow wedge a particle may be as far from its supports, at both ends. Smaller:
-/// rounding of positions reduces motion in narrow wedges and the first motion from rest. Larger: the error of the
-/// method adds as much energy.
+/// Reason: beside a rim or in a narrow wedge a particle may have this distance from its supports, at both ends.
+/// Smaller: rounding of positions reduces motion in narrow wedges and the first motion from rest. Larger: the error of
+/// the method adds as much energy.
 inline constexpr double kContactEnergyOffsets = kEdgeOffsets;
 
 /// Limits above which a verified run reports a gain of energy, also for impacts: in contact offsets times the force,
@@ -507,7 +508,8 @@ inline constexpr double kDependentDirection = 0x1p-36;
 /// roundings. Smaller: rounding removes particles from their supports. Larger: slow separations are suppressed.
 inline constexpr double kLeavingRounding = 0x1p-46;
 
-/// The same fraction beyond the end of a face if its edge turns away from the motion. Smaller: rolling over an edge
+/// The same fraction beyond the end of a face, if its edge turns away from the motion as far as the particle is beyond
+/// it. Smaller: rolling over an edge
 /// begins with a fall and a landing. Larger: slow separations are suppressed.
 inline constexpr double kTurningAway = 0x1p-24;
 
@@ -521,9 +523,9 @@ inline constexpr double kMaxArcAngle = 0.1;
 /// than a shape passes through the side that its nearest point has jumped to.
 inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
 
-/// Turn, in rad, or path, in radii, that counts as a jump. The two times are 2^-40 of an arc apart; the start of an arc
-/// is tested too. A jump means that the surface is narrower than the sphere, which jams. Smaller: fast turns jam.
-/// Larger: small jumps are missed.
+/// Turn, in rad, or path, in radii, that counts as a jump between two times 2^-40 of an arc apart. The start of an arc
+/// is tested for a jump too. A jump means that the surface is narrower than the sphere, which jams. Smaller: fast turns
+/// jam. Larger: small jumps are missed.
 inline constexpr double kJump = 1e-3;
 
 /// Largest relative correction of an arc's end for the sake of its energy. Reason: the method's own error is far below

@@ -1,21 +1,20 @@
-// Lets system calls of a program fail. To be preloaded (LD_PRELOAD); x86-64 Linux.
+// Makes system calls of a program fail. Preloaded with LD_PRELOAD, on x86-64 Linux.
 //
-// A filter of the kernel (seccomp) turns the calls below into the signal SIGSYS, wherever in the process they are made:
-// in the program, in the C library's streams, in any other library. The handler of the signal makes the call, or does
-// what is to go wrong with it. The environment says what that is:
+// A filter of the kernel (seccomp) turns the calls below into the signal SIGSYS. It covers the program, the streams of
+// the C library, and all other libraries. The handler of the signal makes the call or simulates the fault. The
+// environment selects the fault:
 //
-//   RICOCHET_FAULT_PATH    counts only calls whose file has this text in its path; without it nothing is done
-//   RICOCHET_FAULT_CALL    open, write, sync, rename, close, unlink, or any of them ("any")
-//   RICOCHET_FAULT_AT      the number of the call, from 1, that goes wrong
-//   RICOCHET_FAULT_ACTION  a number: the call does nothing and gives this errno; short: half of the bytes are written;
-//                          kill: the process is killed before the call
-//   RICOCHET_FAULT_ON      1: all later calls go wrong too
-//   RICOCHET_FAULT_BYTES   the disk has room for so many bytes: what goes beyond them is cut off, then ENOSPC
-//   RICOCHET_FAULT_COUNTS  a file that is given the numbers of calls at the end, one line "NAME COUNT" a kind, and of
-//   the
-//                          bytes that were to be written
+// - RICOCHET_FAULT_PATH: counts only calls whose file has this text in its path; without it nothing is done
+// - RICOCHET_FAULT_CALL: open, write, sync, rename, close, unlink, or any of them ("any")
+// - RICOCHET_FAULT_AT: number of the faulty call, from 1
+// - RICOCHET_FAULT_ACTION: a number: the call does nothing and returns this errno; short: half of the bytes are
+//   written; kill: the process is killed before the call
+// - RICOCHET_FAULT_ON: 1: all later calls are faulty too
+// - RICOCHET_FAULT_BYTES: size of the disk in bytes; further bytes are cut off, then the call gives ENOSPC
+// - RICOCHET_FAULT_COUNTS: a file that receives the number of calls at the end, one line "NAME COUNT" per kind, and the
+//   number of bytes to be written
 //
-// Programs that are started by the program die of SIGSYS: the filter stays with them, the handler does not.
+// Child programs die of SIGSYS, because they inherit the filter but not the handler.
 #include <fcntl.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
@@ -35,7 +34,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// A system call at an address of its own, which the filter lets pass. As the C library's syscall(), but it gives
+// System call at its own address, which the filter lets pass. It works like syscall() of the C library but returns
 // -errno.
 extern "C" long ricochet_fault_syscall(long number, long a, long b, long c, long d, long e, long f);
 extern "C" const char ricochet_fault_syscall_end[];
@@ -75,7 +74,7 @@ constexpr std::array kTrapped{
     TrappedCall{SYS_renameat2, kRename}, TrappedCall{SYS_close, kClose},    TrappedCall{SYS_unlink, kUnlink},
     TrappedCall{SYS_unlinkat, kUnlink}};
 
-// The settings, read once before the filter is there.
+// Settings, read once before the filter is installed.
 const char* path_part = nullptr;
 const char* counts_file = nullptr;
 std::array<bool, kKinds> is_chosen{};
@@ -104,7 +103,7 @@ const char* text_at(long address) {
     return reinterpret_cast<const char*>(address);
 }  // NOLINT(performance-no-int-to-ptr)
 
-// "/proc/self/fd/N" without the C library's help, which is not to be had in a handler.
+// Writes "/proc/self/fd/N" without the C library, which a signal handler must not call.
 void name_descriptor(std::array<char, 40>& name, long descriptor) {
     constexpr const char* kFolder = "/proc/self/fd/";
     std::size_t end = std::strlen(kFolder);
@@ -156,7 +155,7 @@ std::size_t bytes_of(const Call& call) {
     return sum;
 }
 
-// The first bytes of what the call would write.
+// Writes the first bytes of the data of a call.
 long write_part(const Call& call, std::size_t bytes) {
     if (call.number != SYS_writev) {
         Call part = call;
@@ -186,7 +185,7 @@ long write_to_limited_disk(const Call& call) {
 long fail(const Call& call, Kind kind) {
     if (is_kill) (void)make(SYS_kill, make(SYS_getpid, 0), SIGKILL);
     if (is_short) return kind == kWrite ? write_part(call, (bytes_of(call) + 1) / 2) : call.make();
-    if (kind == kClose) (void)call.make();  // the descriptor is gone, whatever close() says
+    if (kind == kClose) (void)call.make();  // the descriptor is released, whatever close() returns
     return -fault_errno;
 }
 
@@ -215,7 +214,7 @@ sock_filter statement(unsigned code, unsigned value, unsigned char then = 0, uns
     return {static_cast<std::uint16_t>(code), then, otherwise, value};
 }
 
-// Lets pass: other system calls, and those that the handler makes.
+// Installs the filter. It lets pass all other system calls, and calls made by the handler.
 bool install_filter() {
     constexpr std::size_t kEnd = kTrapped.size() + 8;
     std::array<sock_filter, kEnd> filter{};
@@ -292,7 +291,7 @@ struct Report {
     }
 };
 
-// With the calls of the handler: the file may be a watched one.
+// Uses the system calls of the handler, because the file may be a watched one.
 [[gnu::destructor]] void end() {
     if (path_part == nullptr || counts_file == nullptr) return;
     Report report;

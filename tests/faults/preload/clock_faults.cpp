@@ -1,7 +1,7 @@
-// Lets the clocks of a program jump. To be preloaded (LD_PRELOAD); Linux.
+// Makes the clocks of a program jump. Preloaded with LD_PRELOAD, on Linux.
 //
-//   RICOCHET_FAULT_CLOCK  a number: every few calls all clocks that tell a time of day or of this machine jump forwards
-//                         or backwards, by up to some hours, the same jumps for the same number
+// RICOCHET_FAULT_CLOCK is the seed of the jumps. Every few calls, all clocks for the time of day or the uptime jump
+// forwards or backwards by up to some hours. The same seed gives the same jumps.
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <time.h>
@@ -14,12 +14,12 @@
 namespace {
 
 constexpr std::uint64_t kCallsBetweenJumps = 3;
-constexpr std::int64_t kLargestJump = 20000;  // s
+constexpr std::int64_t kLargestJump = 20000;  // in s
 constexpr std::int64_t kNanoseconds = 1'000'000'000;
 
 std::atomic<std::uint64_t> calls{0};
 
-// W. Stafford's mixing of bits, as of SplitMix64.
+// Mixes bits like SplitMix64, after D. Stafford's mixing functions.
 std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15ULL;
     x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
@@ -27,13 +27,13 @@ std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31U);
 }
 
-// ns that all clocks are wrong by now; nothing where the environment asks for nothing.
+// Returns the current error of all clocks, in ns. It is 0 if the environment does not request jumps.
 std::int64_t error_now() {
     static const char* const text = std::getenv("RICOCHET_FAULT_CLOCK");
     if (text == nullptr) return 0;
     static const std::uint64_t seed = std::strtoull(text, nullptr, 10);
     const std::uint64_t random = mixed(seed * 1000003 + calls++ / kCallsBetweenJumps);
-    // A third of the jumps are shorter than a second, so that it is not all about the sign.
+    // A third of the jumps are shorter than a second, so that small errors are tested too.
     const std::int64_t unit = random % 3 == 0 ? 1 : kNanoseconds;
     const std::int64_t range = random % 3 == 0 ? kNanoseconds : kLargestJump;
     return unit * (static_cast<std::int64_t>((random >> 8U) % static_cast<std::uint64_t>(2 * range)) - range);

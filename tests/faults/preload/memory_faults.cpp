@@ -1,11 +1,11 @@
-// Lets allocations of a program fail. To be preloaded (LD_PRELOAD).
+// Makes allocations of a program fail. Preloaded with LD_PRELOAD.
 //
-//   RICOCHET_FAULT_ALLOCATION   the number of the call of operator new, from 1 and over all threads, that throws
-//                               std::bad_alloc, or gives null where it is of the kind that does not throw
-//   RICOCHET_FAULT_ON           1: all later calls fail too
-//   RICOCHET_FAULT_ALLOCATIONS  a file that is given the number of calls at the end
+// - RICOCHET_FAULT_ALLOCATION: number of the failing call of operator new, from 1, counted over all threads; it throws
+//   std::bad_alloc, or returns null if it is the non-throwing form
+// - RICOCHET_FAULT_ON: 1: all later calls fail too
+// - RICOCHET_FAULT_ALLOCATIONS: a file that receives the number of calls at the end
 //
-// Counted from main() on: what libraries make ready before is nobody's to answer for.
+// The count begins at main(), because the program cannot handle failures in the initialisation of libraries.
 #include <dlfcn.h>
 
 #include <atomic>
@@ -23,7 +23,7 @@ struct Settings {
     bool goes_on = false;
 };
 
-// Not from a constructor of this library: others may allocate before it runs.
+// The settings are not read in a constructor of this library, because other constructors may allocate before it runs.
 const Settings& settings() noexcept {
     static const Settings read = [] {
         const char* at = std::getenv("RICOCHET_FAULT_ALLOCATION");
@@ -38,8 +38,8 @@ Main main_of_program = nullptr;
 std::atomic<bool> is_in_main{false};
 std::atomic<std::int64_t> calls{0};
 
-// Embree 3.13 leaves a thread's allocator bound to one that is gone where it cannot note it, and the next hierarchy is
-// spoilt: nobody who calls it can mend that.
+// Embree 3.13 can leave a thread's allocator bound to a destroyed one if memory runs out while it records the binding.
+// The next hierarchy is then corrupted. Callers cannot repair that.
 bool is_of_embree(const void* code) noexcept {
     Dl_info info{};
     return ::dladdr(code, &info) != 0 && info.dli_fname != nullptr &&
@@ -70,7 +70,7 @@ int call_main(int argc, char** argv, char** environment) {
     return result;
 }
 
-// As the standard library does it: whoever wants to know is told.
+// Works like the standard library: calls the new handler first.
 void* required(void* memory) {
     if (memory != nullptr) return memory;
     if (const std::new_handler handler = std::get_new_handler()) handler();
@@ -88,7 +88,7 @@ void* required(void* memory) {
 
 }  // namespace
 
-// The C library's own start of a program, with another main().
+// Start function of the C library, with another main().
 extern "C" int __libc_start_main(Main main, int argc, char** argv, void (*begin)(), void (*end)(), void (*end_linker)(),
                                  void* stack_end) {
     main_of_program = main;

@@ -22,7 +22,7 @@ std::vector<std::string> suites_of_cases() {
     return names;
 }
 
-// A case after all its steps.
+// Returns a case after all its steps.
 Simulation finished(const Case& c) {
     const auto mesh = make_mesh(c);
     SimulationSetup setup = make_setup(c, mesh);
@@ -37,7 +37,7 @@ double contacts_per_step(const Simulation& simulation) {
     return static_cast<double>(s.contacts) / static_cast<double>(s.particle_steps);
 }
 
-TEST(BenchCases, AreCompleteAndHaveNamesOfTheirOwn) {
+TEST(BenchCases, AreCompleteAndHaveUniqueNames) {
     std::set<std::string> names;
     for (const Case& c : all_cases()) {
         SCOPED_TRACE(std::string(c.suite) + "/" + std::string(c.name));
@@ -51,7 +51,7 @@ TEST(BenchCases, AreCompleteAndHaveNamesOfTheirOwn) {
     }
 }
 
-TEST(BenchCases, StandSuiteBySuiteAndGroupByGroup) {
+TEST(BenchCases, AreListedBySuiteAndGroup) {
     std::size_t cases = 0;
     for (const std::string& name : suites_of_cases()) {
         for (const std::vector<Case>& group : groups_of(name)) {
@@ -69,9 +69,9 @@ TEST(BenchCases, StandSuiteBySuiteAndGroupByGroup) {
     EXPECT_EQ(cases, all_cases().size());
 }
 
-TEST(BenchCases, OfAnUnknownSuiteAreNone) { EXPECT_TRUE(cases_of("juggle").empty()); }
+TEST(BenchCases, AnUnknownSuiteHasNone) { EXPECT_TRUE(cases_of("juggle").empty()); }
 
-TEST(BenchCases, HaveMeshesOfAboutTheSizeTheyWant) {
+TEST(BenchCases, HaveMeshesOfAboutTheRequestedSize) {
     for (const std::string& suite : suites_of_cases()) {
         const Case c = small_case(suite, 1, 20'000);
         const double size = static_cast<double>(make_mesh(c)->triangles.size());
@@ -88,14 +88,14 @@ TEST(BenchCases, AllRunAsSmallCopies) {
         EXPECT_EQ(simulation.particles().size(), 50U);
         EXPECT_EQ(simulation.statistics().frozen, 0U);
         EXPECT_EQ(simulation.statistics().started_inside, 0U);
-        // Spheres in the mesh that tumbles lose some of their steps, five times in as many even where they do not meet;
-        // why is not known. Others lose none.
+        // Spheres in the tumbling mesh exhaust their bounce budget in up to 1 % of the steps, for an unknown reason.
+        // This also happens if the spheres do not collide with each other. Spheres in other cases never exhaust it.
         const std::uint64_t most = c.moves == Moves::tumbling ? simulation.statistics().particle_steps / 100 : 0;
         EXPECT_LE(simulation.statistics().budget_exhausted, most);
     }
 }
 
-TEST(BenchCases, OfSpheresThatMeetBeginClearOfEachOtherAndOfTheGround) {
+TEST(BenchCases, CollidingSpheresStartWithoutOverlaps) {
     for (const Case& full : cases_of("pairs")) {
         SCOPED_TRACE(full.name);
         const Case c = small_copy(full, 400, 2000);
@@ -123,13 +123,13 @@ TEST(BenchCases, StartInsideTheirClosedGrounds) {
     }
 }
 
-TEST(BenchCases, OfGasHitInAboutThreeOfTwoHundredSteps) {
+TEST(BenchCases, GasCasesHitInAboutThreeOfTwoHundredSteps) {
     const double share = contacts_per_step(finished(small_case("gas", 5000, 20'000)));
     EXPECT_GT(share, 0.012);
     EXPECT_LT(share, 0.018);
 }
 
-TEST(BenchCases, OfEverySizeHitAsOften) {
+TEST(BenchCases, CasesOfEverySizeHitEquallyOften) {
     for (const Case& full : cases_of("size")) {
         if (full.triangles > 20'000) continue;
         const double share = contacts_per_step(finished(small_copy(full, 5000, 20'000)));
@@ -137,11 +137,11 @@ TEST(BenchCases, OfEverySizeHitAsOften) {
     }
 }
 
-TEST(BenchCases, OfFewParticlesTakeMoreSteps) {
+TEST(BenchCases, CasesOfFewParticlesTakeMoreSteps) {
     for (const Case& c : cases_of("count")) EXPECT_GE(c.particles * c.steps, 500'000U) << c.name;
 }
 
-TEST(BenchCases, OfSpheresStartClearOfTheWalls) {
+TEST(BenchCases, SpheresStartClearOfTheWalls) {
     for (const Case& full : cases_of("radius")) {
         const Case c = small_copy(full, 200, 1000);
         const auto mesh = make_mesh(c);
@@ -178,7 +178,7 @@ TEST(BenchCases, HaveOneRadiusOrNoneElsewhere) {
     for (const Particle& particle : make_particles(c, *make_mesh(c))) EXPECT_EQ(particle.radius, c.least_radius);
 }
 
-TEST(BenchCases, OfResponsesDifferInNothingElse) {
+TEST(BenchCases, ResponseCasesDifferInNothingElse) {
     const std::vector<Case> cases = cases_of("response");
     ASSERT_EQ(cases.size(), response_kinds().size());
     const auto mesh = make_mesh(small_copy(cases.front(), 1, 500));
@@ -194,20 +194,20 @@ TEST(BenchCases, OfResponsesDifferInNothingElse) {
     }
 }
 
-TEST(BenchCases, OfPinballHitInEveryStep) {
+TEST(BenchCases, PinballCasesHitInEveryStep) {
     const Case c = small_case("pinball");
     const Simulation simulation = finished(c);
     const auto& contacts = simulation.particles().contacts;
     EXPECT_GE(*std::min_element(contacts.begin(), contacts.end()), c.warm_up + c.steps);
 }
 
-TEST(BenchCases, OfTheWedgeBounceHundredsOfTimesInAStep) {
+TEST(BenchCases, WedgeCasesBounceHundredsOfTimesInAStep) {
     const Simulation simulation = finished(small_case("wedge", 20));
     EXPECT_GT(contacts_per_step(simulation), 100.0);
     EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
 }
 
-TEST(BenchCases, OfRainHitWithFourDropsInFive) {
+TEST(BenchCases, RainCasesHitWithFourDropsInFive) {
     const Simulation simulation = finished(small_case("rain", 5000, 20'000));
     const auto& contacts = simulation.particles().contacts;
     const auto dry = std::count(contacts.begin(), contacts.end(), 0U);
@@ -215,12 +215,12 @@ TEST(BenchCases, OfRainHitWithFourDropsInFive) {
     EXPECT_LT(contacts_per_step(simulation), 1.3);
 }
 
-TEST(BenchCases, OfSettlingEndAtRest) {
+TEST(BenchCases, SettlingCasesEndAtRest) {
     const Simulation simulation = finished(small_case("settle"));
     EXPECT_GT(simulation.statistics().resting, simulation.particles().size() * 9 / 10);
 }
 
-TEST(BenchCases, OfHailLandOnTheTerrain) {
+TEST(BenchCases, HailCasesLandOnTheTerrain) {
     const Simulation simulation = finished(small_case("hail", 2000, 20'000));
     const auto& contacts = simulation.particles().contacts;
     EXPECT_LT(std::count(contacts.begin(), contacts.end(), 0U), 40);

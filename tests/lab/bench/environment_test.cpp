@@ -8,7 +8,7 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-TEST(BenchEnvironment, NamesMachinesByTheirProcessor) {
+TEST(BenchEnvironment, NamesTheMachineByItsProcessor) {
     EXPECT_EQ(machine_slug("Intel(R) Xeon(R) Platinum 8488C", 2), "xeon-platinum-8488c-2t");
     EXPECT_EQ(machine_slug("Intel(R) Core(TM) i7-8550U CPU @ 1.80GHz", 8), "i7-8550u-8t");
     EXPECT_EQ(machine_slug("AMD EPYC 7763 64-Core Processor", 128), "epyc-7763-64-128t");
@@ -16,7 +16,7 @@ TEST(BenchEnvironment, NamesMachinesByTheirProcessor) {
     EXPECT_EQ(machine_slug("../../Processor", 4), "unknown-4t");
 }
 
-TEST(BenchEnvironment, IsKnownInFull) {
+TEST(BenchEnvironment, HasAllFields) {
     const Environment here = this_environment("1.2.3");
     for (const Field& field : record_of(here)) {
         const auto* text = std::get_if<std::string>(&field.value);

@@ -1,4 +1,4 @@
-// The same hard rays for plain single-precision Embree and for the exact questions: how many each gets wrong.
+// Traces the same hard rays with plain single-precision Embree and with the exact queries, and counts wrong results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ std::array<float, 3> floats(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// Rays wrongly said to hit, or to miss, out of `count`: Embree's and ours.
+/// Number of rays out of `count` with a wrong hit or a wrong miss, for Embree and for the exact queries.
 struct Wrong {
     int embree = 0;
     int ours = 0;
@@ -57,10 +57,10 @@ Wrong count_wrong(const TriangleMesh& mesh, double scale, std::uint32_t block) {
     return wrong;
 }
 
-/// Blocks of rays for each mesh: one, in a long run 125, which are 10^7 rays in all, or as many times that as
-/// RICOCHET_HARD_RAYS says.
+/// Returns the number of blocks of rays for each mesh. A short run has one. A long run has 125, which are 10^7 rays in
+/// all, or that many times RICOCHET_HARD_RAYS.
 std::uint32_t blocks_of_each() {
-    const char* times = std::getenv("RICOCHET_HARD_RAYS");  // NOLINT(concurrency-mt-unsafe): nothing sets it
+    const char* times = std::getenv("RICOCHET_HARD_RAYS");  // NOLINT(concurrency-mt-unsafe): no code sets it
     const auto factor = static_cast<std::uint32_t>(times == nullptr ? 1 : std::max(1, std::atoi(times)));
     return test::is_long_run() ? 125 * factor : 1;
 }
@@ -81,7 +81,7 @@ void expect_none_wrong(const std::string& name, double shift, double scale) {
     EXPECT_GT(wrong.embree, rays / 1000) << name;
 }
 
-// One test a place, so that long runs can be made in parts.
+// Each position has its own test, so that long runs can be split.
 struct HardPlace {
     const char* name;
     double shift;  // m
@@ -89,7 +89,7 @@ struct HardPlace {
 };
 class HardRaysBeside : public ::testing::TestWithParam<HardPlace> {};
 
-TEST_P(HardRaysBeside, PlainEmbreeMissesManyThatTheExactQuestionsAnswer) {
+TEST_P(HardRaysBeside, PlainEmbreeErrsOftenAndTheExactQueriesNever) {
     expect_none_wrong(GetParam().name, GetParam().shift, GetParam().scale);
 }
 

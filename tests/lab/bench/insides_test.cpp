@@ -8,7 +8,7 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-TEST(Insides, OfABoxAreWhatItsCoordinatesSay) {
+TEST(Insides, MatchTheCoordinatesOfABox) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 2, 3});
     const Insides insides(box, {0, 0, 0});
     RandomSequence random(5, 0, 0);
@@ -19,14 +19,14 @@ TEST(Insides, OfABoxAreWhatItsCoordinatesSay) {
     }
 }
 
-TEST(Insides, LeaveTheSurfaceOut) {
+TEST(Insides, ExcludeTheSurface) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
     const Insides insides(box, {0, 0, 0});
     EXPECT_FALSE(insides.contains({1, 0.25, 0.5}));
     EXPECT_TRUE(insides.contains({1 - 0x1p-50, 0.25, 0.5}));
 }
 
-TEST(Insides, OfABallAreThoseOfABoxThatIsSmallerByItsRadius) {
+TEST(Insides, ContainABallIfTheBoxShrunkByItsRadiusContainsItsCentre) {
     const TriangleMesh box = testing::box_mesh({-1, -1, -1}, {1, 2, 3});
     const Insides insides(box, {0, 0, 0});
     RandomSequence random(6, 0, 0);
@@ -37,7 +37,7 @@ TEST(Insides, OfABallAreThoseOfABoxThatIsSmallerByItsRadius) {
         EXPECT_EQ(insides.contains_ball(p, r), inside) << p.x << ' ' << p.y << ' ' << p.z << " radius " << r;
     }
     EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.0));
-    EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.5));  // it is in contact
+    EXPECT_TRUE(insides.contains_ball({0.5, 0.5, 0.5}, 0.5));  // the ball is in contact
 }
 
 }  // namespace RICOCHET_FILE

@@ -17,7 +17,7 @@ LoadCase small_case_of(FileForm form) { return {"small", form, 500}; }
 constexpr FileForm kForms[] = {FileForm::obj, FileForm::binary_ply, FileForm::ascii_ply, FileForm::binary_stl,
                                FileForm::off};
 
-TEST(BenchLoadCases, AreCompleteAndHaveNamesOfTheirOwn) {
+TEST(BenchLoadCases, AreCompleteAndHaveUniqueNames) {
     std::set<std::string_view> names;
     std::set<FileForm> forms;
     for (const LoadCase& c : load_cases()) {
@@ -28,7 +28,7 @@ TEST(BenchLoadCases, AreCompleteAndHaveNamesOfTheirOwn) {
     EXPECT_EQ(forms.size(), std::size(kForms));
 }
 
-TEST(BenchLoadCases, BringBackTheirMeshInEveryForm) {
+TEST(BenchLoadCases, RestoreTheirMeshInEveryFileFormat) {
     const test::TemporaryFolder folder;
     for (const FileForm form : kForms) {
         SCOPED_TRACE(name_of(form));
@@ -38,14 +38,14 @@ TEST(BenchLoadCases, BringBackTheirMeshInEveryForm) {
         const ImportedMesh imported = read_mesh(path);
         EXPECT_EQ(imported.mesh.triangles.size(), mesh.triangles.size());
         EXPECT_EQ(imported.mesh.vertices.size(), mesh.vertices.size());
-        if (form == FileForm::binary_stl) continue;  // single precision, its vertices in another order
+        if (form == FileForm::binary_stl) continue;  // single precision, and its vertices are in another order
         EXPECT_EQ(imported.mesh.triangles, mesh.triangles);
         EXPECT_EQ(imported.mesh.vertices, mesh.vertices);
     }
     EXPECT_EQ(read_mesh(folder.path("mesh.ply")).format.substr(0, 10), "PLY, ASCII");
 }
 
-TEST(BenchLoad, MeasuresEveryFormAndLeavesNoFileBehind) {
+TEST(BenchLoad, MeasuresEveryFileFormatAndLeavesNoFile) {
     const test::TemporaryFolder folder;
     ASSERT_EQ(::setenv("TMPDIR", folder.path("").c_str(), 1), 0);  // NOLINT(concurrency-mt-unsafe)
     for (const FileForm form : kForms) {
@@ -67,7 +67,7 @@ TEST(BenchLoad, MeasuresEveryFormAndLeavesNoFileBehind) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
 }
 
-TEST(BenchLoad, EndsWhenTheHookSaysSoAndLeavesNoFileBehind) {
+TEST(BenchLoad, EndsIfTheHookRequestsItAndLeavesNoFile) {
     const test::TemporaryFolder folder;
     ASSERT_EQ(::setenv("TMPDIR", folder.path("").c_str(), 1), 0);  // NOLINT(concurrency-mt-unsafe)
     int calls = 0;

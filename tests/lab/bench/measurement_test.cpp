@@ -24,7 +24,7 @@ TEST(Measurement, EndsInTheSameStateForAnyNumberOfThreads) {
     }
 }
 
-TEST(Measurement, CountsWhatTheStepsDo) {
+TEST(Measurement, CountsStepsAndContacts) {
     const Case c = small_case("pinball", 300, 2000);
     const auto rows = measure_case(c, {{1}, 2});
     ASSERT_TRUE(rows.has_value());
@@ -41,20 +41,20 @@ TEST(Measurement, CountsWhatTheStepsDo) {
     EXPECT_LE(*row.leaks, row.particle_steps);
 }
 
-TEST(Measurement, KnowsNoLeaksWhereTheMeshIsOpen) {
+TEST(Measurement, ReportsNoLeaksOfAnOpenMesh) {
     const auto rows = measure_case(small_case("hail", 200, 2000), {{1}, 1});
     ASSERT_TRUE(rows.has_value());
     EXPECT_FALSE(rows->front().leaks.has_value());
 }
 
-TEST(Measurement, EndsWhenTheHookSaysSo) {
+TEST(Measurement, EndsIfTheHookRequestsIt) {
     int calls = 0;
     const auto rows = measure_case(small_case("gas", 100, 500), {{1}, 1}, [&](const Progress&) { return ++calls < 4; });
     EXPECT_FALSE(rows.has_value());
     EXPECT_EQ(calls, 4);
 }
 
-TEST(Measurement, TellsWhereItIs) {
+TEST(Measurement, ReportsItsProgress) {
     std::set<std::string> works;
     std::uint64_t last_step = 0;
     const Case c = small_case("gas", 100, 500);
@@ -79,7 +79,7 @@ std::vector<Case> small_group(std::string_view suite) {
     return group;
 }
 
-TEST(Measurement, OfAGroupSaysWhatEachCostsAgainstTheFirst) {
+TEST(Measurement, ReportsCostsRelativeToTheFirstCaseOfAGroup) {
     for (const char* suite : {"radius", "response"}) {
         SCOPED_TRACE(suite);
         const std::vector<Case> group = small_group(suite);
@@ -97,20 +97,20 @@ TEST(Measurement, OfAGroupSaysWhatEachCostsAgainstTheFirst) {
             EXPECT_EQ(row.leaks.has_value(), row.response == "exact");
             const double cost = is_of_radii ? row.ratio_points.value_or(0.0) : row.ratio_exact.value_or(0.0);
             EXPECT_TRUE(i >= 2 || cost == 1.0) << cost;
-            const Row& base = (*rows)[i % 2];  // with one repeat the cost is the quotient of the rates
+            const Row& base = (*rows)[i % 2];  // with one repeat, the cost is the quotient of the rates
             EXPECT_NEAR(cost * row.particle_steps_per_second / base.particle_steps_per_second, 1.0, 1e-9);
         }
     }
 }
 
-TEST(Measurement, OfACaseAloneCostsAgainstNothing) {
+TEST(Measurement, ReportsNoRelativeCostOfASingleCase) {
     const auto rows = measure_case(small_case("gas", 100, 500), {{2}, 1});
     ASSERT_TRUE(rows.has_value());
     EXPECT_FALSE(rows->front().ratio_points.has_value());
     EXPECT_FALSE(rows->front().ratio_exact.has_value());
 }
 
-TEST(Measurement, KnowsSpeedupsOnlyBesideOneThread) {
+TEST(Measurement, ReportsSpeedupsOnlyBesideARunOnOneThread) {
     const Case c = small_case("gas", 300, 500);
     const auto both = measure_case(c, {{2, 1}, 1});
     ASSERT_TRUE(both.has_value());

@@ -10,19 +10,20 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-TEST(MemoryUse, SeesWhatIsAllocatedAndFreed) {
+TEST(MemoryUse, FollowsAllocationsAndReleases) {
     constexpr std::size_t kBytes = 10'000'000;
     const std::uint64_t before = allocated_bytes();
     if (before == 0) GTEST_SKIP() << "the allocator does not tell";
     {
         const std::vector<char> block(kBytes, 'x');
         EXPECT_GE(allocated_bytes(), before + kBytes);
-        EXPECT_EQ(std::count(block.begin(), block.end(), 'x'), kBytes);  // a block nobody reads need not be allocated
+        // reads the block, so that its allocation cannot be optimised away
+        EXPECT_EQ(std::count(block.begin(), block.end(), 'x'), kBytes);
     }
     EXPECT_LT(allocated_bytes(), before + kBytes / 2);
 }
 
-TEST(MemoryUse, IsAtLeastWhatParticlesAndTrianglesAreMadeOf) {
+TEST(MemoryUse, IsAtLeastTheSizeOfParticlesAndTriangles) {
     if (allocated_bytes() == 0) GTEST_SKIP() << "the allocator does not tell";
     const Case c = small_case("gas", 5000, 5000);
     const auto mesh = make_mesh(c);

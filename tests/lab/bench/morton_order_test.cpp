@@ -9,19 +9,19 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-TEST(MortonOrder, OfACubesCornersCountsInBinaryWithXFirst) {
+TEST(MortonOrder, OrdersTheCornersOfACubeInBinaryWithXFirst) {
     std::vector<Vec3> corners;
     for (int i = 7; i >= 0; --i) corners.emplace_back(i & 1, i >> 1 & 1, i >> 2);
     EXPECT_EQ(morton_order(corners), (std::vector<std::uint32_t>{7, 6, 5, 4, 3, 2, 1, 0}));
 }
 
-TEST(MortonOrder, KeepsTheOrderOfEqualPointsAndTakesAnyNumber) {
+TEST(MortonOrder, KeepsTheOrderOfEqualPointsForAnyNumberOfPoints) {
     EXPECT_TRUE(morton_order({}).empty());
     const std::vector<Vec3> same(3, Vec3{1, 2, 3});
     EXPECT_EQ(morton_order(same), (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
-TEST(MortonOrder, HoldsEveryPointOnceAndBringsNeighboursTogether) {
+TEST(MortonOrder, ContainsEveryPointOnceWithNeighboursTogether) {
     RandomSequence random(6, 0, 0);
     std::vector<Vec3> points(4096);
     for (Vec3& p : points) p = {random.uniform(), random.uniform(), random.uniform()};

@@ -1,5 +1,5 @@
-// The usual way with colliders that move, which the benchmark measures ours by: right where it is, and wrong where it
-// is.
+// Tests the naive treatment of moving colliders that the benchmark compares with. It works in simple cases and loses
+// particles in others.
 #include "lab/bench/naive_motion.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-/// A box of 2 m about the origin at 0 s, that goes along x at a speed.
+/// Returns a box of 2 m that is centred on the origin at 0 s and moves along x at the given speed, in m/s.
 NaiveMotion box_at(double speed) {
     const KeyedTranslation way{KeyedCurve<Vec3>({{0.0, {}}, {100.0, {100.0 * speed, 0, 0}}})};
     const auto frames =
@@ -26,24 +26,24 @@ NaiveMotion box_at(double speed) {
     return NaiveMotion({{"box", MeshShape{mesh, {}, ""}, 0, "box"}}, frames);
 }
 
-TEST(NaiveMotion, BouncesOffAWallThatWithdraws) {
+TEST(NaiveMotion, BouncesOffARecedingWall) {
     NaiveMotion motion = box_at(-0.5);
     std::vector<Flight> flights{{{3.9, 0.2, 0.1}, {-2.0, 0.0, 0.0}}};
-    // Between 1.75 s and 2 s it goes from 0.4 m to -0.1 m; the wall is at 0 then.
+    // From 1.75 s to 2 s the particle moves from 0.4 m to -0.1 m. The wall is at 0 then.
     EXPECT_EQ(motion.run(flights, {0.0, 0.25, 12, 1.0}), 1U);
     EXPECT_NEAR(flights[0].velocity.x, 1.0, 1e-12);  // v + 2 (w - v)
     EXPECT_NEAR(flights[0].position.x, 1.0, 1e-5);
 }
 
-TEST(NaiveMotion, KeepsInsideWhatStandsStillAroundIt) {
+TEST(NaiveMotion, StaysInsideABoxAtRest) {
     NaiveMotion motion = box_at(0.0);
     std::vector<Flight> flights{{{0.1, 0.2, 0.3}, {1.0, 0.7, -0.4}}, {{-0.5, 0.2, 0.3}, {-0.3, 0.7, 0.4}}};
     EXPECT_GT(motion.run(flights, {0.0, 0.1, 100, 1.0}), 10U);
     for (const Flight& flight : flights) EXPECT_LT(max_abs(flight.position), 1.0);
 }
 
-// A wall passes over what is slower than it: there is no ray that sees it.
-TEST(NaiveMotion, LosesWhatAWallPassesOver) {
+// A fast wall passes over a slow particle, because no ray of the particle crosses the wall.
+TEST(NaiveMotion, LosesParticlesThatAWallPassesOver) {
     NaiveMotion motion = box_at(1.0);
     std::vector<Flight> flights{{{0.0, 0.2, 0.1}, {0.0, 0.0, 0.0}}};
     EXPECT_EQ(motion.run(flights, {0.0, 0.25, 12, 1.0}), 0U);
@@ -59,7 +59,7 @@ std::vector<Case> small_moving_cases() {
     return cases;
 }
 
-TEST(BenchCases, OfWhatMovesStandBesideTheSameAtRest) {
+TEST(BenchCases, MovingCasesAreListedBesideTheCaseAtRest) {
     const std::vector<Case> cases = cases_of("moving");
     ASSERT_EQ(cases.size() % 2, 0U);
     for (std::size_t k = 0; k < cases.size(); k += 2) {
@@ -76,7 +76,7 @@ TEST(BenchCases, OfWhatMovesStandBesideTheSameAtRest) {
     }
 }
 
-TEST(BenchCases, OfWhatMovesLoseNothing) {
+TEST(BenchCases, MovingCasesLoseNoParticle) {
     for (const Case& c : small_moving_cases()) {
         SCOPED_TRACE(c.name);
         const auto mesh = make_mesh(c);
@@ -90,7 +90,7 @@ TEST(BenchCases, OfWhatMovesLoseNothing) {
     }
 }
 
-TEST(Measurement, OfWhatMovesSaysWhatItCostsAndWhatTheUsualWayLoses) {
+TEST(Measurement, ReportsCostsAndLeaksOfTheNaiveMethodForMovingCases) {
     std::uint64_t lost = 0;
     for (const std::vector<Case>& full : groups_of("moving")) {
         std::vector<Case> group;
@@ -105,7 +105,7 @@ TEST(Measurement, OfWhatMovesSaysWhatItCostsAndWhatTheUsualWayLoses) {
         EXPECT_GT((*rows)[1].ratio_naive.value_or(0.0), 0.0);
         EXPECT_EQ((*rows)[1].naive_leaks.has_value(), group[0].ground == Ground::cavity);
         lost += (*rows)[1].naive_leaks.value_or(0);
-        // What moves far away changes no bit.
+        // A collider that moves far away changes no bit.
         if (group[1].moves == Moves::bystander) {
             EXPECT_EQ((*rows)[0].state_hash, (*rows)[1].state_hash);
         }

@@ -13,7 +13,8 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-// Hits nearer to each other than this part of a ray, and to a triangle's rim, are single precision's to choose.
+// Relative distance, as a fraction of a ray, below which single precision may confuse two hits or a hit on a triangle's
+// rim.
 constexpr double kDoubt = 1e-4;
 
 std::array<float, 3> floats(const Vec3& v) {
@@ -22,7 +23,7 @@ std::array<float, 3> floats(const Vec3& v) {
 
 Vec3 doubles(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-// Two balls, one in the other, so that rays hit several triangles.
+// Returns two balls, one inside the other, so that rays hit several triangles.
 TriangleMesh two_balls() {
     return testing::merged(testing::sphere_mesh({}, 1.0, 3), testing::sphere_mesh({0.125, 0, 0}, 0.5, 2));
 }
@@ -37,8 +38,8 @@ std::vector<RaySegment> random_segments(std::size_t count) {
     return segments;
 }
 
-// The triangles that a ray of single precision may take for its first, by trying all; kNoTriangle among them when it
-// may miss.
+// Returns the triangles that a single-precision ray may report as its first hit, from a test of every triangle. They
+// include kNoTriangle if the ray may miss.
 std::vector<std::uint32_t> first_by_brute_force(const TriangleMesh& mesh, const RaySegment& segment) {
     const Vec3 from = doubles(segment.from);
     const Vec3 along = doubles(segment.along);
@@ -47,7 +48,7 @@ std::vector<std::uint32_t> first_by_brute_force(const TriangleMesh& mesh, const 
         const auto corner = [&](std::size_t k) { return middle + (1.0 + grow) * (mesh.vertices[t[k]] - middle); };
         const Vec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
         const double fraction = dot(corner(0) - from, normal) / dot(along, normal);
-        // The segment made longer at both ends where it is allowed to.
+        // The segment is extended at both ends if growth is allowed.
         const bool meets = segment_intersects_triangle(from - grow * along, from + (1.0 + grow) * along, corner(0),
                                                        corner(1), corner(2));
         return meets ? fraction : INFINITY;
@@ -79,7 +80,7 @@ TEST(NativeRays, HitTheTrianglesThatBruteForceHits) {
     EXPECT_LT(clear, segments.size());
 }
 
-TEST(NativeRays, HitTheSameInPacketsHoweverManyThereAre) {
+TEST(NativeRays, HitTheSameInPacketsOfAnySize) {
     const NativeRays rays(two_balls());
     for (const std::size_t count : {0U, 1U, 15U, 16U, 17U, 1023U, 2051U}) {
         const std::vector<RaySegment> segments = random_segments(count);
@@ -87,7 +88,7 @@ TEST(NativeRays, HitTheSameInPacketsHoweverManyThereAre) {
         std::vector<std::uint32_t> packets(count);
         rays.trace(segments, single);
         rays.trace_packets(segments, packets);
-        // A ray through an edge may find either neighbour.
+        // A ray through an edge may hit either neighbour.
         std::size_t different = 0;
         for (std::size_t i = 0; i < count; ++i) different += single[i] == packets[i] ? 0 : 1;
         EXPECT_LE(different, count / 1000) << count;

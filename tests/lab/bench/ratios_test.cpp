@@ -23,7 +23,7 @@ Row row_of(const char* name, double raw, std::optional<double> native) {
 
 SuiteRatios ratios_of(const std::vector<Row>& rows) { return ratios_of(rows, "quick", "machine-2t", "1.2.3"); }
 
-TEST(BenchRatios, ComeBackFromTheirFile) {
+TEST(BenchRatios, AreReadBackFromTheirFile) {
     const SuiteRatios ratios = ratios_of({row_of("gas", 0.1 + 0.2, 1.0 / 3.0), row_of("hail", 2.0, std::nullopt)});
     const test::TemporaryFolder folder;
     const SuiteRatios back = read_ratios(folder.write("ratios.json", to_json(ratios)), "quick");
@@ -37,14 +37,14 @@ TEST(BenchRatios, ComeBackFromTheirFile) {
     EXPECT_EQ(back.cases[1].native_bounces, std::nullopt);
 }
 
-TEST(BenchRatios, OfACaseAreThoseOfItsFirstRow) {
+TEST(BenchRatios, UseTheFirstRowOfACase) {
     const SuiteRatios ratios = ratios_of({row_of("gas", 1.0, 2.0), row_of("gas", 3.0, 4.0), row_of("hail", 5.0, 6.0)});
     ASSERT_EQ(ratios.cases.size(), 2U);
     EXPECT_EQ(ratios.cases[0].raw, 1.0);
     EXPECT_EQ(ratios.cases[1].raw, 5.0);
 }
 
-TEST(BenchRatios, AreRefusedInOneLineWhenTheFileIsSomethingElse) {
+TEST(BenchRatios, AreRefusedInOneLineForAnotherKindOfFile) {
     const test::TemporaryFolder folder;
     const std::string start = R"({"suite": "quick", "machine": "m", "ricochet": "1")";
     const std::vector<std::string> wrong = {
@@ -89,7 +89,7 @@ TEST(BenchRatios, FallOnlyBeyondTheTolerance) {
     EXPECT_EQ(changes[0].ratio, "ratio_raw");
     EXPECT_EQ(changes[0].before, 1.0);
     EXPECT_EQ(changes[0].now, 0.75);
-    EXPECT_FALSE(changes[0].fell);  // by just as much as it may
+    EXPECT_FALSE(changes[0].fell);  // the loss equals the tolerance
     EXPECT_EQ(changes[1].ratio, "ratio_native_bounces");
     EXPECT_TRUE(changes[1].fell);
     EXPECT_FALSE(changes[2].fell);  // it rose
@@ -98,7 +98,7 @@ TEST(BenchRatios, FallOnlyBeyondTheTolerance) {
     EXPECT_EQ(std::count_if(strict.begin(), strict.end(), [](const RatioChange& c) { return c.fell; }), 3);
 }
 
-TEST(BenchRatios, OfCasesOnOneSideOnlyAreListedAndDoNotFall) {
+TEST(BenchRatios, ListCasesOnOneSideOnlyAsNotFallen) {
     const SuiteRatios before = ratios_of({row_of("gone", 1.0, std::nullopt), row_of("gas", 1.0, 1.0)});
     const SuiteRatios now = ratios_of({row_of("new", 0.1, 0.1), row_of("gas", 1.0, std::nullopt)});
     const std::vector<RatioChange> changes = compare_ratios(before, now, 0.1);

@@ -10,7 +10,7 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-// What readers of the numbers rely on: names are added, never changed.
+// Contract with readers of the numbers: keys may be added but never changed.
 const std::vector<std::string> kContract = {"suite",
                                             "case",
                                             "response",
@@ -52,7 +52,7 @@ const std::vector<std::string> kRowKeys =
                      "seconds_a_simulated_second", "seconds_an_impact", "largest_overlap", "ratio_naive", "naive_leaks",
                      "speedup", "speedup_raw"});
 
-TEST(BenchRecords, OfARowHaveTheKeysThatTheyPromise) {
+TEST(BenchRecords, HaveTheContractedKeysForARow) {
     Row row;
     row.suite = "gas";
     row.state_hash = 0xAB;
@@ -71,7 +71,7 @@ TEST(BenchRecords, OfARowHaveTheKeysThatTheyPromise) {
     }
 }
 
-TEST(BenchRecords, OfAFileHaveTheSameKeysAndTheirOwn) {
+TEST(BenchRecords, HaveTheSameKeysAndTheirOwnForAFile) {
     LoadRow row;
     row.name = "ply";
     row.format = "PLY, binary";
@@ -96,12 +96,12 @@ TEST(BenchRecords, OfAFileHaveTheSameKeysAndTheirOwn) {
     EXPECT_EQ(json["build_triangles_per_second"], 12'000.0);
 }
 
-TEST(BenchRecords, AreAnArrayAlsoWhenThereAreNone) {
+TEST(BenchRecords, AreAnArrayEvenIfEmpty) {
     EXPECT_EQ(to_json(std::span<const Record>{}), "[]\n");
     EXPECT_EQ(to_csv({}), "");
 }
 
-TEST(BenchRecords, AreLinesOfCsvWithQuotesWhereTheyAreNeeded) {
+TEST(BenchRecords, AreLinesOfCsvWithQuotesIfNeeded) {
     const Record first{{"name", std::string("a, \"b\"")}, {"count", std::uint64_t{7}}, {"number", 0.1}, {"none", {}}};
     const Record second{
         {"name", std::string("plain")}, {"count", std::uint64_t{8}}, {"number", 1.0 / 3.0}, {"none", 2.0}};

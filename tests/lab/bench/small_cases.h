@@ -1,5 +1,4 @@
-/// \file
-/// The benchmark's cases, small enough for tests.
+/// \file Reduced copies of the benchmark's cases for tests.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +7,14 @@
 
 namespace ricochet::bench {
 
-/// The same case with fewer particles and triangles.
+/// Returns the same case with fewer particles and triangles.
 [[nodiscard]] inline Case small_copy(Case c, std::size_t particles, std::size_t triangles) {
     c.particles = std::min(c.particles, particles);
     c.triangles = std::min(c.triangles, triangles);
     return c;
 }
 
-/// The first case of a suite, small.
+/// Returns a reduced copy of the first case of a suite.
 [[nodiscard]] inline Case small_case(std::string_view suite, std::size_t particles = 500,
                                      std::size_t triangles = 5000) {
     return small_copy(cases_of(suite).front(), particles, triangles);

@@ -10,7 +10,7 @@
 namespace ricochet::bench {
 namespace RICOCHET_FILE {
 
-TEST(BenchSuites, HaveNamesOfTheirOwn) {
+TEST(BenchSuites, HaveUniqueNames) {
     const std::vector<std::string> names = suite_names();
     const std::set<std::string> different(names.begin(), names.end());
     EXPECT_EQ(different.size(), names.size());
@@ -19,7 +19,7 @@ TEST(BenchSuites, HaveNamesOfTheirOwn) {
     for (const std::string& name : names) EXPECT_NO_THROW(require_suite(name));
 }
 
-TEST(BenchSuites, ThatDoNotExistAreRefusedWithTheNamesOfAll) {
+TEST(BenchSuites, UnknownSuitesAreRefusedWithTheNamesOfAll) {
     try {
         require_suite("juggle");
         FAIL();
@@ -30,7 +30,7 @@ TEST(BenchSuites, ThatDoNotExistAreRefusedWithTheNamesOfAll) {
     }
 }
 
-TEST(BenchSuites, TakeAllThreadsButTheOneOfThreadsWhichDoublesThem) {
+TEST(BenchSuites, UseAllThreadsExceptThatTheThreadSuiteDoublesThem) {
     EXPECT_EQ(default_threads("gas", 8), (std::vector<int>{0}));
     EXPECT_EQ(default_threads("threads", 1), (std::vector<int>{1}));
     EXPECT_EQ(default_threads("threads", 2), (std::vector<int>{1, 2}));

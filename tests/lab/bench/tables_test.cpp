@@ -30,7 +30,7 @@ TEST(BenchTables, HaveACellForEveryColumn) {
     }
 }
 
-TEST(BenchTables, ShowCostsAndSpeedupsOnlyWhereThereAreSome) {
+TEST(BenchTables, ShowCostsAndSpeedupsOnlyIfPresent) {
     std::vector<Row> rows(2, row_with_steps());
     EXPECT_FALSE(has_column(to_table(rows), "speedup"));
     rows[1].speedup = 1.75;
@@ -41,7 +41,7 @@ TEST(BenchTables, ShowCostsAndSpeedupsOnlyWhereThereAreSome) {
     EXPECT_EQ(table[2].back(), "1.75");
 }
 
-TEST(BenchTables, SayThatTheLeaksAreThoseOfTheNativeLoop) {
+TEST(BenchTables, LabelTheLeaksOfTheNativeLoop) {
     Row row = row_with_steps();
     row.leaks = 7;
     const Table table = to_table(std::vector<Row>{row});
@@ -51,7 +51,7 @@ TEST(BenchTables, SayThatTheLeaksAreThoseOfTheNativeLoop) {
     EXPECT_EQ(table[1][static_cast<std::size_t>(column)], "7");
 }
 
-TEST(BenchTables, SayWhichRatiosFell) {
+TEST(BenchTables, ReportFallenRatios) {
     const Table table = to_table(std::vector<RatioChange>{{"gas", "ratio_raw", 2.0, 1.0, true}});
     EXPECT_EQ(table[1], (std::vector<std::string>{"gas", "ratio_raw", "2", "1", "-50 %", "fell"}));
 }

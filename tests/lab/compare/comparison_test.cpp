@@ -14,7 +14,7 @@ namespace RICOCHET_FILE {
 
 constexpr double kGravity = 9.81;
 constexpr double kHeight = 1.0;
-constexpr double kDuration = 0.6;  // the only impacts are at sqrt(2 h / g) = 0.45 s and a little later
+constexpr double kDuration = 0.6;  // the first impact is at sqrt(2 h / g) = 0.45 s, the others follow shortly after
 
 SimulationSetup falling_points() {
     SimulationSetup setup;
@@ -45,7 +45,7 @@ Comparison compared(const std::string& responses) {
     return std::move(comparison.value());
 }
 
-// compare.csv without the columns of times.
+// Returns compare.csv without the columns of run times.
 std::string numbers_of(const Comparison& comparison) {
     std::string text;
     for (const ComparisonRow* row : comparison.listed_rows()) {
@@ -72,7 +72,7 @@ TEST(Comparison, RowsAreInTheOrderOfThePlanAndStepsDescend) {
     }
 }
 
-TEST(Comparison, ExactIsRunAsTheBaseWhereItIsNotAskedFor) {
+TEST(Comparison, ExactIsRunAsTheBaseEvenIfNotRequested) {
     const Comparison comparison = compared("project");
     EXPECT_EQ(comparison.rows.size(), 4U);
     ASSERT_EQ(comparison.listed_rows().size(), 2U);
@@ -95,7 +95,7 @@ TEST(Comparison, ExactUnderGravityAloneIsRightToRoundingAtAnyStep) {
     }
 }
 
-TEST(Comparison, ProjectIsBehindTheFloorByNoMoreThanAStepsDistance) {
+TEST(Comparison, ProjectPenetratesByNoMoreThanTheDistanceOfAStep) {
     const Comparison comparison = compared("project");
     const double fastest = std::sqrt(2.0 * kGravity * (kHeight + 0.2));
     for (const ComparisonRow* row : comparison.listed_rows()) {
@@ -108,7 +108,7 @@ TEST(Comparison, ProjectIsBehindTheFloorByNoMoreThanAStepsDistance) {
     }
 }
 
-TEST(Comparison, AThinPlateIsJumpedWhereAStepIsLongerThanIt) {
+TEST(Comparison, AThinPlateIsJumpedIfAStepIsLongerThanItsThickness) {
     SimulationSetup setup = falling_points();
     setup.colliders[0] = {"plate", CuboidShape{{10, 10, 0.001}, {}}, 0};
     const auto comparison = compare_responses(std::move(setup), plan_of("project", "0.02"));
@@ -118,7 +118,7 @@ TEST(Comparison, AThinPlateIsJumpedWhereAStepIsLongerThanIt) {
     EXPECT_EQ(comparison->rows[1].figures.tunnel.tunnelled, 0U);  // exact
 }
 
-TEST(Comparison, ASoftPlateIsPassedInSeveralSegments) {
+TEST(Comparison, ASoftPlateIsCrossedInSeveralSegments) {
     for (const bool ball : {false, true}) {
         SimulationSetup setup = falling_points();
         setup.options.penalty.stiffness = 1.0;
@@ -149,7 +149,7 @@ TEST(Comparison, EveryColumnIsInTheDocument) {
     }
 }
 
-TEST(Comparison, EndsWhenTheHookSaysSo) {
+TEST(Comparison, EndsIfTheHookRequestsIt) {
     std::size_t calls = 0;
     const auto stopped = compare_responses(falling_points(), plan_of("exact"), [&](const ComparisonProgress& progress) {
         EXPECT_LE(progress.run, progress.runs);
@@ -159,7 +159,7 @@ TEST(Comparison, EndsWhenTheHookSaysSo) {
     EXPECT_EQ(calls, 300U);
 }
 
-TEST(Comparison, PicturesOfZerosAndOfNothingAreDrawnOnPlainAxes) {
+TEST(Comparison, PlotsOfZerosOrNoDataHavePlainAxes) {
     const std::string script = comparison_script(compared("exact"));
     EXPECT_NE(script.find("exact (0 everywhere)"), std::string::npos);
     EXPECT_NE(script.find("set yrange [-0.05:1]"), std::string::npos);

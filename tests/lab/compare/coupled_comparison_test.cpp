@@ -1,4 +1,4 @@
-// Comparisons of scenes that hold more than single particles: springs, solvers, children.
+// Comparisons of scenes with springs, custom solvers or child particles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-/// steps: s, descending.
+/// Returns the plan for the given steps, in s, in descending order.
 ComparisonPlan plan_of(const SimulationSetup& setup, const std::string& responses, const std::vector<double>& steps) {
     ComparisonRequest request;
     request.responses = responses;
@@ -61,13 +61,13 @@ TEST(ComparisonOfSprings, ExactRowsAreTheRunItself) {
     }
 }
 
-TEST(ComparisonOfSprings, ARopeThatDivergesDoesNotCompareAsFine) {
+TEST(ComparisonOfSprings, ADivergingRopeIsReported) {
     const auto exploding = [] { return rope(0.02, 5e4); };
     EXPECT_THROW(finished(exploding()), DivergedError);
     EXPECT_THROW((void)compare_responses(exploding(), plan_of(exploding(), "exact", {0.02})), DivergedError);
 }
 
-/// What ends a comparison.
+/// Returns the message of the error that ends a comparison.
 std::string end_of_comparison(const ComparisonPlan& plan) {
     try {
         (void)compare_responses(rope(0.02, 5e4), plan);
@@ -77,8 +77,8 @@ std::string end_of_comparison(const ComparisonPlan& plan) {
     return "nothing";
 }
 
-// The reference's step is short enough for the springs; the rows' are not.
-TEST(ComparisonOfSprings, SaysWhichRowDivergesAndWhatToDo) {
+// The reference's step is short enough for the springs, but the steps of the rows are too long.
+TEST(ComparisonOfSprings, ReportsTheDivergingRowAndARemedy) {
     ComparisonPlan plan = plan_of(rope(0.02, 5e4), "rollback", {0.02});
     plan.reference_step = 5e-4;
     const std::string row = end_of_comparison(plan);
@@ -94,7 +94,7 @@ TEST(ComparisonOfSprings, SaysWhichRowDivergesAndWhatToDo) {
 TEST(ComparisonOfSprings, ASolverOfTheUsersOwnStepsEveryRow) {
     const auto still = [] {
         SimulationSetup setup = rope(0.01);
-        setup.solver = [](ParticleSystem&, double) {};  // nothing ever moves
+        setup.solver = [](ParticleSystem&, double) {};  // no particle ever moves
         return setup;
     };
     const auto comparison = compare_responses(still(), plan_of(still(), "exact", {0.01}));
@@ -129,7 +129,7 @@ TEST(ComparisonOfShippedScenes, ExactRowsEndInTheStateOfTheRun) {
     }
 }
 
-/// Rockets that shatter on a floor, whose pieces live for a while and leave sparks where they strike and a trail.
+/// Rockets that shatter on a floor. Their short-lived pieces emit sparks at impacts and leave a trail.
 SimulationSetup fireworks(double time_step) {
     SimulationSetup setup;
     setup.options.time_step = time_step;
@@ -180,7 +180,7 @@ TEST(ComparisonOfChildren, ExactAgainstItselfAtOtherStepsMatchesEveryParticle) {
     }
 }
 
-TEST(ComparisonOfChildren, CountsThoseThatAResponseDoesNotBear) {
+TEST(ComparisonOfChildren, CountsChildrenMissingFromAResponse) {
     const auto comparison = compare_responses(fireworks(0.02), plan_of(fireworks(0.02), "project", {0.02}));
     const ComparisonRow& row = comparison->rows[0];
     EXPECT_GT(row.errors.position.count, 0U);

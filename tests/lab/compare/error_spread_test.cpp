@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(ErrorSpread, OfNothingHasNoNumbers) {
+TEST(ErrorSpread, HasNoValuesWithoutSamples) {
     const ErrorSpread spread = spread_of({});
     EXPECT_EQ(spread.count, 0U);
     EXPECT_TRUE(std::isnan(spread.median) && std::isnan(spread.percentile_95) && std::isnan(spread.root_mean_square) &&
@@ -17,7 +17,7 @@ TEST(ErrorSpread, OfNothingHasNoNumbers) {
     EXPECT_TRUE(std::isnan(median({})) && std::isnan(percentile({}, 0.5)));
 }
 
-TEST(ErrorSpread, OfAFewNumbersIsWhatCanBeReadOff) {
+TEST(ErrorSpread, MatchesHandComputedValuesOfAFewNumbers) {
     EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
     EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 2.5);
     EXPECT_EQ(percentile({5.0}, 0.95), 5.0);

@@ -37,14 +37,14 @@ TEST(ComparisonPlan, RunsAllResponsesAtFourStepsAroundTheScenes) {
     EXPECT_EQ(plan.repeats, 3U);
 }
 
-TEST(ComparisonPlan, SortsStepsAndDropsWhatIsThereTwice) {
+TEST(ComparisonPlan, SortsStepsAndDropsDuplicates) {
     ComparisonRequest request;
     request.time_steps = "0.1,0.4,0.2,0.1";
     request.responses = "penalty,exact,penalty";
     const ComparisonPlan plan = make_plan(request, scene());
     EXPECT_EQ(plan.time_steps, (std::vector{0.4, 0.2, 0.1}));
     EXPECT_EQ(plan.responses.size(), 2U);
-    EXPECT_EQ(plan.shown_step, 0.2);  // the middle one, since the scene's is not there
+    EXPECT_EQ(plan.shown_step, 0.2);  // the middle one, because the list does not contain the scene's step
 }
 
 TEST(ComparisonPlan, LeavesOutUsualStepsBeyondTheDuration) {
@@ -53,7 +53,7 @@ TEST(ComparisonPlan, LeavesOutUsualStepsBeyondTheDuration) {
     EXPECT_EQ(make_plan({}, options).time_steps.front(), 0.01);
 }
 
-TEST(ComparisonPlan, TheGlobalRollbackIsARollbackOfItsOwn) {
+TEST(ComparisonPlan, TheGlobalRollbackIsASeparateResponse) {
     ComparisonRequest request;
     request.responses = "rollback,rollback:global";
     const ComparisonPlan plan = make_plan(request, scene());

@@ -26,7 +26,7 @@ RunTrace energies(std::vector<double> times, std::vector<double> kinetic, std::v
     return trace;
 }
 
-TEST(Reference, EnergyIsScaledByTheLargerOfItsRiseAndTheLargestKineticEnergy) {
+TEST(Reference, EnergyScaleIsTheLargerOfItsRiseAndTheLargestKineticEnergy) {
     EXPECT_EQ(energy_scale(energies({0, 1}, {0, 3}, {-10, -8})), 3.0);
     EXPECT_EQ(energy_scale(energies({0, 1}, {0, 3}, {-10, 8})), 18.0);
     RunTrace without = energies({0, 1}, {1, 3}, {});
@@ -44,7 +44,7 @@ TEST(Reference, EnergyErrorsAreSignedAndRelative) {
     EXPECT_EQ(errors.energy[1].error, 0.5);
 }
 
-TEST(Reference, ALongSeriesIsThinnedToBothEndsAndEvenlyBetween) {
+TEST(Reference, ALongSeriesIsThinnedEvenlyAndKeepsBothEnds) {
     RunTrace run;
     for (int i = 0; i <= 5000; ++i) {
         run.times.push_back(i);
@@ -61,7 +61,7 @@ TEST(Reference, ALongSeriesIsThinnedToBothEndsAndEvenlyBetween) {
     EXPECT_EQ(errors.energy_largest, 0.0);
 }
 
-TEST(Reference, WithoutAnyEnergyThereIsNoEnergyError) {
+TEST(Reference, EnergyErrorIsAbsentWithoutAnyEnergy) {
     const RunTrace still = energies({0, 1}, {0, 0}, {0, 0});
     EXPECT_TRUE(std::isnan(errors_against(still, still).energy_largest));
 }
@@ -70,7 +70,7 @@ TEST(Reference, FirstImpactsAreMatchedById) {
     RunTrace reference = energies({0}, {1}, {1});
     RunTrace run = reference;
     reference.first_impact = {1.0, 2.0, kNoNumber, kNoNumber, 5.0};
-    run.first_impact = {1.5, kNoNumber, 3.0, kNoNumber};  // the last was never born here
+    run.first_impact = {1.5, kNoNumber, 3.0, kNoNumber};  // the last particle was never spawned in this run
     const ReferenceErrors errors = errors_against(run, reference);
     EXPECT_EQ(errors.impact.count, 1U);
     EXPECT_EQ(errors.impact.median, 0.5);
@@ -78,7 +78,7 @@ TEST(Reference, FirstImpactsAreMatchedById) {
     EXPECT_EQ(errors.impacts_extra, 1U);
 }
 
-TEST(Reference, LastPositionsAreComparedOfThoseAliveInBoth) {
+TEST(Reference, LastPositionsAreComparedForParticlesAliveInBoth) {
     RunTrace reference = energies({0}, {1}, {1});
     RunTrace run = reference;
     reference.alive = {1, 1, 0, 1};
@@ -91,14 +91,14 @@ TEST(Reference, LastPositionsAreComparedOfThoseAliveInBoth) {
     EXPECT_EQ(errors.position.median, 2.5);
 }
 
-TEST(Reference, WhereParticlesSpawnOthersTheyAreMatchedByTheirLineage) {
+TEST(Reference, SpawnedParticlesAreMatchedByTheirLineage) {
     RunTrace reference = energies({0}, {1}, {1});
     RunTrace run = reference;
     reference.keys = {{0, 11}, {1, 21}, {0, 12}, {1, 22}};
     reference.first_impact = {1.0, 2.0, 3.0, 4.0};
     reference.alive = {1, 1, 1, 1};
     reference.end_position = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
-    run.keys = {{0, 11}, {0, 12}, {1, 21}, {2, 22}};  // the last is another emitter's
+    run.keys = {{0, 11}, {0, 12}, {1, 21}, {2, 22}};  // the last key belongs to another emitter
     run.first_impact = {1.0, 3.0, kNoNumber, 9.0};
     run.alive = {1, 1, 1, 1};
     run.end_position = {{0, 0, 0}, {2, 0, 0}, {1, 0, 0.25}, {8, 8, 8}};
@@ -107,7 +107,7 @@ TEST(Reference, WhereParticlesSpawnOthersTheyAreMatchedByTheirLineage) {
     EXPECT_EQ(errors.position.largest, 0.25);
     EXPECT_EQ(errors.impact.count, 2U);
     EXPECT_EQ(errors.impact.largest, 0.0);
-    EXPECT_EQ(errors.impacts_missed, 2U);  // of {1, 21}, and of {1, 22}, which was never born here
+    EXPECT_EQ(errors.impacts_missed, 2U);  // of {1, 21}, and of {1, 22}, which was never spawned in this run
     EXPECT_EQ(errors.impacts_extra, 1U);
 }
 

@@ -19,7 +19,7 @@ Violation crossing(std::uint32_t collider, double time, const Vec3& place, std::
 
 Violation wrong_side(std::uint32_t collider) { return {ViolationKind::wrong_side, 7, {}, 1.0, collider, std::nullopt}; }
 
-// Surfaces face away from the plane z = 0.
+// Returns a judge whose surfaces face away from the plane z = 0.
 TunnelJudge make_judge() {
     return {{ColliderKind::plane, ColliderKind::shape, ColliderKind::closed_mesh, ColliderKind::open_mesh},
             [](const Violation& violation) {
@@ -33,12 +33,12 @@ TunnelCounts verdict_of(const std::vector<std::vector<Violation>>& steps, bool p
     return judge.verdict([penetrating](std::uint64_t) { return penetrating; });
 }
 
-TEST(TunnelJudge, FindsNothingWhereNothingIsReported) {
+TEST(TunnelJudge, FindsNothingWithoutViolations) {
     const TunnelCounts counts = verdict_of({{}, {}});
     EXPECT_EQ(counts.tunnelled + counts.wrong_side + counts.penetrating + counts.jumped + counts.passed, 0U);
 }
 
-TEST(TunnelJudge, AnOddNumberOfSideChangesIsTheWrongSide) {
+TEST(TunnelJudge, AnOddNumberOfSideChangesCountsAsTheWrongSide) {
     for (const std::uint32_t collider : {kPlane, kBody}) {
         EXPECT_EQ(verdict_of({{wrong_side(collider)}}).tunnelled, 1U);
         EXPECT_EQ(verdict_of({{wrong_side(collider)}, {wrong_side(collider)}}).tunnelled, 0U);
@@ -46,7 +46,7 @@ TEST(TunnelJudge, AnOddNumberOfSideChangesIsTheWrongSide) {
     }
 }
 
-TEST(TunnelJudge, WhoIsPushedBackHasNotTunnelled) {
+TEST(TunnelJudge, AParticlePushedBackHasNotTunnelled) {
     const TunnelCounts counts = verdict_of({{wrong_side(kPlane)}}, true);
     EXPECT_EQ(counts.wrong_side, 1U);
     EXPECT_EQ(counts.penetrating, 1U);
@@ -69,7 +69,7 @@ TEST(TunnelJudge, ASegmentThroughBothFacesOfABodyIsAJump) {
     EXPECT_EQ(counts.tunnelled, 1U);  // pushed back or not
 }
 
-TEST(TunnelJudge, CrossingsAtOnePointThroughNeighboursAreOne) {
+TEST(TunnelJudge, CrossingsOfNeighboursAtOnePointCountOnce) {
     const Vec3 place{100.0, 0.0, 1.0};
     const Vec3 beside{100.0, 1e-12, 1.0};
     EXPECT_EQ(verdict_of({{crossing(kBody, 0.0, place, 1), crossing(kBody, 0.0, beside, 2)}}).jumped, 0U);
@@ -84,14 +84,14 @@ TEST(TunnelJudge, CrossingsOfAnOpenSheetCountOverTheWholeChain) {
     EXPECT_EQ(verdict_of({{crossing(kSheet, 0.0, {0, 0, 1}), crossing(kSheet, 0.1, {0, 0, 1})}}).wrong_side, 0U);
 }
 
-TEST(TunnelJudge, InAndOutOfABodyByTheSameFaceIsNoPassage) {
+TEST(TunnelJudge, EnteringAndLeavingByTheSameFaceIsNoPassage) {
     const TunnelCounts counts = verdict_of(
         {{crossing(kBody, 0.0, {0, 0, 1}), wrong_side(kBody)}, {crossing(kBody, 1.0, {5, 0, 1}), wrong_side(kBody)}});
     EXPECT_EQ(counts.tunnelled, 0U);
     EXPECT_EQ(counts.passed, 0U);
 }
 
-TEST(TunnelJudge, InByOneFaceAndOutByTheOppositeOneIsAPassage) {
+TEST(TunnelJudge, EnteringAndLeavingByOppositeFacesIsAPassage) {
     for (const std::uint32_t collider : {kBall, kBody}) {
         const TunnelCounts counts = verdict_of({{crossing(collider, 0.0, {0, 0, 1}), wrong_side(collider)},
                                                 {crossing(collider, 1.0, {5, 0, -1}), wrong_side(collider)}});
@@ -114,7 +114,7 @@ TEST(TunnelJudge, ASegmentThroughABallIsAJumpAndOneIntoItIsNot) {
         verdict_of({{crossing(kBall, 0.0, {0, 0, 1}), crossing(kBall, 0.1, {0, 0, 1}), wrong_side(kBall)}}).jumped, 1U);
 }
 
-TEST(TunnelJudge, ParticlesAreJudgedEachForItself) {
+TEST(TunnelJudge, ParticlesAreJudgedSeparately) {
     TunnelJudge judge = make_judge();
     Violation other = wrong_side(kPlane);
     other.particle = 8;

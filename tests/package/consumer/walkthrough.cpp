@@ -1,4 +1,4 @@
-// A hundred grains in a bowl, made, asked, changed and saved without a scene file.
+// Builds a run of a hundred grains in a bowl without a scene file, queries it, changes it and saves it.
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
@@ -29,19 +29,19 @@ SimulationSetup grains_in_a_bowl(const char* mesh_file) {
 }
 
 void run(const char* mesh_file) {
-    const ThreadLimit limit(2);  // results do not depend on it
+    const ThreadLimit limit(2);  // results do not depend on the number of threads
     Simulation simulation(grains_in_a_bowl(mesh_file));
 
     std::size_t impacts = 0;
     simulation.on_contact([&](std::span<const ContactRecord> records) { impacts += records.size(); });
 
-    // Where is the bowl? Questions need no particles.
+    // Find the bowl. Queries need no particles.
     if (const auto hit = simulation.collisions().first_hit({0, 0, 5}, {0, 0, -1})) {
         std::printf("below (0, 0, 5) is \"%s\" at z = %.3f m\n",
                     simulation.colliders()[hit->surface.collider].name.c_str(), hit->point.z);
     }
 
-    // One second; then a heavy ball falls in.
+    // Simulate one second, then add a heavy falling ball.
     while (!simulation.finished() && simulation.time() < 1.0) simulation.step();
     Particle ball;
     ball.position = {0.2, 0, 3};
@@ -49,7 +49,7 @@ void run(const char* mesh_file) {
     ball.mass = 5.0;
     const std::uint64_t id = simulation.add_particle(ball);
 
-    // A saved state goes on to the same bits, in another simulation of the same setup.
+    // A saved state continues with the same bits in another simulation of the same setup.
     std::vector<std::byte> bytes;
     simulation.save([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
     Simulation twin(grains_in_a_bowl(mesh_file));
@@ -71,10 +71,10 @@ int main(int argc, char** argv) {
     try {
         if (argc != 2) throw InputError("usage: walkthrough MESH");
         run(argv[1]);
-    } catch (const InputError& error) {  // what the caller can mend: the text says what, where and what was expected
+    } catch (const InputError& error) {  // the text names the problem, its location and the expected value
         std::fprintf(stderr, "%s\n", error.what());
         return 2;
-    } catch (const RunError& error) {  // the disk is full, the motion has diverged
+    } catch (const RunError& error) {  // for example, the disk is full or the motion has diverged
         std::fprintf(stderr, "%s\n", error.what());
         return 1;
     }

@@ -1,4 +1,4 @@
-// Files for other programs: do they hold what they are given, and can they be read back?
+// Checks that files for other programs contain the given data and can be read back.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -36,7 +36,7 @@ VtkPolyData two_points() {
     return frame;
 }
 
-TEST(PlyPoints, HoldPositionsAndArraysWithAllTheirDigits) {
+TEST(PlyPoints, PositionsAndArraysKeepAllTheirDigits) {
     const TemporaryFolder folder;
     const PlyPointsReport report = write_ply_points(folder.path("p.ply"), two_points());
     const std::string bytes = folder.read("p.ply");
@@ -60,7 +60,7 @@ TEST(PlyPoints, HoldPositionsAndArraysWithAllTheirDigits) {
     EXPECT_EQ(value_at<std::uint8_t>(bytes, body + kRow + 60), 1);
 }
 
-TEST(PlyPoints, TakeNamesThatPlyCannotHold) {
+TEST(PlyPoints, NamesThatPlyDoesNotAllowAreReplaced) {
     const TemporaryFolder folder;
     VtkPolyData frame = two_points();
     frame.point_arrays.push_back({"my heat\n", std::vector<double>{1, 2}});
@@ -77,7 +77,7 @@ TEST(PlyPoints, TakeNamesThatPlyCannotHold) {
     }
 }
 
-TEST(PlyPoints, HoldClothAsFacesThatTheOwnReaderReads) {
+TEST(PlyPoints, ClothIsWrittenAsFacesThatOurReaderReads) {
     const TemporaryFolder folder;
     VtkPolyData frame = two_points();
     frame.points.push_back({7, 8, 9});
@@ -90,7 +90,7 @@ TEST(PlyPoints, HoldClothAsFacesThatTheOwnReaderReads) {
     EXPECT_EQ(mesh.triangles, frame.triangles);
 }
 
-TEST(PlyPoints, RefuseArraysOfAnotherLength) {
+TEST(PlyPoints, ArraysOfAnotherLengthAreRefused) {
     const TemporaryFolder folder;
     VtkPolyData frame = two_points();
     frame.points.pop_back();
@@ -98,10 +98,10 @@ TEST(PlyPoints, RefuseArraysOfAnotherLength) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("p.ply")));
 }
 
-TEST(GlbWriter, StandsUprightAndKeepsCoordinatesFarFromTheOrigin) {
+TEST(GlbWriter, SceneIsUprightAndKeepsCoordinatesFarFromTheOrigin) {
     const TemporaryFolder folder;
     GlbScene scene;
-    // A millimetre at a thousand kilometres, whose places a float alone would round to 6 cm.
+    // Millimetres at a distance of a thousand kilometres. Plain floats would round the positions to 6 cm.
     const Vec3 far{1e6, -2e6, 3e6};
     TriangleMesh mesh = cuboid_mesh({0.002, 0.004, 0.006});
     for (Vec3& v : mesh.vertices) v += far;
@@ -116,7 +116,7 @@ TEST(GlbWriter, StandsUprightAndKeepsCoordinatesFarFromTheOrigin) {
         for (std::size_t corner = 0; corner < 3; ++corner) {
             const Vec3 expected = mesh.vertices[mesh.triangles[t][corner]];
             const Vec3 found = read.mesh.vertices[read.mesh.triangles[t][corner]];
-            EXPECT_LT(max_abs(found - expected), 1e-9);  // a few roundings of 3e6
+            EXPECT_LT(max_abs(found - expected), 1e-9);  // a few rounding errors of 3e6
         }
     }
     const std::string text = folder.read("a.glb");
@@ -125,7 +125,7 @@ TEST(GlbWriter, StandsUprightAndKeepsCoordinatesFarFromTheOrigin) {
     EXPECT_NE(text.find(R"("roughnessFactor":0.3)"), std::string::npos);
 }
 
-TEST(GlbWriter, KeepsTheDigitsOfAMeshBesideVerticesOfNoTriangleThatAreFarAway) {
+TEST(GlbWriter, UnusedDistantVerticesDoNotReduceThePrecision) {
     const TemporaryFolder folder;
     GlbScene scene;
     scene.meshes.push_back({"cloth", {{{1e7, 1e7, 1e7}, {0.1, 0, 1}, {0.7, 0, 1}, {0.1, 0.6, 1}}, {{1, 2, 3}}}, {}});
@@ -139,7 +139,7 @@ TEST(GlbWriter, KeepsTheDigitsOfAMeshBesideVerticesOfNoTriangleThatAreFarAway) {
     }
 }
 
-TEST(GlbWriter, ShowsSpheresAsBallsOfTheirRadius) {
+TEST(GlbWriter, SpheresAreWrittenAsBallsOfTheirRadius) {
     const TemporaryFolder folder;
     GlbScene scene;
     scene.spheres = {{{1, 2, 3}, 0.5}, {{-7, 0, 0}, 0.125}};
@@ -150,13 +150,13 @@ TEST(GlbWriter, ShowsSpheresAsBallsOfTheirRadius) {
         const GlbSphere& sphere = scene.spheres[v.x > -3 ? 0 : 1];
         EXPECT_NEAR(length(v - sphere.center), sphere.radius, 1e-7);
     }
-    // A polyhedron with its corners on the balls: closed, wound outward, and somewhat smaller.
+    // The ball is a polyhedron with its corners on the sphere: closed, wound outward, and slightly smaller.
     const double ball = 4.0 / 3.0 * 3.141592653589793 * (0.5 * 0.5 * 0.5 + 0.125 * 0.125 * 0.125);
     EXPECT_GT(signed_volume(mesh), 0.8 * ball);
     EXPECT_LT(signed_volume(mesh), ball);
 }
 
-TEST(GlbWriter, WritesAnEmptySceneAndRefusesWhatFloatsCannotHold) {
+TEST(GlbWriter, EmptySceneIsWrittenAndValuesBeyondFloatsAreRefused) {
     const TemporaryFolder folder;
     EXPECT_GT(write_glb(folder.path("empty.glb"), {}), 20U);
     GlbScene scene;
@@ -167,23 +167,23 @@ TEST(GlbWriter, WritesAnEmptySceneAndRefusesWhatFloatsCannotHold) {
     EXPECT_FALSE(std::filesystem::exists(folder.path("a.glb")));
 }
 
-TEST(ExportNames, AreThoseOfFilesAndEachIsGivenOnce) {
+TEST(ExportNames, NamesAreValidForFilesAndUnique) {
     ExportNames names;
     EXPECT_EQ(names.take("particles", {"_000000.ply", "_000010.ply"}), "particles");
     EXPECT_EQ(names.take("a/../b", {".ply"}), "a____b");
     EXPECT_EQ(names.take("a\x1b..:b", {".ply"}), "a____b_2");
-    EXPECT_EQ(names.take("A____B", {".ply"}), "A____B_3");  // one file where capitals do not count
+    EXPECT_EQ(names.take("A____B", {".ply"}), "A____B_3");  // the same file on systems that ignore case
     EXPECT_EQ(names.take("", {".ply"}), "collider");
     EXPECT_EQ(names.take("Particles", {"_000000.ply", "_000010.ply"}), "Particles_2");
     EXPECT_EQ(names.take("particles_000010", {".ply"}), "particles_000010_2");
     EXPECT_EQ(names.files().size(), 9U);
 }
 
-TEST(ExportFolder, ReplacesTheFilesOfAnEarlierExportAndNoOthers) {
+TEST(ExportFolder, FilesOfAnEarlierExportAreReplacedAndNoOthers) {
     const TemporaryFolder folder;
     const auto target = folder.path("out");
     ExportFolder first(target);
-    EXPECT_FALSE(std::filesystem::exists(target));  // it only looks
+    EXPECT_FALSE(std::filesystem::exists(target));  // the constructor only checks
     first.begin({"a.ply", "b.ply"});
     (void)folder.write("out/a.ply", "a");
     (void)folder.write("out/b.ply", "b");
@@ -192,18 +192,18 @@ TEST(ExportFolder, ReplacesTheFilesOfAnEarlierExportAndNoOthers) {
     second.begin({"c.ply"});
     EXPECT_FALSE(std::filesystem::exists(target / "a.ply"));
     EXPECT_TRUE(std::filesystem::exists(target / "mine.txt"));
-    // A marker names nothing outside its folder.
+    // A marker cannot name files outside its folder.
     (void)folder.write("victim", "v");
     (void)folder.write("out/.ricochet-export", folder.read("out/.ricochet-export") + "../victim\n..\n/etc/x\n");
     ExportFolder(target).begin({});
     EXPECT_TRUE(std::filesystem::exists(folder.path("victim")));
 }
 
-TEST(ExportFolder, RefusesAnythingElse) {
+TEST(ExportFolder, AnythingElseIsRefused) {
     const TemporaryFolder folder;
     (void)folder.write("file", "x");
     EXPECT_THROW(ExportFolder(folder.path("file")), InputError);
-    EXPECT_THROW(ExportFolder(folder.path("")), InputError);  // it holds the file
+    EXPECT_THROW(ExportFolder(folder.path("")), InputError);  // it contains the file
     std::filesystem::create_directory(folder.path("marked"));
     (void)folder.write("marked/.ricochet-export", "something else\n");
     EXPECT_THROW(ExportFolder(folder.path("marked")), InputError);

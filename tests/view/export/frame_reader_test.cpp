@@ -1,4 +1,4 @@
-// Frames in pieces are read as the frame that one process would have written, or refused with one line.
+// Frames in pieces are read like the frame of a single process, or refused in one line.
 #include "view/export/frame_reader.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace RICOCHET_FILE {
 
 using test::TemporaryFolder;
 
-/// Those of the particles whose place leaves this rest: what one of several processes has.
+/// Returns the particles whose index has the given remainder: the share of one of several processes.
 Particles share_of(const Particles& all, std::size_t rest, std::size_t count) {
     Particles share = all;
     std::vector<std::uint8_t> keep(all.size());
@@ -27,7 +27,7 @@ Particles share_of(const Particles& all, std::size_t rest, std::size_t count) {
     return share;
 }
 
-/// Writes the frame of 100 particles in three pieces, the last of which may be empty; the index.
+/// Writes the frame of 100 particles in three pieces; the last piece may be empty. Returns the path of the index.
 std::filesystem::path write_pieces(const TemporaryFolder& folder, std::size_t shares) {
     std::vector<std::string> names;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +47,7 @@ std::string refusal(const std::filesystem::path& index) {
     return "it was read";
 }
 
-TEST(FrameReader, PutsPiecesTogetherInTheOrderOfIds) {
+TEST(FrameReader, PiecesAreJoinedInTheOrderOfIds) {
     const VtkPolyData whole = particle_frame(test::example_particles(100), 1.0 / 3.0);
     for (const std::size_t shares : {2U, 3U}) {
         const TemporaryFolder folder;
@@ -62,14 +62,14 @@ TEST(FrameReader, PutsPiecesTogetherInTheOrderOfIds) {
     }
 }
 
-TEST(FrameReader, ReadsWholeFramesAsTheyAre) {
+TEST(FrameReader, WholeFramesAreReadUnchanged) {
     const TemporaryFolder folder;
     const VtkPolyData whole = particle_frame(test::example_particles(5), 2.0);
     write_vtp(folder.path(frame_file_name(3)), whole);
     EXPECT_TRUE(read_frame(folder.path(frame_file_name(3))).points == whole.points);
 }
 
-TEST(FrameReader, RefusesPiecesThatDoNotFitTogether) {
+TEST(FrameReader, PiecesThatDoNotFitTogetherAreRefused) {
     struct Damage {
         const char* message;
         std::function<void(const TemporaryFolder&)> apply;
@@ -101,7 +101,7 @@ TEST(FrameReader, RefusesPiecesThatDoNotFitTogether) {
     }
 }
 
-TEST(FrameReader, RefusesAnIndexThatIsNone) {
+TEST(FrameReader, InvalidIndexIsRefused) {
     const TemporaryFolder folder;
     (void)write_pieces(folder, 3);
     const VtkPolyData none = particle_frame(Particles{}, 0.0);
@@ -124,8 +124,8 @@ TEST(FrameReader, RefusesAnIndexThatIsNone) {
     EXPECT_NE(refusal(folder.path("")), "it was read");
 }
 
-// The same empty piece may be read as often as it is named, and the reader would take memory for each.
-TEST(FrameReader, RefusesAPieceThatIsNamedOften) {
+// The same empty piece could be named any number of times, and the reader would allocate memory for each.
+TEST(FrameReader, PieceThatIsNamedRepeatedlyIsRefused) {
     const TemporaryFolder folder;
     (void)write_pieces(folder, 0);
     const std::vector<std::string> names(2000, piece_file_name(7, 2));
@@ -134,7 +134,7 @@ TEST(FrameReader, RefusesAPieceThatIsNamedOften) {
     EXPECT_NE(message.find("particles_000007_p2.vtp is named twice"), std::string::npos) << message;
 }
 
-TEST(FrameReader, RefusesAPieceThatIsALinkOutOfTheFolder) {
+TEST(FrameReader, PieceThatIsALinkOutOfTheFolderIsRefused) {
     const TemporaryFolder folder;
     const TemporaryFolder elsewhere;
     const std::filesystem::path index = write_pieces(folder, 3);
@@ -143,7 +143,7 @@ TEST(FrameReader, RefusesAPieceThatIsALinkOutOfTheFolder) {
     EXPECT_NE(refusal(index).find("outside of the run's folder"), std::string::npos);
 }
 
-TEST(FrameReader, NeverCrashesOnAnyCutOrChangedByteOfAnIndex) {
+TEST(FrameReader, TruncatedOrChangedIndexNeverCrashes) {
     const TemporaryFolder folder;
     const std::string good = folder.read(write_pieces(folder, 3).filename().string());
     for (std::size_t k = 0; k < good.size(); k += 7) {

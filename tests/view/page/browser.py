@@ -1,7 +1,7 @@
-"""A headless Chromium, spoken to over a pipe with the standard library alone.
+"""Drives a headless Chromium over a pipe with the standard library only.
 
-Protocol: https://chromedevtools.github.io/devtools-protocol/ ; --remote-debugging-pipe reads messages from descriptor 3
-and writes them to 4, each ending in a zero byte.
+Protocol: https://chromedevtools.github.io/devtools-protocol/. With --remote-debugging-pipe Chromium reads messages from
+descriptor 3 and writes them to descriptor 4. Each message ends with a zero byte.
 """
 
 import base64
@@ -18,7 +18,7 @@ import zlib
 
 
 def find_browser():
-    """The program's path; None where it is not installed."""
+    """Returns the path of the browser, or None if it is not installed."""
     for name in ("chromium", "chromium-browser", "google-chrome"):
         path = shutil.which(name)
         if path:
@@ -27,7 +27,7 @@ def find_browser():
 
 
 class Browser:
-    """One page in a window. Gathers everything that goes to its console, and requests to anywhere but the page."""
+    """One page in a window. Collects its console messages and all requests to other addresses than the page."""
 
     def __init__(self, path, size=(960, 600)):
         self.folder = tempfile.mkdtemp(prefix="ricochet_page_")
@@ -39,7 +39,7 @@ class Browser:
                    f"--user-data-dir={self.folder}", "about:blank"]
 
         def pass_pipes():
-            # Copies first: the pipes may have the numbers 3 and 4 themselves.
+            # Duplicate first, because the pipes may have the descriptors 3 and 4 themselves.
             a, b = os.dup(to_browser), os.dup(from_browser)
             os.dup2(a, 3)
             os.dup2(b, 4)
@@ -70,7 +70,7 @@ class Browser:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def call(self, method, timeout=120, **parameters):
-        """The result of a method. Raises RuntimeError with what the browser says."""
+        """Returns the result of a method. Raises RuntimeError with the browser's message."""
         self.number += 1
         message = {"id": self.number, "method": method, "params": parameters}
         if self.session:
@@ -110,7 +110,7 @@ class Browser:
             self.requests.append(parameters["request"]["url"])
 
     def run(self, script, timeout=120):
-        """The value of an expression, awaited."""
+        """Returns the value of an expression, after its promise resolves."""
         result = self.call("Runtime.evaluate", timeout, expression=script, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in result:
             details = result["exceptionDetails"]
@@ -118,7 +118,7 @@ class Browser:
         return result["result"].get("value")
 
     def open(self, file, timeout=120):
-        """Opens a file of the file system, and waits until the page is started."""
+        """Opens a file of the file system and waits until the page has started."""
         self.call("Page.navigate", url="file://" + os.path.abspath(file))
         end = time.monotonic() + timeout
         while not self.run("typeof window.ricochet === 'object' && 'started' in window.ricochet"):
@@ -141,7 +141,7 @@ class Browser:
             self.call("Input.dispatchKeyEvent", type=kind, key=key, code=code or key)
 
     def screenshot(self, file=None):
-        """The picture as bytes of a PNG file."""
+        """Returns the picture as the bytes of a PNG file."""
         data = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
         if file:
             with open(file, "wb") as stream:
@@ -150,7 +150,7 @@ class Browser:
 
 
 def pixels(png):
-    """Width, height and the rows of a PNG file with 8 bits a channel, as (channels, bytes)."""
+    """Returns width, height, channels and rows of pixels of a PNG file with 8 bits per channel."""
     at, data = 8, b""
     width = height = channels = 0
     while at < len(png):

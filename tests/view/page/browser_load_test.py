@@ -1,6 +1,6 @@
-"""200,000 particles in 100 frames in a headless Chromium: browser_load_test.py RICOCHET FOLDER
+"""Plays 200,000 particles in 100 frames in a headless Chromium: browser_load_test.py RICOCHET FOLDER
 
-The page fits its budget, unpacks, and plays; says memory and times. Exit code 77 where there is no Chromium.
+Checks that the page fits its budget, unpacks and plays. Prints memory and times. Exits with 77 without Chromium.
 """
 
 import json
@@ -21,7 +21,7 @@ SCENE = {
                   "speed": [2, 1], "cone": 60}],
 }
 
-# Milliseconds a picture, each of another frame and read back, so that it is complete.
+# Measures milliseconds per picture. Each shows another frame and is read back, so that it is complete.
 MEASURE = """(async () => {
   const {app} = ricochet;
   const context = app.stage.renderer.getContext();
@@ -62,7 +62,7 @@ def main():
         print(result, flush=True)
         first, all_frames = result["first picture"], result["all frames unpacked"]
         check("the first picture comes while the rest still unpacks", first < all_frames, result)
-        check("what is held is a dozen bytes a particle and frame", result["held_mb"] < 400, result)
+        check("memory is about a dozen bytes per particle and frame", result["held_mb"] < 400, result)
         png = browser.screenshot(os.path.join(folder, "many.png"))
         check("the picture is not empty", len(set(b"".join(pixels(png)[3]))) > 60)
         check("the console stays empty", browser.console == [], browser.console)

@@ -1,7 +1,7 @@
-"""A page in a headless Chromium, from the file system: browser_test.py RICOCHET FOLDER
+"""Opens a page from the file system in a headless Chromium: browser_test.py RICOCHET FOLDER
 
-No console error, no request but the page itself, a picture that is not empty; turning and scrubbing change it as they
-should, a click says which particle it met, keys play and step. Exit code 77 where there is no Chromium.
+Checks that there is no console error, no request but the page itself, and a picture that is not empty. Turning and
+scrubbing change the picture, a click picks a particle, and keys play and step. Exits with 77 without Chromium.
 """
 
 import json
@@ -29,7 +29,7 @@ SCENE = {
 }
 
 
-# Nothing is born before the third frame.
+# No particle is spawned before the third frame.
 LATE = {
     "ricochet": 1,
     "simulation": {"time_step": 0.05, "duration": 0.5},
@@ -39,7 +39,7 @@ LATE = {
 }
 
 
-# A cross that stands up, drawn by its emitter as a mesh; a ball beside it; a bar that spins once in the run.
+# An upright cross drawn by its emitter as a mesh, a ball beside it, and a bar that spins once in the run.
 SHAPES = {
     "ricochet": 1,
     "simulation": {"time_step": 0.05, "duration": 2},
@@ -54,7 +54,7 @@ SHAPES = {
 BAR = "v -1 -0.1 0\nv 1 -0.1 0\nv 1 0.1 0\nv -1 0.1 0\nf 1 2 3\nf 1 3 4\n"
 
 
-# A sheet with spheres that touch it, a hidden box before it all, and a smooth ball.
+# A sheet with spheres that touch it, a hidden box in front of all, and a smooth ball.
 SHEET = "v -3 0 -2\nv 3 0 -2\nv 3 0 2\nv -3 0 2\nf 1 2 3\nf 1 3 4\n"
 RADII = (0.25, 0.4, 0.1)
 TOUCHING = {
@@ -73,14 +73,14 @@ TOUCHING = {
 
 
 def check(what, is_true, *shown):
-    """Ends the test with 1 where something is not as it should be."""
+    """Ends the test with exit code 1 if a condition is false."""
     if not is_true:
         print("FAILED:", what, *shown)
         sys.exit(1)
 
 
 def changed_part(a, b):
-    """Part of the pixels of two pictures that differ by more than noise."""
+    """Returns the share of pixels that differ by more than noise between two pictures."""
     width, height, channels, rows_a = pixels(a)
     rows_b = pixels(b)[3]
     changed = 0
@@ -97,7 +97,7 @@ def color_at(png, x, y):
 
 
 def window_place(browser, row):
-    """Where a particle of the frame that is shown is in the window."""
+    """Returns the window position of a particle of the current frame."""
     return browser.run(f"""(() => {{ const {{app, camera}} = ricochet;
         const place = app.particles.object.position.clone().set(...app.run.position(app.run.frames[app.number], {row}));
         place.project(camera); const area = app.stage.canvas.getBoundingClientRect();
@@ -120,9 +120,9 @@ def look(browser, page, folder):
     fast = color_at(first, x, y)
     check("the fastest particle has the last colour of the map", fast[0] > 120 and fast[1] > 120 and fast[2] < 80, fast)
 
-    check("frames are shown where they are asked for", browser.run("show(20)") == 20)
+    check("a requested frame is shown", browser.run("show(20)") == 20)
     last = browser.screenshot(os.path.join(folder, "last.png"))
-    check("what moved is elsewhere", 0.001 < changed_part(first, last) < 0.2, changed_part(first, last))
+    check("moved particles are drawn elsewhere", 0.001 < changed_part(first, last) < 0.2, changed_part(first, last))
     moved = window_place(browser, 1)
     check("the particle has moved to the right", moved[0] > x + 100, moved, x)
     check("and is drawn there", changed_part(last, first) > 0 and color_at(last, *moved) != color_at(first, *moved))
@@ -142,9 +142,9 @@ def look(browser, page, folder):
     browser.drag((x, y), (x, y), steps=1)
     check("a click picks the particle", browser.run("ricochet.app.picked") == 0, browser.run("ricochet.app.picked"))
     card = browser.run("document.getElementById('picked').textContent")
-    check("and its values are told", "radius, m0.5" in card and "speed, m/s0" in card, card)
+    check("and its values are shown", "radius, m0.5" in card and "speed, m/s0" in card, card)
     browser.screenshot(os.path.join(folder, "picked.png"))
-    check("no particle where there is none", browser.run("ricochet.pick(480, 20)") is None)
+    check("a click on the background picks no particle", browser.run("ricochet.pick(480, 20)") is None)
 
     browser.run("ricochet.app.change({trails: true, body_map: 'hits'}), show(12)")
     browser.key("ArrowRight")
@@ -173,7 +173,7 @@ def look_at_late_one(browser, page):
 
 
 def bright_around(browser, png, row, radius):
-    """Part of the pixels of a square around a particle that are not the background's."""
+    """Returns the share of pixels around a particle that do not have the colour of the background."""
     width, _, channels, rows = pixels(png)
     x, y = (int(v) for v in window_place(browser, row))
     sky = rows[5][0:3]
@@ -199,14 +199,14 @@ def look_at_shapes(browser, page, folder):
     check("a second's spin of half a turn turns by that", half < 0.02, turns, half)
     browser.run("ricochet.app.change({drawing: 'soft'}), ricochet.app.stage.draw()")
     browser.run("show(4)")
-    check("as discs all are round", not browser.run("ricochet.app.particles.copies[0].object.visible"))
+    check("drawn as discs, all particles are round", not browser.run("ricochet.app.particles.copies[0].object.visible"))
     browser.run("ricochet.app.change({drawing: 'spheres'})")
     browser.run("show(4)")
-    check("and copies again as before", changed_part(first, browser.screenshot()) == 0)
+    check("and drawn as copies they look as before", changed_part(first, browser.screenshot()) == 0)
 
 
 def count_colors(png, is_wanted, area=None):
-    """How many pixels of a picture, or of the area left, top, right, bottom in it, have such a colour."""
+    """Returns the number of pixels with a wanted colour in a picture, or in its area (left, top, right, bottom)."""
     width, height, channels, rows = pixels(png)
     left, top, right, bottom = (int(v) for v in area or (0, 0, width, height))
     return sum(is_wanted(*row[channels * x:channels * x + 3]) for row in rows[top:bottom] for x in range(left, right))
@@ -217,9 +217,9 @@ def look_at_touching(browser, page, folder):
     browser.run("ricochet.loaded")
     browser.run("document.body.classList.add('bare'), ricochet.app.set_theme('light')")
     shown = browser.run("ricochet.app.bodies.map((body) => body.object.visible)")
-    check("what the scene hides is not shown", shown == [True, False, True], shown)
+    check("hidden colliders are not shown", shown == [True, False, True], shown)
     boxes = browser.run("[...document.querySelectorAll('.body')].map((row) => row.querySelector('input').checked)")
-    check("and can be", boxes == shown, boxes)
+    check("and can be made visible", boxes == shown, boxes)
 
     def is_blue(red, green, blue):
         return blue > red + 25 and blue > green + 25
@@ -243,7 +243,7 @@ def look_at_touching(browser, page, folder):
 
 
 def view(program, scene_data, folder, name):
-    """The page of a scene."""
+    """Runs a scene and returns the path of its page."""
     scene, page = os.path.join(folder, name + ".json"), os.path.join(folder, name + ".html")
     with open(scene, "w", encoding="utf-8") as stream:
         json.dump(scene_data, stream)
@@ -274,7 +274,7 @@ def main():
         check("the console stays empty", browser.console == [], browser.console)
         pages = ["file://" + os.path.abspath(one) for one in (page, late, shapes, touching)]
         outside = [url for url in browser.requests if not url.startswith(("blob:", *pages))]
-        check("nothing is asked of anyone", outside == [], outside)
+        check("the page makes no requests", outside == [], outside)
         check("no error", browser.run("ricochet.errors") == [])
     finally:
         browser.close()

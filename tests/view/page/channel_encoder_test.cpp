@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Rows of which some go and some come in every frame, with values of any kind: jumps, noise, polynomials.
+// Rows with values of any kind: jumps, noise and polynomials. In every frame some rows are removed and some are added.
 struct Course {
     RandomSequence random;
     std::vector<std::uint32_t> ids;
@@ -16,7 +16,7 @@ struct Course {
 
     explicit Course(std::uint64_t seed) : random(seed, 2, 0) {}
 
-    // The rows of the next frame in the one before.
+    // Advances to the next frame. Returns the index that each of its rows had in the frame before.
     std::vector<std::uint32_t> next() {
         std::vector<std::uint32_t> parents;
         std::vector<std::uint32_t> kept;
@@ -45,7 +45,7 @@ struct Course {
     }
 };
 
-TEST(ChannelEncoder, TellsEveryValueExactlyWhateverComesAndGoes) {
+TEST(ChannelEncoder, EveryValueIsDecodedExactlyAsRowsComeAndGo) {
     for (const int bits : {8, 11, 12, 14, 16}) {
         Course course(static_cast<std::uint64_t>(bits));
         RowHistory rows;
@@ -66,7 +66,7 @@ TEST(ChannelEncoder, TellsEveryValueExactlyWhateverComesAndGoes) {
     }
 }
 
-TEST(ChannelEncoder, ExpectsParabolasSoThatNothingIsLeftOfThem) {
+TEST(ChannelEncoder, ParabolasArePredictedWithoutResiduals) {
     RowHistory rows;
     ChannelEncoder encoder(16);
     for (int frame = 0; frame < 6; ++frame) {

@@ -23,7 +23,7 @@ std::vector<Vec3> carried(const std::vector<Vec3>& points, const AffineMap& map)
 
 AffineMap pose_at(int frame) { return turned(0.7 * frame, {100.0 + 3.0 * frame, -20.0, 0.5 * frame}); }
 
-// Far from the origin, so that rounding shows where it is let in.
+// The meshes are far from the origin, so that unwanted rounding shows.
 void make_movers(test::MadeRun& run) {
     run.add_moving("wheel", box_mesh({-1, -2, -3}, {1, 2, 3}),
                    [](const auto& points, int frame) { return carried(points, pose_at(frame)); });
@@ -34,7 +34,7 @@ void make_movers(test::MadeRun& run) {
     for (int frame = 0; frame < 5; ++frame) run.add_frame(point_frame({{0, 0, 9}}, {1}));
 }
 
-TEST(ColliderParts, TellsThoseThatAreCarriedFromThoseThatDeform) {
+TEST(ColliderParts, RigidCollidersAreToldFromDeformingOnes) {
     test::MadeRun run;
     make_movers(run);
     const RunFolder folder = run.finish();
@@ -46,7 +46,7 @@ TEST(ColliderParts, TellsThoseThatAreCarriedFromThoseThatDeform) {
     EXPECT_EQ(colliders.parts()[0].hits.largest, 121.0);
 }
 
-TEST(ColliderParts, FindsThePoseThatCarriesAMeshThroughItsFrames) {
+TEST(ColliderParts, PoseOfAMeshIsFoundInEveryFrame) {
     test::MadeRun run;
     make_movers(run);
     const RunFolder folder = run.finish();
@@ -62,7 +62,7 @@ TEST(ColliderParts, FindsThePoseThatCarriesAMeshThroughItsFrames) {
     }
 }
 
-TEST(ColliderParts, ShowsThroughTheOnesThatHoldTheParticles) {
+TEST(ColliderParts, CollidersThatContainTheParticlesAreTransparent) {
     test::MadeRun run;
     run.add_still("jar", box_mesh({-1, -1, -1}, {1, 1, 1}));
     run.add_still("block", box_mesh({-3, -3, -3}, {3, 3, -1}));
@@ -73,7 +73,7 @@ TEST(ColliderParts, ShowsThroughTheOnesThatHoldTheParticles) {
     EXPECT_FALSE(colliders.parts()[1].is_glass);
 }
 
-TEST(ColliderParts, HaveTheColourAndTheGlassOfTheirLooks) {
+TEST(ColliderParts, PartsHaveTheColourAndTransparencyOfTheirLooks) {
     test::MadeRun run;
     run.add_still("block", box_mesh({-3, -3, -3}, {3, 3, -1}));
     run.add_still("window", box_mesh({-3, 3, -3}, {3, 4, 3}));
@@ -92,7 +92,7 @@ TEST(ColliderParts, HaveTheColourAndTheGlassOfTheirLooks) {
     EXPECT_FALSE(page[1].contains("color"));
 }
 
-TEST(ColliderParts, RefusesMeshesThatChangeTheirTriangles) {
+TEST(ColliderParts, MeshesThatChangeTheirTrianglesAreRefused) {
     test::MadeRun run;
     make_movers(run);
     const RunFolder folder = run.finish();
@@ -101,7 +101,7 @@ TEST(ColliderParts, RefusesMeshesThatChangeTheirTriangles) {
     EXPECT_THROW(ColliderParts(folder, folder.frames), InputError);
 }
 
-TEST(EncodedPart, TellsVerticesToHalfAStepAndTrianglesExactly) {
+TEST(EncodedPart, VerticesAreStoredToHalfAStepAndTrianglesExactly) {
     ColliderPart part;
     part.mesh = box_mesh({-1, -2, -3}, {1, 2, 4});
     part.hits = {4.0, Levels(12, 7)};

@@ -1,5 +1,5 @@
 /// \file
-/// Folders as runs leave them, made by hand.
+/// Run folders made by hand, in the layout that runs write.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace ricochet::test {
 
-/// A box from lower to upper, outwards.
+/// Returns a box from lower to upper, with outward normals.
 inline TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
     TriangleMesh mesh;
     for (int i = 0; i < 8; ++i) {
@@ -25,7 +25,7 @@ inline TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
     return mesh;
 }
 
-/// A turn about z by an angle, and a shift.
+/// Returns a rotation about z by an angle, followed by a translation.
 inline AffineMap turned(double angle, const Vec3& shift) {
     AffineMap map;
     map.row_x = {std::cos(angle), -std::sin(angle), 0};
@@ -34,25 +34,25 @@ inline AffineMap turned(double angle, const Vec3& shift) {
     return map;
 }
 
-/// A folder with frames of particles and, where `moving` is given, colliders that move.
+/// A run folder with frames of particles and, for add_moving(), moving colliders.
 class MadeRun {
 public:
     using Points = std::function<std::vector<Vec3>(const std::vector<Vec3>& points, int frame)>;
 
-    /// A collider that moves: its mesh and where its vertices are in a frame.
+    /// Adds a moving collider from its mesh and a function for its vertices in a frame.
     void add_moving(const std::string& name, TriangleMesh mesh, Points where) {
         const auto number = static_cast<std::uint32_t>(colliders_.size());
         write_collider(name, mesh, true);
         moving_.push_back({number, std::move(mesh), std::move(where)});
     }
     void add_still(const std::string& name, const TriangleMesh& mesh) { write_collider(name, mesh, false); }
-    /// A plane through the origin, upwards.
+    /// Adds a plane through the origin with an upward normal.
     void add_plane(const std::string& name) {
         const TriangleMesh square{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}}, {{0, 1, 2}, {0, 2, 3}}};
         write_collider(name, square, false, {{"plane_normal", {0, 0, 1}}});
     }
 
-    /// Writes a frame of these particles, 0.1 s after the one before.
+    /// Writes a frame of these particles, 0.1 s after the previous frame.
     void add_frame(VtkPolyData particles) {
         const auto step = static_cast<std::uint64_t>(frames_);
         particles.time = 0.1 * frames_;
@@ -112,7 +112,7 @@ private:
     int frames_ = 0;
 };
 
-/// A frame of points with these ids and nothing else.
+/// Returns a frame of points with these ids and no other data.
 inline VtkPolyData point_frame(std::vector<Vec3> points, std::vector<std::int64_t> ids) {
     VtkPolyData frame;
     frame.points = std::move(points);

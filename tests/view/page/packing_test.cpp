@@ -20,7 +20,7 @@ TEST(Packing, WritesBytesAsTextOfSixBitsEach) {
     EXPECT_EQ(base64(std::string("\xff\xfe\xfd\x00", 4)), "//79AA==");
 }
 
-TEST(Packing, GivesBackWhatItHasPacked) {
+TEST(Packing, UnpackingRestoresPackedBytes) {
     RandomSequence random(5, 1, 0);
     for (const std::size_t size : {0U, 1U, 2U, 3U, 1000U, 70'000U}) {
         std::string bytes(size, '\0');
@@ -31,7 +31,7 @@ TEST(Packing, GivesBackWhatItHasPacked) {
     }
 }
 
-TEST(Packing, CountsSmallNumbersInFewBytes) {
+TEST(Packing, SmallNumbersTakeFewBytes) {
     ByteWriter out;
     for (const std::uint64_t value : {0ULL, 127ULL, 128ULL, 1ULL << 53}) out.varint(value);
     out.signed_varint(-1);
@@ -45,7 +45,7 @@ TEST(Packing, CountsSmallNumbersInFewBytes) {
     EXPECT_EQ(in.signed_varint(), 64);
 }
 
-TEST(Packing, LeavesNoCharacterOfATag) { EXPECT_EQ(html_text("a<b>&\"'"), "a&lt;b&gt;&amp;&quot;&#39;"); }
+TEST(Packing, HtmlTextEscapesTheCharactersOfTags) { EXPECT_EQ(html_text("a<b>&\"'"), "a&lt;b&gt;&amp;&quot;&#39;"); }
 
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -8,14 +8,14 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// 1: fewer bits, 2: fewer frames, 3: fewer particles, 4: fewer frames again.
+// Returns the stage of a step of the ladder. 1: fewer bits, 2: fewer frames, 3: fewer particles, 4: fewer frames again.
 int stage_of(const PageDetail& detail, const PageDetail& before) {
     if (detail.position_bits < before.position_bits || detail.value_bits < before.value_bits) return 1;
     if (detail.particles < before.particles) return 3;
     return before.particles < 1.0 ? 4 : 2;
 }
 
-TEST(DetailLadder, GivesUpBitsThenFramesThenParticles) {
+TEST(DetailLadder, ReducesBitsThenFramesThenParticles) {
     const std::vector<PageDetail> ladder = detail_ladder(1000, 1'000'000);
     EXPECT_EQ(ladder.front().position_bits, 16);
     EXPECT_EQ(ladder.front().every_frame, 1U);
@@ -33,14 +33,14 @@ TEST(DetailLadder, GivesUpBitsThenFramesThenParticles) {
     EXPECT_GE(1e6 * ladder.back().particles, 2000.0);
 }
 
-TEST(DetailLadder, LeavesSmallRunsTheirFramesAndParticles) {
+TEST(DetailLadder, SmallRunsKeepTheirFramesAndParticles) {
     for (const PageDetail& detail : detail_ladder(1, 100)) {
         EXPECT_EQ(detail.every_frame, 1U);
         EXPECT_EQ(detail.particles, 1.0);
     }
 }
 
-TEST(DetailLadder, GivesUpNoMoreBitsOfPositionsThanItMay) {
+TEST(DetailLadder, PositionsKeepTheirLeastBits) {
     for (const int least : {11, 13, 14, 16}) {
         const std::vector<PageDetail> ladder = detail_ladder(1000, 1'000'000, least);
         EXPECT_EQ(ladder.back().position_bits, least);
@@ -53,7 +53,7 @@ TEST(DetailLadder, GivesUpNoMoreBitsOfPositionsThanItMay) {
     }
 }
 
-TEST(NeededPositionBits, MoveSpheresByATenthOfTheirRadiusAtMost) {
+TEST(NeededPositionBits, SpheresMoveByATenthOfTheirRadiusAtMost) {
     EXPECT_EQ(needed_position_bits(0.0, 10.0), kLeastPositionBits);
     EXPECT_EQ(needed_position_bits(1.0, 10.0), kLeastPositionBits);
     EXPECT_EQ(needed_position_bits(1e-9, 10.0), kMostPositionBits);
@@ -65,7 +65,7 @@ TEST(NeededPositionBits, MoveSpheresByATenthOfTheirRadiusAtMost) {
     }
 }
 
-TEST(PageDetail, TakesTheFirstAndTheLastFrame) {
+TEST(PageDetail, FirstAndLastFrameAreChosen) {
     for (const std::size_t every : {1U, 2U, 3U, 7U, 100U}) {
         const PageDetail detail{16, 16, every, 1.0};
         for (const std::size_t count : {1U, 2U, 10U, 50U}) {
@@ -77,7 +77,7 @@ TEST(PageDetail, TakesTheFirstAndTheLastFrame) {
     }
 }
 
-TEST(FirstFitting, FindsTheFirstOfFallingBytesWithFewLooks) {
+TEST(FirstFitting, FirstFittingDetailIsFoundWithFewTrials) {
     const std::vector<PageDetail> ladder = detail_ladder(2000, 5'000'000);
     const auto number_of = [&](const PageDetail& detail) {
         for (std::size_t i = 0; i < ladder.size(); ++i) {

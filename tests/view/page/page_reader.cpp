@@ -27,7 +27,7 @@ std::string bytes_of(std::string_view text) {
     return bytes;
 }
 
-// Rows as ids: those before less the ones that are gone, and the new ones, in ascending order.
+// Reads the ids of the rows, ascending: the ids of the frame before without the removed ones, and the new ones.
 std::vector<std::int64_t> read_ids(PageBytes& in, const std::vector<std::int64_t>& before, RowHistory& rows) {
     std::vector<bool> is_gone(before.size(), false);
     const std::uint64_t gone = in.varint();

@@ -1,5 +1,5 @@
 /// \file
-/// Reads pages as their scripts do, from the description of the format alone.
+/// Reads pages as their scripts do. Written from the description of the format alone.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace ricochet::test {
 
-/// The bytes of a text in base64, inflated. Throws std::runtime_error where it is not such a text.
+/// Decodes a text in base64 and inflates it. Throws std::runtime_error if the text is malformed.
 [[nodiscard]] std::string unpacked(std::string_view text);
 
 class PageBytes {
 public:
     explicit PageBytes(std::string bytes) : bytes_(std::move(bytes)) {}
-    /// All of these throw std::out_of_range past the end.
+    /// All readers throw std::out_of_range past the end.
     std::uint8_t byte();
     std::uint64_t varint();
     std::int64_t signed_varint();
@@ -58,9 +58,9 @@ struct ReadPage {
     std::vector<ReadFrame> frames;
 
     explicit ReadPage(std::string page);
-    /// The text of the block of that name, unpacked.
+    /// Returns the unpacked text of the block with this name.
     [[nodiscard]] PageBytes block(const std::string& name) const;
-    /// World coordinates of a particle, m.
+    /// Returns the world coordinates of a particle, in m.
     [[nodiscard]] std::array<double, 3> position(const ReadFrame& frame, std::size_t row) const;
     [[nodiscard]] std::size_t attribute(const std::string& name) const;
     [[nodiscard]] double value(const ReadFrame& frame, const std::string& name, std::size_t row) const;

@@ -15,7 +15,7 @@ using test::MadeRun;
 using test::ReadFrame;
 using test::ReadPage;
 
-/// Frames of particles on parabolas; in every frame some have gone and some are new.
+/// Frames of particles on parabolas. In every frame some particles are removed and some are added.
 struct Shower {
     std::vector<VtkPolyData> frames;
 
@@ -79,7 +79,7 @@ void expect_same(const ReadPage& page, const ReadFrame& told, const VtkPolyData&
     }
 }
 
-TEST(RunPage, TellsEveryParticleOfEveryFrameToHalfAStep) {
+TEST(RunPage, EveryParticleOfEveryFrameIsStoredToHalfAStep) {
     MadeRun run;
     const Shower shower(25, 400);
     const ReadPage page = page_of(shower.written(run), run);
@@ -89,7 +89,7 @@ TEST(RunPage, TellsEveryParticleOfEveryFrameToHalfAStep) {
     EXPECT_EQ(page.description.at("notes").size(), 0U);
 }
 
-TEST(RunPage, WithoutDataTakesLessThanAMegabyte) {
+TEST(RunPage, PageWithoutDataTakesLessThanAMegabyte) {
     MadeRun run;
     run.add_frame(test::point_frame({}, {}));
     const ReadPage page = page_of(run.finish(), run);
@@ -97,7 +97,7 @@ TEST(RunPage, WithoutDataTakesLessThanAMegabyte) {
     EXPECT_EQ(page.frames.size(), 1U);
 }
 
-TEST(RunPage, KeepsItsBudgetAndSaysWhatItLeftOut) {
+TEST(RunPage, BudgetIsKeptAndReductionsAreReported) {
     MadeRun run;
     const Shower shower(120, 6000);
     const RunFolder folder = shower.written(run);
@@ -124,7 +124,7 @@ TEST(RunPage, KeepsItsBudgetAndSaysWhatItLeftOut) {
     EXPECT_LT(few.frames, all.frames);
 }
 
-TEST(RunPage, RefusesABudgetThatHoldsNoPage) {
+TEST(RunPage, BudgetTooSmallForAPageIsRefused) {
     MadeRun run;
     const Shower shower(5, 50);
     const RunFolder folder = shower.written(run);
@@ -134,7 +134,7 @@ TEST(RunPage, RefusesABudgetThatHoldsNoPage) {
     EXPECT_FALSE(std::filesystem::exists(run.folder.path("page.html")));
 }
 
-TEST(RunPage, HasTheSameBytesForAnyNumberOfThreads) {
+TEST(RunPage, BytesDoNotDependOnTheNumberOfThreads) {
     MadeRun run;
     const Shower shower(20, 300);
     const RunFolder folder = shower.written(run);
@@ -143,7 +143,7 @@ TEST(RunPage, HasTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(page_of(folder, run).text, many);
 }
 
-TEST(RunPage, HoldsNoTextOfStrangersThatABrowserWouldObey) {
+TEST(RunPage, TextFromFilesIsNeverInterpretedByTheBrowser) {
     const std::string strange = "</script><script>alert(1)</script><!--\x1b\xff\xe2\x80\xae@MODULES@";
     MadeRun run;
     run.add_still(strange, test::box_mesh({0, 0, 0}, {1, 1, 1}));
@@ -151,7 +151,7 @@ TEST(RunPage, HoldsNoTextOfStrangersThatABrowserWouldObey) {
     frame.point_arrays.push_back({"</script><b>", std::vector<double>{1.0}});
     run.add_frame(frame);
     (void)run.finish("a.json");
-    // The scene's name and the collider's go through run.json, the array's through the frame.
+    // The names of scene and collider go through run.json, the name of the array through the frame.
     RunFolder folder = open_run_folder(run.folder.path(""));
     folder.info.scene = "x/</title><script>alert(2)</script>.json";
     folder.info.colliders[0].name = strange;
@@ -164,8 +164,8 @@ TEST(RunPage, HoldsNoTextOfStrangersThatABrowserWouldObey) {
     EXPECT_NE(page.description.at("parts")[0].at("name").get<std::string>().find("@MODULES@"), std::string::npos);
 }
 
-// Whatever stands in the page's own part: nothing in it is to be loaded from anywhere.
-TEST(RunPage, NamesNothingThatABrowserWouldLoad) {
+// The page's own text must not load anything either.
+TEST(RunPage, PageLoadsNothingFromElsewhere) {
     MadeRun run;
     run.add_frame(test::point_frame({{0, 0, 2}}, {1}));
     const std::string text = page_of(run.finish(), run).text;
@@ -175,7 +175,7 @@ TEST(RunPage, NamesNothingThatABrowserWouldLoad) {
     EXPECT_NE(text.find("default-src 'none'"), std::string::npos);
 }
 
-TEST(RunPage, LeavesOutParticlesThatAreFarFromAllOthersAndSaysSo) {
+TEST(RunPage, DistantOutliersAreLeftOutAndReported) {
     MadeRun run;
     std::vector<Vec3> points;
     std::vector<std::int64_t> ids;
@@ -192,7 +192,7 @@ TEST(RunPage, LeavesOutParticlesThatAreFarFromAllOthersAndSaysSo) {
     ASSERT_EQ(page.description.at("notes").size(), 1U);
 }
 
-/// A wall through the origin, and spheres that touch it, of two sizes, in every frame elsewhere on it.
+/// A wall through the origin and touching spheres of two sizes, at other points of the wall in every frame.
 struct Touching {
     Vec3 normal = normalized(Vec3{0.3, -0.2, 1.0});
     Vec3 u = normalized(cross(normal, {0, 1, 0}));
@@ -222,7 +222,7 @@ struct Touching {
     }
 };
 
-// What page and script take off the spheres' depth (Run.slack in web/run.js).
+// Returns the depth offset that page and script subtract for spheres (Run.slack in web/run.js).
 double slack_of(const ReadPage& page) {
     const auto& radius = page.description.at("attributes").at(page.attribute("radius"));
     double walls = 0.0;
@@ -231,7 +231,7 @@ double slack_of(const ReadPage& page) {
            0.5 * radius.at("step").get<double>() + walls;
 }
 
-TEST(RunPage, PutsSpheresThatTouchAWallPastItByNoMoreThanItSays) {
+TEST(RunPage, SpheresThatTouchAWallPassItByLessThanTheSlack) {
     Touching touching;
     const RunFolder folder = touching.written();
     for (const double budget : {1e9, 0.82e6}) {
@@ -247,14 +247,14 @@ TEST(RunPage, PutsSpheresThatTouchAWallPastItByNoMoreThanItSays) {
         }
         EXPECT_GT(farthest, 0.0);
         EXPECT_LT(farthest, slack);
-        // A quarter of the larger radius is what the smaller ones count as.
+        // Smaller spheres count as spheres of a quarter of the largest radius.
         EXPECT_LT(slack, 0.12 * 0.125) << page.description.at("positionBits");
         EXPECT_EQ(page.description.at("valueBits"), budget == 1e9 ? 16 : 8);
         EXPECT_LT(page.description.at("attributes").at(page.attribute("radius")).at("step").get<double>(), 1e-5);
     }
 }
 
-TEST(RunPage, SaysHowCollidersLook) {
+TEST(RunPage, LooksOfCollidersAreStored) {
     MadeRun run;
     run.add_still("mirror", test::box_mesh({0, 0, 0}, {1, 1, 1}));
     run.add_still("lid", test::box_mesh({0, 0, 2}, {1, 1, 3}));
@@ -270,7 +270,7 @@ TEST(RunPage, SaysHowCollidersLook) {
     EXPECT_EQ(parts[1].at("hidden"), true);
 }
 
-TEST(RunPage, SaysWhetherPlanesHaveTheirLines) {
+TEST(RunPage, PatternFlagOfPlanesIsStored) {
     MadeRun run;
     run.add_plane("floor");
     run.add_plane("wall");
@@ -282,7 +282,7 @@ TEST(RunPage, SaysWhetherPlanesHaveTheirLines) {
     EXPECT_EQ(page.description.at("parts")[1].at("pattern"), false);
 }
 
-TEST(RunPage, ShowsSpringsBetweenTheRowsOfTheFrame) {
+TEST(RunPage, SpringsConnectTheRowsOfTheirFrame) {
     MadeRun run;
     VtkPolyData frame = test::point_frame({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {4, 5, 6, 9});
     frame.lines = {{0, 3}, {3, 1}};
@@ -299,7 +299,7 @@ TEST(RunPage, ShowsSpringsBetweenTheRowsOfTheFrame) {
     EXPECT_EQ(page.frames[2].triangles, (std::vector<std::uint32_t>{0, 1, 2}));
 }
 
-TEST(RunPage, RefusesFramesThatDoNotBelongTogether) {
+TEST(RunPage, FramesThatDoNotBelongTogetherAreRefused) {
     MadeRun run;
     run.add_frame(test::point_frame({{0, 0, 0}, {1, 0, 0}}, {5, 4}));
     const RunFolder unordered = run.finish();

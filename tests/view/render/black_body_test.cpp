@@ -11,7 +11,7 @@ namespace ricochet {
 namespace RICOCHET_FILE {
 
 // Points of the Planckian locus: CIE standard illuminant A (2856 K by today's constants), and G. Wyszecki, W. S.
-// Stiles, "Color Science", 1982, table 1(3.3.4). The fit to the matching functions is good to 0.005.
+// Stiles, "Color Science", 1982, table 1(3.3.4). The fit to the matching functions has an error below 0.005.
 TEST(BlackBody, HasTheColoursOfThePlanckianLocus) {
     struct Known {
         double kelvin, x, y;
@@ -25,8 +25,8 @@ TEST(BlackBody, HasTheColoursOfThePlanckianLocus) {
     }
 }
 
-// By Wien's law the luminance goes as exp(-c2 / (wavelength T)) for some wavelength that the eye sees.
-TEST(BlackBody, GrowsBrighterAsWiensLawSays) {
+// By Wien's law the luminance is proportional to exp(-c2 / (wavelength T)) for some visible wavelength.
+TEST(BlackBody, BrightnessFollowsWiensLaw) {
     const BlackBody body(1500.0);
     EXPECT_NEAR(luminance(body.light(1500.0)), 1.0, 1e-12);
     for (const double kelvin : {800.0, 1000.0, 1300.0, 1800.0, 2500.0}) {
@@ -37,7 +37,7 @@ TEST(BlackBody, GrowsBrighterAsWiensLawSays) {
     }
 }
 
-TEST(BlackBody, GlowsRedFirstThenYellowThenWhiteThenBlue) {
+TEST(BlackBody, GlowIsRedThenYellowThenWhiteThenBlue) {
     const BlackBody body(3000.0);
     const Vec3 red = body.light(900.0);
     EXPECT_GT(red.x, 4.0 * red.y);
@@ -49,7 +49,7 @@ TEST(BlackBody, GlowsRedFirstThenYellowThenWhiteThenBlue) {
     EXPECT_GT(blue.z, blue.x);
 }
 
-TEST(BlackBody, WhatIsNoTemperatureGivesNoLight) {
+TEST(BlackBody, InvalidTemperaturesGiveNoLight) {
     const BlackBody body(1500.0);
     for (const double kelvin : {0.0, -5.0, 1.0, std::nan(""), -std::numeric_limits<double>::infinity()}) {
         EXPECT_EQ(body.light(kelvin), Vec3{}) << kelvin;

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Position in the picture: -1..1 from edge to edge; nothing sensible behind the camera.
+// Position in the picture: -1 to 1 from edge to edge. Meaningless behind the camera.
 struct Seen {
     double x, y, depth;
 };
@@ -40,7 +40,7 @@ TEST(CameraFrame, IsRightHandedAndUpright) {
     EXPECT_NEAR(length(frame.forward - Vec3(0, 1, 0)), 0.0, 1e-15);
 }
 
-TEST(CameraFrame, IsWholeWhenLookingStraightDown) {
+TEST(CameraFrame, IsOrthonormalWhenLookingStraightDown) {
     const CameraFrame frame = camera_frame({{0, 0, 9}, {0, 0, 0}, {0, 0, 1}, 35.0});
     EXPECT_NEAR(length(frame.right), 1.0, 1e-12);
     EXPECT_NEAR(dot(frame.right, frame.forward), 0.0, 1e-12);
@@ -66,7 +66,7 @@ TEST(AutomaticCamera, ShowsEveryColliderAndFillsThePicture) {
     }
 }
 
-TEST(AutomaticCamera, IsNotLedAstrayByAFewParticles) {
+TEST(AutomaticCamera, FewDistantParticlesDoNotMoveIt) {
     ViewSubject subject{random_points(5, 1000, {0, 0, 0}, {2, 2, 2}), {}};
     const Camera before = automatic_camera(subject, {0, 0, 1}, 1.5);
     subject.particles.push_back({1e7, 0, 0});
@@ -83,7 +83,7 @@ TEST(AutomaticCamera, LooksDownFromAboveWhicheverAxisIsUp) {
     }
 }
 
-TEST(AutomaticCamera, HasAViewOfNothingAndOfASinglePoint) {
+TEST(AutomaticCamera, ViewsOfNothingAndOfASinglePointAreValid) {
     for (const ViewSubject& subject : {ViewSubject{}, ViewSubject{{{7, 7, 7}}, {}}}) {
         const Camera camera = automatic_camera(subject, {0, 0, 1}, 1.5);
         EXPECT_TRUE(is_finite(camera.position));

@@ -31,7 +31,7 @@ TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
     EXPECT_EQ(image.pixel(639, 0), (std::array<int, 3>{128, 128, 128}));
 }
 
-TEST(ColorBar, StandsInsideThePictureBesideTheOthers) {
+TEST(ColorBar, BarsStandInsideThePictureBesideEachOther) {
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {480, 480}}) {
         const std::vector<BarPlace> places = bar_places(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
         const BarPlace& first = places[0];
@@ -42,7 +42,7 @@ TEST(ColorBar, StandsInsideThePictureBesideTheOthers) {
     }
 }
 
-// A name of 60 letters, with its unit.
+// A name of 60 letters with its unit.
 TEST(ColorBar, ShowsTheWholeLabel) {
     const std::string name = "a_very_long_name_of_an_attribute_that_somebody_has_thought_of";
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {200, 400}, {1000, 120}}) {
@@ -61,7 +61,7 @@ TEST(ColorBar, ShowsTheWholeLabel) {
         }
         EXPECT_EQ(whole, name + " (m/s)");
     }
-    // Light letters reach as far as the text does.
+    // Light pixels of letters extend to the end of the text.
     Image image = grey(960, 540);
     const std::vector<ColorBar> bars = {{"unsimulated_time_of_all", "s", {0.0, 1.0}}};
     draw_color_bars(image, bars);
@@ -100,7 +100,7 @@ TEST(ColorBar, ANoteStandsBelowTheNumbers) {
     EXPECT_TRUE(is_lit);
 }
 
-TEST(ColorBar, NumbersHaveThreeDigitsThatCount) {
+TEST(ColorBar, NumbersHaveThreeSignificantDigits) {
     EXPECT_EQ(bar_number(0.0), "0");
     EXPECT_EQ(bar_number(-0.0), "0");
     EXPECT_EQ(bar_number(12.3456), "12.3");
@@ -110,13 +110,13 @@ TEST(ColorBar, NumbersHaveThreeDigitsThatCount) {
     EXPECT_EQ(bar_number(2500.0), "2.5k");
 }
 
-TEST(ColorBar, TinyPicturesStayAsTheyAre) {
+TEST(ColorBar, TinyPicturesStayUnchanged) {
     Image image = grey(64, 64);
     draw_color_bars(image, {{"speed", "m/s", {}, ColorMap::plasma}});
     EXPECT_EQ(image.rgb, grey(64, 64).rgb);
 }
 
-TEST(Lettering, DrawsLettersWhoseDotsAreSquares) {
+TEST(Lettering, DrawsLettersWithSquareDots) {
     Image image = grey(40, 20);
     write_text(image, 2, 3, 2, "I");
     // The stem of an I is the third of its five columns.

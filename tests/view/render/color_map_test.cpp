@@ -14,7 +14,7 @@ TEST(ColorMap, NamesLeadBackToTheirMaps) {
     EXPECT_FALSE(color_map_from_name("jet"));
 }
 
-TEST(ColorMap, EndsWhereItsSourceSays) {
+TEST(ColorMap, EndColoursMatchTheirSource) {
     const Vec3 last = map_color(ColorMap::viridis, 1.0);
     EXPECT_NEAR(srgb_from_linear(last.x), 0xfd / 255.0, 1e-9);
     EXPECT_NEAR(srgb_from_linear(last.y), 0xe7 / 255.0, 1e-9);
@@ -23,7 +23,7 @@ TEST(ColorMap, EndsWhereItsSourceSays) {
     EXPECT_EQ(map_color(ColorMap::plasma, 1e300), map_color(ColorMap::plasma, 1.0));
 }
 
-TEST(ColorMap, PerceptualMapsGetLighterAllTheWay) {
+TEST(ColorMap, PerceptualMapsGetLighterFromEndToEnd) {
     for (const ColorMap map : {ColorMap::viridis, ColorMap::plasma}) {
         double before = -1.0;
         for (int i = 0; i <= 100; ++i) {
@@ -41,11 +41,11 @@ TEST(ColorMap, NoNumberIsGrey) {
     EXPECT_EQ(grey.y, grey.z);
 }
 
-TEST(Srgb, LeadsThereAndBack) {
+TEST(Srgb, ConversionsAreInverse) {
     for (int i = 0; i <= 255; ++i) EXPECT_NEAR(255.0 * srgb_from_linear(linear_from_srgb(i / 255.0)), i, 1e-4);
 }
 
-TEST(RobustRange, LeavesStraysOut) {
+TEST(RobustRange, OutliersAreLeftOut) {
     std::vector<double> values;
     for (int i = 0; i <= 1000; ++i) values.push_back(i / 1000.0);
     values.push_back(1e12);
@@ -56,7 +56,7 @@ TEST(RobustRange, LeavesStraysOut) {
     EXPECT_NEAR(range.high, 0.99, 0.002);
 }
 
-TEST(RobustRange, LeavesNoneOfAFewOut) {
+TEST(RobustRange, FewValuesAreAllKept) {
     const ValueRange range = robust_range({300, 100, 900, 200, 800, 400, 700, 500, 600});
     EXPECT_EQ(range.low, 100.0);
     EXPECT_EQ(range.high, 900.0);

@@ -7,7 +7,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Two triangles that share an edge along y and lean away from it by the given angle each.
+// Returns two triangles that share an edge along y, each inclined away from it by the given angle.
 TriangleMesh roof(double lean) {
     return {{{0, 0, 0}, {0, 1, 0}, {-std::cos(lean), 0, -std::sin(lean)}, {std::cos(lean), 0, -std::sin(lean)}},
             {{0, 1, 2}, {0, 3, 1}}};

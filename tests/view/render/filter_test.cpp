@@ -12,13 +12,14 @@ namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
-// A wall that faces the camera, 5 m away, whose right half may be another surface; with noise of the given deviation.
+// Returns a noisy picture of a wall that faces the camera, 5 m away. The right half may be another surface. The noise
+// has the given standard deviation.
 NoisyPicture wall(double left, double right, double deviation, bool two_surfaces) {
     NoisyPicture picture{kSize, kSize, {}, {}, {}};
     std::uint32_t state = 12345;
     for (int y = 0; y < kSize; ++y) {
         for (int x = 0; x < kSize; ++x) {
-            double noise = -6.0;  // a sum of twelve has the deviation 1
+            double noise = -6.0;  // a sum of twelve uniform numbers has the deviation 1
             for (int k = 0; k < 12; ++k) noise += (state = 1664525U * state + 1013904223U) / 4294967296.0;
             const auto value = static_cast<float>((x < kSize / 2 ? left : right) + deviation * noise);
             picture.light.push_back({value, value, value});
@@ -43,35 +44,35 @@ double deviation_from(const NoisyPicture& picture, int first, int last, double v
     return std::sqrt(sum / count);
 }
 
-TEST(NoiseFilter, TakesMostOfTheNoiseFromAnEvenWall) {
+TEST(NoiseFilter, RemovesMostOfTheNoiseFromAnEvenWall) {
     NoisyPicture picture = wall(0.4, 0.4, 0.05, false);
     EXPECT_NEAR(deviation_from(picture, 8, kSize - 8, 0.4), 0.05, 0.005);
     filter_noise(picture);
     EXPECT_LT(deviation_from(picture, 8, kSize - 8, 0.4), 0.0125);  // a quarter
 }
 
-TEST(NoiseFilter, KeepsTheEdgeBetweenSurfacesOfNearlyTheSameLight) {
+TEST(NoiseFilter, EdgeBetweenSurfacesOfSimilarLightStaysSharp) {
     NoisyPicture picture = wall(0.4, 0.5, 0.05, true);
     filter_noise(picture);
     EXPECT_LT(deviation_from(picture, 8, kSize / 2, 0.4), 0.0125);
     EXPECT_LT(deviation_from(picture, kSize / 2, kSize - 8, 0.5), 0.0125);
 }
 
-TEST(NoiseFilter, KeepsTheEdgeOfAShadowOnOneSurface) {
+TEST(NoiseFilter, ShadowEdgeOnOneSurfaceStaysSharp) {
     NoisyPicture picture = wall(0.2, 0.6, 0.01, false);
     filter_noise(picture);
     EXPECT_LT(deviation_from(picture, 8, kSize / 2, 0.2), 0.004);
     EXPECT_LT(deviation_from(picture, kSize / 2, kSize - 8, 0.6), 0.004);
 }
 
-TEST(NoiseFilter, LeavesWhatHasNoVarianceNearlyAsItIs) {
+TEST(NoiseFilter, PixelsWithoutVarianceStayNearlyUnchanged) {
     NoisyPicture picture = wall(0.4, 0.45, 0.0, false);
     const NoisyPicture before = picture;
     filter_noise(picture);
     for (std::size_t i = 0; i < picture.light.size(); ++i) EXPECT_NEAR(picture.light[i].x, before.light[i].x, 0.002);
 }
 
-TEST(NoiseFilter, HasTheSameBitsForAnyNumberOfThreads) {
+TEST(NoiseFilter, BitsDoNotDependOnTheNumberOfThreads) {
     const auto filtered = [](int threads) {
         const ThreadLimit limit(threads);
         NoisyPicture picture = wall(0.3, 0.5, 0.05, true);

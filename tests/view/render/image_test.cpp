@@ -42,7 +42,7 @@ TEST(Png, DecodesToTheSamePixels) {
     EXPECT_TRUE(std::equal(image.rgb.begin(), image.rgb.end(), pixels.get()));
 }
 
-TEST(Png, LeavesNothingBehindWhenItCannotBeWritten) {
+TEST(Png, FailedWriteLeavesNoFiles) {
     const test::TemporaryFolder folder;
     EXPECT_THROW(write_png(folder.path("none") / "a.png", gradient(2, 2)), RunError);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path("")));
@@ -50,7 +50,7 @@ TEST(Png, LeavesNothingBehindWhenItCannotBeWritten) {
 
 TEST(Image, PixelsAreCountedFromTheTopLeft) { EXPECT_EQ(gradient(5, 4).pixel(3, 2), (std::array<int, 3>{3, 2, 6})); }
 
-TEST(Png, ReadsBackWhatItWrites) {
+TEST(Png, WrittenFilesAreReadBack) {
     const test::TemporaryFolder folder;
     Image image = gradient(5, 3);
     write_png(folder.path("opaque.png"), image);
@@ -72,7 +72,7 @@ TEST(Png, RefusesOtherFilesAndDamagedOnes) {
     const std::string whole = png_bytes(gradient(40, 40));
     EXPECT_THROW((void)read_png(folder.write("cut.png", whole.substr(0, whole.size() / 2))), InputError);
     std::string huge = whole;
-    huge[16] = '\x7f';  // of its width
+    huge[16] = '\x7f';  // the width
     EXPECT_THROW((void)read_png(folder.write("huge.png", huge)), InputError);
 }
 
@@ -88,8 +88,8 @@ TEST(Png, RefusesChunksLongerThanTheFile) {
     }
 }
 
-// A pipe would be waited for, and a device may never end.
-TEST(Png, RefusesWhatIsNoRegularFile) {
+// Reading a pipe would block, and a device may never end.
+TEST(Png, RefusesEverythingButRegularFiles) {
     const test::TemporaryFolder folder;
     ASSERT_EQ(::mkfifo(folder.path("pipe.png").c_str(), 0600), 0);
     for (const std::filesystem::path& file :

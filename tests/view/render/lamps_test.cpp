@@ -26,7 +26,7 @@ Sprites sparks(int count) {
     return sprites;
 }
 
-TEST(Lamps, FewLampsCarryTheLightOfManyParticles) {
+TEST(Lamps, FewLampsHaveTheLightOfManyParticles) {
     const Sprites many = sparks(1000);
     Vec3 expected;
     for (std::size_t i = 0; i < many.centers.size(); ++i) {
@@ -40,7 +40,7 @@ TEST(Lamps, FewLampsCarryTheLightOfManyParticles) {
     EXPECT_LT(length(sum - expected), 1e-12 * length(expected));
 }
 
-TEST(Lamps, OneParticleIsOneLampAtItsPlace) {
+TEST(Lamps, OneParticleIsOneLampAtItsPosition) {
     const std::vector<Lamp> lamps = lamps_of({{{3, 4, 5}}, {0.1}, {{1, 2, 3}}, {1.0}, true}, 8);
     ASSERT_EQ(lamps.size(), 1U);
     EXPECT_LT(length(lamps[0].position - Vec3(3, 4, 5)), 1e-12);
@@ -50,10 +50,10 @@ TEST(Lamps, OneParticleIsOneLampAtItsPlace) {
     EXPECT_TRUE(lamps_of({}, 8).empty());
 }
 
-// A spark 2 m above a floor adds albedo * intensity / 4 m^2 to it, and nothing behind a ball that stands in between.
-TEST(Lamps, AGlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
+// A spark 2 m above a floor adds albedo * intensity / 4 m^2 to it. It adds nothing behind a ball in between.
+TEST(Lamps, GlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
     constexpr int kSize = 64;
-    constexpr double kExposure = 0.01;  // so small that the display's range is linear
+    constexpr double kExposure = 0.01;  // so small that tone mapping is linear
     const std::vector<Lamp> spark = lamps_of({{{0, 0, 2.0}}, {0.2}, {{40, 30, 20}}, {1.0}, true}, 4);
     const auto floor_light = [&](const std::vector<Lamp>& lamps, bool with_ball) {
         Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0.5}}}, {});
@@ -62,14 +62,15 @@ TEST(Lamps, AGlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
         options.width = options.height = kSize;
         options.exposure = kExposure;
         options.lighting = Lighting::night;
-        // Past the ball: the floor below the spark is in the middle of the picture.
+        // The camera looks past the ball: the floor below the spark is in the middle of the picture.
         const Painter painter(preview, {{0, -6, 6}, {0, 0, 0}, {0, 0, 1}, 40.0}, options, lamps);
         const PixelPlace middle{kSize / 2, kSize / 2};
         PixelLight pixel;
         painter.pixels(std::span(&middle, 1), std::span(&pixel, 1));
         return pixel.light.x / kExposure;
     };
-    // The floor's chequer may take a tenth of its colour, and distance turns it into the horizon by this part.
+    // The chequer of the floor may absorb a tenth of the light. Distance blends the floor into the horizon by this
+    // share.
     const double reach = std::sqrt(72.0) / (14.0 * std::sqrt(72.0) * std::tan(20.0 * std::numbers::pi / 180.0));
     const double left = std::exp(-reach * reach);
     const double expected = left * 0.5 * 40.0 * 0.04 / 4.0;
@@ -79,8 +80,8 @@ TEST(Lamps, AGlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
     EXPECT_LT(std::fabs(floor_light(spark, true) - floor_light({}, true)), 0.05 * expected);
 }
 
-// A screen half way between spark and floor ends below the spark's middle. Below its edge half of the spark is seen,
-// and as much to the side as the spark's radius, none or all of it.
+// A screen half way between spark and floor ends below the centre of the spark. Directly below its edge, half of the
+// spark is visible. A spark radius to either side, none or all of it is visible.
 TEST(Lamps, ShadowsOfAGlowingParticleAreAsSoftAsItIsWide) {
     constexpr double kRadius = 0.2;
     const std::vector<Lamp> spark = lamps_of({{{0, 0, 2.0}}, {kRadius}, {{40, 30, 20}}, {1.0}, true}, 4);
@@ -88,14 +89,14 @@ TEST(Lamps, ShadowsOfAGlowingParticleAreAsSoftAsItIsWide) {
     PictureOptions options;
     options.width = options.height = 512;
     options.samples = 256;
-    options.exposure = 0.01;  // so small that the display's range is linear
+    options.exposure = 0.01;  // so small that tone mapping is linear
     options.lighting = Lighting::night;
     const auto lit = [&](double x, bool with_screen, const std::vector<Lamp>& lamps) {
         std::vector<PreviewMesh> meshes;
         if (with_screen) meshes.push_back(screen);
         const Preview preview(std::move(meshes), {{{0, 0, 0}, {0, 0, 1}, {0.5, 0.5, 0.5}, 1.0, true}}, {});
         preview.prepare_sphere_rays();
-        // From the open side, below the screen.
+        // The camera looks from the open side, below the screen.
         const Camera camera{{x - 6, 0, 0.9}, {x, 0, 0}, {0, 0, 1}, 40.0};
         const PixelPlace middle{256, 256};
         PixelLight pixel;

@@ -33,7 +33,7 @@ int brightness(const Image& image, int x, int y) {
     return r + g + b;
 }
 
-TEST(Lighting, EveryNameIsFoundAndLightsAnotherPicture) {
+TEST(Lighting, EveryNameIsFoundAndGivesAnotherPicture) {
     std::vector<std::vector<std::uint8_t>> pictures;
     for (const std::string_view name : lighting_names()) {
         ASSERT_TRUE(lighting_from_name(name)) << name;
@@ -43,15 +43,15 @@ TEST(Lighting, EveryNameIsFoundAndLightsAnotherPicture) {
     EXPECT_FALSE(lighting_from_name("dawn"));
 }
 
-TEST(Lighting, TheNightIsDarkerThanEveryOtherLight) {
+TEST(Lighting, NightIsDarkerThanEveryOtherLight) {
     const Image night = picture_in(Lighting::night);
     for (const Lighting other : {Lighting::day, Lighting::noon, Lighting::overcast, Lighting::studio}) {
         EXPECT_LT(2 * brightness(night, 8, kSize - 8), brightness(picture_in(other), 8, kSize - 8));
     }
 }
 
-// The sun of the day throws the ball's shadow to the right; without a sun both sides have the same light.
-TEST(Lighting, AnOvercastSkyCastsNoShadowToOneSide) {
+// The sun of the day casts the ball's shadow to the right. Without a sun both sides have the same light.
+TEST(Lighting, OvercastSkyCastsNoShadowToOneSide) {
     const auto beside_the_ball = [](const Image& image, bool right) {
         std::vector<int> values;
         for (int x = 3; x < kSize / 2 - 7; ++x) {
@@ -71,7 +71,7 @@ TEST(Lighting, AnOvercastSkyCastsNoShadowToOneSide) {
     EXPECT_LT(darkest(beside_the_ball(sunny, true)), 0.8 * darkest(beside_the_ball(sunny, false)));
 }
 
-TEST(Background, ATransparentOneIsOpaqueOnlyWhereSomethingIs) {
+TEST(Background, TransparentBackgroundIsOpaqueOnlyAtObjects) {
     PictureOptions options;
     options.width = options.height = kSize;
     options.transparent = true;
@@ -81,7 +81,7 @@ TEST(Background, ATransparentOneIsOpaqueOnlyWhereSomethingIs) {
     ASSERT_EQ(image.alpha.size(), static_cast<std::size_t>(kSize) * kSize);
     EXPECT_EQ(image.alpha.front(), 0);
     EXPECT_EQ(image.alpha[kSize / 2 * kSize + kSize / 2], 255);
-    // Half-covered pixels carry the ball's own colour: red, not mixed with anything behind it.
+    // Half-covered pixels have the ball's own colour: red, not mixed with a background.
     for (int i = 0; i < kSize * kSize; ++i) {
         if (image.alpha[static_cast<std::size_t>(i)] < 64) continue;
         const auto [red, green, blue] = image.pixel(i % kSize, i / kSize);
@@ -90,7 +90,7 @@ TEST(Background, ATransparentOneIsOpaqueOnlyWhereSomethingIs) {
     }
 }
 
-TEST(Background, AColorIsSeenWhereNothingIsButLightsNothing) {
+TEST(Background, ColourIsSeenBehindObjectsButLightsNothing) {
     PictureOptions options;
     options.width = options.height = kSize;
     options.background = Vec3{0, 0, 0};

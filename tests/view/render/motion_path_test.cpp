@@ -17,7 +17,7 @@ constexpr Vec3 kFall{0, 0, -9.81};
 
 PathNode node(double time, const Vec3& position, const Vec3& velocity) { return {time, position, velocity, velocity}; }
 
-TEST(MotionPath, IsTheTrueParabolaUnderGravity) {
+TEST(MotionPath, IsTheExactParabolaUnderGravity) {
     const Vec3 x{1, 2, 3};
     const Vec3 v{4, -5, 6};
     const auto at = [&](double t) { return x + t * v + 0.5 * t * t * kFall; };
@@ -25,8 +25,8 @@ TEST(MotionPath, IsTheTrueParabolaUnderGravity) {
     for (double t = 0.0; t <= 0.5; t += 0.01) EXPECT_LT(length(position_on_path(nodes, t) - at(t)), 1e-14);
 }
 
-// A ball that falls from 1 m and rebounds without loss: the corner is where and when it hit.
-TEST(MotionPath, HasItsCornerWhereTheImpactWas) {
+// A ball falls from 1 m and rebounds without loss. The corner has the position and time of the impact.
+TEST(MotionPath, HasItsCornerAtTheImpact) {
     const double hit = std::sqrt(2.0 / 9.81);
     const double speed = 9.81 * hit;
     const std::vector<PathNode> nodes{node(0.0, {0, 0, 1}, {1, 0, 0}),
@@ -41,7 +41,7 @@ TEST(MotionPath, HasItsCornerWhereTheImpactWas) {
         const double fallen = t < hit ? t : 2.0 * hit - t;
         EXPECT_NEAR(p.z, 1.0 - 0.5 * 9.81 * fallen * fallen, 1e-12);
     }
-    // Between the points the path leaves the lines by less than was asked for.
+    // Between the points the path deviates from the lines by less than the tolerance.
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
         const Vec3 middle = 0.5 * (points[k].position + points[k + 1].position);
         EXPECT_LT(length(position_on_path(nodes, middle.x) - middle), 1e-3);
@@ -49,7 +49,7 @@ TEST(MotionPath, HasItsCornerWhereTheImpactWas) {
     EXPECT_LT(points.size(), 40U);
 }
 
-TEST(MotionPath, APartOfItBeginsAndEndsOnIt) {
+TEST(MotionPath, PartOfAPathBeginsAndEndsOnIt) {
     const std::vector<PathNode> nodes{node(0.0, {0, 0, 0}, {1, 0, 0}), node(1.0, {1, 0, 0}, {1, 0, 0})};
     const auto points = path_points(nodes, 0.25, 0.75, 1e-3);
     ASSERT_EQ(points.size(), 2U);
@@ -59,7 +59,7 @@ TEST(MotionPath, APartOfItBeginsAndEndsOnIt) {
     EXPECT_LT(length(position_on_path(nodes, -0.5) - Vec3(-0.5, 0, 0)), 1e-15);
 }
 
-TEST(MotionPath, TwoImpactsAtTheSameTimeAreOneCorner) {
+TEST(MotionPath, SimultaneousImpactsAreOneCorner) {
     const std::vector<PathNode> nodes{node(0.0, {1, 1, 0}, {-1, -1, 0}),
                                       {1.0, {0, 0, 0}, {-1, -1, 0}, {1, -1, 0}},
                                       {1.0, {0, 0, 0}, {1, -1, 0}, {1, 1, 0}},
@@ -69,8 +69,8 @@ TEST(MotionPath, TwoImpactsAtTheSameTimeAreOneCorner) {
     for (const auto& [t, p] : path_points(nodes, 0.0, 2.0, 1e-3)) EXPECT_LT(std::fabs(p.x - p.y), 1e-15) << t;
 }
 
-// The lowest lit pixel of the streak of a rebound is where the camera sees the place of impact, less the radius.
-TEST(MotionPath, TheDrawnCornerOfABounceLiesWhereTheImpactWasToAPixel) {
+// The lowest lit pixel of a rebound's streak is the projected impact position, lowered by the radius.
+TEST(MotionPath, DrawnCornerOfABounceIsExactToAPixel) {
     constexpr int kSize = 400;
     constexpr double kRadius = 0.004;
     for (const double x : {-0.31, 0.0, 0.22}) {
@@ -101,14 +101,14 @@ TEST(MotionPath, TheDrawnCornerOfABounceLiesWhereTheImpactWasToAPixel) {
                 ++count;
             }
         }
-        const double scale = 0.5 * kSize / std::tan(20.0 * std::numbers::pi / 180.0) / 2.0;  // pixels a metre
+        const double scale = 0.5 * kSize / std::tan(20.0 * std::numbers::pi / 180.0) / 2.0;  // pixels per metre
         EXPECT_NEAR(across / count, 0.5 * kSize + scale * hit.x, 1.0) << x;
         EXPECT_NEAR(lowest + 1.0, 0.5 * kSize - scale * (hit.z - kRadius), 1.0) << x;
     }
 }
 
-// A blurred ball is seen on both legs of its way, and not on the straight line between its places at the ends.
-TEST(MotionPath, TheShutterSeesABlurredBallGoAroundTheCorner) {
+// A blurred ball appears on both legs of its path, and not on the straight line between its end positions.
+TEST(MotionPath, BlurredBallIsDrawnAroundTheCorner) {
     constexpr int kSize = 200;
     const Vec3 hit{0, 0, -0.3};
     const std::vector<PathNode> nodes{

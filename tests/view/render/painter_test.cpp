@@ -15,7 +15,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// A sphere of 12 x 8 flat faces whose normals are smoothed (its edges lean less than the crease).
+// Returns a sphere of 12 x 8 flat faces with smoothed normals, because its edges bend less than the crease angle.
 PreviewMesh coarse_ball() {
     constexpr int kAround = 12;
     constexpr int kUp = 8;
@@ -38,9 +38,9 @@ PreviewMesh coarse_ball() {
     return ball;
 }
 
-// Along a line across the terminator of a smooth ball the sun's light falls steadily; shadows that the flat faces cast
-// on themselves make it jump to zero while the smooth normal still faces the sun.
-TEST(Painter, TheShadowOfACoarseBallOnItselfFollowsTheSmoothSurface) {
+// Along a line across the terminator of a smooth ball, the sun's light decreases steadily. Shadows that flat faces cast
+// on themselves would drop it to zero while the smooth normal still faces the sun.
+TEST(Painter, SelfShadowOfACoarseBallFollowsTheSmoothSurface) {
     const Preview preview({coarse_ball()}, {}, {});
     int facing = 0;
     int shaded = 0;
@@ -72,8 +72,8 @@ PreviewMesh square(const Vec3& middle, const Vec3& normal, double half, double r
             roughness};
 }
 
-// A square that mirrors the sun to the camera, and a screen that keeps the sun from it.
-TEST(Painter, ThereIsNoHighlightOfTheSunInTheShadow) {
+// A square that reflects the sun into the camera, and a screen that blocks the sun.
+TEST(Painter, ShadowHasNoHighlightOfTheSun) {
     const Camera camera{{0, -10, 3}, {0, 0, 0}, {0, 0, 1}, 20.0};
     const Vec3 to_sun = light_for(Lighting::day, camera).to_sun;
     const Vec3 middle = normalized(to_sun + normalized(camera.position));
@@ -95,7 +95,7 @@ TEST(Painter, ThereIsNoHighlightOfTheSunInTheShadow) {
     EXPECT_LT(brightness(1.0, true), 0.7 * brightness(1.0, false));
 }
 
-// Looked at from above, so that the chequer's two colours are all that differs.
+// The camera looks from above, so that only the two colours of the chequer differ.
 TEST(Painter, PlanesCarryAChequerUnlessTheyArePlain) {
     const Camera camera{{0, 0, 10}, {0, 0, 0}, {0, 1, 0}, 40.0};
     PictureOptions options;
@@ -117,15 +117,15 @@ TEST(Painter, PlanesCarryAChequerUnlessTheyArePlain) {
     EXPECT_LT(darkest(false), 0.48);
 }
 
-TEST(Painter, TheLiftIsZeroOnFlatMeshes) {
+TEST(Painter, LiftIsZeroOnFlatMeshes) {
     const PreviewMesh square{{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}, {}, {}, false};
     const Preview preview({square}, {}, {});
     EXPECT_EQ(preview.trace({{0.3, 0.2, 1}, {0, 0, -1}})->lift, Vec3{});
 }
 
-// Two small balls in front of and behind the sharp plane are seen through a wide lens as discs of the lens's size times
-// the distance from the plane over the distance from the camera.
-TEST(Painter, ALensBlursWhatIsOutOfFocusByTheThinLensRule) {
+// Two small balls in front of and behind the focal plane appear as discs through a wide lens. The diameter of a disc is
+// the aperture times the distance from the focal plane, divided by the distance from the camera.
+TEST(Painter, LensBlursUnfocusedObjectsByTheThinLensRule) {
     constexpr int kSize = 128;
     const auto lit_pixels = [](double depth, double aperture) {
         Preview preview({}, {}, {});
@@ -157,7 +157,7 @@ TEST(Painter, ALensBlursWhatIsOutOfFocusByTheThinLensRule) {
     }
 }
 
-// Over a ground and a ball.
+// Returns spheres over a ground and a ball.
 PreviewSpheres spheres_about() {
     RandomSequence draws(8, 0, 0);
     PreviewSpheres spheres;
@@ -171,8 +171,8 @@ PreviewSpheres spheres_about() {
 
 Preview ground_and_ball() { return {{coarse_ball()}, {{{0, 0, -1}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {}}; }
 
-// As many samples as have no further rays: some at edges, where single precision decides, may differ.
-TEST(Painter, APictureIsTheSameWhetherRaysOrTilesAndTheGridFindTheSpheres) {
+// Uses as many samples as need no further rays. Some pixels at edges may differ, because single precision decides them.
+TEST(Painter, PictureDoesNotDependOnTheMethodThatFindsSpheres) {
     constexpr int kSize = 64;
     Preview preview = ground_and_ball();
     preview.set_spheres(spheres_about());
@@ -201,8 +201,8 @@ TEST(Painter, APictureIsTheSameWhetherRaysOrTilesAndTheGridFindTheSpheres) {
     EXPECT_LT(differing, kSize * kSize / 500);
 }
 
-// Its surface and its middle are the same number.
-TEST(Painter, AGrainThatIsSmallerThanNumbersTellApartIsLit) {
+// The surface and the centre of this sphere round to the same number.
+TEST(Painter, GrainSmallerThanTheRoundingErrorIsLit) {
     Preview preview({}, {}, {});
     preview.set_spheres({{{0, 1e14, 0}}, {1e-3}, {{0.5, 0.5, 0.5}}});
     PictureOptions options;
@@ -217,8 +217,8 @@ TEST(Painter, AGrainThatIsSmallerThanNumbersTellApartIsLit) {
     EXPECT_GT(luminance(light.light), 0.01);
 }
 
-// Some pixels at edges, where single precision decides, may differ.
-TEST(Painter, ADraftIsTheSameWhetherRaysOrTheViewFindTheSpheres) {
+// Some pixels at edges may differ, because single precision decides them.
+TEST(Painter, DraftDoesNotDependOnTheMethodThatFindsSpheres) {
     constexpr int kSize = 96;
     Preview preview = ground_and_ball();
     preview.set_spheres(spheres_about());

@@ -17,7 +17,7 @@ namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
-// A red ball above a grey floor, seen from the front and a little above.
+// Returns a red ball above a grey floor, seen from the front and slightly above.
 Preview ball_on_floor() {
     Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
     preview.set_spheres({{{0, 0, 1}}, {1.0}, {{0.6, 0.05, 0.05}}});
@@ -44,7 +44,7 @@ TEST(Picture, ShowsALitBallInTheMiddleWithItsShadowOnTheFloor) {
     const auto [red, green, blue] = image.pixel(kSize / 2 - 3, kSize / 2 - 3);
     EXPECT_GT(red, 2 * green);
     EXPECT_GT(red, 100);
-    // The sun stands behind the camera's left shoulder: the shadow falls to the right and away.
+    // The sun is behind the camera on the left, so the shadow falls to the right and away.
     int darkest = 1000;
     for (int x = kSize / 2 + 8; x < kSize - 4; ++x) {
         for (int y = kSize / 2 - 8; y < kSize / 2 + 12; ++y) darkest = std::min(darkest, brightness(image, x, y));
@@ -53,7 +53,7 @@ TEST(Picture, ShowsALitBallInTheMiddleWithItsShadowOnTheFloor) {
     EXPECT_LT(darkest, lit_floor * 3 / 4);
 }
 
-TEST(Picture, ShowsTheSkyWhereNothingIs) {
+TEST(Picture, EmptySceneShowsTheSky) {
     const Preview nothing({}, {}, {});
     const Image image = render_picture(nothing, {{0, -9, 0}, {0, 0, 3}, {0, 0, 1}, 50.0}, small_picture());
     const auto [red, green, blue] = image.pixel(kSize / 2, 2);
@@ -61,12 +61,12 @@ TEST(Picture, ShowsTheSkyWhereNothingIs) {
     EXPECT_GT(red + green + blue, 400);
 }
 
-TEST(Picture, TheSideTowardsTheSunIsBrighter) {
+TEST(Picture, SideTowardsTheSunIsBrighter) {
     const Image image = render_picture(ball_on_floor(), front_camera(), small_picture());
     EXPECT_GT(brightness(image, kSize / 2 - 4, kSize / 2 - 4), brightness(image, kSize / 2 + 5, kSize / 2 + 4));
 }
 
-TEST(Picture, ThingsBehindGlassAreSeenThroughIt) {
+TEST(Picture, ObjectsBehindGlassAreVisible) {
     const auto render = [](bool wall, bool glass) {
         std::vector<PreviewMesh> meshes;
         if (wall) {
@@ -85,7 +85,7 @@ TEST(Picture, ThingsBehindGlassAreSeenThroughIt) {
     EXPECT_NE(render(true, true), render(false, false));
 }
 
-TEST(Picture, HasTheSameBytesForAnyNumberOfThreads) {
+TEST(Picture, BytesDoNotDependOnTheNumberOfThreads) {
     const Preview preview = ball_on_floor();
     const auto render = [&](int threads) {
         const ThreadLimit limit(threads);
@@ -96,7 +96,7 @@ TEST(Picture, HasTheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(one, render(7));
 }
 
-TEST(Picture, MoreSamplesMakeLessNoiseAroundTheSamePicture) {
+TEST(Picture, MoreSamplesGiveLessNoiseAndTheSamePicture) {
     const Preview preview = ball_on_floor();
     const auto render = [&](int samples) {
         PictureOptions options = small_picture();
@@ -116,7 +116,7 @@ TEST(Picture, MoreSamplesMakeLessNoiseAroundTheSamePicture) {
     EXPECT_LT(fine, 2.0);
 }
 
-// Four hundred balls, most of them narrower than two pixels, hang before the sky and over the floor.
+// Returns four hundred balls in front of the sky and over the floor. Most of them are narrower than two pixels.
 Preview many_small_balls() {
     Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
     PreviewSpheres balls;
@@ -133,7 +133,7 @@ Preview many_small_balls() {
     return preview;
 }
 
-// The signal's peak over the noise, of a filtered picture of few samples against one of many.
+// Returns the peak signal-to-noise ratio of a filtered picture with few samples, relative to one with many.
 double decibels(const Preview& preview, int samples) {
     PictureOptions options = small_picture();
     options.samples = samples;
@@ -146,14 +146,12 @@ double decibels(const Preview& preview, int samples) {
     return 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(few.size()) / sum);
 }
 
-// 33.2 dB as it is; 28.0 dB where the four samples alone say how much of a pixel each ball covers. In between there is
-// room for other random numbers.
-TEST(Picture, FourSamplesWithTheFilterShowSmallBallsNearlyAsManySamplesDo) {
-    EXPECT_GT(decibels(many_small_balls(), 4), 31.5);
-}
+// The ratio is 33.2 dB. It is 28.0 dB if the four samples alone estimate each ball's coverage of a pixel. The limit in
+// between tolerates other random numbers.
+TEST(Picture, FourFilteredSamplesShowSmallBallsNearlyAsWellAsMany) { EXPECT_GT(decibels(many_small_balls(), 4), 31.5); }
 
-// Their brightness differs where light comes from other surfaces, and at edges, through which one ray goes or not.
-TEST(Picture, ADraftShowsTheSameThingsInTheSamePlaces) {
+// The brightness differs under indirect light, and at edges, which a single ray either hits or misses.
+TEST(Picture, DraftShowsTheSameObjectsInTheSamePositions) {
     PictureOptions options = small_picture();
     const Image fine = render_picture(ball_on_floor(), front_camera(), options);
     options.quick = true;
@@ -167,7 +165,7 @@ TEST(Picture, ADraftShowsTheSameThingsInTheSamePlaces) {
     EXPECT_GT(red, 2 * green);
 }
 
-TEST(Picture, ADraftHasOneRayAPixelWhateverTheSamplesAndHardShadows) {
+TEST(Picture, DraftHasOneRayPerPixelForAnySamplesAndHardShadows) {
     PictureOptions options = small_picture();
     options.quick = true;
     const Image draft = render_picture(ball_on_floor(), front_camera(), options);
@@ -178,7 +176,7 @@ TEST(Picture, ADraftHasOneRayAPixelWhateverTheSamplesAndHardShadows) {
     EXPECT_EQ(render_picture(ball_on_floor(), front_camera(), options).rgb, draft.rgb);
 }
 
-// Two thousand and more close together, whose shadows the grid across the sun has or, beside a stray, rays find.
+// Draws more than two thousand dense spheres. The sun grid computes their shadows; with a distant stray, rays do.
 Image draft_of_many(bool has_stray) {
     RandomSequence draws(3, 0, 0);
     PreviewSpheres spheres;
@@ -197,8 +195,8 @@ Image draft_of_many(bool has_stray) {
     return render_picture(preview, front_camera(), options);
 }
 
-// But for some pixels at edges of shadows, where single precision decides.
-TEST(Picture, ADraftDoesNotDependOnASphereFarAwayBehindTheCamera) {
+// Some pixels at edges of shadows may differ, because single precision decides them.
+TEST(Picture, DraftDoesNotDependOnADistantSphereBehindTheCamera) {
     const Image with = draft_of_many(true);
     const Image without = draft_of_many(false);
     int differing = 0;
@@ -210,7 +208,7 @@ TEST(Picture, ADraftDoesNotDependOnASphereFarAwayBehindTheCamera) {
     EXPECT_LT(differing, kSize * kSize / 500);
 }
 
-TEST(Picture, ReportsProgressUpToTheEnd) {
+TEST(Picture, ProgressIsReportedUpToTheEnd) {
     std::atomic<int> calls{0};
     std::atomic<bool> ended{false};
     PictureOptions options = small_picture();
@@ -223,7 +221,7 @@ TEST(Picture, ReportsProgressUpToTheEnd) {
     EXPECT_TRUE(ended);
 }
 
-TEST(Picture, CanBeGivenUpFromTheProgressCall) {
+TEST(Picture, ProgressCallCanStopTheRendering) {
     PictureOptions options = small_picture();
     options.progress = [](double) { throw std::runtime_error("stop"); };
     EXPECT_THROW((void)render_picture(ball_on_floor(), front_camera(), options), std::runtime_error);

@@ -35,8 +35,8 @@ TEST(PixelSum, SamplesAloneGiveTheirMean) {
     EXPECT_NEAR(sum.mean().light.x, expected, 1e-12);
 }
 
-// One sample of four is dark, of all sixteen rays eight: half of the pixel.
-TEST(PixelSum, RaysBeyondTheSamplesSayHowMuchOfThePixelASurfaceCovers) {
+// One of four samples is dark, and eight of all sixteen rays are: the dark surface covers half of the pixel.
+TEST(PixelSum, ExtraRaysMeasureTheCoverageOfASurface) {
     PixelSum sum;
     for (int k = 0; k < 4; ++k) add_shown(sum, background(k == 0 ? kDark : kBright), k == 0 ? kDark : kBright);
     EXPECT_GT(sum.rays_wanted(), 0);
@@ -46,8 +46,8 @@ TEST(PixelSum, RaysBeyondTheSamplesSayHowMuchOfThePixelASurfaceCovers) {
     EXPECT_NEAR(sum.mean().albedo.x, 1.0, 1e-12);
 }
 
-// Surfaces that have half of their plain light, with samples and without.
-TEST(PixelSum, RaysBeyondTheSamplesAreLitAsTheSamplesAre) {
+// The surfaces have half of their unshadowed light, with samples and without.
+TEST(PixelSum, ExtraRaysAreLitLikeTheSamples) {
     PixelSum sum;
     const Glance lit = surface({0.2, 0.2, 0.2}, {0.6, 0.6, 0.6});
     add_shown(sum, lit, {0.5, 0.5, 0.5});
@@ -59,7 +59,7 @@ TEST(PixelSum, RaysBeyondTheSamplesAreLitAsTheSamplesAre) {
     EXPECT_NEAR(sum.mean().albedo.x, 0.75 * 0.5 + 0.25, 1e-12);
 }
 
-TEST(PixelSum, TheOpenPartOfAPixelIsThatOfAllRays) {
+TEST(PixelSum, OpenPartOfAPixelIsTheShareOfAllRays) {
     PixelSum sum;
     Glance open;
     open.covers = false;
@@ -81,7 +81,7 @@ PixelSum seen_twice(const Vec3& first, std::uint32_t surface, const Vec3& second
     return sum;
 }
 
-TEST(PixelSum, OutlinesWantAllRaysWhereTheyShowAndSomeWhereSamplesMayHaveMissedThem) {
+TEST(PixelSum, VisibleOutlinesWantAllRaysAndPossiblyMissedOnesWantSome) {
     EXPECT_EQ(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(true), kGlances - 2);
     EXPECT_LT(seen_twice(kDark, 1, 2.0 * kDark, 2).rays_wanted(false), kGlances - 2);
     EXPECT_EQ(seen_twice(kDark, 1, kDark, 2).rays_wanted(true), 0);
@@ -90,7 +90,7 @@ TEST(PixelSum, OutlinesWantAllRaysWhereTheyShowAndSomeWhereSamplesMayHaveMissedT
     EXPECT_LT(missed, kGlances - 2);
 }
 
-TEST(PixelSum, EvenPixelsAndThoseOfManySamplesWantNoMoreRays) {
+TEST(PixelSum, EvenPixelsAndPixelsWithManySamplesWantNoMoreRays) {
     PixelSum even;
     for (int k = 0; k < 4; ++k) add_shown(even, background(kBright), kBright);
     EXPECT_EQ(even.rays_wanted(), 0);

@@ -24,7 +24,7 @@ PreviewMesh square(double height) {
 
 PreviewSpheres one_sphere(const Vec3& center, double radius) { return {{center}, {radius}, {{1, 0, 0}}}; }
 
-TEST(Preview, FindsTheFirstThingOnARay) {
+TEST(Preview, RayFindsTheFirstObject) {
     const Vec3 far_away{1e6, 2e6, 0};
     PreviewMesh mesh = square(0.0);
     for (Vec3& v : mesh.mesh.vertices) v += far_away;
@@ -53,14 +53,14 @@ TEST(Preview, NormalsFaceTheRayOnBothSidesOfAMesh) {
     EXPECT_NEAR(preview.trace({{0.1, 0.2, -1}, {0, 0, 1}})->normal.z, -1.0, 1e-12);
 }
 
-TEST(Preview, PlanesAreNotThereFromBehindAndThrowNoShadow) {
+TEST(Preview, PlanesAreInvisibleFromBehindAndCastNoShadow) {
     const Preview preview({}, {{{0, 0, 0}, {0, 0, 1}, {}}}, {});
     EXPECT_TRUE(preview.trace({{0, 0, 1}, {0, 0, -1}}));
     EXPECT_FALSE(preview.trace({{0, 0, -1}, {0, 0, 1}}));
     EXPECT_FALSE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
 }
 
-TEST(Preview, MeshesAndSpheresThrowShadows) {
+TEST(Preview, MeshesAndSpheresCastShadows) {
     Preview preview({square(0.0)}, {}, {});
     EXPECT_TRUE(preview.occluded({{0, 0, 1}, {0, 0, -1}}));
     EXPECT_FALSE(preview.occluded({{5, 0, 1}, {0, 0, -1}}));
@@ -90,7 +90,7 @@ TEST(Preview, LinesAreRoundAndHaveRoundEnds) {
     EXPECT_TRUE(preview.occluded({{0, 0, 5}, {0, 0, -1}}));
 }
 
-TEST(Preview, ClothIsSeenFromBothSidesAndThrowsShadows) {
+TEST(Preview, ClothIsVisibleFromBothSidesAndCastsShadows) {
     Preview preview({}, {}, {});
     preview.set_moving({one_sphere({0, 0, -3}, 0.5), {}, square(0.0)});
     for (const double side : {1.0, -1.0}) {
@@ -105,7 +105,7 @@ TEST(Preview, ClothIsSeenFromBothSidesAndThrowsShadows) {
     EXPECT_FALSE(preview.occluded({{0.1, 0.2, 1}, {0, 0, -1}}));
 }
 
-TEST(Preview, LeavesOutLinesAndClothThatCannotBeDrawn) {
+TEST(Preview, UndrawableLinesAndClothAreLeftOut) {
     Preview preview({}, {}, {});
     PreviewMesh cloth = square(0.0);
     cloth.mesh.vertices.push_back({kNaN, 0, 0});
@@ -122,7 +122,7 @@ TEST(Preview, LeavesOutLinesAndClothThatCannotBeDrawn) {
     EXPECT_FALSE(preview.trace({{3, 3, 5}, {0, 0, -1}}));
 }
 
-TEST(Preview, LeavesOutWhatCannotBeDrawnAndKeepsTheRest) {
+TEST(Preview, UndrawableTrianglesAndSpheresAreLeftOut) {
     PreviewMesh mesh = square(0.0);
     mesh.mesh.vertices.push_back({kNaN, 0, 0});
     mesh.mesh.triangles.push_back({0, 1, 4});
@@ -136,7 +136,7 @@ TEST(Preview, LeavesOutWhatCannotBeDrawnAndKeepsTheRest) {
     EXPECT_TRUE(preview.trace({{0.9, 0.9, 5}, {0, 0, -1}}));
 }
 
-TEST(Preview, RaysThatAreNoRaysHitNothing) {
+TEST(Preview, InvalidRaysHitNothing) {
     const Preview preview({square(0.0)}, {}, {});
     const double infinity = std::numeric_limits<double>::infinity();
     for (const PreviewRay& ray : {PreviewRay{{kNaN, 0, 1}, {0, 0, -1}}, PreviewRay{{0, 0, 1}, {0, kNaN, -1}},
@@ -146,7 +146,7 @@ TEST(Preview, RaysThatAreNoRaysHitNothing) {
     }
 }
 
-TEST(Preview, GlassIsFoundOnlyByThoseWhoAskForIt) {
+TEST(Preview, GlassIsFoundOnlyByGlassRays) {
     PreviewMesh glass = square(0.0);
     glass.glass = true;
     const Preview preview({glass, square(-1.0)}, {}, {});
@@ -159,7 +159,7 @@ TEST(Preview, GlassIsFoundOnlyByThoseWhoAskForIt) {
     EXPECT_FALSE(preview.trace_glass({{0.1, 0.2, -0.5}, {0, 0, -1}}));
 }
 
-// A mesh at rest, a plane, spheres, lines, cloth, copies of a mesh and balls, all in each other's way.
+// Returns a static mesh, a plane, spheres, lines, cloth, copies of a mesh and balls, all occluding each other.
 Preview crowd() {
     Preview preview({square(-1.0)}, {{{0, 0, -2}, {0, 0, 1}, {0.4, 0.4, 0.4}}}, {});
     preview.set_shape({{{0.9, 0.1, 0}, {-0.8, 0.4, 0.1}, {-0.7, -0.5, -0.1}, {0.1, 0.1, 0.7}},
@@ -182,8 +182,8 @@ Preview crowd() {
     return preview;
 }
 
-// In packets of every size, of rays that go alike and that do not. Rays through an edge may go either way.
-TEST(Preview, RaysInPacketsMeetWhatTheyMeetAlone) {
+// Uses packets of every size with coherent and incoherent rays. Rays through an edge may hit or miss.
+TEST(Preview, PacketsOfRaysHitTheSameObjectsAsSingleRays) {
     const Preview preview = crowd();
     RandomSequence draws(4, 0, 0);
     int differing = 0;
@@ -218,7 +218,7 @@ TEST(Preview, RaysInPacketsMeetWhatTheyMeetAlone) {
     EXPECT_LE(differing, rays_shot / 500);
 }
 
-TEST(Preview, RaysLeaveSpheresOutWhereTheyAreToldTo) {
+TEST(Preview, RaysSkipSpheresOnRequest) {
     Preview preview({square(-1.0)}, {}, {});
     preview.set_spheres(one_sphere({0, 0, 1}, 0.5));
     const std::array<PreviewRay, 2> rays = {PreviewRay{{0.1, 0.2, 5}, {0, 0, -1}},
@@ -233,7 +233,7 @@ TEST(Preview, RaysLeaveSpheresOutWhereTheyAreToldTo) {
     EXPECT_FALSE(preview.occluded(std::span(rays).subspan(1), SphereRays::left_out)[0]);
 }
 
-TEST(Preview, RaysMeetSpheresThatWereLeftOutOnceTheyArePrepared) {
+TEST(Preview, RaysHitSkippedSpheresOnceTheyArePrepared) {
     Preview preview({}, {}, {});
     preview.set_moving({one_sphere({0, 0, 1}, 0.5), {}, {}}, SphereRays::left_out);
     const PreviewRay down{{0, 0, 5}, {0, 0, -1}};

@@ -12,8 +12,8 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// Every box of 1/4 x 1/4, 1/16 x 1, 1/8 x 1/2, ... holds exactly one of the first 16 samples: a (0, 4, 2)-net.
-TEST(PixelSamples, TheFirstSixteenLieOneEachInEveryElementaryBox) {
+// Every box of 1/4 x 1/4, 1/16 x 1, 1/8 x 1/2, ... contains exactly one of the first 16 samples: a (0, 4, 2)-net.
+TEST(PixelSamples, EveryElementaryBoxContainsOneOfTheFirstSixteen) {
     for (int pixel = 0; pixel < 50; ++pixel) {
         const PixelSamples samples(pixel, 7 * pixel);
         for (const auto& [across, along] : {std::pair{1, 16}, {2, 8}, {4, 4}, {8, 2}, {16, 1}}) {
@@ -29,8 +29,8 @@ TEST(PixelSamples, TheFirstSixteenLieOneEachInEveryElementaryBox) {
     }
 }
 
-// Against the library's sine and cosine, all round; the series are off by less than 2e-9.
-TEST(OnDisc, IsThePointAtThatAngleAndDistance) {
+// Compares with the library's sine and cosine on the full circle. The error of the series is below 2e-9.
+TEST(OnDisc, PointHasTheGivenAngleAndDistance) {
     for (int k = 0; k < 1000; ++k) {
         const double v = k / 1000.0;
         const DiscPoint at = on_disc({0.25, v});
@@ -39,8 +39,7 @@ TEST(OnDisc, IsThePointAtThatAngleAndDistance) {
     }
 }
 
-// The points themselves, before they are scrambled, have these bits: Sobol's first two dimensions, Owen-scrambled by
-// hand.
+// Compares with an independent computation of Sobol's first two dimensions, followed by Owen scrambling.
 TEST(PixelSamples, AreTheScrambledPointsOfSobol) {
     const auto reversed = [](std::uint32_t x) {
         std::uint32_t out = 0;
@@ -74,7 +73,7 @@ TEST(PixelSamples, AreTheScrambledPointsOfSobol) {
     }
 }
 
-TEST(PixelSamples, TimesAreOneInEverySixteenthOfTheShutter) {
+TEST(PixelSamples, EverySixteenthOfTheShutterContainsOneTime) {
     const PixelSamples samples(3, 5);
     std::set<int> parts;
     for (int s = 0; s < 16; ++s) parts.insert(static_cast<int>(16.0 * samples.time(s)));

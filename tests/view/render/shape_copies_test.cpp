@@ -24,9 +24,9 @@ PreviewRay random_ray(RandomSequence& draws, const Vec3& about) {
     return {from, normalized(about + 1.2 * draws.in_unit_ball() - from)};
 }
 
-TEST(ShapeCopies, ABallThatIsStretchedIsAnEllipsoid) {
+TEST(ShapeCopies, StretchedBallIsAnEllipsoid) {
     Preview preview({}, {}, {});
-    // Half axes 2, 1 and 0.5.
+    // The half axes are 2, 1 and 0.5.
     PreviewMoving moving;
     moving.copies.places = {{{2, 0, 0}, {0, 1, 0}, {0, 0, 0.5}, {10, 0, 0}}};
     moving.copies.colors = {{0.1, 0.2, 0.3}};
@@ -47,8 +47,8 @@ TEST(ShapeCopies, ABallThatIsStretchedIsAnEllipsoid) {
     EXPECT_TRUE(preview.trace({{10, 0, 0}, {0, 1, 0}})) << "from inside";
 }
 
-// Every ray hits the copy where it hits a mesh whose vertices were moved by the same map.
-TEST(ShapeCopies, ACopyOfAMeshIsTheMeshMoved) {
+// Every ray hits the copy at the same point as a mesh whose vertices were transformed by the same map.
+TEST(ShapeCopies, CopyOfAMeshIsTheTransformedMesh) {
     RandomSequence draws(11, 0, 0);
     int hits = 0;
     for (std::uint64_t k = 0; k < 40; ++k) {
@@ -69,7 +69,7 @@ TEST(ShapeCopies, ACopyOfAMeshIsTheMeshMoved) {
             const PreviewRay shot = random_ray(draws, at);
             const auto expected = truth.trace(shot);
             const auto found = preview.trace(shot);
-            if (!expected || !found) continue;  // a ray past an edge may differ by rounding
+            if (!expected || !found) continue;  // a ray along an edge may differ by rounding
             ++hits;
             EXPECT_NEAR(found->distance, expected->distance, 2e-5) << "seed 11, copy " << k << ", ray " << ray;
             EXPECT_LT(length(found->face - expected->face), 1e-4);
@@ -80,7 +80,7 @@ TEST(ShapeCopies, ACopyOfAMeshIsTheMeshMoved) {
     EXPECT_GT(hits, 400);
 }
 
-TEST(ShapeCopies, ItIsWhereItsWayIsAtTheRaysTime) {
+TEST(ShapeCopies, CopyIsAtItsPositionAtTheTimeOfTheRay) {
     Preview preview({}, {}, {});
     PreviewMoving moving;
     moving.copies.places = {placed({}, {8, 0, 0})};
@@ -93,7 +93,7 @@ TEST(ShapeCopies, ItIsWhereItsWayIsAtTheRaysTime) {
     }
 }
 
-TEST(ShapeCopies, CopiesWithoutSizeOrPlaceAreLeftOut) {
+TEST(ShapeCopies, CopiesWithoutSizeOrPositionAreLeftOut) {
     Preview preview({}, {}, {});
     PreviewMoving moving;
     const double nan = std::nan("");

@@ -23,7 +23,7 @@ struct Spheres {
     explicit Spheres(PreviewSpheres spheres) : source(std::move(spheres)) { preview.set_spheres(source); }
 };
 
-// The ray through a place in the picture, in pixels from its upper left corner.
+// Returns the ray through a point of the picture, in pixels from its upper left corner.
 PreviewRay ray_at(const Camera& camera, double x, double y) {
     const CameraFrame frame = camera_frame(camera);
     const double scale = half_height(camera) / kHeight;
@@ -31,10 +31,10 @@ PreviewRay ray_at(const Camera& camera, double x, double y) {
                                         (kHeight - 2.0 * y) * scale * frame.up)};
 }
 
-// The ray through the middle of a pixel.
+// Returns the ray through the middle of a pixel.
 PreviewRay middle_ray(const Camera& camera, int x, int y) { return ray_at(camera, x + 0.5, y + 0.5); }
 
-// Nearest sphere by testing all.
+// Returns the nearest sphere by testing all spheres.
 SphereFind nearest(const PreviewSpheres& spheres, const PreviewRay& ray) {
     SphereFind best;
     for (std::size_t i = 0; i < spheres.centers.size(); ++i) {
@@ -63,7 +63,7 @@ int compare_all_pixels(const PreviewSpheres& source, const Camera& camera) {
         for (int k = 0; k < rows * kWidth; ++k) {
             const SphereFind expected = nearest(source, middle_ray(camera, k % kWidth, top + k / kWidth));
             const SphereFind& found = finds[static_cast<std::size_t>(k)];
-            // Rays that graze a sphere may go either way.
+            // Rays that graze a sphere may hit or miss.
             if (std::isinf(expected.distance) != std::isinf(found.distance)) {
                 ADD_FAILURE() << "pixel " << k % kWidth << ", " << top + k / kWidth;
                 continue;
@@ -80,7 +80,7 @@ int compare_all_pixels(const PreviewSpheres& source, const Camera& camera) {
 constexpr int kTileWidth = 4;
 constexpr int kTileHeight = 2;
 
-// Calls look(x, y, spheres) for the tiles of a view, by their left upper pixels.
+// Calls look(x, y, spheres) for each tile of a view. x and y are its upper left pixel.
 template <class Look>
 void for_each_tile(const SphereView& view, const Look& look) {
     for (int y = 0; y < kHeight; y += kTileHeight) {
@@ -89,7 +89,7 @@ void for_each_tile(const SphereView& view, const Look& look) {
     }
 }
 
-// Rays anywhere in the pixels, eight a tile.
+// Compares rays anywhere in the pixels, eight per tile.
 int compare_all_tiles(const PreviewSpheres& source, const Camera& camera, RandomSequence& draws) {
     const Spheres spheres(source);
     const SphereView view(spheres.preview.spheres(), camera, kWidth, kHeight, WithinPixel::anywhere);
@@ -124,7 +124,7 @@ PreviewSpheres cloud(RandomSequence& draws) {
     return spheres;
 }
 
-TEST(SphereView, FindsWhatTestingEverySphereFinds) {
+TEST(SphereView, FindsTheSameSpheresAsABruteForceSearch) {
     const std::uint64_t seed = 5;
     RandomSequence draws(seed, 0, 0);
     const PreviewSpheres spheres = cloud(draws);
@@ -132,7 +132,7 @@ TEST(SphereView, FindsWhatTestingEverySphereFinds) {
     EXPECT_GT(compare_all_pixels(spheres, {{0.3, 0.1, 0.2}, {1, 2, 0}, {0, 0, 1}, 70.0}), 400) << "seed " << seed;
 }
 
-TEST(SphereView, TilesListWhatRaysAnywhereInThemMeet) {
+TEST(SphereView, TilesListTheSpheresThatTheirRaysHit) {
     const std::uint64_t seed = 6;
     RandomSequence draws(seed, 0, 0);
     const PreviewSpheres spheres = cloud(draws);
@@ -141,7 +141,7 @@ TEST(SphereView, TilesListWhatRaysAnywhereInThemMeet) {
     EXPECT_GT(compare_all_tiles({{{0, 0.5, 0}}, {3.0}, {{}}}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 60.0}, draws), 400);
 }
 
-// Whether rays all over a pixel see different spheres, or none beside one.
+// Returns true if rays over the whole pixel hit different spheres, or some hit and some miss.
 bool differs_within(const PreviewSpheres& spheres, const Camera& camera, int x, int y) {
     constexpr int kRays = 6;
     std::uint32_t first = 0;
@@ -156,8 +156,8 @@ bool differs_within(const PreviewSpheres& spheres, const Camera& camera, int x, 
     return false;
 }
 
-// Spheres that do not touch each other, in a row of layers.
-TEST(SphereView, OutlinesAreFoundInPixelsThatSeeDifferentThings) {
+// The spheres do not touch each other; they form several layers.
+TEST(SphereView, OutlinesAreFoundInPixelsWithDifferentSpheres) {
     const std::uint64_t seed = 7;
     RandomSequence draws(seed, 0, 0);
     PreviewSpheres spheres;
@@ -181,14 +181,14 @@ TEST(SphereView, OutlinesAreFoundInPixelsThatSeeDifferentThings) {
             EXPECT_TRUE(found || !expected) << "seed " << seed << ", pixel " << x << ", " << top;
             if (found) ++(expected ? outlines : needless);
             middle.reach = 1.0;
-            EXPECT_FALSE(outlines_about(std::span(&middle, 1), near, slope)[0]) << "behind what is seen";
+            EXPECT_FALSE(outlines_about(std::span(&middle, 1), near, slope)[0]) << "behind the hit";
         }
     });
     EXPECT_GT(outlines, 200);
     EXPECT_LT(needless, outlines / 2);
 }
 
-// A ray to the left comes from a sphere on the right, beside the camera, and goes on along the rim of a small one.
+// A ray to the left passes a sphere on the right beside the camera, then the rim of a small sphere.
 TEST(SphereView, SpheresBehindARayHideNoOutlines) {
     const Camera camera{{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 100.0};
     const PreviewRay ray{camera.position, normalized(Vec3{-1.7, 1, 0})};
@@ -212,7 +212,7 @@ TEST(SphereView, SeesSpheresAroundAndBesideTheCameraAndNoneBehindIt) {
     EXPECT_TRUE(SphereView(behind.preview.spheres(), camera, kWidth, kHeight).empty());
 }
 
-TEST(SphereView, DoesNotPayWhereManySpheresFillThePicture) {
+TEST(SphereView, DoesNotPayIfManySpheresFillThePicture) {
     PreviewSpheres spheres;
     for (int i = 0; i < 100; ++i) {
         spheres.centers.push_back({0, 5.0 + i, 0});

@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(SpriteImage, IsAtTheMiddleOfAPixelThatPixelInLinearLightTimesItsCover) {
+TEST(SpriteImage, PixelCentreHasItsLinearColourTimesItsCoverage) {
     const SpriteImage image(Image{2, 1, {255, 0, 0, 0, 128, 0}, {255, 51}});
     EXPECT_EQ(image.half_width(), 1.0);
     EXPECT_EQ(image.half_height(), 0.5);
@@ -24,7 +24,7 @@ TEST(SpriteImage, IsAtTheMiddleOfAPixelThatPixelInLinearLightTimesItsCover) {
     EXPECT_EQ(image.at(3.0, 0.5, 1.0).cover, 0.0);
 }
 
-// Far away all of it is one texel, also of odd sizes.
+// From far away the whole image is one texel, even for odd sizes.
 TEST(SpriteImage, SmallerLevelsHaveTheSameMean) {
     RandomSequence draws(4, 0, 0);
     for (const int width : {1, 3, 8, 37}) {

@@ -27,7 +27,7 @@ TEST(Sprites, GlowAddsUpInAnyOrder) {
     EXPECT_EQ(a.light, b.light);
 }
 
-TEST(Sprites, TheNearerSoftDiscCoversTheFartherOne) {
+TEST(Sprites, NearerSoftDiscCoversTheFartherOne) {
     const Preview preview = nothing();
     const Sprites discs{{{0, -2, 0}, {0, 2, 0}}, {1, 1}, {{1, 0, 0}, {0, 1, 0}}, {0.9, 0.9}, false};
     const SpriteLayer layer = draw_sprites(discs, preview, front(), kSize, kSize);
@@ -36,13 +36,13 @@ TEST(Sprites, TheNearerSoftDiscCoversTheFartherOne) {
     EXPECT_EQ(layer.transmittance[0], 1.0);
 }
 
-TEST(Sprites, WhatIsBehindAWallOrBehindTheCameraIsNotSeen) {
+TEST(Sprites, DiscsBehindAWallOrBehindTheCameraAreInvisible) {
     const Preview preview({}, {{{0, -1, 0}, {0, -1, 0}, {0.5, 0.5, 0.5}}}, {});
     const Sprites discs{{{0, 2, 0}, {0, -20, 0}}, {0.5, 0.5}, {{1, 0, 0}, {1, 0, 0}}, {1, 1}, true};
     for (const Vec3& light : draw_sprites(discs, preview, front(), kSize, kSize).light) ASSERT_EQ(light, Vec3{});
 }
 
-TEST(Sprites, ADiscSmallerThanAPixelIsDimmedNotLost) {
+TEST(Sprites, DiscSmallerThanAPixelIsDimmedNotLost) {
     const Preview preview = nothing();
     const auto total = [&](double radius) {
         const SpriteLayer layer =
@@ -55,7 +55,7 @@ TEST(Sprites, ADiscSmallerThanAPixelIsDimmedNotLost) {
     EXPECT_LT(total(1e-3), 1e-3 * total(0.5));
 }
 
-TEST(Sprites, TheSameBytesForAnyNumberOfThreads) {
+TEST(Sprites, BytesDoNotDependOnTheNumberOfThreads) {
     Sprites discs;
     for (int k = 0; k < 500; ++k) {
         discs.centers.push_back({0.01 * (k % 40) - 0.2, 0.02 * (k % 17), 0.013 * (k % 31) - 0.2});
@@ -77,8 +77,8 @@ TEST(Sprites, TheSameBytesForAnyNumberOfThreads) {
     EXPECT_EQ(bytes(1, true), bytes(4, true));
 }
 
-// Where thin cover came out brighter, a disc had a bright rim.
-TEST(Picture, ADiscOfTheBackgroundsLightIsNotSeen) {
+// A disc would have a bright rim if thin coverage came out brighter.
+TEST(Picture, DiscWithTheLightOfTheBackgroundIsInvisible) {
     Sprites disc;
     disc.centers = {{0, 0, 0}};
     disc.radii = {0.5};
@@ -95,7 +95,7 @@ TEST(Picture, ADiscOfTheBackgroundsLightIsNotSeen) {
     EXPECT_NE(render_picture(nothing(), front(), options, std::span(&disc, 1)).rgb, empty.rgb);
 }
 
-TEST(Picture, TheNightIsDark) {
+TEST(Picture, NightIsDark) {
     PictureOptions options;
     options.width = options.height = kSize;
     options.samples = 1;

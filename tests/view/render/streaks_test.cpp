@@ -28,7 +28,7 @@ Preview floor_under(const PreviewLines& lines) {
     return preview;
 }
 
-// The way of a ball at a constant velocity that is at a place at time 0.
+// Returns the path of a ball with constant velocity that is at the given position at time 0.
 std::vector<PathNode> straight(const Vec3& place, const Vec3& velocity) {
     return {{-1.0, place - velocity, velocity, velocity}, {1.0, place + velocity, velocity, velocity}};
 }
@@ -39,9 +39,9 @@ Vec3 light_of(const std::vector<GlowingLine>& lines) {
     return sum;
 }
 
-// Light that the floor sends at the origin, red, of lines above the camera.
+// Returns the red light that the floor reflects at the origin, from lines above the camera.
 double floor_red(const PreviewLines& lines) {
-    constexpr double kExposure = 0.001;  // so small that the display's range is linear
+    constexpr double kExposure = 0.001;  // so small that tone mapping is linear
     const Preview preview = floor_under(lines);
     PictureOptions options;
     options.width = options.height = 64;
@@ -56,7 +56,7 @@ double floor_red(const PreviewLines& lines) {
     return pixel.light.x / kExposure;
 }
 
-// Hundreds of streaks beside the view, as those of a grinder.
+// Returns hundreds of streaks beside the view, like the sparks of a grinder.
 PreviewLines shower() {
     RandomSequence draws(5, 0, 0);
     PreviewLines lines;
@@ -74,8 +74,9 @@ double mean_red(const Image& image) {
     return 3.0 * sum / static_cast<double>(image.rgb.size());
 }
 
-// In two pieces of a rebound, fast down and slow up, the light is as the times are; together it is that of the ball.
-TEST(Streaks, HaveTheLightOfTheBallWhereverItWasByTheTimeThatItWasThere) {
+// A rebound, fast down and slowly up, has two pieces. Their light is proportional to their times, and adds up to that
+// of the ball.
+TEST(Streaks, LightOfAPieceIsProportionalToItsTime) {
     const std::vector<PathNode> nodes{{0.0, {0, 0, 1}, {0, 0, -10}, {0, 0, -10}},
                                       {0.1, {0, 0, 0}, {0, 0, -10}, {0, 0, 2}},
                                       {0.4, {0, 0, 0.6}, {0, 0, 2}, {0, 0, 2}}};
@@ -88,9 +89,9 @@ TEST(Streaks, HaveTheLightOfTheBallWhereverItWasByTheTimeThatItWasThere) {
     EXPECT_LT(length(drawn[1].intensity - 0.75 * kRadius * kRadius * kGlow), 1e-12);
 }
 
-// Under the middle of a level way of length l at the height h, the mean of h / d^3 over the way is
-// 1 / (h^2 sqrt(1 + (l / 2 h)^2)).
-TEST(Streaks, LightTheFloorAsTheBallDoesHoweverLongTheShutterIsOpen) {
+// At the floor below the middle of a level path of length l at height h, the mean of h / d^3 along the path is 1 / (h^2
+// sqrt(1 + (l / 2 h)^2)).
+TEST(Streaks, FloorLightMatchesTheBallForAnyShutterTime) {
     constexpr double kHeight = 1.0;
     constexpr double kSpeed = 8.0;
     const std::vector<PathNode> nodes = straight({0, 0, kHeight}, {kSpeed, 0, 0});
@@ -98,12 +99,12 @@ TEST(Streaks, LightTheFloorAsTheBallDoesHoweverLongTheShutterIsOpen) {
     double shortest = 0.0;
     for (const double shutter : {0.002, 0.015, 0.045}) {
         PreviewLines lines;
-        // As bright as a thousand balls, to stand out against the night.
+        // The streak is as bright as a thousand balls, to stand out against the night.
         add_streak({nodes, -0.5 * shutter, 0.5 * shutter, kRadius, {}, 1000.0 * kGlow}, lines);
         EXPECT_LT(length(light_of(floor_under(lines).glowing_lines()) - 1000.0 * kRadius * kRadius * kGlow), 1e-9);
         const double slope = 0.5 * kSpeed * shutter / kHeight;
         const double of_one = kRadius * kRadius * kGlow.x / (kHeight * kHeight * std::sqrt(1.0 + slope * slope));
-        constexpr double kNearness = 0.9623;  // exp(-1 / (14 tan 20 deg)^2): distance turns the floor into the horizon
+        constexpr double kNearness = 0.9623;  // exp(-1 / (14 tan 20 deg)^2): distance blends the floor into the horizon
         const double added = floor_red(lines) - dark;
         EXPECT_NEAR(added, kNearness * 0.5 * 1000.0 * of_one, 0.01 * added) << shutter;
         shortest = shutter == 0.002 ? added : shortest;
@@ -111,7 +112,7 @@ TEST(Streaks, LightTheFloorAsTheBallDoesHoweverLongTheShutterIsOpen) {
     }
 }
 
-TEST(Streaks, TheBrightnessOfWhatTheyLightDoesNotDependOnTheSamplesOrTheFilter) {
+TEST(Streaks, BrightnessOfLitSurfacesDoesNotDependOnSamplesOrFilter) {
     const Preview preview = floor_under(shower());
     const Camera camera{{0, -0.01, 1.5}, {0, 0, 0}, {0, 1, 0}, 30.0};
     PictureOptions options;
@@ -128,10 +129,10 @@ TEST(Streaks, TheBrightnessOfWhatTheyLightDoesNotDependOnTheSamplesOrTheFilter) 
     for (const int samples : {4, 16}) EXPECT_NEAR(red(samples, true), expected, 0.03 * expected) << samples;
 }
 
-// What shines throws no shadows, in drafts and in pictures; the same threads without light do.
-TEST(Streaks, ThatShineThrowNoShadowsInADraft) {
+// Glowing threads cast no shadows, in drafts and in pictures. The same threads without light do.
+TEST(Streaks, GlowingStreaksCastNoShadowsInADraft) {
     PreviewLines lines = shower();
-    // From below the streaks, which are not seen, at the floor in their shadow.
+    // The camera is below the streaks, so that they are invisible, and looks at the floor in their shadow.
     const Camera camera{{0, -0.01, 0.09}, {0, 0, 0}, {0, 1, 0}, 60.0};
     const Vec3 to_sun = light_for(Lighting::day, camera).to_sun;
     for (Vec3& point : lines.points) point += 0.6 / to_sun.z * to_sun - Vec3{1.3, 0, 0.6};
@@ -144,8 +145,8 @@ TEST(Streaks, ThatShineThrowNoShadowsInADraft) {
     EXPECT_LT(mean_red(render_picture(floor_under(lines), camera, options)), 0.95 * mean_red(open));
 }
 
-// Rays that look for light leave them out, all others meet them.
-TEST(Streaks, AreMetByRaysThatLookForThingsAndNotByThoseThatLookForLight) {
+// Shadow rays skip the streaks; all other rays hit them.
+TEST(Streaks, StreaksAreHitByCameraRaysAndNotByShadowRays) {
     PreviewLines lines;
     const std::vector<PathNode> nodes = straight({0, 0, 1}, {1, 0, 0});
     add_streak({nodes, -0.5, 0.5, kRadius, {0.1, 0.2, 0.3}, kGlow}, lines);

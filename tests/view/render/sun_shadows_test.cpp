@@ -31,10 +31,10 @@ DrawnSpheres cloud(std::uint64_t seed, int count, double largest) {
     return spheres;
 }
 
-TEST(SunShadows, CoverWhatAnySphereStandsBefore) {
+TEST(SunShadows, CoverEveryPointInTheShadowOfASphere) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         DrawnSpheres spheres = cloud(seed, 400, 0.15);
-        if (seed == 3) spheres.radii[7] = 2.0;  // one that is over thousands of cells
+        if (seed == 3) spheres.radii[7] = 2.0;  // a sphere over thousands of cells
         RandomSequence draws(seed, 1, 0);
         const Vec3 to_light = draws.unit_vector();
         const SunShadows shadows(spheres, to_light);
@@ -50,8 +50,8 @@ TEST(SunShadows, CoverWhatAnySphereStandsBefore) {
     }
 }
 
-// Directions about the light's, on all sides of it, and those of its axes.
-TEST(SunShadows, CoverWhatStandsBeforeASlantedRay) {
+// Uses directions around the light's direction, on all sides of it, and directions along the axes of the grid.
+TEST(SunShadows, CoverEveryPointInTheShadowAlongASlantedRay) {
     for (const std::uint64_t seed : {4U, 5U}) {
         DrawnSpheres spheres = cloud(seed, 400, 0.15);
         if (seed == 5) spheres.radii[7] = 2.0;
@@ -75,7 +75,8 @@ TEST(SunShadows, CoverWhatStandsBeforeASlantedRay) {
     EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0}, {0, 0, 1}));
 }
 
-// From dust to the distances between planets: the shadow of a sphere on a plane is where the slanted ray has it.
+// Lengths range from dust to distances between planets. The slanted ray gives the position of a sphere's shadow on a
+// plane.
 TEST(SunShadows, SlantedRaysDoNotDependOnTheUnitOfLength) {
     for (const double unit : {1e-9, 1.0, 1e13}) {
         const DrawnSpheres pair{{{0, 0, 10.0 * unit}, {20.0 * unit, 0, 0}}, {unit, unit}, {}, {}};
@@ -100,14 +101,14 @@ TEST(SunShadows, GridsPayForNarrowLightsAndThinClouds) {
     EXPECT_TRUE(SunShadows(pile, {0, 0, 1}).pays()) << "looked at from the top";
 }
 
-TEST(SunShadows, GridsDoNotPayWhereAStrayStretchesThem) {
+TEST(SunShadows, GridsDoNotPayIfAnOutlierStretchesThem) {
     DrawnSpheres spheres = cloud(7, 4000, 0.15);
     EXPECT_TRUE(SunShadows(spheres, {0, 0, 1}).pays());
     spheres.centers[0] = {1e6, 0, 0};
     EXPECT_FALSE(SunShadows(spheres, {0, 0, 1}).pays());
 }
 
-TEST(SunShadows, ThePointOfASphereThatFacesTheLightIsLit) {
+TEST(SunShadows, PointOfASphereThatFacesTheLightIsLit) {
     const DrawnSpheres one{{{1, 2, 3}}, {0.5}, {}, {}};
     const Vec3 to_light = normalized(Vec3{1, 1, 2});
     const SunShadows shadows(one, to_light);
@@ -116,7 +117,7 @@ TEST(SunShadows, ThePointOfASphereThatFacesTheLightIsLit) {
     EXPECT_TRUE(shadows.covers(one.centers[0] - 0.6 * to_light));
 }
 
-TEST(SunShadows, NothingThrowsNone) { EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0})); }
+TEST(SunShadows, NoSpheresCastNoShadow) { EXPECT_FALSE(SunShadows({}, {0, 0, 1}).covers({0, 0, 0})); }
 
 TEST(SunShadows, SpheresOnOneLineAndFarApartAreFound) {
     DrawnSpheres row;

@@ -12,10 +12,10 @@ namespace RICOCHET_FILE {
 
 constexpr int kSize = 64;
 
-// From 10 m before the origin; the picture is 8 m high there.
+// Returns a camera 10 m in front of the origin, where the picture is 8 m high.
 Camera front() { return {{0, -10, 0}, {0, 0, 0}, {0, 0, 1}, 43.6028189727036}; }
 
-// The upper half red, the lower one green, all opaque.
+// Returns an opaque image: the upper half is red, the lower half green.
 std::shared_ptr<const SpriteImage> flag() {
     Image image{8, 8, {}, {}};
     for (int i = 0; i < 64; ++i) {
@@ -41,7 +41,7 @@ SpriteLayer drawn(const Sprites& sprites, const Preview& preview) {
 
 Preview nothing() { return {{}, {}, {}}; }
 
-TEST(TexturedSprites, AnImageStandsUprightAndIsAsLargeAsItsParticle) {
+TEST(TexturedSprites, ImageIsUprightAndAsLargeAsItsParticle) {
     const SpriteLayer layer = drawn(flags({{0, 0, 0}}, 2.0), nothing());
     EXPECT_GT(layer.light[pixel(32, 20)].x, 1.0);
     EXPECT_EQ(layer.light[pixel(32, 20)].y, 0.0);
@@ -54,15 +54,15 @@ TEST(TexturedSprites, AnImageStandsUprightAndIsAsLargeAsItsParticle) {
     EXPECT_NEAR(covered, 32.0 * 32.0, 32.0);
 }
 
-TEST(TexturedSprites, AnAngleTurnsItAgainstTheClock) {
+TEST(TexturedSprites, AngleTurnsTheImageCounterclockwise) {
     Sprites sprites = flags({{0, 0, 0}}, 2.0);
     sprites.angles = {0.5 * std::numbers::pi};
     const SpriteLayer layer = drawn(sprites, nothing());
-    EXPECT_GT(layer.light[pixel(22, 32)].x, 1.0) << "what was above is at the left";
+    EXPECT_GT(layer.light[pixel(22, 32)].x, 1.0) << "the top is now at the left";
     EXPECT_GT(layer.light[pixel(42, 32)].y, 1.0);
 }
 
-TEST(TexturedSprites, TheNearerOneCoversInAnyOrder) {
+TEST(TexturedSprites, NearerImageCoversInAnyOrder) {
     Sprites sprites = flags({{0, -1, 0}, {0, 1, 0}}, 1.0);
     sprites.colors[1] = {0, 0, 0};
     const SpriteLayer one = drawn(sprites, nothing());
@@ -72,8 +72,8 @@ TEST(TexturedSprites, TheNearerOneCoversInAnyOrder) {
     EXPECT_EQ(one.light, drawn(sprites, nothing()).light);
 }
 
-// A wall 1 m before it covers all that is right of the picture's middle.
-TEST(TexturedSprites, OnlyThePartBehindSomethingSolidIsCovered) {
+// A wall 1 m in front of the image covers the right half of the picture.
+TEST(TexturedSprites, OnlyThePartBehindASolidObjectIsCovered) {
     PreviewMesh wall;
     wall.mesh = {{{0, -1, -9}, {9, -1, -9}, {9, -1, 9}, {0, -1, 9}}, {{0, 1, 2}, {0, 2, 3}}};
     const Preview preview({wall}, {}, {});
@@ -84,7 +84,7 @@ TEST(TexturedSprites, OnlyThePartBehindSomethingSolidIsCovered) {
     EXPECT_NEAR(before.transmittance[pixel(40, 32)], 0.0, 1e-6);
 }
 
-TEST(TexturedSprites, OpacityAndFarnessDimIt) {
+TEST(TexturedSprites, OpacityAndDistanceDimTheImage) {
     Sprites sprites = flags({{0, 0, 0}}, 2.0);
     sprites.opacities = {0.25};
     EXPECT_NEAR(drawn(sprites, nothing()).transmittance[pixel(32, 32)], 0.75, 1e-6);
@@ -97,7 +97,7 @@ TEST(TexturedSprites, OpacityAndFarnessDimIt) {
     EXPECT_LT(covered(0.01), 0.1);
 }
 
-TEST(TexturedSprites, TheSameBytesForAnyNumberOfThreads) {
+TEST(TexturedSprites, BytesDoNotDependOnTheNumberOfThreads) {
     Sprites sprites;
     for (int k = 0; k < 300; ++k) sprites.centers.push_back({0.02 * (k % 40) - 0.4, 0.05 * (k % 17), 0.02 * (k % 31)});
     sprites = flags(sprites.centers, 0.3);

@@ -13,14 +13,14 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-// What the table of display_channel() stands for.
+// Returns the exact value that the table of display_channel() replaces.
 int rounded(double linear) {
     return static_cast<int>(std::lround(255.0 * srgb_from_linear(std::clamp(linear, 0.0, 1.0))));
 }
 
-// Both are steps that rise, and between two steps all is one: where they agree on both sides of each of the 255 steps,
-// as close as numbers lie, and on a fine grid, they agree everywhere. The power is good to far fewer than 1000 of these
-// smallest distances, so that farther from a step its rounding cannot cross it.
+// Both functions are increasing step functions, constant between two steps. They are compared on both sides of each of
+// the 255 steps, at adjacent doubles, and on a fine grid. If they agree there, they agree everywhere: the rounding
+// error of the power is far below 1000 ulps, so it cannot cross a step from farther away.
 TEST(DisplayChannel, IsTheRoundedTransferFunctionOnBothSidesOfEveryStep) {
     for (int k = 1; k < 256; ++k) {
         const double step = linear_from_srgb((k - 0.5) / 255.0);
@@ -36,7 +36,7 @@ TEST(DisplayChannel, IsTheRoundedTransferFunctionOnBothSidesOfEveryStep) {
     }
 }
 
-TEST(DisplayChannel, IsTheRoundedTransferFunctionOnAFineGridThatGoesBeyondBothEnds) {
+TEST(DisplayChannel, IsTheRoundedTransferFunctionOnAFineGridBeyondBothEnds) {
     for (int k = -100000; k <= 1100000; ++k) ASSERT_EQ(int{display_channel(k * 1e-6)}, rounded(k * 1e-6)) << k;
     for (int cell = 0; cell <= 4096; ++cell) {
         const double edge = cell / 4096.0;
@@ -46,7 +46,7 @@ TEST(DisplayChannel, IsTheRoundedTransferFunctionOnAFineGridThatGoesBeyondBothEn
     }
 }
 
-TEST(DisplayChannel, TakesWhatIsNoColour) {
+TEST(DisplayChannel, InvalidColoursAreClamped) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     EXPECT_EQ(display_channel(kInfinity), 255);
     EXPECT_EQ(display_channel(-kInfinity), 0);

@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-TEST(Turning, AQuarterTurnAboutZTakesXToYHoweverManyStepsItTakes) {
+TEST(Turning, QuarterTurnAboutZTakesXToYInAnyNumberOfSteps) {
     const Vec3 spin{0, 0, 0.5 * std::numbers::pi};
     Turn small;
     for (int k = 0; k < 1000; ++k) small = turned_on(small, spin, 1e-3);
@@ -19,15 +19,15 @@ TEST(Turning, AQuarterTurnAboutZTakesXToYHoweverManyStepsItTakes) {
     }
 }
 
-TEST(Turning, ASpinThatIsZeroOrNotFiniteTurnsNothing) {
+TEST(Turning, SpinThatIsZeroOrNotFiniteTurnsNothing) {
     const Turn turn = random_turn(3);
     EXPECT_EQ(turned_on(turn, {}, 5.0).v, turn.v);
     EXPECT_EQ(turned_on(turn, {1, 0, 0}, INFINITY).v, turn.v);
 }
 
-// Of a uniform turn every direction is as likely: the mean of a component is 0, and that of its square 1/3. Bounds:
+// Uniform turns make every direction equally likely: a component has the mean 0 and the mean square 1/3. The bounds are
 // five standard deviations of the means.
-TEST(Turning, RandomTurnsAreUniformAndTheSameForTheSameNumber) {
+TEST(Turning, RandomTurnsAreUniformAndDependOnlyOnTheNumber) {
     constexpr int kCount = 20000;
     Vec3 mean;
     Vec3 square;
@@ -57,7 +57,7 @@ TEST(Turning, StretchingKeepsTheVolumeAndActsAlongItsDirection) {
     }
 }
 
-TEST(Turning, AProductIsOneMapAfterTheOther) {
+TEST(Turning, ProductIsOneMapAfterTheOther) {
     const AffineMap turn = map_of(random_turn(5));
     const AffineMap stretch = stretch_along({0, 1, 0}, 3.0);
     const Vec3 v{0.3, -2, 1};

@@ -141,7 +141,7 @@ Variant child_variant() {
     using On = BirthEvent;
     return variant<C>(
         "child",
-        "Born of the particles of another emitter, at their position and with their velocity. `burst`, `start`, "
+        "Children of another emitter's particles, born at their position with their velocity. `burst`, `start`, "
         "`stop`, `rate_per_frame` and `rate_per_area` do not apply.",
         {{"parent", &C::parent, "Name of the emitter whose particles are the parents.", kRequired},
          {"on", &C::on, "Event at which parents give birth.",

@@ -115,8 +115,8 @@ private:
                                        "diffuse reflection");
     }
 
-    // Returns the index of a collider's material. Colliders without one share a perfect material behind the scene's
-    // own.
+    // Returns the index of a collider's material. Colliders without one share a perfect material, which follows the
+    // scene's materials.
     std::uint32_t material_of(const ObjectView& view) {
         if (!view.has("material")) {
             if (setup_.materials.size() == used_.size()) setup_.materials.emplace_back();

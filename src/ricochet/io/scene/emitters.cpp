@@ -49,7 +49,7 @@ Fields<EmitterDescription> launch_fields() {
     using E = EmitterDescription;
     return {{"direction", &E::direction, kCoordinate, "", "Launch direction.", kNotZero,
              Without{"the shape's own: the normal of a disk, sphere surface or mesh, the line from the tip of a cone, "
-                     "or any direction"}},
+                     "otherwise any direction"}},
             {"cone", &E::cone_degrees, between(0.0, 180.0), "degrees",
              "Half angle of a cone about the direction. Directions are uniform in solid angle."},
             {"speed", &E::speed, kCoordinate, "m/s", "Speed along the direction."},

@@ -52,8 +52,8 @@ struct TriangleMaterials {
     std::vector<std::string_view> names_not_used;  ///< requested names that no triangle takes its material from
 };
 
-/// Returns the material of every triangle. The name of its material comes first, then the name of its group (the whole
-/// name, then word by word), then the name of its object.
+/// Returns the material of every triangle. It is found by the name of the triangle's material, else by its group (the
+/// whole name, then word by word), else by its object.
 [[nodiscard]] TriangleMaterials materials_by_group(const MeshGroups& groups, const NamedMaterials& named);
 
 /// Returns the reason why a path is not a readable regular file, with the nearest file names of its folder. Returns

@@ -99,7 +99,7 @@ FlowLaw shear_flow() {
     };
     return flow_law<Shear>("shear", "A velocity that grows linearly along a direction.",
                            {{"point", &Shear::point, kCoordinate, "m", "A point where the fluid is at rest."},
-                            {"rate", &Shear::rate, kCoordinate, "1/s", "Gain of velocity per metre.", kRequired},
+                            {"rate", &Shear::rate, kCoordinate, "1/s", "Velocity gain per metre.", kRequired},
                             {"gradient", &Shear::gradient, kCoordinate, "",
                              "Direction along which the velocity grows, of any length.", kRequired, kNotZero}},
                            [](const Shear& s) { return make_shear(s.point, s.rate, s.gradient); });

@@ -1,4 +1,4 @@
-// Keyed curves of a scene, and the frames of reference that move along them.
+// Keyed curves of a scene, and frames of reference that move along them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace ricochet::detail {
 namespace {
 
-// What a curve says.
+// Keys of a curve.
 template <class Value>
 struct CurveKeys {
     std::vector<CurveKey<Value>> keys;
@@ -28,8 +28,8 @@ const ObjectSpec& curve_key_spec(std::string_view title, std::string_view descri
     using K = CurveKey<Value>;
     static const ObjectSpec spec =
         object<K>(title, description,
-                  {{"time", &K::time, kCoordinate, "s", "When; later than the key before.", kRequired},
-                   {"value", &K::value, kCoordinate, "", "The curve's value then.", kRequired}});
+                  {{"time", &K::time, kCoordinate, "s", "Time of the key, later than the previous key.", kRequired},
+                   {"value", &K::value, kCoordinate, "", "Value of the curve at that time.", kRequired}});
     return spec;
 }
 
@@ -37,22 +37,20 @@ template <class Value>
 Fields<CurveKeys<Value>> curve_fields(const ObjectSpec& key_spec) {
     using C = CurveKeys<Value>;
     using I = Interpolation;
-    return {
-        {"keys", &C::keys, "The keys in the order of time, at least one, each `{\"time\": ..., \"value\": ...}`.",
-         kRequired, kNotEmpty, &key_spec},
-        {"interpolation", &C::interpolation, "What holds between two keys.",
-         Choices{choice(I::linear, "a straight line"),
-                 choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the distance, so that it is at rest at every key"),
-                 choice(I::spline, "a smooth cubic (Catmull-Rom, for uneven keys too)"),
-                 choice(I::cubic_spline, "the cubic spline, whose second derivative is continuous as well")}},
-        {"ends", &C::ends, "What holds before the first and after the last key.",
-         Choices{
-             choice(CurveEnds::hold, "hold", "that key's value"),
-             choice(CurveEnds::repeat, "repeat",
-                    "the keys again and again, each round beginning with the value that the last one ended with")}}};
+    return {{"keys", &C::keys, "Keys in order of time, at least one, each `{\"time\": ..., \"value\": ...}`.",
+             kRequired, kNotEmpty, &key_spec},
+            {"interpolation", &C::interpolation, "Interpolation between two keys.",
+             Choices{choice(I::linear, "a straight line"),
+                     choice(I::slow_in_slow_out, "3 s^2 - 2 s^3 of the distance, with zero rate at every key"),
+                     choice(I::spline, "a smooth cubic (Catmull-Rom, also for uneven keys)"),
+                     choice(I::cubic_spline, "the cubic spline with a continuous second derivative")}},
+            {"ends", &C::ends, "Value before the first and after the last key.",
+             Choices{choice(CurveEnds::hold, "hold", "the value of that key"),
+                     choice(CurveEnds::repeat, "repeat",
+                            "the keys repeat, and each round starts with the last value of the previous one")}}};
 }
 
-// What the table cannot say: later and later.
+// Checks a rule that the table cannot express: times must increase.
 bool are_good_keys(const std::vector<ObjectView>& keys, Diagnostics& diagnostics, bool has_values = true) {
     bool good = !keys.empty();
     double before = 0.0;
@@ -82,13 +80,13 @@ KeyedCurve<Value> curve_of(const ObjectView& view, Diagnostics& diagnostics) {
     }
 }
 
-// Where something was refused, nothing is scaled.
+// Returns a scale curve, or the constant 1 if an error has been reported.
 KeyedCurve<Vec3> scale_curve_of(const ObjectView& view, Diagnostics& diagnostics) {
     KeyedCurve<Vec3> curve = curve_of<Vec3>(view, diagnostics);
     return diagnostics.failed() ? KeyedCurve<Vec3>({1, 1, 1}) : curve;
 }
 
-// A pose of a collider, with its size.
+// Pose of a collider with its scale.
 struct ScaledPose : KeyPose {
     Vec3 scale{1, 1, 1};
 };
@@ -97,7 +95,7 @@ bool has_scale(const std::vector<ObjectView>& poses) {
     return std::any_of(poses.begin(), poses.end(), [](const ObjectView& view) { return view.has("scale"); });
 }
 
-// The factors along the frame's axes that poses say.
+// Returns the scale factors of poses along the frame's axes.
 KeyedCurve<Vec3> scale_through(const std::vector<ObjectView>& poses) {
     std::vector<CurveKey<Vec3>> keys;
     for (const ObjectView& view : poses) {
@@ -110,34 +108,35 @@ KeyedCurve<Vec3> scale_through(const std::vector<ObjectView>& poses) {
 const ObjectSpec& motion_spec() {
     using Turn = KeyedRotation;
     static const ObjectSpec spec = object<Unbound>(
-        "frame motion", "How a frame moves, in the axes that the motions before it have led to.", {},
+        "frame motion", "A motion of a frame, in the axes that result from the motions before it.", {},
         {variant<Turn>(
-             "rotation", "A turn about an axis through the frame's origin, by the right-hand rule.",
+             "rotation", "A rotation about an axis through the frame's origin, by the right-hand rule.",
              {{"axis", &Turn::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
-              {"angle", ValueType::object, "The angle: a curve.", &number_curve_spec(), Unit{"degrees"}, kRequired}}),
-         variant<Spin>(
-             "spin", "A steady turn about an axis through the frame's origin.",
-             {{"axis", &Spin::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
-              {"rate", &Spin::rate, kCoordinate, "degrees/s", "By the right-hand rule; the angle is 0 at 0 s.",
+              {"angle", ValueType::object, "Rotation angle: a curve.", &number_curve_spec(), Unit{"degrees"},
                kRequired}}),
+         variant<Spin>(
+             "spin", "A steady rotation about an axis through the frame's origin.",
+             {{"axis", &Spin::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
+              {"rate", &Spin::rate, kCoordinate, "degrees/s",
+               "Angular rate, by the right-hand rule. The angle is 0 at 0 s.", kRequired}}),
          variant<Swing>(
-             "swing", "A turn to and fro about an axis through the frame's origin.",
+             "swing", "An oscillating rotation about an axis through the frame's origin.",
              {{"axis", &Swing::axis, kCoordinate, "", "Direction of the axis, of any length.", kRequired, kNotZero},
-              {"amplitude", &Swing::amplitude, kCoordinate, "degrees", "The largest angle.", kRequired},
-              {"frequency", &Swing::frequency, kCoordinate, "Hz", "How often a second.", kRequired},
-              {"phase", &Swing::phase, kCoordinate, "degrees", "Of the sine at 0 s."}}),
+              {"amplitude", &Swing::amplitude, kCoordinate, "degrees", "Largest angle.", kRequired},
+              {"frequency", &Swing::frequency, kCoordinate, "Hz", "Oscillations per second.", kRequired},
+              {"phase", &Swing::phase, kCoordinate, "degrees", "Phase of the sine at 0 s."}}),
          variant<Oscillation>(
-             "oscillation", "A way to and fro.",
-             {{"amplitude", &Oscillation::amplitude, kCoordinate, "m", "The largest offset of the origin.", kRequired},
-              {"frequency", &Oscillation::frequency, kCoordinate, "Hz", "How often a second.", kRequired},
-              {"phase", &Oscillation::phase, kCoordinate, "degrees", "Of the sine at 0 s."}}),
+             "oscillation", "An oscillating translation.",
+             {{"amplitude", &Oscillation::amplitude, kCoordinate, "m", "Largest offset of the origin.", kRequired},
+              {"frequency", &Oscillation::frequency, kCoordinate, "Hz", "Oscillations per second.", kRequired},
+              {"phase", &Oscillation::phase, kCoordinate, "degrees", "Phase of the sine at 0 s."}}),
          variant<Unbound>("translation", "A translation along a curve.",
-                          {{"way", ValueType::object, "Where the origin goes: a curve of [x, y, z].",
-                            &vector_curve_spec(), Unit{"m"}, kRequired}}),
+                          {{"way", ValueType::object, "Path of the origin: a curve of [x, y, z].", &vector_curve_spec(),
+                            Unit{"m"}, kRequired}}),
          variant<Unbound>("scale",
-                          "A scale along the frame's axes, about its origin: of what comes after it and of all that "
-                          "stands on the frame. Colliders in it are meshes and boxes.",
-                          {{"factor", ValueType::object, "The factor: a curve of numbers, or of [x, y, z].",
+                          "A scale along the frame's axes, about its origin. It applies to later motions and to "
+                          "everything that stands on the frame. Colliders in it must be meshes or boxes.",
+                          {{"factor", ValueType::object, "Scale factor: a curve of numbers, or of [x, y, z].",
                             &scale_curve_spec(), kRequired}})});
     return spec;
 }
@@ -166,7 +165,7 @@ FrameDescription frame_of(const NamedObject& named, Diagnostics& diagnostics) {
     return frame;
 }
 
-// Reports parents that are not there or lead back.
+// Reports parents that do not exist or form a cycle.
 bool are_good_parents(const SceneContext& context, const std::vector<FrameDescription>& frames,
                       const std::vector<ObjectView>& views) {
     std::vector<std::string_view> names;
@@ -191,14 +190,14 @@ bool are_good_parents(const SceneContext& context, const std::vector<FrameDescri
 
 const ObjectSpec& number_curve_spec() {
     static const ObjectSpec spec =
-        object("curve", "A number keyed in time, in the unit of the key that holds the curve.",
+        object("curve", "A number over time, in the unit of the key that contains the curve.",
                curve_fields<double>(curve_key_spec<double>("curve key", "A number at a time.")));
     return spec;
 }
 
 const ObjectSpec& vector_curve_spec() {
     static const ObjectSpec spec =
-        object("vector curve", "A vector keyed in time: a curve whose values are [x, y, z].",
+        object("vector curve", "A vector over time: a curve whose values are [x, y, z].",
                curve_fields<Vec3>(curve_key_spec<Vec3>("vector curve key", "A vector at a time.")));
     return spec;
 }
@@ -207,11 +206,11 @@ const ObjectSpec& scale_curve_spec() {
     using K = CurveKey<Vec3>;
     static const ObjectSpec key =
         object<K>("scale curve key", "A factor at a time.",
-                  {{"time", &K::time, kCoordinate, "s", "When; later than the key before.", kRequired},
+                  {{"time", &K::time, kCoordinate, "s", "Time of the key, later than the previous key.", kRequired},
                    {"value", &K::value, positive_up_to(kLargestCoordinate), "",
-                    "The factor then, or one for each axis.", ValueType::scale, kRequired}});
+                    "Scale factor at that time, or one for each axis.", ValueType::scale, kRequired}});
     static const ObjectSpec spec =
-        object("scale curve", "Factors keyed in time: a curve whose values are numbers or [x, y, z], all above 0.",
+        object("scale curve", "Scale factors over time: a curve whose values are numbers or [x, y, z], all above 0.",
                curve_fields<Vec3>(key));
     return spec;
 }
@@ -226,20 +225,20 @@ KeyedCurve<Vec3> vector_curve_of(const ObjectView& view, Diagnostics& diagnostic
 
 const ObjectSpec& frame_spec() {
     using F = FrameDescription;
-    static const ObjectSpec spec = object<F>(
-        "frame",
-        "A moving frame of reference, for emitters and colliders. It stands in its parent like this: translation, "
-        "rotation, then the motions in their order.",
-        {{"parent", &F::parent, "One of the names in `frames`: what it stands in.", Without{"the world"}},
-         {"translation", &F::translation, kCoordinate, "m", "Where its origin is in the parent's axes."},
-         {"rotation",
-          [](F& f) {
-              return RotationTarget{f.rotation_axis, f.rotation_degrees};
-          },
-          "Turns it.", Without{"not turned"}, &rotation_spec()},
-         {"motions", ValueType::list, "How it moves.", &motion_spec()},
-         {"body", ValueType::object, "Makes it a rigid body that particles and forces move.",
-          Without{"it moves as its motions say"}, &body_spec()}});
+    static const ObjectSpec spec =
+        object<F>("frame",
+                  "A moving frame of reference for emitters and colliders. Its pose in the parent consists of the "
+                  "translation, the rotation, and then the motions in their order.",
+                  {{"parent", &F::parent, "Name of the parent frame in `frames`.", Without{"the world"}},
+                   {"translation", &F::translation, kCoordinate, "m", "Position of its origin in the parent's axes."},
+                   {"rotation",
+                    [](F& f) {
+                        return RotationTarget{f.rotation_axis, f.rotation_degrees};
+                    },
+                    "Rotation about its origin.", Without{"no rotation"}, &rotation_spec()},
+                   {"motions", ValueType::list, "Motions of the frame, in their order.", &motion_spec()},
+                   {"body", ValueType::object, "Makes it a rigid body that particles and forces move.",
+                    Without{"its motions move it"}, &body_spec()}});
     return spec;
 }
 
@@ -251,10 +250,10 @@ std::vector<FrameDescription> frames_of(const SceneContext& context) {
         frames.push_back(frame_of(named, context.diagnostics()));
     }
     if (!are_good_parents(context, frames, views) || context.failed()) {
-        for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still good
+        for (FrameDescription& frame : frames) frame.parent.clear();  // the names are still valid
     }
     for (FrameDescription& frame : frames) {
-        if (!frame.is_driven) continue;  // build_bodies() refuses what a body has too much
+        if (!frame.is_driven) continue;  // build_bodies() refuses the keys that a body must not have
         frame.parent.clear();
         frame.motions.clear();
     }
@@ -274,16 +273,18 @@ bool is_frame_named(const SceneContext& context, const ObjectView& view, const F
 const ObjectSpec& key_pose_spec() {
     using P = ScaledPose;
     static const ObjectSpec spec = object<P>(
-        "key pose", "Where a collider's frame is at a time; between two keys it moves, turns and is scaled steadily.",
-        {{"time", &P::time, kCoordinate, "s", "When; later than the key before.", kRequired},
-         {"position", &P::position, kCoordinate, "m", "Of the frame's origin."},
+        "key pose",
+        "Pose of a collider's frame at a time. Between two keys it moves, rotates and scales at constant rates.",
+        {{"time", &P::time, kCoordinate, "s", "Time of the key, later than the previous key.", kRequired},
+         {"position", &P::position, kCoordinate, "m", "Position of the frame's origin."},
          {"rotation",
           [](P& p) {
               return RotationTarget{p.axis, p.degrees};
           },
-          "How it is turned then.", Without{"not turned"}, &rotation_spec()},
+          "Rotation at that time.", Without{"no rotation"}, &rotation_spec()},
          {"scale", &P::scale, positive_up_to(kLargestCoordinate), "",
-          "Factor, or one for each of the frame's axes: of meshes and boxes, whose vertices it moves.",
+          "Scale factor, or one for each of the frame's axes. Only for meshes and boxes, because it moves their "
+          "vertices.",
           ValueType::scale}});
     return spec;
 }

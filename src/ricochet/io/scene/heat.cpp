@@ -1,4 +1,4 @@
-// The heat of a scene: what changes the temperatures of its particles.
+// Heat of a scene: processes that change the temperatures of its particles.
 
 #include "ricochet/dynamics/heat.h"
 
@@ -15,15 +15,16 @@ const ObjectSpec& convection_spec() {
     using C = Convection;
     static const ObjectSpec spec = object<C>(
         "convection",
-        "Heat that the medium takes from spheres: by a coefficient, or by the correlation of Ranz and Marshall, Nu = 2 "
-        "+ 0.6 Re^(1/2) Pr^(1/3), at the speed relative to the flow. The defaults are those of air at 20 degrees C.",
+        "Heat exchange between spheres and the medium, by a coefficient or by the correlation of Ranz and Marshall: Nu "
+        "= 2 + 0.6 Re^(1/2) Pr^(1/3). Re uses the speed relative to the flow. The defaults describe air at 20 degrees "
+        "C.",
         {{"coefficient", &C::coefficient, kNotNegative, "W/(m^2 K)",
-          "The h of dT/dt = -h A (T - Ta) / (m c). It stands alone.", Without{"by the correlation"}},
+          "Coefficient h in dT/dt = -h A (T - Ta) / (m c). It excludes all other keys.", Without{"the correlation"}},
          {"conductivity", &C::conductivity, kPositive, "W/(m K)", "Thermal conductivity of the medium."},
          {"fluid_density", &C::density, kNotNegative, "kg/m^3", "Density of the medium."},
          {"viscosity", &C::viscosity, kPositive, "Pa s", "Dynamic viscosity of the medium."},
          {"prandtl", &C::prandtl, kPositive, "", "Prandtl number of the medium."},
-         {"flow", ValueType::named_object, "How the medium moves: a flow, or the name of one in `flows`.", &flow_spec(),
+         {"flow", ValueType::named_object, "Motion of the medium: a flow, or the name of one in `flows`.", &flow_spec(),
           NamedIn{"flows"}, Without{"at rest"}}});
     return spec;
 }
@@ -34,24 +35,25 @@ const ObjectSpec& heat_spec() {
     using H = HeatSettings;
     static const ObjectSpec spec = object<H>(
         "heat",
-        "What changes the attribute `temperature` (K) of all particles, which must be declared. A particle has one "
-        "temperature throughout.",
-        {{"specific_heat", &H::specific_heat, between(1e-3, 1e12), "J/(kg K)", "Of the particles.", kRequired},
+        "Processes that change the attribute `temperature` (K) of all particles. The attribute must be declared. The "
+        "temperature is uniform inside a particle.",
+        {{"specific_heat", &H::specific_heat, between(1e-3, 1e12), "J/(kg K)", "Specific heat of the particles.",
+          kRequired},
          {"ambient_temperature", &H::ambient_temperature, kNotNegative, "K",
-          "Of the medium, and of what the particles shine at."},
-         {"convection", &H::convection, "Heat that the medium takes.", &convection_spec(), Without{"none"}},
+          "Temperature of the medium, and of the surroundings that particles exchange radiation with."},
+         {"convection", &H::convection, "Heat exchange with the medium.", &convection_spec(), Without{"none"}},
          {"emissivity", &H::emissivity, kFraction, "",
-          "Heat that spheres radiate, and take in, over that of black bodies."},
+          "Heat that spheres radiate and absorb, divided by that of black bodies."},
          {"impact_fraction", &H::impact_fraction, kFraction, "",
-          "Part of the energy that impacts lose along the normal, by restitution, that heats the particle."},
+          "Fraction of the energy lost along the normal at impacts, by restitution, that heats the particle."},
          {"friction_fraction", &H::friction_fraction, kFraction, "",
-          "Part of the energy that friction takes, in impacts and in contact, that heats the particle."}});
+          "Fraction of the energy lost by friction, in impacts and in contact, that heats the particle."}});
     return spec;
 }
 
 namespace {
 
-/// "heat: " where the message begins with what it is reported for.
+/// Removes "heat: " from the start of a message, because the report names the key already.
 std::string without_own_name(std::string message) {
     constexpr std::string_view kName = "heat: ";
     return message.starts_with(kName) ? message.substr(kName.size()) : message;

@@ -30,7 +30,7 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     return std::min(at + 1, text.size());
 }
 
-/// The token at that place or the next one behind it; marks are tokens too. Empty at the end of the text.
+/// Returns the token at this offset, or the next one behind it. Punctuation marks are tokens, too. Empty at the end.
 Token token_from(std::string_view text, std::size_t at) {
     constexpr std::string_view kSpace = " \t\r\n";
     constexpr std::string_view kMarks = "{}[],:";

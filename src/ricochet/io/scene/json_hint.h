@@ -1,5 +1,5 @@
 /// \file
-/// What to do about JSON that cannot be read, for the faults that hands make.
+/// Hints for common typing errors in JSON.
 #pragma once
 
 #include <cstddef>
@@ -10,12 +10,12 @@
 namespace ricochet::detail {
 
 struct JsonHint {
-    std::size_t position = 0;  ///< byte of the text where it is, from 0
+    std::size_t position = 0;  ///< offset in the text, in bytes
     std::string text;
 };
 
-/// A comma or a colon that is missing, or a comma too many. position: bytes that the parser has read when it stopped;
-/// message: what it says. Nothing for other faults.
+/// Returns a hint for a missing comma or colon, or for a comma too many. Returns nothing for other errors. position:
+/// number of bytes that the parser had read when it stopped. message: the error message of the parser.
 [[nodiscard]] std::optional<JsonHint> json_hint(std::string_view text, std::size_t position, std::string_view message);
 
 }  // namespace ricochet::detail

@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 bool is_delimiter(char c) { return std::string_view(" \t\r\n,:[]{}\"/").find(c) != std::string_view::npos; }
 
-// Walks the text in step with the parser's events, which come without locations: one token an event.
+// Follows the text in step with the parser's events, which have no locations. Every event consumes one token.
 class TokenLocations {
 public:
     explicit TokenLocations(std::string_view text) : text_(text) {
@@ -86,7 +86,7 @@ private:
     std::uint32_t column_ = 1;
 };
 
-// The library's message without its own prefix and location.
+// Returns the library's message without its own prefix and location.
 std::string plain_message(std::string message) {
     if (const auto bracket = message.find("] "); bracket != std::string::npos) message.erase(0, bracket + 2);
     if (message.starts_with("parse error at ")) {
@@ -95,7 +95,7 @@ std::string plain_message(std::string message) {
     return printable(message, kLongestMessage);
 }
 
-// Builds the tree. The open containers are the last elements of their parents, so that pointers to them stay valid.
+// Builds the tree. Open containers are the last elements of their parents, so pointers to them stay valid.
 class TreeBuilder final : public nlohmann::json_sax<Json> {
 public:
     TreeBuilder(std::string_view text, Diagnostics& diagnostics)
@@ -130,7 +130,7 @@ public:
 
     JsonNode take() { return std::move(root_); }
 
-    /// Reports text that is not UTF-8, of which the parser would read the part before its first NUL byte.
+    /// Returns true if the text has no NUL byte. Reports one, because the parser would only read the part before it.
     [[nodiscard]] bool is_text() {
         const std::size_t nul = text_.find('\0');
         if (nul == std::string_view::npos) return true;
@@ -209,7 +209,7 @@ private:
         members = std::move(kept);
     }
 
-    // The path of the innermost open container.
+    // Returns the path of the innermost open container.
     [[nodiscard]] std::string path_of_open() const {
         std::string path;
         for (std::size_t i = 0; i + 1 < open_.size(); ++i) {

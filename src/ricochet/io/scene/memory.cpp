@@ -1,4 +1,4 @@
-// What a scene needs of memory, told before a run takes it.
+// Estimate of the memory that a scene needs, made before a run allocates it.
 #include <fmt/format.h>
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Spheres that meet each other: what they do then, by pair of materials, and what does not go together with them.
+// Contacts between spheres: their materials by pair, and settings that cannot be combined with them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 namespace ricochet::detail {
 namespace {
 
-// What is left out is that of all spheres.
-constexpr Without kOfAll{"that of all spheres"};
-constexpr std::string_view kRestitution = "Speed of parting over speed of approach along the normal.";
+// Absent keys have the values for all spheres.
+constexpr Without kOfAll{"the value for all spheres"};
+constexpr std::string_view kRestitution = "Separation speed divided by approach speed, along the normal.";
 constexpr std::string_view kFriction = "Coulomb coefficient between spheres.";
 constexpr std::string_view kRolling =
-    "Moment that resists turning relative to each other, over the reduced radius times the normal impulse.";
+    "Moment that resists relative rotation, divided by reduced radius times normal impulse.";
 
 Fields<PairMaterial> material_fields() {
     using P = PairMaterial;
@@ -30,23 +30,23 @@ Fields<PairMaterial> material_fields() {
 
 const ObjectSpec& own_material_spec() {
     static const ObjectSpec spec =
-        object<PairMaterial>("sphere material", "What spheres of this material do to each other.", material_fields());
+        object<PairMaterial>("sphere material", "Contact between spheres of this material.", material_fields());
     return spec;
 }
 
 const ObjectSpec& material_pair_spec() {
     static const ObjectSpec spec = [] {
-        const Fields<Unbound> names = {{"first", ValueType::text, "One of the materials.", kRequired},
-                                       {"second", ValueType::text, "Another one, or the same.", kRequired}};
-        ObjectSpec result = object<PairMaterial>("pair of materials", "What spheres of two materials do to each other.",
-                                                 material_fields());
+        const Fields<Unbound> names = {{"first", ValueType::text, "Name of a material.", kRequired},
+                                       {"second", ValueType::text, "Name of another material.", kRequired}};
+        ObjectSpec result =
+            object<PairMaterial>("pair of materials", "Contact between spheres of two materials.", material_fields());
         result.keys.insert(result.keys.begin(), names.begin(), names.end());
         return result;
     }();
     return spec;
 }
 
-/// What stands there, and else what is so for all.
+/// Returns the material of an object. Absent keys have the values for all spheres.
 PairMaterial material_at(const ObjectView& view, const PairContactSettings& all) {
     auto material = view.read<PairMaterial>();
     if (!view.has("restitution")) material.restitution = all.restitution;
@@ -68,14 +68,14 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
             is_known = false;
             context.error(pair, key, unknown_name("material among particle_contacts.materials", name, known));
         }
-        const bool is_named = !read.first.empty() && !read.second.empty();  // else it is refused already
+        const bool is_named = !read.first.empty() && !read.second.empty();  // otherwise it has been refused already
         if (!is_known || !is_named) continue;
         if (read.first == read.second) {
             context.error(
                 pair, "second",
-                fmt::format("found \"{}\" twice, expected two materials: what one does to itself is said at it in "
-                            "`materials`",
-                            read.first));
+                fmt::format(
+                    "found \"{}\" twice, expected two materials: contacts within one material are set in `materials`",
+                    read.first));
             continue;
         }
         const std::size_t first = *numbers.of(read.first);
@@ -95,29 +95,29 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
 const ObjectSpec& particle_contacts_spec() {
     using P = PairContactSettings;
     static const ObjectSpec spec = [] {
-        ObjectSpec result = object<P>(
-            "particle contacts", "What spheres do when they meet each other.",
-            {{"restitution", &P::restitution, kFraction, "", kRestitution},
-             {"friction", &P::friction, kNotNegative, "", kFriction},
-             {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling},
-             {"method", &P::method, "How spheres that meet are moved.",
-              Choices{choice(PairMethod::automatic, "auto",
-                             "impact by impact, and as `contacts` where spheres press on each other or one impact "
-                             "would follow another"),
-                      choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-                      choice(PairMethod::contacts, "contacts",
-                             "all contacts of a step at once, with its length as the error, but for spheres that meet "
-                             "alone")}},
-             {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
-              "Most impacts of one sphere on others in one step. A sphere that spends it stays where it is for the "
-              "rest "
-              "of the step, and the time left out is counted."}});
+        ObjectSpec result =
+            object<P>("particle contacts", "Contacts between spheres.",
+                      {{"restitution", &P::restitution, kFraction, "", kRestitution},
+                       {"friction", &P::friction, kNotNegative, "", kFriction},
+                       {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling},
+                       {"method", &P::method, "Method that resolves contacts between spheres.",
+                        Choices{choice(PairMethod::automatic, "auto",
+                                       "as `contacts` if spheres press on each other or impacts follow each other "
+                                       "closely, else as `events`"),
+                                choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+                                choice(PairMethod::contacts, "contacts",
+                                       "all contacts of a step at once, with an error of first order in the step, "
+                                       "except for two spheres that meet alone")}},
+                       {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
+                        "Largest number of impacts of one sphere on others in one step. A sphere that spends the "
+                        "budget stops for the rest of the step, and the omitted time is counted."}});
         const Fields<Unbound> materials = {
             {"materials", ValueType::table,
-             "Materials of spheres by name, and what spheres of one do to each other. Emitters and particles say of "
-             "which they are by `material`; the particles' column `material` is its number, in this order.",
-             &own_material_spec(), Without{"all spheres are of one"}},
-            {"pairs", ValueType::list, "What spheres of two materials do to each other.", &material_pair_spec()}};
+             "Materials of spheres by name, with the contact between spheres of the same material. Emitters and "
+             "particles select a material by the key `material`. The column `material` of particles is its number in "
+             "this order.",
+             &own_material_spec(), Without{"all spheres have the same material"}},
+            {"pairs", ValueType::list, "Contacts between spheres of two materials.", &material_pair_spec()}};
         result.keys.insert(result.keys.end(), materials.begin(), materials.end());
         return result;
     }();
@@ -142,8 +142,8 @@ std::optional<AttributeValue> material_of(const SceneContext& context, const Sim
     const std::string name = view.text("material");
     if (!setup.options.particle_contacts || setup.options.particle_contacts->materials.empty()) {
         context.error(view, "material",
-                      "only goes together with particle_contacts.materials, which declares what it names; what walls "
-                      "are made of is said at the walls");
+                      "only goes together with particle_contacts.materials, which declares the names; materials of "
+                      "walls are set at the walls");
         return std::nullopt;
     }
     const JsonNode::Object* const given = view.has("attributes") ? view.node("attributes").object() : nullptr;

@@ -1,4 +1,4 @@
-// Forces between particles: the keys of each, beside what is made of them.
+// Forces between particles: the keys and the maker of each type.
 #include <fmt/format.h>
 
 #include <utility>
@@ -21,50 +21,52 @@ ForceLaw law(std::string_view name, std::string_view description, const Fields<S
 template <class Settings>
 Fields<Settings> inverse_square_fields() {
     using S = InverseSquareSettings;
-    return {
-        {"softening", &S::softening, kLengthOrZero, "m",
-         "Length over which each particle is smeared out: the force is weaker within it. Without it two that come "
-         "near each other need steps as short as their passage."},
-        {"method", &S::method, "How all are added up.",
-         Choices{choice(SumMethod::automatic, "direct up to 1500 particles, by a tree beyond"),
-                 choice(SumMethod::direct, "every pair by itself: exact, costs grow with the square of their number"),
-                 choice(SumMethod::tree, "distant groups by their moments")}},
-        {"opening", &S::opening, positive_up_to(1.0), "",
-         "Of the tree: groups are taken together from where their radius over their distance is smaller than this. "
-         "Smaller is more exact and slower."}};
+    return {{"softening", &S::softening, kLengthOrZero, "m",
+             "Length over which each particle is spread. The force is weaker within it. Without it, close encounters "
+             "need steps as short as the encounter."},
+            {"method", &S::method, "Method that sums the forces.",
+             Choices{choice(SumMethod::automatic, "direct up to 1500 particles, a tree beyond"),
+                     choice(SumMethod::direct,
+                            "every pair by itself: exact, costs grow with the square of the number of particles"),
+                     choice(SumMethod::tree, "distant groups by their moments")}},
+            {"opening", &S::opening, positive_up_to(1.0), "",
+             "For the tree: a group is summed as one if its radius divided by its distance is below this value. "
+             "Smaller values are more exact and slower."}};
 }
 
 ForceLaw gravity() {
     using G = GravitySettings;
-    return law<G>("gravity", "Newton's law between every two particles, by their masses.",
-                  joined<G>({{{"constant", &G::constant, kCoordinate, "m^3/(kg s^2)",
-                               "Of gravitation; negative repels. Scenes with units of their own often have 1."}},
-                             inverse_square_fields<G>()}),
-                  &make_mutual_gravity);
+    return law<G>(
+        "gravity", "Newton's law between all pairs of particles, by their masses.",
+        joined<G>({{{"constant", &G::constant, kCoordinate, "m^3/(kg s^2)",
+                     "Gravitational constant. Negative values repel. Scenes with their own units often use 1."}},
+                   inverse_square_fields<G>()}),
+        &make_mutual_gravity);
 }
 
 ForceLaw charge() {
     using C = ChargeSettings;
-    return law<C>(
-        "charge", "Coulomb's law between every two particles, by a charge that they carry as an attribute.",
-        joined<C>({{{"attribute", &C::attribute, "The attribute, of one component, that holds the charge in C."},
-                    {"constant", &C::constant, kCoordinate, "N m^2/C^2", "Coulomb's; negative attracts like charges."}},
-                   inverse_square_fields<C>()}),
-        &make_coulomb_force);
+    return law<C>("charge", "Coulomb's law between all pairs of particles. Their charge is an attribute.",
+                  joined<C>({{{"attribute", &C::attribute,
+                               "Name of the attribute, with one component, that contains the charge in C."},
+                              {"constant", &C::constant, kCoordinate, "N m^2/C^2",
+                               "Coulomb constant. Negative values attract like charges."}},
+                             inverse_square_fields<C>()}),
+                  &make_coulomb_force);
 }
 
 ForceLaw lennard_jones() {
     using L = LennardJonesSettings;
     return law<L>("lennard_jones",
-                  "The force of neutral atoms: repulsion by the 12th, attraction by the 6th power of the distance, cut "
-                  "off smoothly. The least potential is near a distance of 1.12 diameters.",
-                  {{"depth", &L::depth, kPositive, "J", "How deep the least potential is, without the cutoff."},
+                  "Force of neutral atoms: repulsion by the 12th and attraction by the 6th power of the distance, with "
+                  "a smooth cutoff. The potential is lowest near a distance of 1.12 diameters.",
+                  {{"depth", &L::depth, kPositive, "J", "Depth of the potential at its minimum, without the cutoff."},
                    {"diameter", &L::diameter, kLength, "m", "Distance of the centres at which the potential is 0."},
                    {"cutoff",
                     &L::cutoff,
                     {.lower = 1.0, .upper = 1000.0, .lower_open = true},
                     "",
-                    "Diameters beyond which there is no force."}},
+                    "Distance, in diameters, beyond which there is no force."}},
                   &make_lennard_jones);
 }
 
@@ -72,11 +74,11 @@ ForceLaw cohesion() {
     using C = CohesionSettings;
     return law<C>(
         "cohesion",
-        "Spheres that stick: a spring between their surfaces that lets go at a gap, F = k g (1 - g / range)^2, and "
-        "pushes back where they overlap.",
-        {{"stiffness", &C::stiffness, kLengthOrZero, "N/m", "The k: the spring's near contact.", kRequired},
-         {"range", &C::range, kLength, "m", "Gap between the surfaces at which they let go.", kRequired},
-         {"damping", &C::damping, kLengthOrZero, "N s/m", "Along the line of the centres, within the range."}},
+        "Cohesion of spheres: a spring between their surfaces, F = k g (1 - g / range)^2 at the gap g. It ends at the "
+        "gap `range`, and it pushes overlapping spheres apart.",
+        {{"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Stiffness k of the spring near contact.", kRequired},
+         {"range", &C::range, kLength, "m", "Gap between the surfaces at which the force ends.", kRequired},
+         {"damping", &C::damping, kLengthOrZero, "N s/m", "Damping along the line of the centres, within the range."}},
         &make_cohesion);
 }
 
@@ -85,7 +87,7 @@ const std::vector<ForceLaw>& force_laws() {
     return laws;
 }
 
-// What every force says.
+// Keys of every force between particles.
 struct ForceKeys {
     std::vector<std::uint64_t> particles;
     std::string emitter;
@@ -118,7 +120,7 @@ void check_attributes(const SceneContext& context, const SimulationSetup& setup,
     }
 }
 
-/// What does not go together with forces between particles.
+/// Refuses settings that cannot be combined with forces between particles.
 void check_company(const SceneContext& context, const SimulationSetup& setup) {
     if (context.objects("particle_forces").empty()) return;
     const auto refuse = [&](const char* why) { context.error(context.root(), "particle_forces", why); };
@@ -138,10 +140,10 @@ void check_company(const SceneContext& context, const SimulationSetup& setup) {
 const ObjectSpec& particle_force_spec() {
     static const ObjectSpec spec = object<ForceKeys>(
         "force between particles",
-        "Forces of particles on each other; they add up. All particles take part unless `particles` or `emitter` names "
-        "those between which the force acts.",
-        {{"particles", &ForceKeys::particles, "Ids of particles that take part.", Without{"all"}},
-         {"emitter", &ForceKeys::emitter, "Name of an emitter: what it gives birth to takes part.", Without{"all"}}},
+        "A force of particles on each other. Forces add up. It acts between all particles unless `particles` or "
+        "`emitter` selects some of them.",
+        {{"particles", &ForceKeys::particles, "Ids of the particles that take part.", Without{"all"}},
+         {"emitter", &ForceKeys::emitter, "Name of an emitter whose particles take part.", Without{"all"}}},
         variants_of(force_laws()));
     return spec;
 }

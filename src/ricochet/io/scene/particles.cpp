@@ -1,4 +1,4 @@
-// Particles that are there from the start: one by one, or from a text table.
+// Explicit particles, which exist from the start: one by one, or from a text table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,16 +25,16 @@ namespace {
 constexpr std::size_t kMostErrors = 10;
 constexpr std::uint64_t kLargestTable = std::uint64_t{16} << 30;
 
-// Where an attribute's number goes.
+// Attribute and component that a number sets.
 struct AttributeComponent {
     std::size_t column = 0;
     int component = 0;
 };
 
-// A column, the key of an explicit particle whose rules it follows, and where its numbers go.
+// A column, the key of an explicit particle whose rules it follows, and the member that its numbers set.
 struct Column {
     std::string_view name;
-    std::string_view key;  ///< empty: a run's own, not used
+    std::string_view key;  ///< empty for columns of a final state that are not used
     double& (*target)(Particle&) = nullptr;
 };
 
@@ -111,7 +111,8 @@ public:
     }
 
 private:
-    /// Reports what is not text in UTF-8, of which each column would be unknown and each number unreadable.
+    /// Returns true if the text has no NUL byte. Reports one: in a file that is not UTF-8 text, no column would be
+    /// known.
     bool is_text() {
         const std::size_t nul = rest_.find('\0');
         if (nul == std::string_view::npos) return true;
@@ -163,7 +164,8 @@ private:
         }
     }
 
-    // "temperature", or "wind_x" for a vector; those of appearance are declared by being there.
+    // Returns the target of a column: "temperature", or "wind_x" for a vector. Columns of appearance need no
+    // declaration.
     std::optional<AttributeComponent> attribute_component(std::string_view cell) {
         const bool has_end =
             cell.size() > 2 && cell[cell.size() - 2] == '_' && cell.back() >= 'x' && cell.back() <= 'z';
@@ -260,7 +262,7 @@ private:
     ParticleTable table_;
 };
 
-// Columns of appearance that only the table has are declared by it.
+// Reads the particles of a table. Columns of appearance that only the table has declare their attributes.
 std::vector<Particle> particles_from_table(const SceneContext& context, const ObjectView& view,
                                            SimulationSetup& setup) {
     if (!view.has("file")) return {};
@@ -297,14 +299,14 @@ const ObjectSpec& particle_spec() {
     using P = Particle;
     static const ObjectSpec spec = [] {
         ObjectSpec result = object<P>(
-            "particle", "Particles that are there from the start.",
-            {{"position", &P::position, kCoordinate, "m", "Where it starts.", kRequired},
-             {"velocity", &P::velocity, kCoordinate, "m/s", "How it starts."},
-             {"mass", &P::mass, kMass, "kg", "Its mass."},
-             {"radius", &P::radius, kLengthOrZero, "m", "Its radius."},
-             {"spin", &P::spin, kCoordinate, "rad/s", "Its angular velocity; for particles with a radius."},
+            "particle", "A particle that exists from the start.",
+            {{"position", &P::position, kCoordinate, "m", "Position at the start.", kRequired},
+             {"velocity", &P::velocity, kCoordinate, "m/s", "Velocity at the start."},
+             {"mass", &P::mass, kMass, "kg", "Mass of the particle."},
+             {"radius", &P::radius, kLengthOrZero, "m", "Radius of the particle."},
+             {"spin", &P::spin, kCoordinate, "rad/s", "Angular velocity at the start, for particles with a radius."},
              {"lifetime", &P::lifetime, kNotNegative, "s", "Time after which it is retired.", Without{"for ever"}},
-             {"pinned", &P::pinned, "true: it never moves, for springs to hang on."}});
+             {"pinned", &P::pinned, "true: it never moves. Springs can hang on it."}});
         for (KeySpec& key : particle_look_keys()) result.keys.push_back(std::move(key));
         return result;
     }();
@@ -315,9 +317,8 @@ const ObjectSpec& particle_file_spec() {
     static const ObjectSpec spec = object<Unbound>(
         "particle table", "Particles from a file.",
         {{"file", ValueType::file,
-          "A .csv file: a header line that names the columns (x, y, z and, where wanted, vx, vy, vz, mass, radius, "
-          "spin_x, spin_y, spin_z, lifetime), "
-          "then one line a particle.",
+          "A .csv file: a header line that names the columns, then one line per particle. The columns x, y, z are "
+          "required. vx, vy, vz, mass, radius, spin_x, spin_y, spin_z and lifetime are optional.",
           kRequired}});
     return spec;
 }

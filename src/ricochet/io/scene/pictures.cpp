@@ -1,4 +1,4 @@
-// How a scene is shown: the camera of its pictures, their light and surroundings.
+// Appearance of a scene: the camera of its pictures, their light and surroundings.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -16,9 +16,9 @@
 namespace ricochet::detail {
 namespace {
 
-constexpr double kSmallestSine = 1e-6;  // of the angle between the view and up
+constexpr double kSmallestSine = 1e-6;  // sine of the smallest angle between the view and up
 
-// True for a frame that a body moves, or that stands on one: where it is cannot be told before the run.
+// Returns true if a body moves the frame or one of its parents. The position of such a frame is unknown before the run.
 bool stands_on_body(const FrameTree& frames, std::size_t frame) {
     std::optional<std::size_t> k = frame;
     while (k) {
@@ -37,7 +37,7 @@ void check_frame(const SceneContext& context, const ObjectView& view, const Fram
     }
 }
 
-// A camera needs exactly one of a point and a path.
+// Requires exactly one of a point and a path. Returns true if the camera has one.
 bool has_one_of(const SceneContext& context, const ObjectView& view, const char* point, const char* path) {
     if (view.has(point) && view.has(path)) {
         context.error(view, path, fmt::format("\"{}\" says the same, expected one of the two", point));
@@ -92,24 +92,25 @@ void refuse_camera_on_target(const SceneContext& context, const ObjectView& view
 const ObjectSpec& camera_spec() {
     using C = CameraDescription;
     static const ObjectSpec spec = object<C>(
-        "camera", "Where `ricochet render` looks from, unless it is told otherwise.",
-        {{"position", &C::position, kCoordinate, "m", "Where it stands.", Without{"`path` says it"}},
-         {"target", &C::target, kCoordinate, "m", "The point in the middle of the picture.",
-          Without{"`target_path` says it"}},
-         {"path", ValueType::object, "Instead of `position`: where it goes, a curve of [x, y, z].", Unit{"m"},
-          Without{"it stands at `position`"}, &vector_curve_spec()},
-         {"target_path", ValueType::object, "Instead of `target`: a curve of [x, y, z].", Unit{"m"},
-          Without{"it looks at `target`"}, &vector_curve_spec()},
-         {"frame", &C::frame, "One of the names in `frames`, in whose coordinates the camera stands, looks and is up.",
+        "camera", "Camera of `ricochet render`, unless its options say otherwise.",
+        {{"position", &C::position, kCoordinate, "m", "Position of the camera.", Without{"given by `path`"}},
+         {"target", &C::target, kCoordinate, "m", "Point in the middle of the picture.",
+          Without{"given by `target_path`"}},
+         {"path", ValueType::object, "Instead of `position`: path of the camera, a curve of [x, y, z].", Unit{"m"},
+          Without{"fixed at `position`"}, &vector_curve_spec()},
+         {"target_path", ValueType::object, "Instead of `target`: path of the target, a curve of [x, y, z].", Unit{"m"},
+          Without{"fixed at `target`"}, &vector_curve_spec()},
+         {"frame", &C::frame, "Name of a frame in `frames`. Position, target and `up` are in its coordinates.",
           Without{"the world"}},
-         {"up", &C::up, kCoordinate, "", "What is up in the picture.", kNotZero, Without{"against gravity"}},
+         {"up", &C::up, kCoordinate, "", "Upward direction in the picture.", kNotZero, Without{"against gravity"}},
          {"field_of_view", &C::field_of_view_degrees, kFieldOfView, "degrees", kFieldOfViewMeaning},
          {"focal_length", &C::focal_length, between(1.0, 1400.0), "mm",
-          "Instead of `field_of_view`: of a lens before a film 24 mm high.", Without{"`field_of_view` says it"}},
+          "Instead of `field_of_view`: focal length of a lens in front of film 24 mm high.",
+          Without{"given by `field_of_view`"}},
          {"aperture", &C::aperture, kLengthOrZero, "m",
-          "Diameter of the lens: what is nearer or farther than `focus_distance` blurs. 0: everything is sharp."},
+          "Diameter of the lens. Objects nearer or farther than `focus_distance` blur. With 0 everything is sharp."},
          {"focus_distance", &C::focus_distance, kLengthOrZero, "m",
-          "Along the view to what is sharp; 0: as far as the target."}});
+          "Distance along the view at which objects are sharp. 0 means the distance of the target."}});
     return spec;
 }
 
@@ -117,15 +118,15 @@ namespace {
 
 const ObjectSpec& stretch_spec() {
     using S = StretchDescription;
-    static const ObjectSpec spec = object<S>(
-        "stretch", "How drawn particles change their shape as they move; collisions know nothing of it.",
-        {{"speed", &S::speed, kNotNegative, "s/m",
-          "Along their velocity they are longer by the factor 1 + `speed` times the speed."},
-         {"impact", &S::impact, kNotNegative, "s/m",
-          "At an impact they are flatter along its normal by the factor 1 + `impact` times the speed along it; this "
-          "needs `output.contacts`."},
-         {"time", &S::time, kPositive, "s", "How long an impact shows, half of it before."},
-         {"most", &S::most, between(1.0, 100.0), "", "Neither longer nor flatter than by this factor."}});
+    static const ObjectSpec spec =
+        object<S>("stretch", "Change of the drawn shape of moving particles. Collisions ignore it.",
+                  {{"speed", &S::speed, kNotNegative, "s/m",
+                    "Stretch along the velocity: particles are longer by the factor 1 + `speed` times their speed."},
+                   {"impact", &S::impact, kNotNegative, "s/m",
+                    "Squash along the normal of an impact: particles are flatter by the factor 1 + `impact` times the "
+                    "normal speed. This needs `output.contacts`."},
+                   {"time", &S::time, kPositive, "s", "Duration of the squash. Half of it is before the impact."},
+                   {"most", &S::most, between(1.0, 100.0), "", "Largest factor of stretch and squash."}});
     return spec;
 }
 
@@ -138,7 +139,7 @@ std::optional<std::string> mesh_problem(const std::filesystem::path& path) {
     return std::nullopt;
 }
 
-// The file that a key names, as a path; empty where there is none, or after reporting.
+// Returns the path of the file that a key names. Empty if the key is absent, or after reporting an error.
 std::string picture_file(const SceneContext& context, const ObjectView& view, std::string_view key) {
     if (!view.has(key)) return "";
     const std::filesystem::path path = context.path_of_file(view.text(key));
@@ -150,7 +151,7 @@ std::string picture_file(const SceneContext& context, const ObjectView& view, st
     return "";
 }
 
-// What particles are drawn as, and the key without which they cannot be.
+// Checks that a drawing has the file that it needs, and no keys of other drawings.
 void check_drawing(const SceneContext& context, const ObjectView& view, const ParticleDrawingDescription& picture) {
     for (const auto& [drawing, key] : {std::pair{"sprites", "sprite"}, std::pair{"meshes", "mesh"}}) {
         const bool is_drawn = picture.particles == drawing;
@@ -184,7 +185,7 @@ void check_stretch(const SceneContext& context, const ObjectView& view, const Pi
     }
 }
 
-// Something must say how hot they are.
+// Reports black bodies without an attribute for their temperature.
 void check_black_body(const SceneContext& context, const ObjectView& view, const SimulationSetup& setup) {
     if (!view.has("black_body")) return;
     for (const AttributeDescription& attribute : setup.attributes) {
@@ -204,37 +205,39 @@ PictureDescription picture_of(const SceneContext& context, const ObjectView& vie
     return picture;
 }
 
-/// What particles are drawn as; the first line says which of the others go with it.
+/// Returns the keys for the drawing of particles. The options apply to the first key.
 template <class P, class... Options>
 Fields<P> drawing_fields(const Options&... options) {
-    return {
-        {"particles", &P::particles, "What particles are drawn as.",
-         Choices{{"spheres", "solid spheres"},
-                 {"streaks", "threads along the way that they went while the shutter was open, bent where they hit"},
-                 {"soft", "soft discs that cover what is behind by their opacity"},
-                 {"glow", "discs of light that adds up"},
-                 {"sprites", "the picture of `sprite`, which faces the camera"},
-                 {"meshes", "copies of `mesh`, turned by their spin"}},
-         options...},
-        {"sprite", &P::sprite,
-         "A PNG file, with alpha or without: its longer edge is as long as the particle is thick.", ValueType::file,
-         Without{"none"}},
-        {"mesh", &P::mesh, "A mesh file: the middle of its box is the particle's, its farthest vertex the radius away.",
-         ValueType::file, Without{"none"}},
-        {"turn", &P::turn, "How sprites are turned.",
-         Choices{{"upright", "as the camera is"},
-                 {"random", "each by an angle of its own"},
-                 {"velocity", "their upper edge the way that the particle goes"}},
-         Without{"`upright`"}},
-        {"turning", &P::turning, kCoordinate, "rad/s",
-         "How fast sprites, and meshes of particles without a spin, turn on as they age.", Without{"not at all"}}};
+    return {{"particles", &P::particles, "Shape of drawn particles.",
+             Choices{{"spheres", "solid spheres"},
+                     {"streaks", "lines along the path of a particle while the shutter is open, with bends at impacts"},
+                     {"soft", "soft discs that cover the background by their opacity"},
+                     {"glow", "discs of light, which are added"},
+                     {"sprites", "the image of `sprite`, which faces the camera"},
+                     {"meshes", "copies of `mesh`, rotated by the spin of the particles"}},
+             options...},
+            {"sprite", &P::sprite,
+             "PNG file, with or without alpha. Its longer edge has the length of the particle's diameter.",
+             ValueType::file, Without{"none"}},
+            {"mesh", &P::mesh,
+             "Mesh file. The middle of its bounding box is at the particle's centre. Its farthest vertex is one radius "
+             "away.",
+             ValueType::file, Without{"none"}},
+            {"turn", &P::turn, "Orientation of sprites.",
+             Choices{{"upright", "like the camera"},
+                     {"random", "each at its own random angle"},
+                     {"velocity", "with the upper edge in the direction of motion"}},
+             Without{"`upright`"}},
+            {"turning", &P::turning, kCoordinate, "rad/s",
+             "Rotation rate of sprites, and of meshes of particles without a spin, over their age.",
+             Without{"no rotation"}}};
 }
 
 }  // namespace
 
 const ObjectSpec& drawing_spec() {
     static const ObjectSpec spec = object<ParticleDrawingDescription>(
-        "drawing", "What the particles of an emitter are drawn as, where that is not what all are.",
+        "drawing", "How the particles of an emitter are drawn, if they differ from other particles.",
         drawing_fields<ParticleDrawingDescription>(kRequired));
     return spec;
 }
@@ -242,46 +245,47 @@ const ObjectSpec& drawing_spec() {
 const ObjectSpec& picture_spec() {
     using P = PictureDescription;
     static const ObjectSpec spec = object<P>(
-        "picture", "Light and surroundings of `ricochet render`, unless it is told otherwise.",
-        joined<P>({{{"light", &P::light, "What lights it.",
-                     Choices{{"day", "a sun at middling height behind the camera's left shoulder"},
-                             {"noon", "a high, white, hard sun"},
-                             {"overcast", "a bright grey sky without a sun"},
-                             {"night", "a little moonlight"},
-                             {"studio", "one large lamp, and a grey backdrop"}},
-                     Without{"`day`"}},
-                    {"background", &P::background, kFraction, "",
-                     "Red, green and blue behind everything, linear light.", Without{"the light's sky"}},
-                    {"transparent", &P::transparent, "Nothing behind everything: an alpha channel in PNG files."}},
-                   drawing_fields<P>(Without{"soft discs where they have an opacity, spheres otherwise"}),
-                   {{"shutter", &P::shutter, kNotNegative, "s",
-                     "How long it is open, up to the picture's time: moving particles blur. 0: not at all."},
-                    {"black_body", &P::black_body, between(500.0, 20000.0), "K",
-                     "Particles shine as black bodies of their attribute `temperature` (K): at this one as brightly as "
-                     "a white "
-                     "surface in the sun.",
-                     Without{"no light of their own"}},
-                    {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
-                     Without{"they keep their shape"}, &stretch_spec()},
-                    {"ground", &P::ground, kCoordinate, "m", "A level ground at this height along the upward axis.",
-                     Without{"none"}},
-                    {"particle_radius", &P::particle_radius, kLength, "m",
-                     "Radius by which all particles are drawn. Collisions do not know it.", Without{"their own"}},
-                    {"time", &P::time, kNotNegative, "s",
-                     "The moment that a single picture shows: the nearest frame. Films show all.",
-                     Without{"the last frame"}}}}));
+        "picture", "Light and surroundings of `ricochet render`, unless its options say otherwise.",
+        joined<P>(
+            {{{"light", &P::light, "Light of the picture.",
+               Choices{{"day", "a sun at medium height behind the camera's left shoulder"},
+                       {"noon", "a high, white, hard sun"},
+                       {"overcast", "a bright grey sky without a sun"},
+                       {"night", "a little moonlight"},
+                       {"studio", "one large lamp, and a grey backdrop"}},
+               Without{"`day`"}},
+              {"background", &P::background, kFraction, "", "Red, green and blue of the background, linear light.",
+               Without{"the sky of the light"}},
+              {"transparent", &P::transparent,
+               "true: the background is transparent, as an alpha channel in PNG files."}},
+             drawing_fields<P>(Without{"soft discs if particles have an opacity, spheres otherwise"}),
+             {{"shutter", &P::shutter, kNotNegative, "s",
+               "Time for which the shutter is open, up to the picture's time. Moving particles blur. 0 means no blur."},
+              {"black_body", &P::black_body, between(500.0, 20000.0), "K",
+               "Temperature at which a particle shines as brightly as a white surface in the sun. Particles shine as "
+               "black bodies of their attribute `temperature` (K).",
+               Without{"no light of their own"}},
+              {"stretch", &P::stretch, "Squash and stretch of spheres and meshes, at the same volume.",
+               Without{"they keep their shape"}, &stretch_spec()},
+              {"ground", &P::ground, kCoordinate, "m", "Height of a level ground along the upward axis.",
+               Without{"none"}},
+              {"particle_radius", &P::particle_radius, kLength, "m",
+               "Drawn radius of all particles. Collisions ignore it.", Without{"their own radius"}},
+              {"time", &P::time, kNotNegative, "s",
+               "Time of a single picture, which shows the nearest frame. Films show all frames.",
+               Without{"the last frame"}}}}));
     return spec;
 }
 
 const ObjectSpec& collider_looks_spec() {
     using L = ColliderLooks;
     static const ObjectSpec spec = object<L>(
-        "collider looks", "How pictures show a collider; it does nothing to the run.",
+        "collider looks", "Appearance of a collider in pictures. It does not affect the run.",
         {{"color", &L::color, kFraction, "", "Red, green and blue, linear light.", Without{"one for each material"}},
-         {"roughness", &L::roughness, kFraction, "", "From 0, which mirrors what is around, to 1, which is matt."},
-         {"glass", &L::glass, "It is seen through."},
-         {"hidden", &L::hidden, "It is not shown."},
-         {"pattern", &L::pattern, "Of a plane: a faint chequer (lines on pages) gives the eye a scale."}});
+         {"roughness", &L::roughness, kFraction, "", "Roughness from 0 (mirror) to 1 (matt)."},
+         {"glass", &L::glass, "true: the collider is transparent."},
+         {"hidden", &L::hidden, "true: the collider is not shown."},
+         {"pattern", &L::pattern, "true: a plane has a faint chequer pattern (lines on pages) that shows the scale."}});
     return spec;
 }
 
@@ -300,7 +304,7 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
         const ObjectView view = emitter.object("drawing");
         auto drawing = view.read<ParticleDrawingDescription>();
         check_drawing(context, view, drawing);
-        // What does not go together has been reported.
+        // Keys of other drawings have been reported.
         drawing.sprite = drawing.particles == "sprites" ? picture_file(context, view, "sprite") : "";
         drawing.mesh = drawing.particles == "meshes" ? picture_file(context, view, "mesh") : "";
         if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {

@@ -310,8 +310,8 @@ same ones on every machine. A larger `burst` gives a warning, and a larger numbe
 
 ## Changes from the command line
 
-`ricochet run` and `ricochet check` accept `--set PATH=VALUE` any number of times. They apply the changes in order before
-all checks: `--set simulation.time_step=0.001`, `--set colliders[0].scale=[1,2,1]`,
+`ricochet run` and `ricochet check` accept `--set PATH=VALUE` any number of times. They apply the changes in order
+before all checks: `--set simulation.time_step=0.001`, `--set colliders[0].scale=[1,2,1]`,
 `--set 'materials["old rubber"].friction=0.2'`. VALUE is JSON. Any other value is a text
 (`--set simulation.integrator=ballistic`). Missing keys are added, but list items must exist.
 )";

@@ -22,14 +22,14 @@ constexpr double kMostVertices = 1e8;  // of a sheet
 
 enum class PinnedEnds { none, from, to, both };
 
-// What a rope or a chain says.
+// Keys of a rope or a chain.
 struct RopeKeys : RopeSettings {
     std::size_t links = 1;
     double link_length = 1.0;
     PinnedEnds pinned = PinnedEnds::none;
 };
 
-// What cloth says, whatever its mesh comes from.
+// Keys of cloth and sheets.
 struct ClothKeys : ClothSettings {
     std::optional<double> total_mass;
     std::optional<double> area_mass;
@@ -44,17 +44,17 @@ struct ClothKeys : ClothSettings {
 
 constexpr Range kElements = between(1.0, 1e8);
 
-// Lines that several tables share.
+// Table lines that several tables share.
 
 template <class Struct>
 Field<Struct> damping() {
     return {"damping", &Struct::damping, kLengthOrZero, "N s/m",
-            "Force against the rate at which a spring changes its length, over that rate."};
+            "Damping force of a spring divided by the rate of change of its length."};
 }
 template <class Struct>
 Field<Struct> breaking_stretch() {
     constexpr std::string_view kMeaning =
-        "Stretch, as a part of the rest length, beyond which a spring breaks for good.";
+        "Stretch, as a fraction of the rest length, beyond which a spring breaks permanently.";
     return {"breaking_stretch", &Struct::breaking_stretch, kPositive, "", kMeaning, Without{"it never breaks"}};
 }
 template <class Struct>
@@ -70,7 +70,7 @@ const ObjectSpec& spring_spec() {
                    {"second", &S::second, kCount, "", "Number of the particle at the other end.", kRequired},
                    {"rest_length", &S::rest_length, kLengthOrZero, "m", "Length at which it neither pulls nor pushes.",
                     Without{"the distance of its ends at the start"}},
-                   {"stiffness", &S::stiffness, kLengthOrZero, "N/m", "Force over stretch.", kRequired},
+                   {"stiffness", &S::stiffness, kLengthOrZero, "N/m", "Force divided by stretch.", kRequired},
                    damping<S>(),
                    breaking_stretch<S>()});
     return spec;
@@ -78,17 +78,16 @@ const ObjectSpec& spring_spec() {
 
 const ObjectSpec& pin_box_spec() {
     static const ObjectSpec spec =
-        object("pin box", "A box along the axes; vertices in it, or on its surface, are pinned.",
-               box_fields("Its corner with the largest coordinates."));
+        object("pin box", "A box along the axes. Vertices in it or on its surface are pinned.",
+               box_fields("Corner with the largest coordinates."));
     return spec;
 }
 
 Variant list_variant() {
-    return variant<Unbound>(
-        "list",
-        "Springs one by one, between particles by their numbers from 0: first those of `particles`, then those of the "
-        "ropes, chains, cloths and sheets, each in its order.",
-        {{"springs", ValueType::list, "The springs.", &spring_spec(), kRequired}});
+    return variant<Unbound>("list",
+                            "Single springs between particles. The numbers of particles start at 0: first the list "
+                            "`particles`, then the particles of ropes, chains, cloths and sheets, each in its order.",
+                            {{"springs", ValueType::list, "The springs.", &spring_spec(), kRequired}});
 }
 
 Fields<RopeKeys> rope_ends() {
@@ -96,20 +95,20 @@ Fields<RopeKeys> rope_ends() {
             {"to", &RopeKeys::to, kCoordinate, "m", "Position of its last particle.", kRequired}};
 }
 
-// What ropes and chains have in common.
+// Keys that ropes and chains share.
 Fields<RopeKeys> rope_fields() {
     using R = RopeKeys;
-    return {{"mass", &R::mass, kMass, "kg", "Its whole mass.", kRequired},
+    return {{"mass", &R::mass, kMass, "kg", "Total mass.", kRequired},
             radius<R>(),
-            {"stiffness", &R::stiffness, kLengthOrZero, "N/m", "Of every segment."},
+            {"stiffness", &R::stiffness, kLengthOrZero, "N/m", "Stiffness of every segment."},
             {"axial_stiffness", &R::axial_stiffness, kLengthOrZero, "N",
-             "Of the material, E A: a segment's stiffness is this over its length at rest."},
+             "Stiffness E A of the material. The stiffness of a segment is this value divided by its rest length."},
             damping<R>(),
             breaking_stretch<R>(),
             {"sag", &R::sag, kCoordinate, "",
-             "Direction in which it hangs at first where it is longer than the distance of its ends.", kNotZero,
-             Without{"with the uniform forces, or -z"}},
-            {"pinned", &R::pinned, "Which ends never move.",
+             "Direction in which it hangs at first, if it is longer than the distance of its ends.", kNotZero,
+             Without{"along the uniform forces, or -z"}},
+            {"pinned", &R::pinned, "Ends that never move.",
              Choices{choice(PinnedEnds::none, "none", "both are free"),
                      choice(PinnedEnds::from, "from", "the first particle"),
                      choice(PinnedEnds::to, "to", "the last particle"),
@@ -120,10 +119,10 @@ Variant rope_variant() {
     using R = RopeKeys;
     return variant("rope", "Particles at equal distances along a line, with springs between neighbours.",
                    joined<R>({rope_ends(),
-                              {{"nodes", &R::nodes, between(2.0, 1e8), "", "Its particles.", kRequired},
+                              {{"nodes", &R::nodes, between(2.0, 1e8), "", "Number of its particles.", kRequired},
                                {"length", &R::length, kLength, "m",
-                                "Length at rest. A longer rope than the distance of its ends starts as a catenary, a "
-                                "shorter one straight and under tension.",
+                                "Rest length. A rope longer than the distance of its ends starts as a catenary. A "
+                                "shorter rope starts straight and under tension.",
                                 Without{"the distance of its ends"}}},
                               rope_fields()}),
                    {"stiffness", "axial_stiffness"});
@@ -132,23 +131,26 @@ Variant rope_variant() {
 Variant chain_variant() {
     using R = RopeKeys;
     return variant(
-        "chain", "A rope by its links; one longer than the distance of its ends starts as a catenary.",
+        "chain",
+        "A rope described by its links. It starts as a catenary if it is longer than the distance of its ends.",
         joined<R>({rope_ends(),
-                   {{"links", &R::links, kElements, "", "Springs in a row; it has one particle more.", kRequired},
-                    {"link_length", &R::link_length, kLength, "m", "Length of a link at rest.", kRequired}},
+                   {{"links", &R::links, kElements, "", "Number of springs in a row. The chain has one particle more.",
+                     kRequired},
+                    {"link_length", &R::link_length, kLength, "m", "Rest length of a link.", kRequired}},
                    rope_fields()}),
         {"stiffness", "axial_stiffness"});
 }
 
-// What cloth has in common, whatever its mesh comes from.
+// Keys that cloth and sheets share.
 Fields<ClothKeys> cloth_fields() {
     using C = ClothKeys;
-    return {{"mass", &C::total_mass, kMass, "kg", "Its whole mass."},
-            {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass over area."},
+    return {{"mass", &C::total_mass, kMass, "kg", "Total mass."},
+            {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass per area."},
             radius<C>(),
-            {"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Of the springs along the edges.", kRequired},
+            {"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Stiffness of the springs along the edges.", kRequired},
             {"bending_stiffness", &C::bending_stiffness, kLengthOrZero, "N/m",
-             "Of springs that join the corners across every edge between two triangles, and so resist bending."},
+             "Stiffness of the springs that resist bending. They join the corners across every edge between two "
+             "triangles."},
             damping<C>(),
             breaking_stretch<C>(),
             {"pinned", &C::pinned_vertices, "Numbers, from 0, of vertices that never move.", Without{"none"}},
@@ -156,32 +158,32 @@ Fields<ClothKeys> cloth_fields() {
 }
 
 Variant cloth_variant() {
-    return variant(
-        "cloth",
-        "A particle at every vertex of a mesh, a spring along every edge; at rest as the mesh is. A particle has a "
-        "third of the mass of every triangle around it.",
-        joined<ClothKeys>({{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<ClothKeys>()},
-                           placement_fields(&ClothKeys::placement),
-                           cloth_fields()}),
-        {"mass", "mass_per_area"});
+    return variant("cloth",
+                   "A particle at every vertex of a mesh, and a spring along every edge. The mesh is the rest shape. A "
+                   "particle has a third of the mass of every triangle around it.",
+                   joined<ClothKeys>({{{"file", ValueType::file, kMeshFileMeaning, kRequired}, up_field<ClothKeys>()},
+                                      placement_fields(&ClothKeys::placement),
+                                      cloth_fields()}),
+                   {"mass", "mass_per_area"});
 }
 
 Variant sheet_variant() {
     using C = ClothKeys;
-    return variant(
-        "sheet",
-        "A cloth without a file: a flat sheet of cells of two triangles each. Vertex (i, j) has the number j (cells_u "
-        "+ 1) + i.",
-        joined<C>({{{"corner", &C::corner, kCoordinate, "m", "One of its corners.", kRequired},
-                    {"side_u", &C::side_u, kCoordinate, "m", "From there along one side to its end.", kRequired},
-                    {"side_v", &C::side_v, kCoordinate, "m", "From there along the other side.", kRequired},
-                    {"cells_u", &C::cells_u, kElements, "", "Cells along the one side.", kRequired},
-                    {"cells_v", &C::cells_v, kElements, "", "Cells along the other side.", kRequired}},
-                   cloth_fields()}),
-        {"mass", "mass_per_area"});
+    return variant("sheet",
+                   "A flat cloth without a file, made of cells with two triangles each. Vertex (i, j) has the number j "
+                   "(cells_u + 1) + i.",
+                   joined<C>({{{"corner", &C::corner, kCoordinate, "m", "A corner of the sheet.", kRequired},
+                               {"side_u", &C::side_u, kCoordinate, "m",
+                                "Vector from the corner along one side to its end.", kRequired},
+                               {"side_v", &C::side_v, kCoordinate, "m",
+                                "Vector from the corner along the other side to its end.", kRequired},
+                               {"cells_u", &C::cells_u, kElements, "", "Number of cells along `side_u`.", kRequired},
+                               {"cells_v", &C::cells_v, kElements, "", "Number of cells along `side_v`.", kRequired}},
+                              cloth_fields()}),
+                   {"mass", "mass_per_area"});
 }
 
-// Direction in which ropes hang at first.
+// Returns the direction in which ropes hang at first.
 Vec3 fall_of(const SimulationSetup& setup) {
     const Vec3 fall = uniform_acceleration(setup);
     return fall == Vec3{} ? Vec3{0, 0, -1} : fall;
@@ -197,7 +199,7 @@ public:
         for (std::size_t i = 0; i < all_.particles.size(); ++i) all_.particles[i].id = i;
     }
 
-    // Single springs come last: they may join any two particles.
+    // Single springs come last, because they can join any two particles.
     SpringBody build() {
         const std::vector<ObjectView> views = context_.objects("springs");
         for (const ObjectView& view : views) {
@@ -224,7 +226,8 @@ private:
         return view.type() == "sheet" ? sheet_of(view) : cloth_of(view);
     }
 
-    // What is refused already must not be refused again by the maker.
+    // Returns true if all these keys are present, and exactly one of the two alternatives. Other cases have been
+    // reported already, so the maker must not report them again.
     static bool is_complete(const ObjectView& view, std::initializer_list<std::string_view> keys,
                             std::string_view either, std::string_view other) {
         return std::all_of(keys.begin(), keys.end(), [&](std::string_view key) { return view.has(key); }) &&
@@ -295,7 +298,8 @@ private:
         return cloth.bending_stiffness > 0.0 ? 2.0 * edges : edges;
     }
 
-    // Reports for this key that a body of so many particles and springs does not fit beside what there is.
+    // Returns true if a body with so many particles and springs fits the memory beside the rest. Reports it at this key
+    // otherwise.
     [[nodiscard]] bool is_room(const ObjectView& view, std::string_view key, double particles, double springs) const {
         const double bytes = bytes_of_springs(particles + static_cast<double>(all_.particles.size()),
                                               springs + static_cast<double>(all_.springs.size()), integrator_);
@@ -336,11 +340,11 @@ private:
         all_.springs.push_back(spring);
     }
 
-    // Reports a number that no particle has.
+    // Returns true if a particle has this number. Reports the number otherwise.
     [[nodiscard]] bool is_particle(const ObjectView& view, std::string_view key, std::uint64_t number) const {
         if (!view.has(key)) return false;
         if (number < all_.particles.size()) return true;
-        if (!is_complete_) return false;  // it may be one of a body that was refused
+        if (!is_complete_) return false;  // it may belong to a body that was refused
         context_.error(view, key,
                        fmt::format("there is no particle {}, the scene has {} from the start (numbered from 0)", number,
                                    all_.particles.size()));
@@ -352,17 +356,17 @@ private:
     MemoryLimit limit_ = memory_limit();
     SpringBody all_;
     Vec3 fall_;
-    bool is_complete_ = true;  // no body has been refused
+    bool is_complete_ = true;  // false after a body was refused
 };
 
 }  // namespace
 
 const ObjectSpec& springs_spec() {
-    static const ObjectSpec spec = object<Unbound>(
-        "springs",
-        "Springs between particles, and things made of them: ropes, chains and cloth bring their own particles. "
-        "docs/springs.md says how they pull and which integrator they need.",
-        {}, {list_variant(), rope_variant(), chain_variant(), cloth_variant(), sheet_variant()});
+    static const ObjectSpec spec =
+        object<Unbound>("springs",
+                        "Springs between particles, and ropes, chains and cloth with particles of their own. "
+                        "docs/springs.md describes their forces and the integrators that they need.",
+                        {}, {list_variant(), rope_variant(), chain_variant(), cloth_variant(), sheet_variant()});
     return spec;
 }
 

@@ -133,7 +133,8 @@ void add_options(cli::Command command, CompareArguments& a) {
         .required();
     command
         .add_option("--responses", a.request.responses,
-                    "Comma-separated names: exact, rollback, rollback:global, project, penalty (default: the four)")
+                    "Comma-separated names: exact, rollback, rollback:global, project, penalty (default: all "
+                    "but rollback:global)")
         .type_name("LIST");
     command
         .add_option("--time-steps", a.request.time_steps,

@@ -330,8 +330,8 @@ std::string scene_text(SceneTemplate kind, const FittedMesh& mesh) {
         fmt::format("{:.6g}", part.steps * std::stod(fmt::format("{:.3g}", step))),
         part.has_gravity ? R"({"type": "gravity", "acceleration": [0, 0, -9.81]})" : "", contacts, part.surface,
         part.has_gravity ? fmt::format(",\n    \"ground\": {}", part.surface) : "", colliders_text(mesh, fit, part),
-        part.emitters, at(mesh.bounds.lower - margin, fit), at(mesh.bounds.upper + margin, fit), picture,
-        camera_text(fit, part));
+        part.emitters, at(mesh.bounds.lower - margin, fit), at(mesh.bounds.upper + margin, fit), part.steps / kFrames,
+        picture, camera_text(fit, part));
 }
 
 }  // namespace ricochet::cli

@@ -12,7 +12,7 @@
 #include "support/exact_oracle.h"
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr std::size_t kBlock = 16;
 
@@ -82,7 +82,7 @@ BilliardTally sum_of(const std::vector<BilliardTally>& parts) {
     return sum;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 bool oracle_meets(const TriangleMesh& mesh, const Vec3& p, const Vec3& q) {
     const double rounding = 1e-9 * std::max(max_abs(p), max_abs(q));

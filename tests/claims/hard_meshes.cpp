@@ -8,7 +8,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 TriangleMesh placed(TriangleMesh mesh, const Placement& placement) {
     const AffineMap map = world_from_local(placement);
@@ -33,7 +33,7 @@ TriangleMesh wedge_mesh() {
             {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}}};
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::vector<NamedMesh> made_meshes() {
     return {{"box", turned(box_mesh({0, 0, 0}, {1, 2, 3}))},

@@ -15,7 +15,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Purpose of the draws. Each has its own stream, so that a change of one does not affect the others.
 enum Stream : std::uint32_t { kOptions = 1, kForces, kMaterials, kRoom, kBodies, kParticles };
@@ -212,7 +212,7 @@ void add_particles(std::uint64_t seed, SimulationSetup& setup) {
     }
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 Vec3 random_contact_gravity(std::uint64_t seed) {
     Draws draws(seed, kForces);

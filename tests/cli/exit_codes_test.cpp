@@ -22,7 +22,7 @@ std::string bullet(const std::string& response) {
       "particles": [{"position": [0.1, 0.2, -2], "velocity": [0, 0, 300]}]})";
 }
 
-struct ExitCodes : testing::Test {
+struct ExitCodes : ::testing::Test {
     test::TemporaryFolder folder;
     std::string output = folder.path("out").string();
 

@@ -6,7 +6,7 @@
 #include <csignal>
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 sigset_t lease_signal() {
     sigset_t signals;
@@ -15,7 +15,7 @@ sigset_t lease_signal() {
     return signals;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 HeldFile::HeldFile(const std::filesystem::path& file) : descriptor_(::open(file.c_str(), O_RDWR | O_CLOEXEC)) {
     // wait_for_reader() waits for this signal, which reports that a reader is waiting.

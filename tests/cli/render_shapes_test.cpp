@@ -19,7 +19,7 @@ using test::TemporaryFolder;
 constexpr const char* kShard = "v 1 0 0\nv -1 0.5 0\nv -1 -0.5 0\nv 0 0 0.6\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
 
 // Fixture with a folder of runs.
-class Shapes : public testing::Test {
+class Shapes : public ::testing::Test {
 protected:
     // Runs a scene and returns its output folder.
     [[nodiscard]] std::string run(const std::string& name, const std::string& keys) const {

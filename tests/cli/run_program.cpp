@@ -16,7 +16,7 @@
 extern char** environ;  // NOLINT(readability-redundant-declaration): POSIX leaves the declaration to the program
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 void pause_a_little() { (void)::usleep(2000); }
 
@@ -39,7 +39,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& settin
     return all;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const ProgramStart& start) {
     std::vector<std::string> command = start.prefix;

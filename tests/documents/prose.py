@@ -91,18 +91,22 @@ def test_names(text: str) -> Iterator[Text]:
 
 
 def literals(text: str) -> Iterator[Text]:
-    """Yields string literals of C++ and JavaScript; adjacent ones on consecutive lines are one."""
-
-    def lines() -> Iterator[Text]:
-        for number, line in enumerate(text.split("\n"), 1):
-            if line.lstrip().startswith(("//", "#include", "*")):
-                continue
-            found = " ".join(part for part in STRING.findall(line))
-            if found.strip():
-                yield number, found
-
-    for number, literal in joined_blocks(lines()):
-        if len(WORD.findall(literal)) >= 4 and "{" not in literal[:1]:
+    """Yields string literals of C++ and JavaScript; the compiler's concatenation of neighbours is followed."""
+    parts: List[Text] = []
+    goes_on = False
+    for number, line in enumerate(text.split("\n"), 1):
+        if line.lstrip().startswith(("//", "#include", "*")):
+            continue
+        end = 0
+        for found in STRING.finditer(line):
+            if goes_on and not line[end : found.start()].strip():
+                parts[-1] = (parts[-1][0], parts[-1][1] + found.group(1))
+            else:
+                parts.append((number, found.group(1)))
+            goes_on, end = True, found.end()
+        goes_on = goes_on and not line[end:].strip()
+    for number, literal in parts:
+        if len(WORD.findall(literal)) >= 4:
             yield number, literal.replace("\\n", " ").replace('\\"', "'")
 
 

@@ -10,7 +10,7 @@
 #include "support/counts.h"
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr const char* kScene = R"({
   "ricochet": 1,
@@ -61,7 +61,7 @@ bool is_whole(const std::string& name, const std::string& bytes) {
     return bytes.ends_with("</VTKFile>\n");
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::vector<std::string> call_fault(const std::filesystem::path& path, const std::string& call, std::int64_t at,
                                     const std::string& action, bool goes_on) {

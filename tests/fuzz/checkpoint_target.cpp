@@ -17,7 +17,7 @@
 #include "support/temporary_folder.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr std::size_t kStepsAfter = 1;
 constexpr std::size_t kChecksums = 2 * sizeof(std::uint64_t);
@@ -111,7 +111,7 @@ void require_some_steps(Simulation& simulation) {
     simulation.save([](std::span<const std::byte>) {});
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 // The first byte selects the scene, and the others edit its checkpoint.
 bool fuzz_checkpoint(std::string_view bytes) {

@@ -6,7 +6,7 @@
 
 #include "fuzz/fuzz_targets.h"
 
-namespace RICOCHET_FILE {
+namespace {
 
 /// Returns the largest processor time of an input, in s. The environment can raise it, so that long runs skip slow
 /// inputs. libFuzzer's own limit is in wall-clock time, which also counts other programs.
@@ -17,7 +17,7 @@ double most_time() {
 
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 // An exception ends the fuzzer, which then saves the input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,

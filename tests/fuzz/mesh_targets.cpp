@@ -8,7 +8,7 @@
 #include "ricochet/geometry/mesh/triangulation.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Reads a mesh. An accepted mesh must pass all processing steps of an import.
 template <typename Reader>
@@ -38,7 +38,7 @@ ParsedMesh read_small_gltf(const MeshSource& source) {
     return read_gltf(source, std::nullopt, kFreeCorners);
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 bool fuzz_gltf(std::string_view bytes) { return read_mesh_bytes(read_small_gltf, bytes); }
 bool fuzz_obj(std::string_view bytes) { return read_mesh_bytes(read_obj, bytes); }

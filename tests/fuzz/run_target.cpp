@@ -12,7 +12,7 @@
 #include "ricochet/core/parallel.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Settings of a run.
 struct Variant {
@@ -83,7 +83,7 @@ std::uint64_t end_of(ByteChoices choices, const Variant& variant) {
     return simulation.state_hash();
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 // The first byte selects the variant and whether to run a second time. The others select the scene.
 bool fuzz_run(std::string_view bytes) {

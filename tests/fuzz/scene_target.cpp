@@ -11,7 +11,7 @@
 #include "ricochet/io/scene/document.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Returns true if a scene names other files or requests too many particles for fuzzing. Ordinary scenes may do both.
 bool is_beyond_the_fuzzer(const detail::JsonMember& member) {
@@ -35,7 +35,7 @@ bool is_beyond_the_fuzzer(const detail::JsonNode& node) {
     });
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 bool fuzz_scene(std::string_view bytes) {
     const std::filesystem::path file = std::filesystem::path(RICOCHET_SOURCE_DIR) / "tests/fuzz/scene_files/fuzz.json";

@@ -12,7 +12,7 @@
 #include "ricochet/geometry/mesh/mesh_motion.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Returns a turn rate in degrees per second. In a step of 1/60 s it ranges from zero to half a turn. The speeds below
 /// range from a creep to the width of the scene in one step.
@@ -94,7 +94,7 @@ void deform(ByteChoices& choices, MeshShape& shape, double duration) {
         std::make_shared<const MeshMotion>(std::vector<double>{0.0, 0.5 * duration, duration}, std::move(positions));
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 void add_movers(ByteChoices& choices, SimulationSetup& setup) {
     const bool is_exact = setup.options.response == ResponseKind::exact;

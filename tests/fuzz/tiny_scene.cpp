@@ -12,7 +12,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::fuzz {
-namespace RICOCHET_FILE {
+namespace {
 
 using MeshPointer = std::shared_ptr<const TriangleMesh>;
 
@@ -260,7 +260,7 @@ void add_springs(ByteChoices& choices, SimulationSetup& setup) {
     }
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 SimulationSetup tiny_scene(ByteChoices choices) {
     SimulationSetup setup;

@@ -8,7 +8,7 @@
 #include <string>
 
 namespace ricochet::golden {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Random numbers whose bits the C++ standard fixes. Distributions of the standard library would differ between
 /// systems. An expression draws at most once, because compilers evaluate operands and arguments in different orders.
@@ -199,7 +199,7 @@ std::string springs(int number) {
   "mass_per_area": 0.5, "radius": 0.02, "stiffness": 60, "bending_stiffness": 0.5, "damping": 0.1}])";
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::string random_scene(int number) {
     Numbers numbers(number);

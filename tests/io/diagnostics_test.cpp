@@ -48,7 +48,7 @@ TEST(EditDistance, AgreesWithItsDefinition) {
     for (int i = 0; i < 500; ++i) {
         const std::string a = word();
         const std::string b = word();
-        SCOPED_TRACE(testing::Message() << a << " " << b);
+        SCOPED_TRACE(::testing::Message() << a << " " << b);
         ASSERT_EQ(edit_distance(a, b), distance_by_definition(a, b));
         ASSERT_EQ(edit_distance(b, a), edit_distance(a, b));
     }

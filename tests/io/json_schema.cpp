@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 using Json = nlohmann::json;
 
@@ -218,7 +218,7 @@ private:
     const Json& root_;
 };
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::vector<std::string> schema_errors(const Json& schema, const Json& value) {
     return Validator(schema).errors(schema, value, "");

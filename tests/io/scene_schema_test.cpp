@@ -175,7 +175,7 @@ void expect_agreement_on_replaced_values(const Json& sample, const std::vector<J
             spoiled[pointer] = value;
             SCOPED_TRACE(pointer.to_string() + " = " + value.dump());
             expect_agreement(spoiled);
-            if (testing::Test::HasFatalFailure()) return;
+            if (::testing::Test::HasFatalFailure()) return;
         }
     }
 }
@@ -246,7 +246,7 @@ void expect_agreement_on_changed_keys(const Json& sample) {
             added.at(parent)[key] = 1;
             expect_agreement(added);
         }
-        if (testing::Test::HasFatalFailure()) return;
+        if (::testing::Test::HasFatalFailure()) return;
     }
 }
 
@@ -269,7 +269,7 @@ void expect_agreement_on_random_changes(const Json& sample) {
             if (spoiled.contains(to) && sample.contains(from)) spoiled[to] = sample[from];
         }
         expect_agreement(spoiled);
-        if (testing::Test::HasFatalFailure()) return;
+        if (::testing::Test::HasFatalFailure()) return;
     }
 }
 

@@ -598,7 +598,7 @@ TEST(Scene, MisspeltKeyIsExactlyOneErrorThatSuggestsTheRightKey) {
         const auto& [at, key] = keys[static_cast<std::size_t>(random.uniform() * static_cast<double>(keys.size()))];
         const std::string wrong = misspelt(key, random);
         if (known.contains(wrong)) continue;
-        SCOPED_TRACE(testing::Message() << key << " as " << wrong);
+        SCOPED_TRACE(::testing::Message() << key << " as " << wrong);
         std::string scene = kSampleScene;
         scene.replace(at, key.size(), wrong);
         const Lines errors = errors_of(folder, scene);

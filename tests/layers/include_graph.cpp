@@ -8,7 +8,7 @@
 #include <regex>
 
 namespace ricochet::layers {
-namespace RICOCHET_FILE {
+namespace {
 
 namespace fs = std::filesystem;
 
@@ -200,7 +200,7 @@ std::optional<std::string> wrong(const SourceTree& tree, const std::set<std::str
     return name + " is neither a file of this project nor of a library that it knows";
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 SourceTree read_source_tree(const fs::path& root) {
     SourceTree tree;

@@ -12,7 +12,7 @@
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet::meshes {
-namespace RICOCHET_FILE {
+namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -60,7 +60,7 @@ bool cross_each_other(const TriangleMesh& mesh, const Triangle& a, const Triangl
     return shared < 2 && (edge_meets(mesh, a, b) || edge_meets(mesh, b, a));
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::size_t unpaired_edges(const TriangleMesh& mesh) {
     const std::vector<Edge> edges = directed_edges(mesh);

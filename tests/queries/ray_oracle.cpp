@@ -8,7 +8,7 @@
 #include "support/simple_meshes.h"
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 using Integer = boost::multiprecision::cpp_int;
 using Point = std::array<Integer, 3>;
@@ -27,7 +27,7 @@ int lowest_exponent(const Vec3& p) {
     return least;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 RayOracle::RayOracle(const TriangleMesh& mesh) : mesh_(mesh) {}
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Theoretical error bounds for springs at a step h, from the results of a run.
 struct SpringTheory {
@@ -89,7 +89,7 @@ double lost_with_swallowed(const BookCase& c, const BookedRun& run) {
     return z * z * kEnergy / kParticles * static_cast<double>(run.swallowed().count);
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 /// Returns the bounds of one run. Without springs and penalties, particles fly straight and bounce elastically. Springs
 /// give opposite momentum to their two ends, except to absorbed particles.

@@ -8,7 +8,7 @@
 #include "support/integrators.h"
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr std::array<const char*, kFeatures.size()> kFeatureNames{"springs", "children", "absorbing", "shattering",
                                                                   "flow"};
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> bearing_of(const SimulationSetup& setup) {
     return bearing;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::string name(const BookCase& c) {
     std::string text = std::string(name_of(c.response)) + (c.global ? ".global" : "") + ", " +

@@ -10,7 +10,7 @@
 #include <limits>
 #include <new>
 
-namespace RICOCHET_FILE {
+namespace {
 
 std::atomic<std::size_t> in_use{0};
 std::atomic<std::size_t> peak{0};
@@ -70,7 +70,7 @@ void release(void* memory) noexcept {
     std::free(memory);
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 // Allocations that request far more memory than the machine has count too, because they fail: bad_alloc is not
 // InputError.

@@ -8,7 +8,7 @@
 #include <vector>
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 using Integer = boost::multiprecision::cpp_int;
 using IntegerPoint = std::array<Integer, 3>;
@@ -111,7 +111,7 @@ Integer whole_orient3d(const IntegerPoint& a, const IntegerPoint& b, const Integ
     return determinant3(b, c, d) - determinant3(a, c, d) + determinant3(a, b, d) - determinant3(a, b, c);
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 Rational exact(double x) {
     const Dyadic dyadic(x);

@@ -8,7 +8,7 @@
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr std::uint64_t kTriangleKinds = 7;
 constexpr std::uint64_t kSegmentKinds = 10;
@@ -168,7 +168,7 @@ Vec3 placed(const Vec3& p, std::uint64_t placement) {
     }
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 SegmentTriangle segment_triangle_case(std::uint64_t seed, std::uint64_t index) {
     RandomSequence random(seed, 0, index);

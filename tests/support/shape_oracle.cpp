@@ -4,7 +4,7 @@
 #include <vector>
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 constexpr int kHalvings = 40;
 constexpr int kMostSteps = 60;  // of Newton's method, which converges from below
@@ -27,7 +27,7 @@ void make_equal(std::array<double, 3>& half, std::size_t count) {
     if (sorted.back() - sorted.front() <= 0x1p-49 * sorted.front()) std::fill_n(half.begin(), count, sorted[1]);
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 RealVector real(const Vec3& v) { return {Real(v.x), Real(v.y), Real(v.z)}; }
 Real dot(const RealVector& u, const RealVector& v) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }

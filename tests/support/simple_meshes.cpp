@@ -6,7 +6,7 @@
 #include <utility>
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -30,7 +30,7 @@ TriangleMesh subdivided(const TriangleMesh& coarse) {
     return fine;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
     TriangleMesh mesh;

@@ -5,7 +5,7 @@
 #include <vector>
 
 namespace ricochet::testing {
-namespace RICOCHET_FILE {
+namespace {
 
 template <class T>
 using VecOf = std::array<T, 3>;
@@ -156,7 +156,7 @@ Digits crossing(const Clearance<Digits>& clearance, Digits clear, Digits hit) {
     return hit;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 DigitsVec3 digits(const Vec3& v) { return converted<Digits>(v); }
 DigitsVec3 difference(const DigitsVec3& u, const DigitsVec3& v) { return minus(u, v); }

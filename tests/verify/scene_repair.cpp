@@ -9,7 +9,7 @@
 #include "verify/schema_scene.h"
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 using Json = nlohmann::json;
 
@@ -113,7 +113,7 @@ void write_cache(const std::filesystem::path& file, const TriangleMesh& cube) {
     std::ofstream(file, std::ios::binary) << bytes;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::optional<SceneDescription> accepted(Json& scene, const std::filesystem::path& folder) {
     constexpr int kMostRounds = 40;

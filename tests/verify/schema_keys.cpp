@@ -5,7 +5,7 @@
 #include "verify/schema_scene.h"
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 using Json = nlohmann::json;
 
@@ -62,7 +62,7 @@ void add_all(const Json& rule, const std::string& owner, std::set<std::string>& 
     }
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::vector<std::string> names_of(const std::string& owner, const std::string& key) {
     if (key == "flows") return {"w0", "w1"};

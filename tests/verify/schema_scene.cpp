@@ -11,7 +11,7 @@
 #include "verify/schema_tables.h"
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 /// Returns the smallest and largest number of items by key. Lists not named here have one or two.
 std::pair<std::uint64_t, std::uint64_t> most_items(const std::string& key) {
@@ -28,7 +28,7 @@ void sort_by_time(nlohmann::json& list) {
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a["time"] < b["time"]; });
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 SchemaScene::SchemaScene(const nlohmann::json& schema, std::uint64_t seed) : schema_(schema), random_(seed, 1, 0) {}
 

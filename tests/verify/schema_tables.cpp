@@ -4,7 +4,7 @@
 #include <string_view>
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 template <class Value>
 struct Row {
@@ -169,7 +169,7 @@ const Value* entry(std::span<const Row<Value>> table, const std::string& owner, 
     return nullptr;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::optional<Range> range_of(const std::string& owner, const std::string& key) {
     const Range* const known = entry<Range>(kRanges, owner, key);

@@ -11,10 +11,6 @@
 namespace ricochet {
 namespace {
 
-constexpr int kMostHalvings = 48;
-/// Same value as for second-order motion, see dormand_prince.h.
-constexpr double kErrorToDouble = 1.0 / 64.0;
-
 FlowPath through(const FlowField& flow, const Vec3& x0, const Vec3& g0, const Vec3& x1, double time, double h) {
     return {hermite_path(x0, g0, x1, flow.velocity(x1, time + h), h)};
 }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 namespace ricochet::test {
-namespace RICOCHET_FILE {
+namespace {
 
 std::string bytes_of(std::string_view text) {
     static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -64,7 +64,7 @@ std::vector<std::uint32_t> read_cells(PageBytes& in, std::size_t corners) {
     return cells;
 }
 
-}  // namespace RICOCHET_FILE
+}  // namespace
 
 std::string unpacked(std::string_view text) {
     const std::string packed = bytes_of(text);

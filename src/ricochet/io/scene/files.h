@@ -27,7 +27,9 @@ struct MeshGroups {
     std::vector<std::string> names;
 
     /// Returns false for formats that cannot name groups.
-    [[nodiscard]] bool format_has_groups() const { return format == "OBJ" || format.starts_with("glTF"); }
+    [[nodiscard]] bool format_has_groups() const {
+        return format == "OBJ" || format == "STL, ASCII" || format.starts_with("glTF");
+    }
     /// Returns every name that can select a triangle, in order of first use: material, group (the whole name, then its
     /// words if it has several) and object.
     [[nodiscard]] std::vector<std::string_view> all_names() const;

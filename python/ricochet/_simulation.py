@@ -262,10 +262,10 @@ def _copy_of(mesh: Mesh) -> Mesh:
 def _statements(mesh: Mesh) -> Iterator[List[str]]:
     """Yields for each triangle the statements of an OBJ file that give it its names. A name that does not fit into a
     line is omitted."""
-    columns = []
-    for statement, names in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
-        if names is not None:
-            columns.append((statement, [name if _is_writable(name) else "" for name in names.tolist()]))
+    columns: List[Tuple[str, List[str]]] = []
+    for statement, array in (("o", mesh.objects), ("g", mesh.groups), ("usemtl", mesh.materials)):
+        if array is not None:
+            columns.append((statement, [name if _is_writable(name) else "" for name in array.tolist()]))
     last = [""] * len(columns)
     for number in range(len(mesh)):
         changed = []

@@ -257,8 +257,8 @@ class States(unittest.TestCase):
         middle = len(state) // 2
         damaged = state[:middle] + bytes([state[middle] ^ 1]) + state[middle + 1:]
         for wrong, said in ((state + b"x", "1 bytes behind the end"), (state + state, "bytes behind the end"),
-                            (state[:-1], "ends too early"), (damaged, "checksum"), (b"", "expected those"),
-                            (b"x" * 500, "expected those")):
+                            (state[:-1], "ends too early"), (damaged, "checksum"), (b"", "expected the result"),
+                            (b"x" * 500, "expected the result")):
             with self.assertRaisesRegex(ricochet.InputError, said):
                 simulation.restore(wrong)
             simulation.step()

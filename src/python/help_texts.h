@@ -20,10 +20,12 @@ struct HitsName {};
 struct AllHitsName {};
 struct ContactsName {};
 struct TriangleTotalsName {};
+struct MeshName {};
 using HitsObject = ResultObject<HitsName>;
 using AllHitsObject = ResultObject<AllHitsName>;
 using ContactsObject = ResultObject<ContactsName>;
 using TriangleTotalsObject = ResultObject<TriangleTotalsName>;
+using MeshObject = ResultObject<MeshName>;
 
 /// Rewrites the texts of the functions in a class or a module. pybind11 puts the signature into the first line, which
 /// Python treats as text. The new text has the signature in Python's form, and ends with the type of the result and the
@@ -49,6 +51,10 @@ struct handle_type_name<ricochet::python::ContactsObject> {
 template <>
 struct handle_type_name<ricochet::python::TriangleTotalsObject> {
     static constexpr auto name = const_name("ricochet.TriangleTotals");
+};
+template <>
+struct handle_type_name<ricochet::python::MeshObject> {
+    static constexpr auto name = const_name("ricochet.Mesh");
 };
 
 }  // namespace pybind11::detail

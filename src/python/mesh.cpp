@@ -321,7 +321,7 @@ void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector
         .attr("_take_names")(mesh, given(std::move(numbers)), materials, groups, objects);
 }
 
-py::object read(const std::filesystem::path& file, const std::optional<std::string>& up, const py::object& scale,
+MeshObject read(const std::filesystem::path& file, const std::optional<std::string>& up, const py::object& scale,
                 const std::optional<double>& merge) {
     if (up && *up != "y" && *up != "z") {
         throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));

@@ -255,7 +255,7 @@ TEST(ClosedSurface, AQuadListedAgainCountsOnceOrIsReported) {
         EXPECT_FALSE(report.topology.closed) << other;
         EXPECT_EQ(report.topology.closed, is_closed(mesh.mesh)) << other;
         EXPECT_EQ(report.duplicate_faces, 1U) << other;
-        EXPECT_NE(report.warnings.front().find("listed twice are cut along different diagonals"), std::string::npos);
+        EXPECT_NE(report.warnings.front().find("listed twice and cut along different diagonals"), std::string::npos);
     }
 }
 

@@ -78,6 +78,17 @@ class Mesh(unittest.TestCase):
                 with self.assertRaises(ricochet.InputError):
                     ricochet.Mesh.read(file, **wrong)
 
+    def test_the_volume_counts_repeated_triangles_once_and_adds_nested_shells(self):
+        vertices, faces = np.array(BOX_VERTICES, dtype=float), np.array(BOX_FACES)
+        one = ricochet.Mesh(vertices, faces).volume
+        self.assertEqual(ricochet.Mesh(vertices, np.vstack([faces, faces])).volume, one)
+        center = vertices.mean(axis=0)
+        both = np.vstack([vertices, center + 0.5 * (vertices - center)])
+        nested = ricochet.Mesh(both, np.vstack([faces, faces + len(vertices)]))
+        self.assertAlmostEqual(nested.volume, 1.125 * one)
+        wall = ricochet.Mesh(both, np.vstack([faces, faces[:, ::-1] + len(vertices)]))
+        self.assertAlmostEqual(wall.volume, 0.875 * one)
+
     def test_a_transform_places_the_mesh_for_one_query(self):
         transform = np.array([[0, -2, 0, 5], [2, 0, 0, -1], [0, 0, 2, 3], [0, 0, 0, 1]], dtype=float)
         corners = np.array(BOX_VERTICES) @ transform[:3, :3].T + transform[:3, 3]

@@ -15,6 +15,7 @@
 #include "python/help_texts.h"
 #include "python/made_objects.h"
 #include "ricochet/core/error.h"
+#include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/merged_vertices.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangulation.h"
@@ -438,8 +439,10 @@ void bind_mesh(py::module_& module) {
         .def_property_readonly(
             "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "Surface area, in m^2.")
         .def_property_readonly(
-            "volume", [](const MeshQueries& m) { return signed_volume(m.mesh()); },
-            "Volume of a closed mesh, in m^3; above 0 if it is wound outward.")
+            "volume", [](const MeshQueries& m) { return signed_volume(counted_surface(m.mesh())); },
+            "Volume of a closed mesh, in m^3; above 0 if it is wound outward. Repeated triangles count once, and "
+            "nested shells "
+            "of equal winding add up.")
         .def_property_readonly(
             "is_closed", &MeshQueries::is_closed,
             "True if the mesh has an inside: every edge has an even number of triangles. Vertices at equal "

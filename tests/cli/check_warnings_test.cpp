@@ -246,7 +246,7 @@ TEST_F(CheckWarnings, WarnsOfRadiiThatCoordinatesHardlyResolve) {
 TEST_F(CheckWarnings, WarnsOfMeshesThatCoordinatesHardlyResolve) {
     const auto far = [](const std::string& x) {
         return collider(R"("type": "mesh", "file": "hull.obj", "scale": 1e-6, "position": [)" + x + ", 0, 0]") +
-               emitter(R"("type": "point", "center": [0, 0, 3])");
+               emitter(R"("type": "point", "center": [)" + x + ", 0, 1e-5]");
     };
     const std::string text = warnings(far("24000"));
     EXPECT_EQ(

@@ -153,8 +153,8 @@ TEST(InfoCommand, WarnsThatAnEmitterOnAnInsideOutMeshLaunchesInward) {
     EXPECT_EQ(info.at("warnings").size(), 1U);
     const std::string text = test::run_ricochet({"info", path}).output;
     EXPECT_NE(text.find("\nwarning: wound inside out, the faces' normals point inward: faces stop particles from both "
-                        "sides, so nothing leaks, but a mesh emitter on them (without volume) gives birth on the "
-                        "inside and launches inward\n"),
+                        "sides, so nothing leaks, but a mesh emitter on them (without volume) spawns particles on "
+                        "the inside and launches them inward\n"),
               std::string::npos)
         << text;
 }

@@ -2,8 +2,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -14,10 +12,9 @@
 #include "python/gil.h"
 #include "python/help_texts.h"
 #include "python/made_objects.h"
+#include "python/mesh_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
-#include "ricochet/geometry/mesh/merged_vertices.h"
-#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/triangulation.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "ricochet/queries/placed_mesh.h"
@@ -259,89 +256,6 @@ py::array bounds_of(const MeshQueries& mesh) {
     return given(std::vector<Vec3>{box.lower, box.upper});
 }
 
-/// Returns the factors of a scale along x, y and z, in the form of scenes: one number or three; negative ones mirror.
-Vec3 factors_of(const py::object& scale) {
-    constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
-    std::optional<Vec3> factors;
-    try {
-        const Doubles numbers = py::cast<Doubles>(py::module_::import("numpy").attr("ravel")(scale));
-        const std::span<const double> list = values(numbers);
-        if (list.size() == 1) factors = Vec3{list[0], list[0], list[0]};
-        if (list.size() == 3) factors = Vec3{list[0], list[1], list[2]};
-    } catch (const py::error_already_set&) {
-        factors.reset();  // no numbers
-    } catch (const py::cast_error&) {
-        factors.reset();
-    }
-    const bool is_good = factors && is_finite(*factors) && factors->x != 0.0 && factors->y != 0.0 && factors->z != 0.0;
-    if (!is_good) throw InputError(fmt::format("scale: found {}, {}", std::string(py::str(scale)), kExpected));
-    return *factors;
-}
-
-/// Rotates the up axis first and then scales, as scenes do.
-void place(ImportedMesh& imported, const std::optional<std::string>& up, const Vec3& scale) {
-    const bool turns_up = up == "y" && !imported.y_up;
-    const bool turns_back = up == "z" && imported.y_up;
-    for (Vec3& vertex : imported.mesh.vertices) {
-        if (turns_up) vertex = y_up_as_z_up(vertex);
-        if (turns_back) vertex = z_up_as_y_up(vertex);
-        vertex = {scale.x * vertex.x, scale.y * vertex.y, scale.z * vertex.z};
-    }
-    const bool mirrors = (scale.x < 0.0) != ((scale.y < 0.0) != (scale.z < 0.0));
-    for (Triangle& triangle : imported.mesh.triangles) {
-        if (mirrors) std::swap(triangle[1], triangle[2]);
-    }
-}
-
-/// Returns for each triangle the index of its combination of names in PolygonMesh::groups; empty without names.
-std::vector<std::uint32_t> group_numbers(const ImportedMesh& imported) {
-    std::vector<std::uint32_t> numbers;
-    if (imported.polygons.face_groups.empty()) return numbers;
-    numbers.reserve(imported.triangle_face.size());
-    for (const std::uint32_t face : imported.triangle_face) numbers.push_back(imported.polygons.face_groups[face]);
-    return numbers;
-}
-
-/// Gives a mesh the names of faces from its file.
-void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector<std::uint32_t>&& numbers) {
-    if (numbers.empty()) return;
-    const auto text = [&](std::uint32_t name) {
-        const std::string& bytes = polygons.group_names[name];
-        return py::reinterpret_steal<py::object>(
-            PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "surrogateescape"));
-    };
-    py::list materials;
-    py::list groups;
-    py::list objects;
-    for (const FaceGroup& names : polygons.groups) {
-        materials.append(text(names.material));
-        groups.append(text(names.group));
-        objects.append(text(names.object));
-    }
-    py::module_::import("ricochet._mesh")
-        .attr("_take_names")(mesh, given(std::move(numbers)), materials, groups, objects);
-}
-
-MeshObject read(const std::filesystem::path& file, const std::optional<std::string>& up, const py::object& scale,
-                const std::optional<double>& merge) {
-    if (up && *up != "y" && *up != "z") {
-        throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
-    }
-    const Vec3 factors = factors_of(scale);
-    ImportedMesh imported;
-    std::optional<MeshQueries> queries;
-    {
-        const Unlocked unlocked;
-        imported = read_mesh(file.string());
-        place(imported, up, factors);
-        if (merge) imported.mesh = merged_within(imported.mesh, *merge);
-        queries.emplace(std::move(imported.mesh));
-    }
-    const py::object mesh = py::cast(std::move(*queries));
-    take_names(mesh, imported.polygons, group_numbers(imported));
-    return mesh;
-}
-
 constexpr const char* kMeshText = R"(A mesh of triangles, with exact queries.
 
 vertices: numbers of shape (n, 3), in metres. faces: whole numbers of shape (m, 3).
@@ -426,7 +340,8 @@ void bind_mesh(py::module_& module) {
              }),
              arg("vertices"), arg("faces"))
         .def_static(
-            "read", &read, arg("file"), arg("up") = py::none(), arg("scale") = 1.0, arg("merge") = py::none(),
+            "read", &read_named_mesh, arg("file"), arg("up") = py::none(), arg("scale") = 1.0,
+            arg("merge") = py::none(),
             "Reads a mesh from an OBJ, PLY, STL, OFF or glTF file, in doubles. up: the axis of the file that points "
             "up, \"y\" or \"z\" (None: y for glTF files, else z). scale: the file's unit in metres, or a factor "
             "for each "

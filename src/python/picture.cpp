@@ -56,7 +56,7 @@ void add_colliders(const Simulation& simulation, Shown& shown) {
     }
 }
 
-void add_particles(const Simulation& simulation, Shown& shown) {
+void draw_particles(const Simulation& simulation, Shown& shown) {
     const Particles& particles = simulation.particles();
     Box3 box;
     std::vector<double> speeds;
@@ -110,7 +110,7 @@ py::array render(const SimulationHandle& handle, int width, int height, int samp
     Image image = handle.read([&](const Simulation& simulation) {
         Shown shown;
         add_colliders(simulation, shown);
-        add_particles(simulation, shown);
+        draw_particles(simulation, shown);
         const Camera camera =
             camera_of(handle, shown.subject, static_cast<double>(width) / height, position, target, field_of_view);
         return CtrlC().run(false, [&] {

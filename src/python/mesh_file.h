@@ -1,0 +1,19 @@
+/// \file
+/// Meshes from files, with the names that the files give to faces.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "python/help_texts.h"
+
+namespace ricochet::python {
+
+/// Reads a mesh and the names of its faces. up: "y", "z", or nothing for the axis of the format. scale: one factor or
+/// three, none of them 0. merge: tolerance within which vertices are joined, in m. Throws InputError for other values
+/// and as read_mesh() does.
+[[nodiscard]] MeshObject read_named_mesh(const std::filesystem::path& file, const std::optional<std::string>& up,
+                                         const py::object& scale, const std::optional<double>& merge);
+
+}  // namespace ricochet::python

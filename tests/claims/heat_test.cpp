@@ -117,7 +117,7 @@ TEST(HeatOfFriction, IsTheKineticEnergyOfAParticleThatSlidesToRest) {
     }
 }
 
-TEST(HeatOfFriction, OfASlidingBallEqualsItsLossUntilItRolls) {
+TEST(HeatOfFriction, EqualsTheLossOfASlidingBallUntilItRolls) {
     // The ball rolls at 5/7 v, with 5/7 of the energy.
     SimulationSetup setup = on_a_floor(0.01, 1.5, {"floor", 0.5, 0.2});
     setup.particles.push_back(particle_of({0, 0, 0.1}, {2, 0, 0}, 0.1));
@@ -223,7 +223,7 @@ TEST(Heat, ChangesNoPathIfNoForceDependsOnIt) {
 }
 
 // A ball at rest in a wind cools by convection with a constant coefficient.
-TEST(Heat, OfABallAtRestInAWindFollowsNewtonsLaw) {
+TEST(Heat, FollowsNewtonsLawForABallAtRestInAWind) {
     SimulationSetup setup = setup_of(0.1, 2.0);
     setup.attributes.push_back({"temperature", 1, {900.0, 0, 0}});
     HeatSettings heat;
@@ -242,7 +242,7 @@ TEST(Heat, OfABallAtRestInAWindFollowsNewtonsLaw) {
     EXPECT_NEAR(temperature(simulation), 280.0 + 620.0 * std::exp(-2.0 * rate), 1e-9);
 }
 
-TEST(Heat, OfABallOnATurntableIsTheTablesWorkMinusItsKineticEnergy) {
+TEST(Heat, OnATurntableIsTheTablesWorkMinusTheBallsKineticEnergy) {
     FrameDescription table;
     table.name = "table";
     table.motions.push_back(Spin{{0, 0, 1}, 120.0});

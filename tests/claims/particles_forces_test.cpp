@@ -29,7 +29,7 @@ using test::gravity_of;
 using test::two_bodies;
 using testing::setup_of;
 
-TEST(ParticlesForces, ActBetweenTheNamedEmittersOnly) {
+TEST(ParticlesForces, ActBetweenTheNamedParticlesOnly) {
     SimulationSetup setup = setup_of(0.01, 1.0);
     setup.particles = {body({0, 0, 0}, {}, 1.0), body({1, 0, 0}, {}, 1.0), body({0, 1, 0}, {}, 1.0),
                        body({1, 1, 0}, {}, 1.0)};

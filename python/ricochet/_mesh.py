@@ -152,9 +152,13 @@ def _take_names(mesh: Mesh, numbers: Any, materials: List[str], groups: List[str
     mesh.__dict__[_OF_FILE] = frozenset(taken)
 
 
+# Blanks, line breaks and marks of OBJ files at places where a reader does not give them back as parts of a name.
+_NOT_IN_A_LINE = re.compile(r"[\n\r\0]|^[ \t]|[ \t]$|(^|[ \t])#|\\$")
+
+
 def _is_writable(name: str) -> bool:
-    """Returns whether a name fits into a line of an OBJ file."""
-    return name == " ".join(name.split()) and name.isprintable() and "#" not in name and not name.endswith("\\")
+    """Returns whether a line of an OBJ file gives a name back as it is."""
+    return _NOT_IN_A_LINE.search(name) is None
 
 
 def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
@@ -173,8 +177,8 @@ def _names(names: Any, count: int, kind: str) -> Optional[npt.NDArray[np.str_]]:
     for name in np.unique(array).tolist():
         if not _is_writable(name):
             raise InputError(
-                f"{kind}: found {name[:80]!r}, expected printable text in one line, with single spaces inside it alone, and "
-                "without # and a \\ at its end"
+                f"{kind}: found {name[:80]!r}, expected text in one line without blanks at its ends, a # at its start or "
+                "behind a blank, or a \\ at its end"
             )
     array = array.copy()
     array.flags.writeable = False

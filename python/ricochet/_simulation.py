@@ -278,7 +278,7 @@ def _statements(mesh: Mesh) -> Iterator[List[str]]:
 
 def _write(mesh: Mesh, file: Path) -> None:
     """Writes a mesh as an OBJ file with all digits of every double and the names of its triangles, in their order."""
-    with open(file, "w", encoding="utf-8") as stream:
+    with open(file, "w", encoding="utf-8", errors="surrogateescape") as stream:
         stream.writelines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in mesh.vertices.tolist())
         for (a, b, c), statements in zip(mesh.faces.tolist(), _statements(mesh)):
             stream.writelines(statements)

@@ -355,7 +355,8 @@ void bind_mesh(py::module_& module) {
             "area", [](const MeshQueries& m) { return surface_area(m.mesh()); }, "Surface area, in m^2.")
         .def_property_readonly(
             "volume", [](const MeshQueries& m) { return signed_volume(counted_surface(m.mesh())); },
-            "Volume of a closed mesh, in m^3; above 0 if it is wound outward. Repeated triangles count once, and "
+            "Volume of a closed mesh, in m^3; above 0 if it is wound outward; meaningless for an open one. Repeated "
+            "triangles count once, and "
             "nested shells "
             "of equal winding add up.")
         .def_property_readonly(

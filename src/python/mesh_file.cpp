@@ -21,14 +21,17 @@ Vec3 factors_of(const py::object& scale) {
     constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
     std::optional<Vec3> factors;
     try {
-        const Doubles numbers = py::cast<Doubles>(py::module_::import("numpy").attr("ravel")(scale));
-        const std::span<const double> list = values(numbers);
-        if (list.size() == 1) factors = Vec3{list[0], list[0], list[0]};
-        if (list.size() == 3) factors = Vec3{list[0], list[1], list[2]};
+        const py::array array = py::module_::import("numpy").attr("asarray")(scale);
+        const bool holds_numbers =
+            array.dtype().kind() == 'f' || array.dtype().kind() == 'i' || array.dtype().kind() == 'u';
+        if (holds_numbers && array.ndim() <= 1) {
+            const Doubles numbers = py::cast<Doubles>(array);
+            const std::span<const double> list = values(numbers);
+            if (array.ndim() == 0) factors = Vec3{list[0], list[0], list[0]};
+            if (array.ndim() == 1 && list.size() == 3) factors = Vec3{list[0], list[1], list[2]};
+        }
     } catch (const py::error_already_set&) {
-        factors.reset();  // no numbers
-    } catch (const py::cast_error&) {
-        factors.reset();
+        factors.reset();  // lists of several lengths
     }
     const bool is_good = factors && is_finite(*factors) && factors->x != 0.0 && factors->y != 0.0 && factors->z != 0.0;
     if (!is_good) throw InputError(fmt::format("scale: found {}, {}", std::string(py::str(scale)), kExpected));

@@ -173,6 +173,23 @@ TEST(EmitterShape, MeshesWithoutAnInteriorAreRefused) {
     open.triangles.pop_back();
     EXPECT_NE(refusal(MeshVolumeShape{shared(open)}).find("not closed"), std::string::npos);
     EXPECT_NE(refusal(MeshVolumeShape{nullptr}).find("missing"), std::string::npos);
+    // The same box twice, the second time cut along the other diagonals: closed, but every point is within two shells.
+    TriangleMesh twice = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    const std::vector<Triangle> sides = twice.triangles;
+    for (std::size_t t = 0; t + 1 < sides.size(); t += 2) {
+        const Triangle& first = sides[t];
+        const Triangle& second = sides[t + 1];
+        const auto is_in = [](const Triangle& triangle, std::uint32_t v) {
+            return std::find(triangle.begin(), triangle.end(), v) != triangle.end();
+        };
+        std::size_t alone = 0;  // corner of the first that the second has not
+        while (is_in(second, first[alone])) ++alone;
+        std::size_t across = 0;
+        while (is_in(first, second[across])) ++across;
+        twice.triangles.push_back({first[alone], first[(alone + 1) % 3], second[across]});
+        twice.triangles.push_back({first[alone], second[across], first[(alone + 2) % 3]});
+    }
+    EXPECT_NE(refusal(MeshVolumeShape{shared(twice)}).find("encloses no volume"), std::string::npos);
     EXPECT_NE(refusal(ConeShape{{}, {}, 20.0, 1.0}).find("axis"), std::string::npos);
     EXPECT_NE(refusal(ConeShape{{}, {0, 0, 1}, 90.0, 1.0}).find("angle"), std::string::npos);
     EXPECT_NE(refusal(ConeShape{{}, {0, 0, 1}, 20.0, 0.0}).find("height"), std::string::npos);

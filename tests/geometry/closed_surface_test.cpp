@@ -1,5 +1,6 @@
 #include "ricochet/geometry/mesh/closed_surface.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -181,6 +182,41 @@ TEST(ClosedSurface, TwoCellsThatBothListTheirCommonWallAreClosed) {
     EXPECT_TRUE(interior.contains({0.5, 0.25, 0.5}));
     EXPECT_TRUE(interior.contains({0.5, 0.25, 1.5}));
     EXPECT_FALSE(interior.contains({0.5, 0.25, 2.5}));
+}
+
+// The rim's edges have two faces in the same direction, which an edge of a closed surface has not.
+TEST(ClosedSurface, AnOpenMeshListedTwiceInOneWindingStaysOpen) {
+    TriangleMesh cup = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    cup.triangles.resize(10);
+    const TopologyReport once = MeshTopology(cup).report();
+    const std::vector<Triangle> faces = cup.triangles;
+    cup.triangles.insert(cup.triangles.end(), faces.begin(), faces.end());
+    EXPECT_FALSE(is_closed(cup));
+    std::string text;
+    for (const Vec3& v : cup.vertices) text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+    for (const Triangle& t : cup.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    const MeshReport report = report_on(read_mesh("cup.obj", text));
+    EXPECT_FALSE(report.topology.closed);
+    EXPECT_FALSE(report.volume);
+    EXPECT_EQ(report.topology.boundary_edges, once.boundary_edges);
+    EXPECT_EQ(report.topology.boundary_loops, 1U);
+    EXPECT_EQ(report.duplicate_faces, 10U);
+    EXPECT_EQ(report.self_intersections, 0U);
+    EXPECT_EQ(report.warnings.front().find("open surface, 4 boundary edges in 1 loop"), 0U) << report.warnings.front();
+}
+
+TEST(ClosedSurface, AMeshListedTwiceInOneWindingHasNoOtherWarning) {
+    std::string text;
+    const TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+    for (const Vec3& v : box.vertices) text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);
+    for (int round = 0; round < 2; ++round) {
+        for (const Triangle& t : box.triangles) text += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    }
+    const MeshReport report = report_on(read_mesh("box.obj", text));
+    EXPECT_TRUE(report.topology.closed && report.topology.consistently_oriented);
+    EXPECT_DOUBLE_EQ(*report.volume, 1.0);
+    ASSERT_EQ(report.warnings.size(), 1U);
+    EXPECT_EQ(report.warnings[0].find("12 faces repeat an earlier face"), 0U);
 }
 
 TEST(ClosedSurface, AnInnerWallListedOnceOpensAMesh) {

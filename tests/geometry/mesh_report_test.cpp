@@ -135,6 +135,15 @@ TEST(MeshReport, WarnsOfNestedShellsWithEqualWinding) {
     EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::merged(outer, testing::flipped(inner)), core)), 0U);
     EXPECT_EQ(count_shells_nested_alike(testing::merged(testing::merged(outer, inner), core)), 2U);
 
+    // Shells that only touch are not nested, from whichever side, though vertices of one are on the other.
+    for (const TriangleMesh& touching :
+         {testing::box_mesh({1, 0.25, 0.25}, {2, 0.75, 0.75}), testing::box_mesh({-1, 0.25, 0.25}, {0, 0.75, 0.75}),
+          testing::box_mesh({0.25, 1, 0.25}, {0.75, 2, 0.75}), testing::box_mesh({0.25, -1, 0.25}, {0.75, 0, 0.75}),
+          testing::box_mesh({0.25, 0.25, 1}, {0.75, 0.75, 2}), testing::box_mesh({0.25, 0.25, -1}, {0.75, 0.75, 0})}) {
+        EXPECT_EQ(count_shells_nested_alike(testing::merged(outer, touching)), 0U);
+        EXPECT_EQ(count_shells_nested_alike(testing::merged(touching, outer)), 0U);
+    }
+
     std::string text;
     const TriangleMesh both = testing::merged(outer, inner);
     for (const Vec3& v : both.vertices) text += fmt::format("v {} {} {}\n", v.x, v.y, v.z);

@@ -158,6 +158,17 @@ struct OutlinePoints {
     }
 };
 
+/// Returns true if a random point of a mesh's box is inside. A sheet with both sides listed has no interior. draw()
+/// would never end there, nor within any useful time for a mesh that fills less than a millionth of its box.
+bool has_interior(const MeshInterior& inside) {
+    constexpr int kMostTries = 1 << 20;
+    RandomSequence random(0, 0, 0);
+    for (int k = 0; k < kMostTries; ++k) {
+        if (inside.contains(flush_tiny(uniform_in(inside.box(), random)))) return true;
+    }
+    return false;
+}
+
 }  // namespace
 
 ShapeSampler::ShapeSampler(const EmitterShape& shape) : shape_(shape) {
@@ -169,6 +180,8 @@ ShapeSampler::ShapeSampler(const EmitterShape& shape) : shape_(shape) {
     } else if (const auto* volume = std::get_if<MeshVolumeShape>(&shape_)) {
         check_volume(*volume->mesh);
         inside_ = std::make_shared<const MeshInterior>(volume->mesh);
+        require(has_interior(*inside_),
+                "the mesh is closed but encloses no volume: no random point of its box is inside");
     } else if (const auto* cone = std::get_if<ConeShape>(&shape_)) {
         cone_slope_ = tangent_of_degrees(cone->angle_degrees);
     }

@@ -19,12 +19,12 @@ constexpr int kMostShared = 64;
 /// Smaller: a particle that is carried lands on its body again, or never rests there. Larger: slow creep stops.
 constexpr double kFrameRounding = 0x1p-47;
 
-/// What contact in a frame that moves, or with several of them, has recorded is exact to the method's order, and is
-/// entered where each interval ends. Under forces that are the same everywhere the momentum and the angular momentum
-/// that surfaces have given are known, and what is missing is entered.
+/// Corrects the recorded impulses of contact in moving frames. They are exact to the order of the method, and are
+/// recorded where each interval ends. Under uniform forces the momentum and the angular momentum that surfaces have
+/// given are known, so the difference is recorded, too.
 class MomentumAccount {
 public:
-    /// Of the particle from now on; its state is given in the world. The step must outlive it.
+    /// Begins an account of the step's particle at its present state, in world coordinates. The step must outlive it.
     explicit MomentumAccount(ParticleStep& step)
         : step_(step),
           velocity_(step.state().velocity),
@@ -33,8 +33,9 @@ public:
           pushed_moment_(step.impact().pushed_moment()),
           remaining_(step.remaining()) {}
 
-    /// Enters what is missing until now, with a surface; the state is given in the world again. Nothing where forces
-    /// vary, or others pull at the particle. The moment of the forces is that at the mean of both ends.
+    /// Records the missing impulse and moment so far as given by one surface. The state must be in world coordinates.
+    /// Records nothing if forces vary or other particles act on this one. The moment of the forces is taken at the mean
+    /// of both ends.
     void settle(SurfaceId surface) const {
         const ForceField& forces = step_.rules().forces;
         const bool is_coupled = step_.particle().planned != nullptr || step_.state().coupling != nullptr;
@@ -62,9 +63,9 @@ private:
 
 }  // namespace
 
-/// What a body that yields lets go, as slowly as can be, touches it again and again without an impulse. It goes along
-/// with it for a while, until they have come apart. contact: replaced by what comes to it meanwhile. False where it is
-/// no such touch.
+/// Follows a receding dynamic body. A particle that separates from it at near-zero speed would touch it repeatedly with
+/// zero impulse, so it moves with the body until they are apart. contact: replaced by the next contact. Returns false
+/// if the contact is no such touch.
 bool ParticleMover::goes_along(std::optional<Contact>& contact) {
     if (rides_ == nullptr || !step_.has_budget() || !(step_.remaining() > 0.0)) return false;
     const auto touched = contact->all();

@@ -25,7 +25,7 @@ std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
 /// Parity of the faces at the edges of a shell.
 struct ShellParity {
     bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated faces count once
-    bool is_odd = false;       ///< an edge has an odd number of faces if all faces count
+    bool is_odd = false;       ///< an edge has an odd number of faces if both sides of a sheet count
 };
 
 /// Returns true if each edge has equally many faces in both directions.
@@ -48,6 +48,8 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     const std::vector<std::uint32_t> face_of = faces_of_corners(faces);
     std::vector<char> is_repeated(faces.face_count(), 0);
     for (const std::uint32_t f : repeated) is_repeated[f] = 1;
+    std::vector<char> is_copy(faces.face_count(), 0);
+    for (const std::uint32_t f : copied_faces(faces)) is_copy[f] = 1;
     DisjointSets shells(faces.face_count());
     edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
         for (const std::uint32_t use : uses.subspan(1)) shells.join(face_of[uses[0]], face_of[use]);
@@ -56,20 +58,37 @@ ClosedSurface choose_by_shell(const FaceList& faces, const EdgeTable& edges, std
     edges.for_each_edge([&](std::span<const std::uint32_t> uses) {
         const auto once =
             std::count_if(uses.begin(), uses.end(), [&](std::uint32_t use) { return is_repeated[face_of[use]] == 0; });
+        const auto sides =
+            std::count_if(uses.begin(), uses.end(), [&](std::uint32_t use) { return is_copy[face_of[use]] == 0; });
         ShellParity& shell = parity[shells.find(face_of[uses[0]])];
         shell.is_odd_once = shell.is_odd_once || once % 2 != 0;
-        shell.is_odd = shell.is_odd || uses.size() % 2 != 0;
+        shell.is_odd = shell.is_odd || sides % 2 != 0;
     });
     ClosedSurface result{true, false, std::move(repeated)};
     for (const ShellParity& shell : parity) result.closed = result.closed && !(shell.is_odd_once && shell.is_odd);
     const auto counts = [&](std::uint32_t f) {
         const ShellParity& shell = parity[shells.find(f)];
-        return shell.is_odd_once && !shell.is_odd;
+        return is_copy[f] == 0 && shell.is_odd_once && !shell.is_odd;
     };
     result.left_out.erase(std::remove_if(result.left_out.begin(), result.left_out.end(), counts),
                           result.left_out.end());
     result.oriented = result.closed && is_oriented(faces, edges, result.left_out);
     return result;
+}
+
+/// Returns the mesh without the triangles of an increasing list.
+TriangleMesh without(TriangleMesh mesh, const std::vector<std::uint32_t>& left_out) {
+    auto next = left_out.begin();
+    std::size_t kept = 0;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (next != left_out.end() && *next == t) {
+            ++next;
+        } else {
+            mesh.triangles[kept++] = mesh.triangles[t];
+        }
+    }
+    mesh.triangles.resize(kept);
+    return mesh;
 }
 
 }  // namespace
@@ -113,20 +132,14 @@ TriangleMesh joined_by_position(const TriangleMesh& mesh) {
 }
 
 TriangleMesh counted_surface(const TriangleMesh& mesh) {
-    const std::vector<std::uint32_t> left_out = closed_surface(mesh).left_out;
-    TriangleMesh counted = joined_by_position(mesh);
-    if (left_out.empty()) return counted;
-    auto next = left_out.begin();
-    std::size_t kept = 0;
-    for (std::uint32_t t = 0; t < counted.triangles.size(); ++t) {
-        if (next != left_out.end() && *next == t) {
-            ++next;
-        } else {
-            counted.triangles[kept++] = counted.triangles[t];
-        }
-    }
-    counted.triangles.resize(kept);
-    return counted;
+    return without(joined_by_position(mesh), closed_surface(mesh).left_out);
+}
+
+TriangleMesh without_copies(const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> number;  // triangle of each face
+    std::vector<std::uint32_t> copies = copied_faces(faces_of(mesh, &number));
+    for (std::uint32_t& face : copies) face = number[face];
+    return without(mesh, copies);
 }
 
 }  // namespace ricochet

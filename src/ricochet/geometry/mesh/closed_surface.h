@@ -3,11 +3,12 @@
 ///
 /// A mesh is closed if every edge belongs to an even number of faces. Vertices at equal positions (0 and -0 are equal)
 /// count as one vertex, because programs duplicate vertices along seams of textures and normals. A face that repeats an
-/// earlier one, in any winding, counts once. The winding has no influence: TopologyReport::inconsistent_edges counts
-/// the edges at which it changes.
+/// earlier one, in any winding, counts once. The winding of other faces has no influence:
+/// TopologyReport::inconsistent_edges counts the edges at which it changes.
 ///
-/// There is one exception. A shell that is closed only if its repeated faces count keeps them. A sheet with both sides
-/// listed is therefore closed, as a body without an inside.
+/// There is one exception. A shell that is closed only if both sides of its sheets count keeps both: faces that repeat
+/// an earlier one in the opposite winding. Such a sheet is closed, as a body without an inside. A face that repeats an
+/// earlier one in the same winding is a copy, and never counts.
 #pragma once
 
 #include <cstdint>
@@ -36,5 +37,9 @@ struct ClosedSurface {
 
 /// Returns the joined mesh without the triangles that closed_surface() leaves out: the boundary of its volume.
 [[nodiscard]] TriangleMesh counted_surface(const TriangleMesh& mesh);
+
+/// Returns the mesh without the triangles that repeat an earlier one in the same winding. Equal positions must be
+/// joined.
+[[nodiscard]] TriangleMesh without_copies(const TriangleMesh& mesh);
 
 }  // namespace ricochet

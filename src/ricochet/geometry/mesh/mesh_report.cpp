@@ -96,7 +96,7 @@ void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warni
     if (report.duplicate_faces > 0) {
         warnings.push_back(
             fmt::format("{} an earlier face: nothing leaks, and repeated faces count once where an inside is told from "
-                        "an outside, unless only they close a sheet or a wall",
+                        "an outside, unless both sides of a sheet or a wall are listed",
                         counted(report.duplicate_faces, "face repeats", "faces repeat")));
     }
 }
@@ -156,7 +156,8 @@ MeshReport report_on(const ImportedMesh& imported) {
     report.bounds = bounds(imported.mesh);
     report.area = surface_area(imported.mesh);
     const TriangleMesh joined = joined_by_position(imported.mesh);
-    report.topology = MeshTopology(joined).report();
+    const TriangleMesh distinct = without_copies(joined);
+    report.topology = MeshTopology(distinct).report();
     const std::size_t unused = count_unused_vertices(imported.mesh);
     report.joined_vertices = report.topology.unused_vertices - unused;
     report.topology.unused_vertices = unused;
@@ -164,12 +165,13 @@ MeshReport report_on(const ImportedMesh& imported) {
     if (report.topology.closed) {
         const double volume = signed_volume(counted_surface(imported.mesh));
         report.volume = std::fabs(volume);
-        if (report.topology.consistently_oriented)
-            report.shells_nested_alike = count_shells_nested_alike(imported.mesh);
+        if (report.topology.consistently_oriented && !shells_overlap(distinct)) {
+            report.shells_nested_alike = count_shells_nested_alike(distinct);
+        }
         report.wound_inward = report.topology.consistently_oriented && volume < 0.0;
     }
     report.degenerate_triangles = count_degenerate(imported.mesh);
-    const SelfIntersections found = find_self_intersections(joined);
+    const SelfIntersections found = find_self_intersections(distinct);
     report.self_intersections = found.pairs;
     report.self_intersections_are_all = found.are_all;
     report.faces_with_repeated_corners = imported.faces_with_repeated_corners;

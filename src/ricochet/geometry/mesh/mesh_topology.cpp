@@ -151,6 +151,32 @@ std::size_t count_unnamed(Corners corners, std::size_t vertex_count) {
     return static_cast<std::size_t>(std::count(named.begin(), named.end(), 0));
 }
 
+/// Returns the faces that equal an earlier face after normalize(corners), in increasing order.
+template <class Normalize>
+std::vector<std::uint32_t> faces_with_earlier_equals(const FaceList& faces, const Normalize& normalize) {
+    const std::size_t count = faces.face_count();
+    std::vector<std::uint32_t> normal = faces.corners;
+    std::vector<std::uint32_t> order(count);
+    const auto corners_of = [&](std::uint32_t f) {
+        return std::span(normal.data() + faces.face_offsets[f], faces.face_offsets[f + 1] - faces.face_offsets[f]);
+    };
+    for (std::uint32_t f = 0; f < count; ++f) {
+        order[f] = f;
+        normalize(corners_of(f));
+    }
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        const auto by_corners = std::lexicographical_compare_three_way(corners_of(a).begin(), corners_of(a).end(),
+                                                                       corners_of(b).begin(), corners_of(b).end());
+        return by_corners != 0 ? by_corners < 0 : a < b;
+    });
+    std::vector<std::uint32_t> later;
+    for (std::size_t i = 1; i < count; ++i) {
+        if (std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i]))) later.push_back(order[i]);
+    }
+    std::sort(later.begin(), later.end());
+    return later;
+}
+
 }  // namespace
 
 FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers) {
@@ -354,27 +380,13 @@ std::vector<MeshEdge> MeshTopology::edges() const {
 }
 
 std::vector<std::uint32_t> repeated_faces(const FaceList& faces) {
-    const std::size_t count = faces.face_count();
-    std::vector<std::uint32_t> sorted = faces.corners;
-    std::vector<std::uint32_t> order(count);
-    for (std::uint32_t f = 0; f < count; ++f) {
-        order[f] = f;
-        std::sort(sorted.begin() + faces.face_offsets[f], sorted.begin() + faces.face_offsets[f + 1]);
-    }
-    const auto corners_of = [&](std::uint32_t f) {
-        return std::span(sorted.data() + faces.face_offsets[f], faces.face_offsets[f + 1] - faces.face_offsets[f]);
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const auto by_corners = std::lexicographical_compare_three_way(corners_of(a).begin(), corners_of(a).end(),
-                                                                       corners_of(b).begin(), corners_of(b).end());
-        return by_corners != 0 ? by_corners < 0 : a < b;
+    return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) { std::ranges::sort(corners); });
+}
+
+std::vector<std::uint32_t> copied_faces(const FaceList& faces) {
+    return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) {
+        std::ranges::rotate(corners, std::ranges::min_element(corners));
     });
-    std::vector<std::uint32_t> repeated;
-    for (std::size_t i = 1; i < count; ++i) {
-        if (std::ranges::equal(corners_of(order[i - 1]), corners_of(order[i]))) repeated.push_back(order[i]);
-    }
-    std::sort(repeated.begin(), repeated.end());
-    return repeated;
 }
 
 std::size_t count_unused_vertices(const TriangleMesh& mesh) {

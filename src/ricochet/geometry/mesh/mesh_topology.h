@@ -33,6 +33,8 @@ struct FaceList {
 /// Returns the faces with the same vertices as an earlier one, in any order of vertices. The list is in increasing
 /// order.
 [[nodiscard]] std::vector<std::uint32_t> repeated_faces(const FaceList& faces);
+/// Returns the faces that have the corners of an earlier one in the same cyclic order, in increasing order.
+[[nodiscard]] std::vector<std::uint32_t> copied_faces(const FaceList& faces);
 
 /// All uses of all edges, grouped by edge. The half-edge of corner c goes from its vertex to the vertex of
 /// next_corner[c]. Method: bucket sort by the edge's smaller vertex, linear in the number of corners for meshes of

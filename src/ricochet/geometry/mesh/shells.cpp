@@ -143,13 +143,17 @@ std::size_t count_shells_nested_alike(const TriangleMesh& mesh) {
     if (std::all_of(shell_of.begin(), shell_of.end(), [](std::uint32_t shell) { return shell == 0; })) return 0;
     const std::vector<ShellVolume> volumes = shell_volumes(*counted, shell_of);
     const MeshInterior interior(counted, {});
-    std::size_t count = 0;
-    for (std::uint32_t shell = 0; shell < shell_of.size(); ++shell) {
-        if (shell_of[shell] != shell) continue;
-        const Vec3& vertex = counted->vertices[counted->triangles[shell][0]];
-        count += volumes[shell].orientation() * interior.winding_without(vertex, shell_of, shell) > 0 ? 1 : 0;
+    std::vector<char> is_nested(shell_of.size(), 0);
+    for (const std::uint32_t shell : shell_of) is_nested[shell] = 1;
+    for (std::size_t t = 0; t < shell_of.size(); ++t) {
+        const std::uint32_t shell = shell_of[t];
+        for (const std::uint32_t v : counted->triangles[t]) {
+            if (is_nested[shell] == 0) break;
+            const std::int64_t winding = interior.winding_without(counted->vertices[v], shell_of, shell);
+            is_nested[shell] = volumes[shell].orientation() * winding > 0 ? 1 : 0;
+        }
     }
-    return count;
+    return static_cast<std::size_t>(std::count(is_nested.begin(), is_nested.end(), 1));
 }
 
 bool shells_overlap(const TriangleMesh& mesh) {

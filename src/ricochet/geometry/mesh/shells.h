@@ -15,8 +15,9 @@ namespace ricochet {
 [[nodiscard]] bool shells_overlap(const TriangleMesh& mesh);
 
 /// Returns the number of shells within other shells of the same winding. Such a shell is a hole by the parity rule of
-/// inside_rule.h. However, it adds to signed_volume(), from which a hole would subtract. The first vertex of a shell
-/// decides. Repeated faces count as in closed_surface.h. The mesh must be closed.
+/// inside_rule.h. However, it adds to signed_volume(), from which a hole would subtract. All vertices of a nested
+/// shell are within the others; the shells must not overlap. Repeated faces count as in closed_surface.h. The mesh must
+/// be closed.
 [[nodiscard]] std::size_t count_shells_nested_alike(const TriangleMesh& mesh);
 
 }  // namespace ricochet

@@ -67,13 +67,9 @@ class RayMeshIntersector:
         """Returns whether each point is inside the mesh. Points on the surface of a closed mesh are not.
 
         In an open mesh a point is inside if the surface surrounds more than half of it: if the magnitude of its winding
-        number is above 1/2.
+        number is above 1/2. Triangles that repeat an earlier one in the same winding count once.
         """
-        mesh = self._current().queries
-        if mesh.is_closed:
-            return mesh.inside(points)
-        inside: npt.NDArray[np.bool_] = np.abs(mesh.winding_numbers(points)) > 0.5
-        return inside
+        return self._current().contains(points)
 
     def __copy__(self) -> "RayMeshIntersector":
         return RayMeshIntersector(self.mesh)
@@ -107,6 +103,7 @@ class _Followed:
         self.state = state
         self.arrays = arrays
         self._normals: Optional[Floats] = None
+        self._distinct: Optional[Mesh] = None
 
     def is_of(self, vertices: Any, faces: Any, state: Any) -> bool:
         if state is not None or self.arrays is None:
@@ -132,6 +129,15 @@ class _Followed:
         every, in_plane = self.queries._all_hits_and_planes(origins, directions)
         return every, np.flatnonzero(~in_plane)
 
+    def contains(self, points: Any) -> npt.NDArray[np.bool_]:
+        """Returns whether each point is inside."""
+        if self.queries.is_closed:
+            return self.queries.inside(points)
+        if self._distinct is None:
+            self._distinct = _without_copies(self.queries)
+        inside: npt.NDArray[np.bool_] = np.abs(self._distinct.winding_numbers(points)) > 0.5
+        return inside
+
     def _is_parallel(self, triangle: Integers, directions: Floats) -> npt.NDArray[np.bool_]:
         """Returns whether each direction lies in the plane of its triangle, as far as rounding can tell."""
         if self._normals is None:
@@ -139,6 +145,16 @@ class _Followed:
         along = directions / np.abs(directions).max(axis=1, initial=0.0, keepdims=True)
         parallel: npt.NDArray[np.bool_] = np.abs((self._normals[triangle] * along).sum(axis=1)) <= _PARALLEL
         return parallel
+
+
+def _without_copies(mesh: Mesh) -> Mesh:
+    """Returns the mesh without the triangles that repeat an earlier one in the same winding, by the positions of corners."""
+    positions = np.unique(mesh.vertices + 0.0, axis=0, return_inverse=True)[1].reshape(-1)  # -0 becomes 0
+    corners = positions[mesh.faces]
+    first = corners.argmin(axis=1)
+    rotated = np.take_along_axis(corners, (first[:, np.newaxis] + [0, 1, 2]) % 3, axis=1)
+    kept = np.sort(np.unique(rotated, axis=0, return_index=True)[1])
+    return mesh if len(kept) == len(mesh) else Mesh(mesh.vertices, mesh.faces[kept])
 
 
 class _Empty(_Followed):

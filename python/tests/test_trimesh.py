@@ -71,6 +71,17 @@ class RayMeshIntersector(unittest.TestCase):
         self.assertEqual(len(mesh.ray.intersects_location([[0, 0, 5]], [[0, 0, -1]])[0]), 0)
         self.assertEqual(list(mesh.contains([[0, 0, 0], [10, 0, 0]])), [False, True])
 
+    def test_copies_of_triangles_do_not_change_what_an_open_mesh_contains(self):
+        cup = own()
+        cup.faces = cup.faces[2:]
+        points = np.random.default_rng(5).uniform(-1, 2, (500, 3))
+        inside = ricochet.trimesh.RayMeshIntersector(cup).contains_points(points)
+        self.assertTrue(0 < inside.sum() < len(points))
+        copies = np.roll(cup.faces, 1, axis=1) + len(cup.vertices)
+        twice = own(np.vstack([cup.vertices, cup.vertices]), np.vstack([cup.faces, copies]))
+        self.assertEqual(list(ricochet.trimesh.RayMeshIntersector(twice).contains_points(points)), list(inside))
+
+
 
 class Following(unittest.TestCase):
     def both(self, ray):

@@ -129,13 +129,13 @@ void RunPictures::keep_off_walls(const Moment& moment, const Group& group, Previ
 void RunPictures::set_ways(const Moment& moment, const std::vector<std::size_t>& shown, PreviewSpheres& spheres) const {
     const ShutterPaths& paths = moment.paths;
     const std::size_t steps = way_steps(paths);
-    spheres.ways.resize(shown.size());
+    spheres.shutter_paths.resize(shown.size());
     for (std::size_t k = 0; k < shown.size(); ++k) {
         const Vec3 off_walls = spheres.centers[k] - moment.frame.points[shown[k]];
         for (std::size_t step = 0; step < steps; ++step) {
             const double part = static_cast<double>(step) / static_cast<double>(steps - 1);
             const double time = (1.0 - part) * paths.born[shown[k]] + part * paths.close;
-            spheres.ways[k].push_back(position_on_path(paths.nodes[shown[k]], time) + off_walls);
+            spheres.shutter_paths[k].push_back(position_on_path(paths.nodes[shown[k]], time) + off_walls);
         }
     }
 }
@@ -164,7 +164,7 @@ void RunPictures::add_solid(const Moment& moment, const Group& group, PreviewSph
     append(moving.spheres.centers, std::move(spheres.centers));
     append(moving.spheres.radii, std::move(spheres.radii));
     append(moving.spheres.colors, std::move(spheres.colors));
-    append(moving.spheres.ways, std::move(spheres.ways));
+    append(moving.spheres.shutter_paths, std::move(spheres.shutter_paths));
     append(moving.spheres.emissions, std::move(spheres.emissions));
 }
 

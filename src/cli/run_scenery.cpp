@@ -73,8 +73,8 @@ void RunPictures::choose_camera(const RunFolder& folder, double aspect) {
 }
 
 Vec3 RunPictures::camera_place_in(const VtkPolyData& frame) const {
-    const auto place = camera_of_frame(frame);
-    return place && !style_.camera ? place->position : camera_.position;
+    const auto camera_position = camera_of_frame(frame);
+    return camera_position && !style_.camera ? camera_position->position : camera_.position;
 }
 
 /// Returns the visible meshes at rest, and the planes.
@@ -127,11 +127,11 @@ void RunPictures::find_hiding(const RunFolder& folder, const std::vector<FrameFi
 }
 
 void RunPictures::place_camera(const VtkPolyData& frame) {
-    const auto place = camera_of_frame(frame);
-    if (!place || style_.camera) return;
-    camera_.position = place->position;
-    camera_.target = place->target;
-    if (!style_.up) camera_.up = normalized(place->up);
+    const auto camera_position = camera_of_frame(frame);
+    if (!camera_position || style_.camera) return;
+    camera_.position = camera_position->position;
+    camera_.target = camera_position->target;
+    if (!style_.up) camera_.up = normalized(camera_position->up);
 }
 
 }  // namespace ricochet::cli

@@ -165,40 +165,40 @@ void RunPictures::stretch_copies(const VtkPolyData& frame, const Group& group, c
         const double speed = length(velocity);
         const double longer = std::min(stretch.most, 1.0 + stretch.speed * speed) - 1.0;
         if (longer > 0.0 && speed > 0.0) shape = stretch_along(velocity / speed, 1.0 + (1.0 - near) * longer);
-        AffineMap& place = copies.places[k];
+        AffineMap& placement = copies.placements[k];
         if (near > 0.0) {
             const double flat = std::max(1.0 / stretch.most, 1.0 / (1.0 + stretch.impact * impact.speed));
             const double high = 1.0 - near * (1.0 - flat);
             shape = linear_product(stretch_along(impact.normal, high), shape);
             const Vec3 shift = radii[k] * (high - 1.0) * impact.normal;
-            place.translation += shift;
-            if (!copies.ways.empty()) {
-                for (Vec3& point : copies.ways[k]) point += shift;
+            placement.translation += shift;
+            if (!copies.shutter_paths.empty()) {
+                for (Vec3& point : copies.shutter_paths[k]) point += shift;
             }
         }
-        const Vec3 translation = place.translation;
-        place = linear_product(shape, place);
-        place.translation = translation;
+        const Vec3 translation = placement.translation;
+        placement = linear_product(shape, placement);
+        placement.translation = translation;
     }
 }
 
 // Adds the spheres of a group as copies.
 void RunPictures::add_copies(const Moment& moment, const Group& group, PreviewSpheres&& spheres, PreviewCopies& all) {
     PreviewCopies copies;
-    copies.places = turns_of(group);
-    for (std::size_t k = 0; k < copies.places.size(); ++k) {
-        AffineMap& place = copies.places[k];
-        for (Vec3* const row : {&place.row_x, &place.row_y, &place.row_z}) *row = spheres.radii[k] * *row;
-        place.translation = spheres.centers[k];
+    copies.placements = turns_of(group);
+    for (std::size_t k = 0; k < copies.placements.size(); ++k) {
+        AffineMap& placement = copies.placements[k];
+        for (Vec3* const row : {&placement.row_x, &placement.row_y, &placement.row_z}) *row = spheres.radii[k] * *row;
+        placement.translation = spheres.centers[k];
     }
-    copies.ways = std::move(spheres.ways);
+    copies.shutter_paths = std::move(spheres.shutter_paths);
     if (group.drawing->shape.stretch) stretch_copies(moment.frame, group, spheres.radii, copies);
-    all.places.insert(all.places.end(), copies.places.begin(), copies.places.end());
-    all.ways.insert(all.ways.end(), std::make_move_iterator(copies.ways.begin()),
-                    std::make_move_iterator(copies.ways.end()));
+    all.placements.insert(all.placements.end(), copies.placements.begin(), copies.placements.end());
+    all.shutter_paths.insert(all.shutter_paths.end(), std::make_move_iterator(copies.shutter_paths.begin()),
+                             std::make_move_iterator(copies.shutter_paths.end()));
     all.colors.insert(all.colors.end(), spheres.colors.begin(), spheres.colors.end());
     all.emissions.insert(all.emissions.end(), spheres.emissions.begin(), spheres.emissions.end());
-    all.shapes.resize(all.places.size(), group.drawing->mesh);
+    all.shapes.resize(all.placements.size(), group.drawing->mesh);
 }
 
 std::vector<double> RunPictures::sprite_angles(const VtkPolyData& frame, const Group& group) const {

@@ -71,15 +71,16 @@ void WallClearance::find_blocked(Search& search) const {
     search.blocked.assign(count, 0);
     std::vector<std::size_t> moved;
     std::vector<Vec3> origins;
-    std::vector<Vec3> ways;
+    std::vector<Vec3> displacements;
     std::vector<double> lengths;
     for (std::size_t k = 0; k < count; ++k) {
-        const Vec3 way = search.center[k] - search.start[k];
-        if (!(length(way) > 0.0)) continue;
-        moved.push_back(k), origins.push_back(search.start[k]), ways.push_back(way), lengths.push_back(length(way));
+        const Vec3 displacement = search.center[k] - search.start[k];
+        if (!(length(displacement) > 0.0)) continue;
+        moved.push_back(k), origins.push_back(search.start[k]), displacements.push_back(displacement),
+            lengths.push_back(length(displacement));
     }
     for (const MeshQueries& mesh : meshes_) {
-        const std::vector<std::uint8_t> hit = mesh.occluded({origins, ways, lengths});
+        const std::vector<std::uint8_t> hit = mesh.occluded({origins, displacements, lengths});
         for (std::size_t k = 0; k < moved.size(); ++k) search.blocked[moved[k]] |= hit[k];
     }
     for (const PreviewPlane& plane : planes_) {

@@ -111,7 +111,7 @@ SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
     }
     const CollisionWorld& world = impl().world_of(collider);
     if (&world == &impl().world) return world.closest_point_on(record.surface, record.position);
-    SurfacePosition position = world.closest_point_on(record.surface, pose.image(record.position));
+    SurfacePosition position = world.closest_point_on(record.surface, pose.local_position(record.position));
     position.point = pose.point(position.point);
     return position;
 }

@@ -154,7 +154,7 @@ BilliardTally Billiard::fly(int particles, int steps, double impacts, double gra
 }
 
 /// Checks every segment of the chain that was followed. A chain that does not join its ends counts as a crossing.
-void Billiard::check_legs(const std::vector<WayPoint>& chain, const Vec3& from, const Vec3& to,
+void Billiard::check_legs(const std::vector<PathPoint>& chain, const Vec3& from, const Vec3& to,
                           BilliardTally& tally) const {
     tally.crossing_segments += chain.front().position == from && chain.back().position == to ? 0 : 1;
     for (std::size_t k = 1; k < chain.size(); ++k) {

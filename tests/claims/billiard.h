@@ -7,7 +7,7 @@
 
 #include "claims/hard_meshes.h"
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/way_point.h"
+#include "ricochet/collision/path_point.h"
 #include "ricochet/dynamics/flight.h"
 #include "support/parity.h"
 
@@ -46,7 +46,7 @@ public:
     [[nodiscard]] bool is_closed() const { return oracle_ != nullptr; }
 
 private:
-    void check_legs(const std::vector<WayPoint>& chain, const Vec3& from, const Vec3& to, BilliardTally& tally) const;
+    void check_legs(const std::vector<PathPoint>& chain, const Vec3& from, const Vec3& to, BilliardTally& tally) const;
     [[nodiscard]] bool may_be_at(const Vec3& point) const { return !oracle_ || oracle_->inside(point); }
 
     TriangleMesh mesh_;  // in world coordinates

@@ -93,25 +93,25 @@ TEST_P(DroppedBall, ComesToRestAtTheTimeAndPathLengthOfTheSeries) {
         EXPECT_LT(dropped.end_height, 1e-14);
         const Bounce& last = dropped.bounces.back();
         EXPECT_NEAR(last.time + 2.0 * last.rebound / (kG * (1.0 - e)), total, 1e-8);
-        double way = kHeight;
-        for (const Bounce& bounce : dropped.bounces) way += 2.0 * bounce.apex();
-        way += 2.0 * last.apex() * e * e / (1.0 - e * e);
-        EXPECT_NEAR(way, kHeight * (1.0 + e * e) / (1.0 - e * e), 1e-10);
+        double translation = kHeight;
+        for (const Bounce& bounce : dropped.bounces) translation += 2.0 * bounce.apex();
+        translation += 2.0 * last.apex() * e * e / (1.0 - e * e);
+        EXPECT_NEAR(translation, kHeight * (1.0 + e * e) / (1.0 - e * e), 1e-10);
     }
 }
 
 TEST_P(DroppedBall, TakesTheTabulatedTimeAndPathLength) {
     struct Row {
-        double e, time, way;
+        double e, time, translation;
     };
     for (const Row& row : {Row{0.5, 1.354571, 1.666667}, Row{0.8, 4.063713, 4.555556}, Row{0.9, 8.578949, 9.526316}}) {
         if (row.e != GetParam()) continue;
         const Drop dropped = drop(plane(), row.e, 0.01, row.time + 0.02);
         const Bounce& last = dropped.bounces.back();
         EXPECT_NEAR(last.time + 2.0 * last.rebound / (kG * (1.0 - row.e)), row.time, 1e-6);
-        double way = kHeight;
-        for (const Bounce& bounce : dropped.bounces) way += 2.0 * bounce.apex();
-        EXPECT_NEAR(way, row.way, 2e-6);
+        double translation = kHeight;
+        for (const Bounce& bounce : dropped.bounces) translation += 2.0 * bounce.apex();
+        EXPECT_NEAR(translation, row.translation, 2e-6);
     }
 }
 

@@ -257,10 +257,11 @@ void expect_as_at_rest(const TriangleMesh& mesh, const Particle& particle, doubl
         EXPECT_EQ(simulation.statistics().unsimulated_time, 0.0);
         EXPECT_EQ(simulation.statistics().budget_exhausted, 0U);
     }
-    const double way = length(ends[0] - particle.position);
-    EXPECT_GT(way, 0.05);
-    EXPECT_LT(length(ends[1] - ends[0]), 1e-3 * way) << ends[0].x << " " << ends[0].y << " " << ends[0].z << " but "
-                                                     << ends[1].x << " " << ends[1].y << " " << ends[1].z;
+    const double translation = length(ends[0] - particle.position);
+    EXPECT_GT(translation, 0.05);
+    EXPECT_LT(length(ends[1] - ends[0]), 1e-3 * translation)
+        << ends[0].x << " " << ends[0].y << " " << ends[0].z << " but " << ends[1].x << " " << ends[1].y << " "
+        << ends[1].z;
 }
 
 TEST(AMeshWithEqualKeys, ReleasesAtAConvexEdge) {

@@ -86,15 +86,15 @@ TEST(ADeformingRidge, HoldsAPointByFriction) {
 // ridge at rest.
 TEST(ADeformingRidge, LetsAPointSlideOff) {
     for_each_ridge({0.1, 0.5, 1.5}, [](const Ridge& ridge) {
-        const double way = 0.5 * kG * ridge.slope / (1.0 + ridge.slope * ridge.slope);
+        const double translation = 0.5 * kG * ridge.slope / (1.0 + ridge.slope * ridge.slope);
         for (const double aside : {0.0, 1e-13, 1e-10, 1e-3}) {
             SCOPED_TRACE(aside);
             const Vec3 end = ridge.end_of({aside, kPlace, 1e-12 - ridge.slope * aside});
             EXPECT_NEAR(end.z, -ridge.slope * std::fabs(end.x), 1e-12);
             if (aside > 1e-12) {
-                EXPECT_NEAR(end.x, aside + way, 1e-5);
+                EXPECT_NEAR(end.x, aside + translation, 1e-5);
             } else {
-                EXPECT_LT(std::fabs(end.x), way + 1e-5);
+                EXPECT_LT(std::fabs(end.x), translation + 1e-5);
             }
         }
     });

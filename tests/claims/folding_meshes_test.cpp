@@ -38,8 +38,8 @@ SimulationSetup pinching(double gap, bool deforms, double restitution, double ti
     setup.options.verify = true;
     TriangleMesh plate = sheet(1.0, 2);
     for (Vec3& vertex : plate.vertices) vertex = {0.5, vertex.x, vertex.y};
-    const auto way = [&](double time) { return Vec3{(gap - 0.5) * (1.0 - std::fabs(time - 1.0)), 0, 0}; };
-    const auto press = [&](const Vec3& v, double time) { return v + way(time); };
+    const auto translation = [&](double time) { return Vec3{(gap - 0.5) * (1.0 - std::fabs(time - 1.0)), 0, 0}; };
+    const auto press = [&](const Vec3& v, double time) { return v + translation(time); };
     setup.colliders = {{"wall", PlaneShape{{0, 0, 0}, {1, 0, 0}}, 0}};
     if (deforms) {
         setup.colliders.push_back({"plate", deforming(plate, press, {0.0, 1.0, 2.0}), 0});
@@ -47,7 +47,8 @@ SimulationSetup pinching(double gap, bool deforms, double restitution, double ti
     }
     FrameDescription frame;
     frame.name = "plate";
-    frame.motions = {KeyedTranslation{KeyedCurve<Vec3>({{0.0, way(0)}, {1.0, way(1)}, {2.0, way(2)}})}};
+    frame.motions = {
+        KeyedTranslation{KeyedCurve<Vec3>({{0.0, translation(0)}, {1.0, translation(1)}, {2.0, translation(2)}})}};
     setup.frames = std::make_shared<const FrameTree>(std::vector<FrameDescription>{frame});
     setup.colliders.push_back(
         {"plate", MeshShape{std::make_shared<const TriangleMesh>(plate), {}, "", {}}, 0, "plate"});
@@ -97,7 +98,7 @@ TEST(PointsThatADeformingPlateLeavesNoRoom, AreFreeAgainBesideIt) {
 
 /// Box of 2 m whose lid passes through its floor between 0 and 2 s. Meanwhile the box moves and turns.
 struct FoldingBox {
-    Vec3 way;
+    Vec3 translation;
     Vec3 axis{0, 0, 1};
     double degrees = 0.0;
     double depth = 0.2;
@@ -108,7 +109,7 @@ struct FoldingBox {
         const double gone = 0.5 * time;
         Vec3 p = v;
         if (v.z > 0.0) p.z -= (2.0 + depth) * part;
-        return scale * world_from_local({gone * way, axis, gone * degrees}).point(p);
+        return scale * world_from_local({gone * translation, axis, gone * degrees}).point(p);
     }
 };
 
@@ -146,7 +147,7 @@ TEST(ABoxThatFoldsThroughItself, FreesThemAfterAnyMotionAndRotation) {
         SCOPED_TRACE(seed);
         RandomSequence random(seed, 23, 0);
         FoldingBox fold;
-        fold.way = 5.0 * random.in_unit_ball();
+        fold.translation = 5.0 * random.in_unit_ball();
         fold.axis = random.unit_vector();
         fold.degrees = 40.0 * random.uniform();
         fold.depth = 0.5 * random.uniform() + 0.01;

@@ -189,8 +189,8 @@ Flown shoot(ResponseKind kind, const Shot& shot) {
 }
 
 /// Returns true if a step of this length ends in [from, to] behind the front.
-bool some_step_ends_in(double from, double to, double way, double start) {
-    const double first = start + std::ceil((from - start) / way) * way;
+bool some_step_ends_in(double from, double to, double translation, double start) {
+    const double first = start + std::ceil((from - start) / translation) * translation;
     return first <= to;
 }
 
@@ -239,14 +239,14 @@ TEST(BulletAndPlate, PenaltyStopsSlowBulletsAndMissesThePlateIfNoSubstepEndsInIt
     for (const Shot& shot : shots()) {
         SCOPED_TRACE(fmt::format("travel {}, phase {}", shot.travel, shot.phase));
         const double start = (shot.phase - 2.0) * shot.travel;
-        const double way = shot.travel / kSubsteps;
+        const double translation = shot.travel / kSubsteps;
         const Flown flown = shoot(ResponseKind::penalty, shot);
-        if (!some_step_ends_in(0.0, kThickness, way, start)) {
-            EXPECT_GT(way, kThickness);
+        if (!some_step_ends_in(0.0, kThickness, translation, start)) {
+            EXPECT_GT(translation, kThickness);
             EXPECT_FALSE(flown.is_stopped);
             EXPECT_EQ(flown.contacts, 0U);
             ++over;
-        } else if (shot.travel / kStep / omega + way < 0.5 * kThickness) {
+        } else if (shot.travel / kStep / omega + translation < 0.5 * kThickness) {
             EXPECT_TRUE(flown.is_stopped);
             ++slow;
         }

@@ -41,9 +41,9 @@ TEST(WorkOfContactThatLasts, LiftsAPointAndABall) {
         SCOPED_TRACE("radius " + std::to_string(radius));
         expect_second_order(
             [&](double step) {
-                const KeyedCurve<Vec3> way({{0.0, {}}, {1.0, {radius == 0.0 ? 0.3 : 0.0, 0, 1.0}}},
-                                           Interpolation::slow_in_slow_out);
-                SimulationSetup setup = setup_of({frame_of("lift", {KeyedTranslation{way}})},
+                const KeyedCurve<Vec3> translation({{0.0, {}}, {1.0, {radius == 0.0 ? 0.3 : 0.0, 0, 1.0}}},
+                                                   Interpolation::slow_in_slow_out);
+                SimulationSetup setup = setup_of({frame_of("lift", {KeyedTranslation{translation}})},
                                                  {{"lift", PlaneShape{{}, {0, 0, 1}}, 0, "lift"}}, step, 1.5);
                 setup.materials = {{"felt", 0.0, 0.5}};
                 setup.forces.push_back(make_gravity({0, 0, -kG}));

@@ -115,8 +115,8 @@ public:
 
 private:
     void add_deforming(SimulationSetup& setup, std::uint64_t particles) const {
-        const auto walled = [&](const TriangleMesh& mesh, const Deform& way, double period, double width) {
-            setup.colliders = {{"sheet", deforming(mesh, way, evenly(0.0, period, 120), MeshEnds::repeat), 0},
+        const auto walled = [&](const TriangleMesh& mesh, const Deform& translation, double period, double width) {
+            setup.colliders = {{"sheet", deforming(mesh, translation, evenly(0.0, period, 120), MeshEnds::repeat), 0},
                                {"left", PlaneShape{{-width, 0, 0}, {1, 0, 0}}, 0},
                                {"right", PlaneShape{{width, 0, 0}, {-1, 0, 0}}, 0},
                                {"front", PlaneShape{{0, -1, 0}, {0, 1, 0}}, 0},

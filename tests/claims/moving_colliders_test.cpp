@@ -518,10 +518,10 @@ TEST(APointOnATable, IsThrownOffOrSlidesOnIfTheTableStopsSuddenly) {
             setup.particles = {particle_of({0, 0, 1e-9}, velocity)};
             Simulation simulation(std::move(setup));
             static_cast<void>(all_contacts(simulation));
-            const Vec3 way = simulation.particles().position[0] - 0.47 * velocity;
+            const Vec3 translation = simulation.particles().position[0] - 0.47 * velocity;
             const bool is_thrown = velocity.z > 0.0;
             const double force = is_thrown ? kG : 0.2 * kG;
-            EXPECT_NEAR(is_thrown ? way.z : way.x, 0.1 - 0.5 * force * 0.01, 1e-8) << step;
+            EXPECT_NEAR(is_thrown ? translation.z : translation.x, 0.1 - 0.5 * force * 0.01, 1e-8) << step;
             const Vec3& v = simulation.particles().velocity[0];
             EXPECT_NEAR(is_thrown ? v.z : v.x, 1.0 - force * 0.1, 1e-8) << step;
         }

@@ -68,19 +68,19 @@ Vec3 random_place(const Body& body, RandomSequence& random) {
 /// Hits of one molecule on its path, and the length of the path.
 struct Flown {
     std::vector<ContactRecord> hits;
-    double way;
+    double translation;
 };
 
 /// Flies each of `count` molecules of random direction for `mean_paths` mean free paths.
 void fly_gas(const Body& body, int count, double mean_paths, const std::function<void(const Flown&)>& evaluate) {
     Course course(body.colliders, kMirror, {}, IntegratorKind::ballistic, 1000000);
-    const double way = mean_paths * 4.0 * body.volume / body.surface;
+    const double translation = mean_paths * 4.0 * body.volume / body.surface;
     for (int i = 0; i < count; ++i) {
         RandomSequence random(7, 0, static_cast<std::uint64_t>(i));
         const Vec3 place = random_place(body, random);
         ForceInput state{place, random.unit_vector(), 1.0, 0.0, 0.0};
-        (void)course.move(state, way);
-        evaluate({course.scratch.records, way});
+        (void)course.move(state, translation);
+        evaluate({course.scratch.records, translation});
     }
 }
 
@@ -94,7 +94,7 @@ TEST_P(GasIn, FliesFourVolumesOverTheSurfaceBetweenHits) {
     const double expected = body.surface / (4.0 * body.volume);
     Sample rate;
     fly_gas(body, test::scaled(4000), 50.0,
-            [&](const Flown& flown) { rate.add(static_cast<double>(flown.hits.size()) / flown.way); });
+            [&](const Flown& flown) { rate.add(static_cast<double>(flown.hits.size()) / flown.translation); });
     EXPECT_NEAR(rate.mean(), expected, 4.0 * rate.error());
     EXPECT_LT(rate.error(), 0.1 * expected);
 }
@@ -127,7 +127,7 @@ TEST_P(GasIn, HasThePressureOfKineticTheoryOnTheWalls) {
         double impulse = 0.0;
         for (const ContactRecord& hit : flown.hits)
             impulse += dot(hit.velocity_after - hit.velocity_before, hit.normal);
-        pressure.add(impulse / (body.surface * flown.way));
+        pressure.add(impulse / (body.surface * flown.translation));
     });
     EXPECT_NEAR(pressure.mean(), 1.0 / (3.0 * body.volume), 4.0 * pressure.error());
 }
@@ -149,7 +149,7 @@ TEST(GasInABunny, FliesFourVolumesOverTheSurfaceBetweenHits) {
     const double expected = body.surface / (4.0 * body.volume);
     Sample rate;
     fly_gas(body, test::scaled(1500), 30.0,
-            [&](const Flown& flown) { rate.add(static_cast<double>(flown.hits.size()) / flown.way); });
+            [&](const Flown& flown) { rate.add(static_cast<double>(flown.hits.size()) / flown.translation); });
     EXPECT_NEAR(rate.mean(), expected, 4.0 * rate.error());
 }
 

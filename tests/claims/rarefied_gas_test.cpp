@@ -192,7 +192,7 @@ TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
     for (const Material& wall : {lambert(), Material{"mirror", 1.0, 0.0}}) {
         SCOPED_TRACE(wall.is_random() ? "cosine law" : "mirror");
         const Vessel vessel({testing::mesh_collider(cube_with_a_hole(half))}, wall);
-        Sample way;
+        Sample translation;
         for (int i = 0; i < test::scaled(20000); ++i) {
             RandomSequence random(5, 0, static_cast<std::uint64_t>(i));
             const double x = 2.0 * random.uniform() - 1.0;
@@ -202,9 +202,9 @@ TEST(Effusion, KeepsAMoleculeInsideForFourVolumesOverTheOpening) {
             const auto is_out = [](const Vec3& p) { return p.z < 0.0; };
             const MovingParticle out = fly_out(vessel, start, 0.5, is_out);
             // It flies on in a straight line once it is out.
-            way.add(out.state.time + out.state.position.z / std::fabs(out.state.velocity.z));
+            translation.add(out.state.time + out.state.position.z / std::fabs(out.state.velocity.z));
         }
-        EXPECT_NEAR(way.mean(), 4.0 / area, 4.0 * way.error());
+        EXPECT_NEAR(translation.mean(), 4.0 / area, 4.0 * translation.error());
     }
 }
 

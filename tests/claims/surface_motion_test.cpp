@@ -78,8 +78,8 @@ TEST(ABelt, AcceleratesAPointByFrictionUntilItIsCarried) {
         // First-order methods keep the friction constant over a step.
         const bool is_first_order = kind == IntegratorKind::forward_euler || kind == IntegratorKind::symplectic_euler ||
                                     kind == IntegratorKind::implicit_euler;
-        const double way = speed * scene.duration - 0.5 * speed * stop;
-        EXPECT_NEAR(length(end.position), way, is_first_order ? 2e-3 : 1e-9);
+        const double translation = speed * scene.duration - 0.5 * speed * stop;
+        EXPECT_NEAR(length(end.position), translation, is_first_order ? 2e-3 : 1e-9);
     }
 }
 

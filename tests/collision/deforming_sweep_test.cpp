@@ -50,19 +50,19 @@ TEST(DeformingSweep, LetsASphereOverlapByTheRoundingOfItsOwnPositionOnly) {
     for (const double far : {1.0, 1e5}) {
         const Vec3 begin{0, 0, 1};
         const Path path = line_path(begin, {far, 0, 0}, 1.0);
-        const MovingView view(*scene.bodies, kAtRest, {0.0, 1.0, 0.0, 0.0, 1.0});
+        const MovingView view(*scene.bodies, kWorldBody, {0.0, 1.0, 0.0, 0.0, 1.0});
         TrianglePlaneCache planes;
         const SurfaceGeometry geometry(*scene.at_rest, planes);
         ContactScratch scratch;
         const ContactQuery query{path, kRadius};
-        const WayPoint start{begin, 0.0, begin};
+        const PathPoint start{begin, 0.0, begin};
         MovingSweep sweep(view, geometry, query, start, scratch);
         const ContactQueryResult found = sweep.sweep(start);
         // The segment goes straight down to the triangle's position at that time. It does not depend on the path.
         const auto is_free_with_gap = [&](double gap) {
             constexpr double kTime = 0.5;
             const Vec3 end{0, 0, kRadius + gap};
-            return found.near.is_link_free(start, {end, kTime, end});
+            return found.near.is_segment_free(start, {end, kTime, end});
         };
         EXPECT_TRUE(is_free_with_gap(1e-12)) << far;
         EXPECT_TRUE(is_free_with_gap(-1e-13)) << far;

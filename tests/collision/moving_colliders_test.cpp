@@ -60,14 +60,14 @@ TEST(MovingColliders, NearABoxAreAllThatEnterItInTheirOrder) {
                 const double half = 2.0 * random.uniform() * random.uniform();
                 const Box3 box{center - Vec3{half, half, half}, center + Vec3{half, half, half}};
                 const BodyId except = query % 3 == 0
-                                          ? kAtRest
+                                          ? kWorldBody
                                           : static_cast<BodyId>(static_cast<std::size_t>(query) % many.bodies->size());
-                std::vector<BodyId> expected{kAtRest};  // existing entries are kept
-                if (except != kAtRest && !many.bodies->stays_out(kAtRest, box)) expected.push_back(kAtRest);
+                std::vector<BodyId> expected{kWorldBody};  // existing entries are kept
+                if (except != kWorldBody && !many.bodies->stays_out(kWorldBody, box)) expected.push_back(kWorldBody);
                 for (BodyId body = 0; body < many.bodies->size(); ++body) {
                     if (body != except && !many.bodies->stays_out(body, box)) expected.push_back(body);
                 }
-                std::vector<BodyId> near{kAtRest};
+                std::vector<BodyId> near{kWorldBody};
                 many.bodies->near(box, except, near);
                 EXPECT_EQ(near, expected);
             }

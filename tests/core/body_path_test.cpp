@@ -16,7 +16,7 @@ BodyPath some_path() {
     path.end = 2.0;
     path.at_begin.translation = {1, 2, 3};
     path.carrier = {0.3, -0.2, 0.5};
-    path.way = {Vec3{1, 0, -1}, Vec3{0.5, 0.25, 0}, Vec3{0, 0.1, 0.2}};
+    path.center_path = {Vec3{1, 0, -1}, Vec3{0.5, 0.25, 0}, Vec3{0, 0.1, 0.2}};
     path.axis = normalized(Vec3{1, 2, -1});
     path.turns = {90.0, 20.0, -10.0};
     return path;
@@ -45,7 +45,7 @@ TEST(BodyPath, MovesItsCarrierAlongTheCubic) {
     const BodyPath path = some_path();
     const Vec3 start = path.at(1.0).point(path.carrier);
     const double t = 0.7;
-    const Vec3 expected = start + t * (path.way[0] + t * (path.way[1] + t * path.way[2]));
+    const Vec3 expected = start + t * (path.center_path[0] + t * (path.center_path[1] + t * path.center_path[2]));
     EXPECT_LT(length(path.at(1.7).point(path.carrier) - expected), 1e-15);
 }
 

@@ -45,9 +45,9 @@ Matrix operator*(const Matrix& a, const Matrix& b) {
     return m;
 }
 
-Matrix moved_by(const std::array<Dual, 3>& way) {
+Matrix moved_by(const std::array<Dual, 3>& oscillation) {
     Matrix m = identity();
-    for (std::size_t i = 0; i < 3; ++i) m[i][3] = way[i];
+    for (std::size_t i = 0; i < 3; ++i) m[i][3] = oscillation[i];
     return m;
 }
 
@@ -104,12 +104,12 @@ Dual curve_at(const KeyedCurve<double>& curve, double time) {
            (s3 + number(-1) * s2) * number(m1);
 }
 
-std::array<Dual, 3> way_at(const KeyedCurve<Vec3>& way, double time) {
+std::array<Dual, 3> way_at(const KeyedCurve<Vec3>& oscillation, double time) {
     std::array<Dual, 3> result;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<CurveKey<double>> keys;
-        for (const auto& key : way.keys()) keys.push_back({key.time, key.value[axis]});
-        result[static_cast<std::size_t>(axis)] = curve_at(KeyedCurve<double>(keys, way.interpolation()), time);
+        for (const auto& key : oscillation.keys()) keys.push_back({key.time, key.value[axis]});
+        result[static_cast<std::size_t>(axis)] = curve_at(KeyedCurve<double>(keys, oscillation.interpolation()), time);
     }
     return result;
 }
@@ -131,9 +131,9 @@ Matrix chain_at(const std::vector<FrameDescription>& frames, double time) {
                 m = m * turned_by(spin->axis, {static_cast<Real>(spin->rate) * time, spin->rate});
             } else if (const auto* swing = std::get_if<Swing>(&motion)) {
                 m = m * turned_by(swing->axis, Dual{swing->amplitude, 0} * wave(swing->frequency, swing->phase));
-            } else if (const auto* way = std::get_if<Oscillation>(&motion)) {
-                const Dual s = wave(way->frequency, way->phase);
-                const Vec3& a = way->amplitude;
+            } else if (const auto* oscillation = std::get_if<Oscillation>(&motion)) {
+                const Dual s = wave(oscillation->frequency, oscillation->phase);
+                const Vec3& a = oscillation->amplitude;
                 m = m * moved_by({Dual{a.x, 0} * s, Dual{a.y, 0} * s, Dual{a.z, 0} * s});
             } else {
                 m = m * moved_by(way_at(std::get<KeyedTranslation>(motion).path, time));
@@ -279,8 +279,8 @@ TEST(FrameTree, BoundsHoldBetweenKeys) {
                 }
                 for (std::size_t n = 1; n < 5; ++n) {
                     const double rounding = 1e-13 / std::pow(h, static_cast<double>(n));
-                    const double way = length(difference_quotient(origins, n, h));
-                    EXPECT_LE(way, bounds.origin[n] + rounding) << "seed " << seed << ", order " << n;
+                    const double oscillation = length(difference_quotient(origins, n, h));
+                    EXPECT_LE(oscillation, bounds.origin[n] + rounding) << "seed " << seed << ", order " << n;
                     const double turn = length(difference_quotient(directions, n, h));
                     EXPECT_LE(turn, bounds.rotation[n] + rounding) << "seed " << seed << ", order " << n;
                     if (bounds.rotation[n] > 0.0) largest[n] = std::max(largest[n], turn / bounds.rotation[n]);
@@ -299,9 +299,9 @@ TEST(FrameTree, BoundsHoldBetweenKeys) {
 // The next key belongs to the frame or to any frame that carries it.
 TEST(FrameTree, TheNextKeyIsTheFirstOfItsChain) {
     const KeyedCurve<double> turns({{0.5, 0.0}, {2.0, 90.0}});
-    const KeyedCurve<Vec3> way({{0.0, {}}, {1.5, {1, 0, 0}}, {3.0, {1, 1, 0}}}, Interpolation::spline);
+    const KeyedCurve<Vec3> oscillation({{0.0, {}}, {1.5, {1, 0, 0}}, {3.0, {1, 1, 0}}}, Interpolation::spline);
     const FrameTree tree({{"base", "", {}, {0, 0, 1}, 0.0, {Spin{}, KeyedRotation{{0, 0, 1}, turns}}},
-                          {"arm", "base", {}, {0, 0, 1}, 0.0, {Swing{}, KeyedTranslation{way}}},
+                          {"arm", "base", {}, {0, 0, 1}, 0.0, {Swing{}, KeyedTranslation{oscillation}}},
                           {"other", "", {}, {0, 0, 1}, 0.0, {Oscillation{{1, 0, 0}, 1.0, 0.0}}}});
     std::vector<double> times;
     for (double time = -1.0; std::isfinite(time); time = tree.next_key(1, time)) times.push_back(time);

@@ -25,7 +25,7 @@ public:
         system_.assign(particles_, springs_.coupled(), 0.0);
         const SystemStep step = step_system(kind, system_, kStep, kStep);
         for (std::size_t k = 0; k < 3; ++k) plans.push_back(planned_flight(kind, system_, step, k));
-        departures.reset(3, kind);
+        deviations.reset(3, kind);
     }
     [[nodiscard]] const ParticleSystem& system() const { return system_; }
     [[nodiscard]] std::vector<Vec3> planned_velocities() const {
@@ -50,7 +50,7 @@ public:
     }
 
     std::vector<Flight> plans;
-    Departures departures;
+    PlanDeviations deviations;
 
 private:
     void add(const Vec3& position, const Vec3& velocity, double mass) {
@@ -104,24 +104,24 @@ TEST(CoupledMember, CanHaveAConstantAcceleration) {
     EXPECT_EQ(held.acceleration({}), (Vec3{1, 2, 3}));
 }
 
-TEST(Departures, ChangeNothingIfAllMembersFlyAsPlanned) {
+TEST(PlanDeviations, ChangeNothingIfAllMembersFlyAsPlanned) {
     PlannedSystem planned(IntegratorKind::rk4);
     std::vector<Vec3> velocities = planned.planned_velocities();
-    planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
+    planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
     EXPECT_EQ(velocities, planned.planned_velocities());
 }
 
 // A velocity change of 2 v in the middle of a step stretches the spring by 2 v h / 2 at the end of the step. The spring
 // adds an impulse of k v h^2 / 4, and the damper adds 2 v c h / 2.
-TEST(Departures, TransferTheImpulseOfTheDeviationToTheOthers) {
+TEST(PlanDeviations, TransferTheImpulseOfTheDeviationToTheOthers) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const std::vector<FlownPiece> flown = planned.turn_back();
         std::vector<Vec3> velocities = planned.planned_velocities();
         const Vec3 turned = flown[1].departure - flown[0].arrival;
         velocities[0] = flown[1].arrival;
-        planned.departures.record(0, flown, turned);
-        planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
+        planned.deviations.record(0, flown, turned);
+        planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
         const Vec3 given = 2.0 * (velocities[1] - planned.plans[1].end_velocity);
         const Vec3 along = planned.plans[1].start.position / length(planned.plans[1].start.position);
         const double speed = dot(turned, along);
@@ -131,7 +131,7 @@ TEST(Departures, TransferTheImpulseOfTheDeviationToTheOthers) {
     }
 }
 
-TEST(Departures, ConserveMomentumExceptForTheImpactImpulse) {
+TEST(PlanDeviations, ConserveMomentumExceptForTheImpactImpulse) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const std::vector<FlownPiece> flown = planned.turn_back();
@@ -139,36 +139,36 @@ TEST(Departures, ConserveMomentumExceptForTheImpactImpulse) {
         const Vec3 before = planned.momentum(velocities);
         const Vec3 turned = flown[1].departure - flown[0].arrival;
         velocities[0] = flown[1].arrival;
-        planned.departures.record(0, flown, turned);
-        planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
+        planned.deviations.record(0, flown, turned);
+        planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
         EXPECT_LT(length(planned.momentum(velocities) - before - planned.system().mass(0) * turned), 1e-14);
     }
 }
 
-TEST(Departures, LeaveTheVelocitiesOfUnaffectedMembers) {
+TEST(PlanDeviations, LeaveTheVelocitiesOfUnaffectedMembers) {
     PlannedSystem planned(IntegratorKind::rk4);
     std::vector<Vec3> velocities = planned.planned_velocities();
-    planned.departures.record(0, planned.turn_back(), {});
-    planned.departures.correct(planned.system(), planned.plans, {0, 0, 1}, velocities);
+    planned.deviations.record(0, planned.turn_back(), {});
+    planned.deviations.correct(planned.system(), planned.plans, {0, 0, 1}, velocities);
     EXPECT_EQ(velocities, planned.planned_velocities());
 }
 
 // This also holds in contact. The spring pulls on a particle that a surface has stopped, and applies the opposite
 // impulse at its other end.
-TEST(Departures, GiveOppositeImpulsesToBothEndsIfOneIsStopped) {
+TEST(PlanDeviations, GiveOppositeImpulsesToBothEndsIfOneIsStopped) {
     for (const IntegratorKind kind : {IntegratorKind::velocity_verlet, IntegratorKind::midpoint, IntegratorKind::rk4}) {
         PlannedSystem planned(kind);
         const Flight& plan = planned.plans[0];
         std::vector<Vec3> velocities = planned.planned_velocities();
         const Vec3 before = planned.momentum(velocities);
-        const Vec3 pushed{0.3, -0.2, 0.7};
+        const Vec3 velocity_change{0.3, -0.2, 0.7};
         velocities[0] = {};
         const FlownPiece stay{line_path(plan.start.position, {}, kStep), plan.start.time, kStep, {}, {}, false};
-        planned.departures.record(0, {&stay, 1}, pushed);
-        EXPECT_TRUE(planned.departures.has_left(0));
-        planned.departures.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
+        planned.deviations.record(0, {&stay, 1}, velocity_change);
+        EXPECT_TRUE(planned.deviations.has_left(0));
+        planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
         EXPECT_NE(velocities[1], planned.plans[1].end_velocity) << name_of(kind);
-        EXPECT_LT(length(planned.momentum(velocities) - before - planned.system().mass(0) * pushed), 1e-14);
+        EXPECT_LT(length(planned.momentum(velocities) - before - planned.system().mass(0) * velocity_change), 1e-14);
     }
 }
 

@@ -23,9 +23,9 @@ using test::chi_square_limit;
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint64_t kSamples = test::kSanitized ? 4000 : 40000;
 
-std::vector<LaunchPlace> samples(const EmitterShape& shape, std::uint64_t count = kSamples) {
+std::vector<LaunchPoint> samples(const EmitterShape& shape, std::uint64_t count = kSamples) {
     const ShapeSampler sampler(shape);
-    std::vector<LaunchPlace> places;
+    std::vector<LaunchPoint> places;
     for (std::uint64_t k = 0; k < count; ++k) {
         RandomSequence random(3, 1, k);
         places.push_back(sampler.draw(0.0, random));
@@ -34,10 +34,10 @@ std::vector<LaunchPlace> samples(const EmitterShape& shape, std::uint64_t count 
 }
 
 // Compares chi-square over equally likely bins with the value exceeded with probability 1e-6. The seed is fixed.
-void expect_uniform(const std::vector<LaunchPlace>& places, std::size_t bins,
-                    const std::function<double(const LaunchPlace&)>& fraction) {
+void expect_uniform(const std::vector<LaunchPoint>& places, std::size_t bins,
+                    const std::function<double(const LaunchPoint&)>& fraction) {
     std::vector<double> observed(bins, 0.0);
-    for (const LaunchPlace& place : places) {
+    for (const LaunchPoint& place : places) {
         const double f = fraction(place);
         ASSERT_GE(f, 0.0);
         ASSERT_LE(f, 1.0 + 1e-12);
@@ -64,24 +64,24 @@ TEST(EmitterShape, AConeIsFilledUniformlyAndLaunchesAwayFromItsTip) {
     const ConeShape cone{{1, 2, 3}, {0, 3, 0}, 30.0, 2.0};
     const auto places = samples(cone);
     const double slope = std::tan(kPi / 6.0);
-    for (const LaunchPlace& place : places) {
+    for (const LaunchPoint& place : places) {
         ASSERT_NEAR(length(place.direction), 1.0, 1e-14);
         const Vec3 r = place.position - cone.apex;
         ASSERT_NEAR(length(cross(r, place.direction)), 0.0, 1e-14);
         ASSERT_LE(std::hypot(r.x, r.z), r.y * slope * (1.0 + 1e-12));
     }
-    expect_uniform(places, 40, [](const LaunchPlace& p) { return std::pow((p.position.y - 2.0) / 2.0, 3.0); });
-    expect_uniform(places, 40, [&](const LaunchPlace& p) {
+    expect_uniform(places, 40, [](const LaunchPoint& p) { return std::pow((p.position.y - 2.0) / 2.0, 3.0); });
+    expect_uniform(places, 40, [&](const LaunchPoint& p) {
         const Vec3 r = p.position - cone.apex;
         return (r.x * r.x + r.z * r.z) / (r.y * r.y * slope * slope);
     });
-    expect_uniform(places, 40, [](const LaunchPlace& p) {
+    expect_uniform(places, 40, [](const LaunchPoint& p) {
         return (std::atan2(p.position.x - 1.0, p.position.z - 3.0) + kPi) / (2.0 * kPi);
     });
 }
 
 TEST(EmitterShape, AConeWithoutAnAngleIsALine) {
-    for (const LaunchPlace& place : samples(ConeShape{{}, {0, 0, 1}, 0.0, 1.0}, 100)) {
+    for (const LaunchPoint& place : samples(ConeShape{{}, {0, 0, 1}, 0.0, 1.0}, 100)) {
         EXPECT_EQ(place.position.x, 0.0);
         EXPECT_EQ(place.direction, (Vec3{0, 0, 1}));
     }
@@ -92,11 +92,11 @@ TEST(EmitterShape, AMeshVolumeIsFilledUniformly) {
     const Vec3 upper{1, 3, 2.5};
     const auto places = samples(MeshVolumeShape{shared(testing::box_mesh(lower, upper))});
     for (int axis = 0; axis < 3; ++axis) {
-        expect_uniform(places, 40, [&](const LaunchPlace& p) {
+        expect_uniform(places, 40, [&](const LaunchPoint& p) {
             return (p.position[axis] - lower[axis]) / (upper[axis] - lower[axis]);
         });
     }
-    expect_uniform(places, 40, [](const LaunchPlace& p) { return 0.5 * (1.0 + p.direction.z); });
+    expect_uniform(places, 40, [](const LaunchPoint& p) { return 0.5 * (1.0 + p.direction.z); });
 }
 
 // Some programs write separate vertices for both sides of a seam. The mesh also has a repeated face.
@@ -125,7 +125,7 @@ TEST(EmitterShape, ABallWithAHoleIsFilledByVolumeAndTheHoleStaysEmpty) {
     const ParityOracle middle(testing::sphere_mesh({}, 1.5, 3));
     const double expected = (signed_volume(testing::sphere_mesh({}, 1.5, 3)) - inner) / (outer - inner);
     double within = 0.0;
-    for (const LaunchPlace& place : places) {
+    for (const LaunchPoint& place : places) {
         ASSERT_TRUE(oracle.inside(place.position));
         within += middle.inside(place.position) ? 1.0 : 0.0;
     }
@@ -148,7 +148,7 @@ TEST(EmitterShape, AMeshSurfaceIsCoveredByArea) {
         total += expected.back();
     }
     for (double& e : expected) e *= static_cast<double>(places.size()) / total;
-    for (const LaunchPlace& place : places) {
+    for (const LaunchPoint& place : places) {
         std::size_t best = 0;
         double nearest = 1e9;
         for (std::size_t k = 0; k < stretched.triangles.size(); ++k) {

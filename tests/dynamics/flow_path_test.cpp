@@ -68,16 +68,16 @@ TEST(FlowPath, DormandPrinceIsOfFifthOrderAndMeetsItsTolerance) {
         double first = 0.0;
         int pieces = 0;
         while (time < 6.0) {
-            const FlowPath way = flow_path(integrator, *flow, x, time, 6.0 - time, first);
-            const double h = way.path.duration;
+            const FlowPath translation = flow_path(integrator, *flow, x, time, 6.0 - time, first);
+            const double h = translation.path.duration;
             // Compares one piece with the circle through its own start.
             for (const double s : {0.25 * h, 0.5 * h, 0.75 * h, h}) {
                 const Vec3 exact{x.x * std::cos(s) - x.y * std::sin(s), x.x * std::sin(s) + x.y * std::cos(s), 0.0};
-                EXPECT_LT(length(way.path.position(s) - exact), 1.1 * tolerance);
+                EXPECT_LT(length(translation.path.position(s) - exact), 1.1 * tolerance);
             }
-            first = way.next_duration;
+            first = translation.next_duration;
             time += h;
-            x = way.path.end;
+            x = translation.path.end;
             ++pieces;
         }
         EXPECT_LT(length(x - on_circle(time)), 2.0 * pieces * tolerance);

@@ -62,19 +62,21 @@ TEST(ForeseenPath, PassesThroughTheEndsOfAllFurtherSteps) {
         for (const IntegratorKind kind : kKinds) {
             const Flight whole = begin_flight(kind, field, state, h);
             const Flight flight = first == h ? whole : resume_flight(kind, field, state, whole, first);
-            const Path foreseen = look_ahead_path(kind, flight, h, first + 20.0 * h);
+            const Path prediction = look_ahead_path(kind, flight, h, first + 20.0 * h);
             const double beside = 0.125 * length(acceleration) * h * h * (1.0 + 1e-9);
             for (const double part : {0.0, 0.3, 0.8, 1.0}) {
-                EXPECT_LE(length(foreseen.position(part * first) - flight.path.position(part * first)), beside + 1e-12);
+                EXPECT_LE(length(prediction.position(part * first) - flight.path.position(part * first)),
+                          beside + 1e-12);
             }
             PhaseState at{flight.path.end, flight.end_velocity};
             for (int step = 0; step < 20; ++step) {
                 const double time = first + step * h;
-                EXPECT_LE(length(foreseen.position(time) - at.position), 1e-12) << name_of(kind) << ' ' << step;
+                EXPECT_LE(length(prediction.position(time) - at.position), 1e-12) << name_of(kind) << ' ' << step;
                 const ForceInput next{at.position, at.velocity, 1.0, 0.0, time};
-                const Flight way = begin_flight(kind, field, next, h);
-                EXPECT_LE(length(foreseen.position(time + 0.5 * h) - way.path.position(0.5 * h)), beside + 1e-12);
-                at = {way.path.end, way.end_velocity};
+                const Flight translation = begin_flight(kind, field, next, h);
+                EXPECT_LE(length(prediction.position(time + 0.5 * h) - translation.path.position(0.5 * h)),
+                          beside + 1e-12);
+                at = {translation.path.end, translation.end_velocity};
             }
         }
     }

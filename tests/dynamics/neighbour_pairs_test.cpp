@@ -56,9 +56,9 @@ TEST(NeighbourPairs, RepeatedChangesOfAFewBoxesGiveThePairsOfAFullSearch) {
 }
 
 /// way: largest displacement of a box in a call along each axis, in m.
-Box3 moved(const Box3& box, RandomSequence& random, double way) {
+Box3 moved(const Box3& box, RandomSequence& random, double translation) {
     if (box.empty()) return box;
-    const auto step = [&] { return way * (2.0 * random.uniform() - 1.0); };
+    const auto step = [&] { return translation * (2.0 * random.uniform() - 1.0); };
     const Vec3 by{step(), step(), step()};
     return {box.lower + by, box.upper + by};
 }
@@ -74,10 +74,10 @@ TEST(NeighbourPairs, DriftingBoxesGiveThePairsOfAFullSearch) {
         std::vector<Box3> boxes(static_cast<std::size_t>(500 + 60 * (seed % 6)));
         for (Box3& box : boxes) box = random_box(random);
         for (int call = 0; call < 30; ++call) {
-            const double way = call % 10 == 9 ? 0.1 : 1e-3;
+            const double translation = call % 10 == 9 ? 0.1 : 1e-3;
             for (Box3& box : boxes) {
                 const bool is_made_anew = random.uniform() < (seed % 3 == 0 ? 0.06 : 0.01);
-                box = is_made_anew ? random_box(random) : moved(box, random, way);
+                box = is_made_anew ? random_box(random) : moved(box, random, translation);
             }
             ASSERT_TRUE(kept.find(boxes) == anew.find_pairs(boxes)) << call;
             std::vector<std::uint32_t> changed;

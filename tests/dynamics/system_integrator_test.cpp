@@ -214,13 +214,14 @@ TEST(SystemIntegrator, ImplicitEulerSolvesViolentStepsInFewIterations) {
         std::vector<std::uint32_t> all(cloth.particles.size());
         std::iota(all.begin(), all.end(), 0U);
         start.assign(system.particles, all, 0.0);
-        std::vector<HeldMotion> held(all.size());
-        for (std::size_t i = 0; i < held.size(); i += 37) {
-            held[i].directions[0] = normalized(Vec3{0.3, 0.1, 1.0});
-            held[i].count = 1;
+        std::vector<SupportConstraints> supports(all.size());
+        for (std::size_t i = 0; i < supports.size(); i += 37) {
+            supports[i].directions[0] = normalized(Vec3{0.3, 0.1, 1.0});
+            supports[i].count = 1;
         }
         int iterations = 0;
-        const SystemStep step = implicit_system_step(start, 0.01, held, {}, {kNewtonTolerance, [&] { ++iterations; }});
+        const SystemStep step =
+            implicit_system_step(start, 0.01, supports, {}, {kNewtonTolerance, [&] { ++iterations; }});
         EXPECT_TRUE(step.solved);
         EXPECT_EQ(step.duration, 0.01);
         EXPECT_LT(iterations, 50);

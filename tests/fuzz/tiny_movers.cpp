@@ -42,8 +42,8 @@ FrameMotion motion(ByteChoices& choices, double duration) {
             return KeyedRotation{axis, KeyedCurve<double>({{0.0, 0.0}, {0.3 * duration, most}, {duration, 0.0}}, kind)};
         }
         default: {
-            const Vec3 way = speed(choices) * duration * axis;
-            return KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.4 * duration, way}, {duration, {}}})};
+            const Vec3 center_path = speed(choices) * duration * axis;
+            return KeyedTranslation{KeyedCurve<Vec3>({{0.0, {}}, {0.4 * duration, center_path}, {duration, {}}})};
         }
     }
 }

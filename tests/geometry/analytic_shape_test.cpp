@@ -444,12 +444,12 @@ TEST(PartsOfACylinder, AreHitSeparatelyFromInside) {
         EXPECT_EQ(all.contacts[1].part, ShapePart::top);
         EXPECT_NEAR(all.contacts[1].time, 2.0 - radius, 1e-15);
         EXPECT_EQ(all.contacts[1].normal, Vec3(0, 0, -1));
-        HeldParts side;
+        SupportingParts side;
         side.add(ShapePart::side);
         const ShapeContacts beside = can.contacts(path, radius, side);
         ASSERT_EQ(beside.count, 1U);
         EXPECT_EQ(beside.contacts[0].part, ShapePart::top);
-        HeldParts both = side;
+        SupportingParts both = side;
         both.add(ShapePart::top);
         EXPECT_EQ(can.contacts(path, radius, both).count, 0U);
     }
@@ -462,7 +462,7 @@ TEST(PartsOfACylinder, ActAsOneBodyFromOutside) {
     EXPECT_EQ(hit.contacts[0].part, ShapePart::top);
     EXPECT_FALSE(hit.contacts[0].on_rim);
     EXPECT_TRUE(can.contacts(line_path({1.1, 0, 9}, {0, 0, -1}, 9.0), 0.25).contacts[0].on_rim);
-    HeldParts held;
+    SupportingParts held;
     held.add(ShapePart::bottom);
     EXPECT_EQ(can.contacts(line_path({0.5, 0, 9}, {0, 0, -1}, 9.0), 0.25, held).count, 0U);
 }

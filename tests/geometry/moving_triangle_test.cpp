@@ -189,12 +189,12 @@ TEST(MovingTriangle, IsHitByASphereWhenTheDistanceIsItsRadius) {
 
 TEST(MovingTriangle, InPureTranslationIsHitLikeATriangleAtRest) {
     const MovingTriangle fixed{{{{{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}}}};
-    const Vec3 way{3, -2, 5};
+    const Vec3 translation{3, -2, 5};
     MovingTriangle moving = fixed;
-    for (MovingPoint& corner : moving.corners) corner.to += way;
+    for (MovingPoint& corner : moving.corners) corner.to += translation;
     for (const double radius : {0.0, 0.125}) {
         const MovingPoint falls{{0.25, 0.25, 1}, {0.25, 0.25, -1}};
-        const MovingPoint follows{falls.from, falls.to + way};
+        const MovingPoint follows{falls.from, falls.to + translation};
         const auto at_rest = first_contact(falls, radius, fixed);
         const auto in_motion = first_contact(follows, radius, moving);
         ASSERT_TRUE(at_rest && in_motion);

@@ -38,8 +38,8 @@ TEST(StretchedMotion, IsExactWithoutExtraKeysIfTheFrameDoesNotRotate) {
         for (std::size_t v = 0; v < box.vertices.size(); ++v) {
             const Vec3 s = growth().value(within);
             const Vec3 p = box.vertices[v];
-            const Vec3 way = Vec3{0.3, -0.2, 0.1} + std::min(2.0 * within, 4.0) * Vec3{1, 0, 0};
-            const Vec3 expected = way + Vec3{s.x * p.x, s.y * p.y, s.z * p.z};
+            const Vec3 center_path = Vec3{0.3, -0.2, 0.1} + std::min(2.0 * within, 4.0) * Vec3{1, 0, 0};
+            const Vec3 expected = center_path + Vec3{s.x * p.x, s.y * p.y, s.z * p.z};
             EXPECT_LT(length(motion.at(time).position(v) - expected), 4e-15) << time;
         }
     }

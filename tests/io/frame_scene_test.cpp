@@ -38,8 +38,8 @@ TEST(FrameScene, KeysMakeFramesAndLaunches) {
     ASSERT_NE(emitter.frames, nullptr);
     EXPECT_EQ(emitter.frames->description(emitter.frame).name, "hand");
     const KeyedCurve<double> angle({{0, 0}, {0.5, 90}, {2, 360}}, Interpolation::spline, CurveEnds::repeat);
-    const KeyedCurve<Vec3> way({{0, {0, 0, 0}}, {1, {0, 1, 0}}});
-    const FrameTree expected({{"hand", "arm", {1, 0, 0}, {0, 0, 1}, 0.0, {KeyedTranslation{way}}},
+    const KeyedCurve<Vec3> translation({{0, {0, 0, 0}}, {1, {0, 1, 0}}});
+    const FrameTree expected({{"hand", "arm", {1, 0, 0}, {0, 0, 1}, 0.0, {KeyedTranslation{translation}}},
                               {"arm", "", {}, {0, 0, 1}, 90.0, {KeyedRotation{{0, 1, 0}, angle}}}});
     for (const double time : {0.0, 0.3, 0.7, 1.5, 30.25}) {
         const MovingPose pose = emitter.frames->at(emitter.frame, time);

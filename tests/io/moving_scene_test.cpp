@@ -179,7 +179,7 @@ TEST(MovingScene, CameraInAScaledFrameFollowsItsPoints) {
                                          "s.json");
     Simulation simulation(std::move(scene.setup));
     simulation.advance(simulation.step_count());
-    const CameraPlace place = camera_place(*scene.camera, {0, 0, 1}, scene.camera->frames.get(), simulation);
+    const CameraPosition place = camera_place(*scene.camera, {0, 0, 1}, scene.camera->frames.get(), simulation);
     EXPECT_LT(length(place.position - Vec3(2, 1, 1)), 1e-15);
     EXPECT_LT(length(place.target - Vec3(2, 0, 1)), 1e-15);
 }

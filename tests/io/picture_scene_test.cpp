@@ -53,7 +53,7 @@ TEST(PictureScene, CameraFollowsItsPathInItsFrame) {
     ASSERT_TRUE(scene.camera && scene.camera->moves());
     Simulation simulation(std::move(scene.setup));
     const Vec3 up{0, 0, 1};
-    CameraPlace place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
+    CameraPosition place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);
     EXPECT_LT(length(place.position - Vec3(4, 0, 0)), 1e-12);
     simulation.advance(simulation.step_count());
     place = camera_place(*scene.camera, up, scene.camera->frames.get(), simulation);

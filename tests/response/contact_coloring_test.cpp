@@ -1,4 +1,4 @@
-#include "ricochet/response/network/contact_coloring.h"
+#include "ricochet/response/contact_solver/contact_coloring.h"
 
 #include <gtest/gtest.h>
 
@@ -11,26 +11,26 @@
 namespace ricochet {
 namespace RICOCHET_FILE {
 
-NetworkContact pair_of(std::uint32_t a, std::uint32_t b) {
-    NetworkContact contact;
+SolverContact pair_of(std::uint32_t a, std::uint32_t b) {
+    SolverContact contact;
     contact.a = a;
     contact.b = b;
     return contact;
 }
 
-std::vector<NetworkContact> random_pairs(std::uint32_t bodies, std::size_t count) {
+std::vector<SolverContact> random_pairs(std::uint32_t bodies, std::size_t count) {
     RandomSequence random(3, 0, 0);
-    std::vector<NetworkContact> contacts;
+    std::vector<SolverContact> contacts;
     while (contacts.size() < count) {
         const auto a = static_cast<std::uint32_t>(bodies * random.uniform());
         const auto b = static_cast<std::uint32_t>(bodies * random.uniform());
-        if (a != b) contacts.push_back(pair_of(a, random.uniform() < 0.2 ? NetworkContact::kWall : b));
+        if (a != b) contacts.push_back(pair_of(a, random.uniform() < 0.2 ? SolverContact::kWall : b));
     }
     return contacts;
 }
 
 TEST(ContactColoring, NoTwoContactsOfAColourShareABody) {
-    const std::vector<NetworkContact> contacts = random_pairs(300, 1500);
+    const std::vector<SolverContact> contacts = random_pairs(300, 1500);
     ContactColoring coloring;
     coloring.assign(300, contacts);
     std::vector<std::uint32_t> seen(coloring.order().begin(), coloring.order().end());
@@ -38,9 +38,9 @@ TEST(ContactColoring, NoTwoContactsOfAColourShareABody) {
         EXPECT_FALSE(coloring.is_serial(color));
         std::set<std::uint32_t> bodies;
         for (std::size_t k = coloring.begin_of(color); k < coloring.end_of(color); ++k) {
-            const NetworkContact& contact = contacts[coloring.order()[k]];
+            const SolverContact& contact = contacts[coloring.order()[k]];
             EXPECT_TRUE(bodies.insert(contact.a).second);
-            if (contact.b != NetworkContact::kWall) {
+            if (contact.b != SolverContact::kWall) {
                 EXPECT_TRUE(bodies.insert(contact.b).second);
             }
         }
@@ -50,7 +50,7 @@ TEST(ContactColoring, NoTwoContactsOfAColourShareABody) {
 }
 
 TEST(ContactColoring, ContactsOfABoulderAmongSandAreSerial) {
-    std::vector<NetworkContact> contacts;
+    std::vector<SolverContact> contacts;
     for (std::uint32_t i = 1; i <= 100; ++i) contacts.push_back(pair_of(i, 0));
     ContactColoring coloring;
     coloring.assign(101, contacts);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ricochet/response/along_surfaces.h"
-#include "ricochet/response/held_motion.h"
+#include "ricochet/response/contact_interval.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {
@@ -18,7 +18,7 @@ std::array<Vec3, 1> slope(double angle) { return {Vec3{std::sin(angle), 0, std::
 
 ContactInterval plan_slide(const Vec3& velocity, const Vec3& a, std::span<const Vec3> normals, double friction,
                            double duration) {
-    std::vector<HoldingSurface> surfaces;
+    std::vector<SupportSurface> surfaces;
     for (const Vec3& normal : normals) surfaces.push_back({normal, friction});
     return plan_interval({velocity, {}}, 0.0, a, surfaces, {}, duration);
 }

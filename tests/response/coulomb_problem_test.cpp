@@ -60,14 +60,14 @@ void expect_solved(const CoulombProblem& problem, const std::vector<TestContact>
     const MotionVector change = problem.change();
     for (std::size_t c = 0; c < motion.size(); ++c) motion[c] += change[c];
     double most = 1.0;
-    for (std::size_t k = 0; k < contacts.size(); ++k) most = std::max(most, problem.push(k));
+    for (std::size_t k = 0; k < contacts.size(); ++k) most = std::max(most, problem.reaction(k));
     for (std::size_t k = 0; k < contacts.size(); ++k) {
         const Vec3& n = contacts[k].normal;
         const double gap_rate = product(motion_vector(n, {}), motion);
-        const double push = problem.push(k);
-        ASSERT_GE(push, 0.0);
+        const double reaction = problem.reaction(k);
+        ASSERT_GE(reaction, 0.0);
         ASSERT_GE(gap_rate, -rounding);
-        ASSERT_LE(std::min(push, std::fabs(gap_rate)), rounding);
+        ASSERT_LE(std::min(reaction, std::fabs(gap_rate)), rounding);
         const auto [first, second] = tangent_frame(n);
         const auto force = problem.force_of(k);
         std::array<double, 2> slip{};
@@ -77,10 +77,10 @@ void expect_solved(const CoulombProblem& problem, const std::vector<TestContact>
         }
         const double size = std::hypot(force[0], force[1]);
         const double speed = std::hypot(slip[0], slip[1]);
-        ASSERT_LE(size, contacts[k].friction * push + rounding * most);
+        ASSERT_LE(size, contacts[k].friction * reaction + rounding * most);
         if (speed <= 100.0 * rounding) continue;
         // The contact slips: its force is the largest possible one and opposes the slip.
-        const double against = force[0] * slip[0] + force[1] * slip[1] + contacts[k].friction * push * speed;
+        const double against = force[0] * slip[0] + force[1] * slip[1] + contacts[k].friction * reaction * speed;
         ASSERT_LE(std::fabs(against), rounding * most);
     }
 }
@@ -103,11 +103,11 @@ TEST(CoulombProblem, SphereOnASlopeRollsOrSlips) {
             add_contacts(problem, slope, free, true);
             ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
             const double pull = 9.81 * std::sin(angle);
-            const double hold = friction * 9.81 * std::cos(angle);
-            const double expected = std::max(pull - hold, 5.0 / 7.0 * pull);
+            const double supported_acceleration = friction * 9.81 * std::cos(angle);
+            const double expected = std::max(pull - supported_acceleration, 5.0 / 7.0 * pull);
             const Vec3 a{problem.change()[0], problem.change()[1], problem.change()[2] - 9.81};
             EXPECT_LT(length(a - expected * down), 1e-13);
-            EXPECT_NEAR(problem.push(0), 9.81 * std::cos(angle), 1e-13);
+            EXPECT_NEAR(problem.reaction(0), 9.81 * std::cos(angle), 1e-13);
         }
     }
 }
@@ -135,7 +135,7 @@ TEST(CoulombProblem, SphereInAGrooveRollsOrSlipsAlongIt) {
                     << walls << ' ' << slope << ' ' << friction;
                 // Contacts that stick by friction may also share the load.
                 for (std::size_t k = 0; slipping > rolling && k < 2; ++k) {
-                    EXPECT_NEAR(problem.push(k), kGravity * std::cos(s) / (2.0 * std::cos(a)), 1e-11);
+                    EXPECT_NEAR(problem.reaction(k), kGravity * std::cos(s) / (2.0 * std::cos(a)), 1e-11);
                 }
             }
         }
@@ -158,7 +158,7 @@ TEST(CoulombProblem, UnneededWedgingForcesDoNotAppear) {
     add_contacts(problem, wedge, in, true);
     ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
     EXPECT_NEAR(problem.change()[2], 1.0, 1e-12);
-    EXPECT_LT(problem.push(0), 1.0);
+    EXPECT_LT(problem.reaction(0), 1.0);
 }
 
 TEST(CoulombProblem, ResistanceActsAgainstRollingAndSpinning) {
@@ -179,7 +179,7 @@ TEST(CoulombProblem, ResistanceActsAgainstRollingAndSpinning) {
     rolling.rate = {0.3, 0.0};
     problem.add(rolling);
     ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
-    EXPECT_NEAR(problem.push(0), 10.0, 1e-13);
+    EXPECT_NEAR(problem.reaction(0), 10.0, 1e-13);
     EXPECT_NEAR(problem.force_of(0)[0], -0.2, 1e-14);
     EXPECT_NEAR(problem.force_of(1)[0], -0.3, 1e-13);
     EXPECT_NEAR(problem.change()[5], -0.2, 1e-14);

@@ -42,7 +42,7 @@ struct Course {
     /// this move only.
     MoveOutcome move(ForceInput& state, double duration) {
         const bool goes_on = state.position == last_position && state.velocity == last_velocity;
-        MovingParticle particle{state, {}, 0, 0, goes_on ? last_contact : KeptContact{}};
+        MovingParticle particle{state, {}, 0, 0, goes_on ? last_contact : ContactState{}};
         if (goes_on) particle.sides = last_sides;
         const MoveOutcome outcome = move(particle, duration);
         state = particle.state;
@@ -82,7 +82,7 @@ struct Course {
     MoveScratch scratch;
     Vec3 last_position;
     Vec3 last_velocity;
-    KeptContact last_contact;
+    ContactState last_contact;
     std::span<SideMemory> last_sides;
     std::list<std::vector<SideMemory>> sides;  ///< one list per particle
 };

@@ -55,7 +55,7 @@ TEST(ImpactProblem, OneSurfaceGivesABounce) {
         const ImpactResult found = solve_impact(before, radius, {&surface, 1});
         EXPECT_LT(length(found.after.velocity - expected.velocity), 1e-14);
         EXPECT_LT(length(found.after.spin - expected.spin), 1e-13);
-        EXPECT_LT(length(before.velocity + found.push[0] - found.after.velocity), 1e-14);
+        EXPECT_LT(length(before.velocity + found.velocity_change[0] - found.after.velocity), 1e-14);
     }
 }
 
@@ -65,7 +65,7 @@ TEST(ImpactProblem, RectangularCornerWithoutLossesReversesTheVelocity) {
     const ImpactResult result = solve_impact({velocity, {}}, 0.1, corner);
     EXPECT_LT(length(result.after.velocity + velocity), 1e-15);
     for (std::size_t k = 0; k < 3; ++k)
-        EXPECT_LT(length(result.push[k] - 2.0 * -velocity[static_cast<int>(k)] * corner[k].normal), 1e-15);
+        EXPECT_LT(length(result.velocity_change[k] - 2.0 * -velocity[static_cast<int>(k)] * corner[k].normal), 1e-15);
 }
 
 // Along the bisector of a wedge both walls give equal impulses. The velocity is reversed and multiplied by the
@@ -106,7 +106,7 @@ TEST(ImpactProblem, SurfacesWithTheSameNormalCountAsTheFirst) {
     const ImpactResult one = solve_impact(before, 0.1, {&floor, 1});
     const ImpactResult three = solve_impact(before, 0.1, floors);
     EXPECT_EQ(one.after.velocity, three.after.velocity);
-    EXPECT_EQ(three.push[1], Vec3{});
+    EXPECT_EQ(three.velocity_change[1], Vec3{});
 }
 
 TEST(ImpactProblem, EnergyNeverGrowsAndMoreausLawIsMet) {
@@ -127,10 +127,11 @@ TEST(ImpactProblem, EnergyNeverGrowsAndMoreausLawIsMet) {
             const Vec3& n = surfaces[i].normal;
             const double u_before = dot(velocity, n);
             const double u_after = dot(result.after.velocity, n);
-            change += result.push[i];
-            const double push = dot(result.push[i], n);
-            ASSERT_GE(push, 0.0);
-            ASSERT_LE(length(result.push[i] - push * n), surfaces[i].friction * push + 1e-11);
+            change += result.velocity_change[i];
+            const double velocity_change = dot(result.velocity_change[i], n);
+            ASSERT_GE(velocity_change, 0.0);
+            ASSERT_LE(length(result.velocity_change[i] - velocity_change * n),
+                      surfaces[i].friction * velocity_change + 1e-11);
             ASSERT_GE(u_after + restitution * std::max(0.0, u_before), -1e-9);
         }
         ASSERT_LT(length(velocity + change - result.after.velocity), 1e-9);

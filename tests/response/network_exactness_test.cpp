@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ricochet/response/network/network_solver.h"
+#include "ricochet/response/contact_solver/iterative_contact_solver.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {
@@ -16,8 +16,8 @@ constexpr std::uint32_t kHeight = 20;
 const Vec3 kUp{0, 0, 1};
 
 struct Columns {
-    std::vector<NetworkBody> bodies;
-    std::vector<NetworkContact> contacts;
+    std::vector<SolverBody> bodies;
+    std::vector<SolverContact> contacts;
 };
 
 /// Returns columns of balls of 1 kg on a floor, without initial contact impulses. exactness: one factor for the
@@ -28,7 +28,7 @@ Columns columns(const std::vector<double>& exactness) {
         for (std::uint32_t k = 0; k < kHeight; ++k) {
             const auto body = static_cast<std::uint32_t>(all.bodies.size());
             all.bodies.push_back({{0.1 * kKick, 0, -kKick}, {}, 1.0, 250.0, 0.1});
-            NetworkContact& contact = all.contacts.emplace_back();
+            SolverContact& contact = all.contacts.emplace_back();
             contact.a = body;
             if (k > 0) contact.b = body - 1;
             contact.normal = kUp;
@@ -39,11 +39,11 @@ Columns columns(const std::vector<double>& exactness) {
     return all;
 }
 
-NetworkReport solve(Columns& network, double tolerance) {
-    NetworkSettings settings;
+SolverReport solve(Columns& network, double tolerance) {
+    SolverSettings settings;
     settings.duration = 1e-3;
     settings.tolerance = tolerance;
-    return NetworkSolver().solve(network.bodies, network.contacts, settings);
+    return IterativeContactSolver().solve(network.bodies, network.contacts, settings);
 }
 
 double fall_of(const Columns& network, std::uint32_t column) {
@@ -58,8 +58,8 @@ double fall_of(const Columns& network, std::uint32_t column) {
 TEST(NetworkExactness, ExactnessOfAllContactsActsAsASmallerTolerance) {
     Columns exact = columns({1024.0, 1024.0});
     Columns plain = columns({1.0, 1.0});
-    const NetworkReport first = solve(exact, 1024.0 * 1e-9);
-    const NetworkReport second = solve(plain, 1e-9);
+    const SolverReport first = solve(exact, 1024.0 * 1e-9);
+    const SolverReport second = solve(plain, 1e-9);
     EXPECT_EQ(first.sweeps, second.sweeps);
     EXPECT_EQ(first.residual, 1024.0 * second.residual);
     for (std::size_t i = 0; i < plain.bodies.size(); ++i) {
@@ -71,7 +71,7 @@ TEST(NetworkExactness, ExactnessOfAllContactsActsAsASmallerTolerance) {
 TEST(NetworkExactness, ExactnessOfOneColumnNeedsOnlyItsOwnSweeps) {
     Columns both = columns({1.0, 1000.0});
     Columns coarse = columns({1.0});
-    const NetworkReport report = solve(both, 0.1 * kKick);
+    const SolverReport report = solve(both, 0.1 * kKick);
     EXPECT_GT(report.sweeps, solve(coarse, 0.1 * kKick).sweeps);
     EXPECT_LT(fall_of(both, 1), 0.01 * kKick);
     EXPECT_GT(fall_of(coarse, 0), 0.1 * kKick);

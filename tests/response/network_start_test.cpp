@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "ricochet/response/network/network_solver.h"
+#include "ricochet/response/contact_solver/iterative_contact_solver.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {
@@ -12,11 +12,11 @@ namespace RICOCHET_FILE {
 constexpr double kKick = 9.81e-3;  // m/s, from gravity in one step
 const Vec3 kUp{0, 0, 1};
 
-NetworkBody ball(double velocity) { return {velocity * kUp, {}, 1.0, 250.0, 0.1}; }
+SolverBody ball(double velocity) { return {velocity * kUp, {}, 1.0, 250.0, 0.1}; }
 
 /// Returns the contact of a ball of 1 kg on a floor. `start` is its impulse in the last step.
-NetworkContact on_floor(std::uint32_t body, double start) {
-    NetworkContact contact;
+SolverContact on_floor(std::uint32_t body, double start) {
+    SolverContact contact;
     contact.a = body;
     contact.normal = kUp;
     contact.touched = true;
@@ -24,8 +24,8 @@ NetworkContact on_floor(std::uint32_t body, double start) {
     return contact;
 }
 
-NetworkSettings one_sweep() {
-    NetworkSettings settings;
+SolverSettings one_sweep() {
+    SolverSettings settings;
     settings.duration = 1e-3;
     settings.sweeps = settings.most_sweeps = 1;
     return settings;
@@ -34,26 +34,26 @@ NetworkSettings one_sweep() {
 TEST(NetworkStart, WrongStartOfAContactDisturbsNoOther) {
     for (const double wrong : {0.0, 0.1, 3.0, 100.0}) {
         SCOPED_TRACE(wrong);
-        std::vector<NetworkBody> bodies = {ball(-kKick), ball(-kKick)};
-        const std::vector<NetworkContact> contacts = {on_floor(0, kKick), on_floor(1, wrong * kKick)};
-        NetworkSolver().solve(bodies, contacts, one_sweep());
+        std::vector<SolverBody> bodies = {ball(-kKick), ball(-kKick)};
+        const std::vector<SolverContact> contacts = {on_floor(0, kKick), on_floor(1, wrong * kKick)};
+        IterativeContactSolver().solve(bodies, contacts, one_sweep());
         EXPECT_EQ(bodies[0].velocity.z, 0.0);
     }
 }
 
 // Otherwise the impulses that wedged the ball would persist and cause friction.
 TEST(NetworkStart, WedgedBallIsFreedIfGravityReverses) {
-    std::vector<NetworkBody> bodies = {ball(kKick)};
-    std::vector<NetworkContact> contacts;
+    std::vector<SolverBody> bodies = {ball(kKick)};
+    std::vector<SolverContact> contacts;
     for (const double side : {-1.0, 1.0}) {
-        NetworkContact& wall = contacts.emplace_back(on_floor(0, kKick));
+        SolverContact& wall = contacts.emplace_back(on_floor(0, kKick));
         wall.normal = {side, 0, 0};
         wall.friction = 0.5;
         wall.start.tangential = 0.5 * kKick * kUp;
     }
-    NetworkSettings settings = one_sweep();
+    SolverSettings settings = one_sweep();
     settings.sweeps = settings.most_sweeps = 100;
-    NetworkSolver().solve(bodies, contacts, settings);
+    IterativeContactSolver().solve(bodies, contacts, settings);
     EXPECT_EQ(bodies[0].velocity.z, kKick);
 }
 

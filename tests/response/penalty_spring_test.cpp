@@ -28,7 +28,7 @@ struct Oscillator {
         return {x + h / 6.0 * (a1 + 2.0 * (a2 + a3) + a4), v + h / 6.0 * (b1 + 2.0 * (b2 + b3) + b4)};
     }
     /// Returns the contact's force, in the same units.
-    [[nodiscard]] double push(double zeta) const { return x + 2.0 * zeta * v; }
+    [[nodiscard]] double contact_force(double zeta) const { return x + 2.0 * zeta * v; }
 };
 
 /// Returns the restitution of a contact that ends before its force would pull. Uses Runge-Kutta steps and bisects the
@@ -37,7 +37,7 @@ double integrated_restitution(double zeta) {
     constexpr double kStep = 1e-3;
     Oscillator now;
     Oscillator next = now.after(kStep, zeta);
-    while (next.push(zeta) > 0.0) {
+    while (next.contact_force(zeta) > 0.0) {
         now = next;
         next = now.after(kStep, zeta);
     }
@@ -45,7 +45,7 @@ double integrated_restitution(double zeta) {
     double high = kStep;
     for (int k = 0; k < 60; ++k) {
         const double middle = 0.5 * (low + high);
-        (now.after(middle, zeta).push(zeta) > 0.0 ? low : high) = middle;
+        (now.after(middle, zeta).contact_force(zeta) > 0.0 ? low : high) = middle;
     }
     return -now.after(low, zeta).v;
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "response/course.h"
-#include "ricochet/response/network/network_island.h"
+#include "ricochet/response/contact_solver/contact_island.h"
 
 namespace ricochet::testing {
 
@@ -35,15 +35,15 @@ public:
     }
 
     void step(double duration) {
-        std::vector<NetworkMember> members;
+        std::vector<ContactIslandMember> members;
         for (MovingParticle& particle : particles_)
             members.push_back({&particle, particle.state.radius, false, duration, {}});
         course_.scratch.segments.clear();
         course_.scratch.hits.clear();
         course_.scratch.record_segments = true;
         std::vector<double> reach;
-        for (NetworkMember& member : members) reach.push_back(member.reach = island_.first_reach(member));
-        const NetworkReport report = island_.plan(members, pairs(reach), duration, memory_, course_.scratch);
+        for (ContactIslandMember& member : members) reach.push_back(member.reach = island_.first_reach(member));
+        const SolverReport report = island_.plan(members, pairs(reach), duration, memory_, course_.scratch);
         unsolved += report.is_converged ? 0 : 1;
         sweeps += report.sweeps;
         memory_.replace(island_.entries());
@@ -120,8 +120,8 @@ private:
 
     Course course_;
     PairMaterials materials_;
-    NetworkIsland island_;
-    NetworkMemory memory_;
+    ContactIsland island_;
+    WarmStartMemory memory_;
     std::vector<MovingParticle> particles_;
 };
 

@@ -1,4 +1,4 @@
-#include "ricochet/response/network/planned_move.h"
+#include "ricochet/response/contact_solver/planned_move.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "ricochet/core/random.h"
 #include "ricochet/core/vec3.h"
 #include "ricochet/response/along_surfaces.h"
-#include "ricochet/response/held_motion.h"
+#include "ricochet/response/contact_interval.h"
 #include "ricochet/simulation.h"
 #include "support/counts.h"
 #include "support/simulations.h"
@@ -122,7 +122,7 @@ TEST(TurnedRest, RestIsTheSameInEveryOrientation) {
 TEST(TurnedRest, SpinAboutTheNormalIsKeptToTheLastBit) {
     for (int k = 0; k < test::scaled(100); ++k) {
         const Axes axes = turned(k);
-        const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.5}};
+        const std::array<SupportSurface, 1> floor{SupportSurface{axes.z, 0.5}};
         const Motion spinning{{}, 3.7 * axes.z};
         const ContactInterval interval = plan_interval(spinning, 0.3, -9.81 * axes.z, floor, {}, 1.0);
         EXPECT_TRUE(interval.at_rest) << k;
@@ -135,7 +135,7 @@ TEST(TurnedRest, SlowSlideAfterAnImpactIsNotRest) {
     // from impacts.
     for (int k = 0; k < test::scaled(100); ++k) {
         const Axes axes = turned(k);
-        const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.0}};
+        const std::array<SupportSurface, 1> floor{SupportSurface{axes.z, 0.0}};
         const auto rest_of = [&](double speed) {
             return rest_beside_rounding({speed * axes.x, 3.7 * axes.z}, 0.3, -9.81 * axes.z, floor, {}, 1.0);
         };
@@ -151,7 +151,7 @@ TEST(AlongSurfaces, RollingSphereWithoutSlipKeepsNoSpeed) {
     // There is neither slip nor rotation about tangents: the centre rests, however fast the sphere spins.
     for (int k = 0; k < test::scaled(200); ++k) {
         const Axes axes = turned(k);
-        const std::array<HoldingSurface, 1> floor{HoldingSurface{axes.z, 0.5, 0.1}};
+        const std::array<SupportSurface, 1> floor{SupportSurface{axes.z, 0.5, 0.1}};
         StuckSurfaces stuck{};
         stuck[0].to_slip = stuck[0].to_turning = true;
         RandomSequence random(5, 0, static_cast<std::uint64_t>(k));

@@ -27,12 +27,14 @@ const std::vector<Way> kWays{{ResponseKind::exact, false},
                              {ResponseKind::project, false},
                              {ResponseKind::penalty, false}};
 
-std::string name(const Way& way) { return std::string(name_of(way.kind)) + (way.global ? " of all" : ""); }
+std::string name(const Way& center_path) {
+    return std::string(name_of(center_path.kind)) + (center_path.global ? " of all" : "");
+}
 
-SimulationSetup setup_of(const Way& way, double time_step, double duration) {
+SimulationSetup setup_of(const Way& center_path, double time_step, double duration) {
     SimulationSetup setup;
-    setup.options.response = way.kind;
-    setup.options.rollback.global = way.global;
+    setup.options.response = center_path.kind;
+    setup.options.rollback.global = center_path.global;
     setup.options.time_step = time_step;
     setup.options.duration = duration;
     setup.options.seed = 3;
@@ -71,10 +73,10 @@ Simulation finished(SimulationSetup setup) {
 }
 
 TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndHitItAgain) {
-    for (const Way& way : kWays) {
+    for (const Way& center_path : kWays) {
         for (const double radius : {0.0, 0.05}) {
-            SCOPED_TRACE(name(way) + " radius " + std::to_string(radius));
-            SimulationSetup setup = setup_of(way, 0.01, 1.5);
+            SCOPED_TRACE(name(center_path) + " radius " + std::to_string(radius));
+            SimulationSetup setup = setup_of(center_path, 0.01, 1.5);
             setup.forces.push_back(make_gravity({0, 0, -9.81}));
             setup.emitters = {parents(8, {0, 0, 1}, {0.4, 0, -1}, radius),
                               children(0, BirthEvent::impact, true, 6.0, 1.0)};
@@ -84,7 +86,7 @@ TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndHitItAgain) {
             EXPECT_GE(simulation.statistics().contacts, 8U + 48U);
             for (std::size_t i = 0; i < 48; ++i) {
                 const double height = simulation.particles().position[i].z - simulation.particles().radius[i];
-                EXPECT_GT(height, way.kind == ResponseKind::penalty ? -0.05 : -1e-12);
+                EXPECT_GT(height, center_path.kind == ResponseKind::penalty ? -0.05 : -1e-12);
             }
         }
     }
@@ -94,10 +96,10 @@ TEST(ChildrenAtWalls, FragmentsStayAboveTheFloorAndHitItAgain) {
 TEST(ChildrenAtWalls, ChildrenStartOnTheirParentsSideOfAClosedMesh) {
     const TriangleMesh mesh = testing::sphere_mesh({}, 1.0, 1);
     const ParityOracle oracle(mesh);
-    for (const Way& way : kWays) {
+    for (const Way& center_path : kWays) {
         for (const double radius : {0.0, 0.03}) {
-            SCOPED_TRACE(name(way) + " radius " + std::to_string(radius));
-            SimulationSetup setup = setup_of(way, 0.01, 0.7);
+            SCOPED_TRACE(name(center_path) + " radius " + std::to_string(radius));
+            SimulationSetup setup = setup_of(center_path, 0.01, 0.7);
             setup.forces.push_back(make_gravity({0, 0, -9.81}));
             setup.colliders = {{"ball", MeshShape{std::make_shared<const TriangleMesh>(mesh), {}, ""}, 0}};
             EmitterDescription trail = children(0, BirthEvent::life, false, 1.0, 0.2);
@@ -113,7 +115,7 @@ TEST(ChildrenAtWalls, ChildrenStartOnTheirParentsSideOfAClosedMesh) {
                 simulation.step();
                 for (std::size_t i = 0; i < simulation.particles().size(); ++i) {
                     ASSERT_TRUE(oracle.inside(simulation.particles().position[i]) ||
-                                (way.kind == ResponseKind::penalty && simulation.is_penetrating(i)))
+                                (center_path.kind == ResponseKind::penalty && simulation.is_penetrating(i)))
                         << simulation.time() << " s, particle " << simulation.particles().id[i];
                 }
             }
@@ -124,11 +126,11 @@ TEST(ChildrenAtWalls, ChildrenStartOnTheirParentsSideOfAClosedMesh) {
 }
 
 TEST(ChildrenAtWalls, SharedMomentumOfAbsorbedParticlesPushesTheSurfaceOnce) {
-    for (const Way& way : kWays) {
+    for (const Way& center_path : kWays) {
         for (const double speed : {0.0, 0.7}) {
             for (const double absorption : {1.0, 0.5}) {
-                SCOPED_TRACE(name(way) + " speed " + std::to_string(speed));
-                SimulationSetup setup = setup_of(way, 0.01, 1.0);
+                SCOPED_TRACE(name(center_path) + " speed " + std::to_string(speed));
+                SimulationSetup setup = setup_of(center_path, 0.01, 1.0);
                 setup.materials[0].absorption = absorption;
                 setup.options.max_depth = 6;
                 setup.emitters = {parents(1, {0, 0, 1}, {0.3, 0, -3}, 0.0),

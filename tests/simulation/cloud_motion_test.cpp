@@ -23,10 +23,10 @@ namespace RICOCHET_FILE {
 
 constexpr double kG = 9.81;
 
-EmitterDescription parents(std::uint64_t count, const Vec3& place, const Vec3& velocity, double radius = 0.0) {
+EmitterDescription parents(std::uint64_t count, const Vec3& offset, const Vec3& velocity, double radius = 0.0) {
     EmitterDescription emitter;
     emitter.name = "parents";
-    emitter.shape = PointShape{place};
+    emitter.shape = PointShape{offset};
     emitter.burst = count;
     emitter.velocity = velocity;
     emitter.radius = {radius, 0.0};
@@ -45,7 +45,7 @@ EmitterDescription cloud_of(const EmitterShape& places, double count, const Clou
     return emitter;
 }
 
-BoxShape one_place(const Vec3& place) { return {place, {0, 0, 0}}; }
+BoxShape one_place(const Vec3& offset) { return {offset, {0, 0, 0}}; }
 
 SimulationSetup setup_of(double time_step, double duration, bool falls = true) {
     SimulationSetup setup = testing::setup_of(time_step, duration, {.name = "wall"}, falls ? Vec3{0, 0, -kG} : Vec3{});
@@ -265,11 +265,11 @@ TEST(CloudMotion, CloudIsReleasedOrEndsWithItsParent) {
         ASSERT_EQ(simulation.particles().size(), rule == CloudEnd::free ? 1U : 0U);
         if (rule == CloudEnd::die) continue;
         const double t = 0.37;
-        const Vec3 place = turned({0.5, 0, 0}, {0, 0, 1}, 3.0 * t);
-        const Vec3 velocity = Vec3{1, 0, 2 - kG * t} + cross(Vec3{0, 0, 3}, place);
+        const Vec3 offset = turned({0.5, 0, 0}, {0, 0, 1}, 3.0 * t);
+        const Vec3 velocity = Vec3{1, 0, 2 - kG * t} + cross(Vec3{0, 0, 3}, offset);
         const double rest = end - t;
         const Vec3 expected =
-            Vec3{t, 0, 2 * t - 0.5 * kG * t * t} + place + rest * velocity + Vec3{0, 0, -0.5 * kG * rest * rest};
+            Vec3{t, 0, 2 * t - 0.5 * kG * t * t} + offset + rest * velocity + Vec3{0, 0, -0.5 * kG * rest * rest};
         EXPECT_LT(length(simulation.particles().position[0] - expected), 1e-12);
     }
 }
@@ -332,8 +332,8 @@ TEST(CloudMotion, ChildrenOfALifeJoinTheParentAtItsPositionAtTheirBirth) {
     EXPECT_EQ(cloud.about.size(), 9U);
     for (std::size_t i = 1; i < simulation.particles().size(); ++i) {
         const double age = simulation.time() - simulation.particles().birth_time[i];
-        const Vec3 place = turned({0, 0.4, 0}, {1, 0, 0}, 3.0 * age);
-        EXPECT_LT(length(simulation.particles().position[i] - cloud.parent - place), 1e-12);
+        const Vec3 offset = turned({0, 0.4, 0}, {1, 0, 0}, 3.0 * age);
+        EXPECT_LT(length(simulation.particles().position[i] - cloud.parent - offset), 1e-12);
     }
 }
 

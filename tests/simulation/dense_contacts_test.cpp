@@ -189,10 +189,11 @@ TEST(DenseContacts, TouchingSpheresSwingInAHollowSphereAndInAMeshOfIt) {
         setup.options.particle_contacts = PairContactSettings{.restitution = 0.0};
         setup.options.verify = true;
         setup.colliders = {{"bowl", BallShape{0.5, {}}}};
-        const double way = 0.46;
-        const double between = 2.0 * std::asin(0.04 / way) * (1.0 + 1e-13);
+        const double center_path = 0.46;
+        const double between = 2.0 * std::asin(0.04 / center_path) * (1.0 + 1e-13);
         for (const double angle : {1.0, 1.0 + between}) {
-            setup.particles.push_back(particle_of({-way * std::sin(angle), 0.0, -way * std::cos(angle)}, {}, 0.04));
+            setup.particles.push_back(
+                particle_of({-center_path * std::sin(angle), 0.0, -center_path * std::cos(angle)}, {}, 0.04));
         }
         Simulation simulation(std::move(setup));
         const double before = energy_of(simulation.particles(), 0) + energy_of(simulation.particles(), 1);

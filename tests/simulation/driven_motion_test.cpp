@@ -55,15 +55,15 @@ struct Plate {
 
 /// Returns the load of a grain that hits the plate at rest.
 ColliderLoad hit(std::uint64_t particle, double time, double approach, double restitution) {
-    const double yielding = 1.0 / kGrain + 1.0 / kMass;
-    const double impulse = (1.0 + restitution) * approach / yielding;
+    const double dynamic = 1.0 / kGrain + 1.0 / kMass;
+    const double impulse = (1.0 + restitution) * approach / dynamic;
     const double after = -approach + impulse / kGrain;
     ColliderLoad load;
     load.particle = particle;
     load.time = time;
     load.mass = kGrain;
     load.impulse = {0, 0, -impulse};
-    load.place = {0, 0, 0.05};
+    load.particle_center = {0, 0, 0.05};
     load.lost_energy = 0.5 * kGrain * (approach * approach - after * after);
     load.approach = approach;
     return load;

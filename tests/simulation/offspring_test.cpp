@@ -24,10 +24,10 @@ constexpr double kG = 9.81;
 
 ColliderDescription floor_plane() { return {"floor", PlaneShape{{0, 0, 0}, {0, 0, 1}}, 0}; }
 
-EmitterDescription parents(std::uint64_t count, const Vec3& place, const Vec3& velocity) {
+EmitterDescription parents(std::uint64_t count, const Vec3& offset, const Vec3& velocity) {
     EmitterDescription emitter;
     emitter.name = "parents";
-    emitter.shape = PointShape{place};
+    emitter.shape = PointShape{offset};
     emitter.burst = count;
     emitter.velocity = velocity;
     emitter.mass = {2.0, 0.0};

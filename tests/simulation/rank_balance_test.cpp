@@ -21,7 +21,7 @@ using Work = std::vector<std::uint64_t>;
 std::vector<double> after_gifts(const Work& work) {
     std::vector<double> after(work.begin(), work.end());
     for (std::size_t from = 0; from < work.size(); ++from) {
-        const RankGifts gifts = gifts_of(from, work);
+        const RankTransfers gifts = gifts_of(from, work);
         for (std::size_t to = 0; to < work.size(); ++to) {
             EXPECT_GE(gifts[to], 0.0);
             after[from] -= gifts[to] * static_cast<double>(work[from]);
@@ -31,12 +31,12 @@ std::vector<double> after_gifts(const Work& work) {
     return after;
 }
 
-TEST(RankGifts, GiftsEqualiseTheWork) {
-    EXPECT_EQ(gifts_of(0, {300, 100}), (RankGifts{0.0, 1.0 / 3.0}));
-    EXPECT_EQ(gifts_of(1, {300, 100}), (RankGifts{0.0, 0.0}));
-    EXPECT_EQ(gifts_of(2, {0, 0, 900}), (RankGifts{1.0 / 3.0, 1.0 / 3.0, 0.0}));
-    EXPECT_EQ(gifts_of(0, {5, 5, 5}), (RankGifts{0.0, 0.0, 0.0}));
-    EXPECT_EQ(gifts_of(0, {0, 0}), (RankGifts{0.0, 0.0}));
+TEST(RankTransfers, GiftsEqualiseTheWork) {
+    EXPECT_EQ(gifts_of(0, {300, 100}), (RankTransfers{0.0, 1.0 / 3.0}));
+    EXPECT_EQ(gifts_of(1, {300, 100}), (RankTransfers{0.0, 0.0}));
+    EXPECT_EQ(gifts_of(2, {0, 0, 900}), (RankTransfers{1.0 / 3.0, 1.0 / 3.0, 0.0}));
+    EXPECT_EQ(gifts_of(0, {5, 5, 5}), (RankTransfers{0.0, 0.0, 0.0}));
+    EXPECT_EQ(gifts_of(0, {0, 0}), (RankTransfers{0.0, 0.0}));
     RandomSequence random(71, 0, 0);
     for (int round = 0; round < 1000; ++round) {
         Work work(1 + static_cast<std::size_t>(random.uniform() * 12.0));
@@ -47,16 +47,16 @@ TEST(RankGifts, GiftsEqualiseTheWork) {
     }
 }
 
-TEST(GiftChoice, EqualShareOfEachCostIsChosenAndNoIdleParticles) {
-    GiftChoice choice({0.0, 0.25, 0.1});
+TEST(TransferChoice, EqualShareOfEachCostIsChosenAndNoIdleParticles) {
+    TransferChoice choice({0.0, 0.25, 0.1});
     std::vector<std::vector<int>> gone(2, std::vector<int>(3, 0));
     constexpr int kEach = 10'000;
     for (int k = 0; k < kEach; ++k) {
-        for (const auto cost : {GiftChoice::Cost::queried, GiftChoice::Cost::flying}) {
+        for (const auto cost : {TransferChoice::Cost::queried, TransferChoice::Cost::flying}) {
             const std::uint32_t rank = choice.next(cost);
-            if (rank != GiftChoice::kStays) ++gone[static_cast<std::size_t>(cost)][rank];
+            if (rank != TransferChoice::kStays) ++gone[static_cast<std::size_t>(cost)][rank];
         }
-        EXPECT_EQ(choice.next(GiftChoice::Cost::idle), GiftChoice::kStays);
+        EXPECT_EQ(choice.next(TransferChoice::Cost::idle), TransferChoice::kStays);
     }
     for (const std::vector<int>& of_cost : gone) {
         EXPECT_EQ(of_cost[0], 0);

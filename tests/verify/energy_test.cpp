@@ -23,9 +23,9 @@ std::vector<Violation> found_in(const std::vector<MotionPart>& parts, const Reco
                                 const RecordedMotion& after) {
     const Verifier verifier({testing::box_mesh({-100, -100, -100}, {100, 100, 100})});
     VerifiedParticle particle = verifier.watch(before.position, 0.0);
-    const Segment way{before.position, after.position, 1.0};
+    const Segment translation{before.position, after.position, 1.0};
     std::vector<Violation> violations;
-    verifier.check({5, before.position, after.position, 0.0, 2.0, {&way, 1}, {before, after, parts}}, particle,
+    verifier.check({5, before.position, after.position, 0.0, 2.0, {&translation, 1}, {before, after, parts}}, particle,
                    violations);
     return violations;
 }

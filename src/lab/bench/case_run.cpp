@@ -130,8 +130,8 @@ std::vector<Vec3> lattice_places(const Case& c, const Insides* insides) {
     for (std::size_t k = 0; places.size() < c.particles && k < count(0) * count(1) * count(2); ++k) {
         const Vec3 step{static_cast<double>(k % count(0)), static_cast<double>(k / count(0) % count(1)),
                         static_cast<double>(k / count(0) / count(1))};
-        const Vec3 place = c.box.lower + c.pitch * step;
-        if (insides == nullptr || insides->contains_ball(place, 0.5 * c.pitch)) places.push_back(place);
+        const Vec3 placement = c.box.lower + c.pitch * step;
+        if (insides == nullptr || insides->contains_ball(placement, 0.5 * c.pitch)) places.push_back(placement);
     }
     if (places.size() < c.particles) throw InputError("a benchmark case has more particles than lattice positions");
     return places;

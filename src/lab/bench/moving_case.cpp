@@ -45,10 +45,10 @@ std::vector<Vec3> places_of_rocks(std::size_t count) {
     return places;
 }
 
-FrameDescription frame_at(std::string name, const Vec3& place, FrameMotion motion) {
+FrameDescription frame_at(std::string name, const Vec3& placement, FrameMotion motion) {
     FrameDescription frame;
     frame.name = std::move(name);
-    frame.translation = place;
+    frame.translation = placement;
     frame.motions = {std::move(motion)};
     return frame;
 }
@@ -80,8 +80,8 @@ constexpr const char* kBystanderFrame = "bystander";
 TriangleMesh make_rocks(std::size_t triangles) {
     const TriangleMesh rock = make_one_rock();
     TriangleMesh mesh;
-    for (const Vec3& place : places_of_rocks(count_of_rocks(triangles))) {
-        meshes::append(mesh, meshes::moved(rock, place));
+    for (const Vec3& placement : places_of_rocks(count_of_rocks(triangles))) {
+        meshes::append(mesh, meshes::moved(rock, placement));
     }
     return mesh;
 }
@@ -90,10 +90,10 @@ std::vector<ColliderDescription> colliders_of(const Case& c, const std::shared_p
     if (c.ground == Ground::rocks) {
         const auto rock = std::make_shared<const TriangleMesh>(make_one_rock());
         std::vector<ColliderDescription> colliders;
-        for (const Vec3& place : places_of_rocks(count_of_rocks(c.triangles))) {
+        for (const Vec3& placement : places_of_rocks(count_of_rocks(c.triangles))) {
             const std::string name = name_of_rock(colliders.size());
             const bool moves = c.moves == Moves::spinning;
-            colliders.push_back({name, MeshShape{rock, {moves ? Vec3{} : place}, ""}, 0, moves ? name : ""});
+            colliders.push_back({name, MeshShape{rock, {moves ? Vec3{} : placement}, ""}, 0, moves ? name : ""});
         }
         return colliders;
     }
@@ -114,9 +114,9 @@ std::shared_ptr<const FrameTree> frames_of(const Case& c) {
     std::vector<FrameDescription> frames;
     if (c.moves == Moves::nothing || c.moves == Moves::breathing) return nullptr;
     if (c.ground == Ground::rocks) {
-        for (const Vec3& place : places_of_rocks(count_of_rocks(c.triangles))) {
+        for (const Vec3& placement : places_of_rocks(count_of_rocks(c.triangles))) {
             const std::size_t k = frames.size();
-            frames.push_back(frame_at(name_of_rock(k), place, spin_of(c, k)));
+            frames.push_back(frame_at(name_of_rock(k), placement, spin_of(c, k)));
         }
     } else if (c.moves == Moves::shaken) {
         frames.push_back(frame_at(kGroundFrame, {}, Oscillation{{0.05, 0.08, 0.03}, 0.2, 0.0}));
@@ -140,7 +140,8 @@ std::vector<Flight> seen_from_ground(const Case& c, std::vector<Flight> flights,
     const auto frame = frames ? frames->find(kGroundFrame) : std::nullopt;
     if (!frame) return flights;
     const MovingPose pose = frames->at(*frame, time);
-    for (Flight& flight : flights) flight = {pose.image(flight.position), pose.direction_image(flight.velocity)};
+    for (Flight& flight : flights)
+        flight = {pose.local_position(flight.position), pose.local_direction(flight.velocity)};
     return flights;
 }
 

@@ -39,7 +39,7 @@ struct NaiveMotion::Impl {
     embree::Scene scene;
 
     Impl(const std::vector<ColliderDescription>& colliders, std::shared_ptr<const FrameTree> tree);
-    void place(Part& part, double time);
+    void set_pose(Part& part, double time);
     void move_to(double time);
     [[nodiscard]] bool step(Flight& flight, double time_step, double restitution) const;
 };
@@ -71,12 +71,12 @@ NaiveMotion::Impl::Impl(const std::vector<ColliderDescription>& colliders, std::
         rtcReleaseGeometry(part.geometry);  // the scene keeps a reference
         parts.push_back(std::move(part));
     }
-    for (Part& part : parts) place(part, 0.0);
+    for (Part& part : parts) set_pose(part, 0.0);
     rtcCommitScene(scene.get());
     embree::check_device(device.get(), "building the benchmark's reference");
 }
 
-void NaiveMotion::Impl::place(Part& part, double time) {
+void NaiveMotion::Impl::set_pose(Part& part, double time) {
     if (part.frame) part.pose = frames->at(*part.frame, time);
     if (part.motion) part.moment = part.motion->at(time);
     part.placed.resize(part.vertices.size());
@@ -96,7 +96,7 @@ void NaiveMotion::Impl::place(Part& part, double time) {
 void NaiveMotion::Impl::move_to(double time) {
     parallel_for_blocks(parts.size(), 1, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            if (parts[k].moves()) place(parts[k], time);
+            if (parts[k].moves()) set_pose(parts[k], time);
         }
     });
     rtcCommitScene(scene.get());
@@ -106,11 +106,11 @@ void NaiveMotion::Impl::move_to(double time) {
 bool NaiveMotion::Impl::step(Flight& flight, double time_step, double restitution) const {
     embree::QueryContext context;
     embree::init_context(context, nullptr);
-    const Vec3 way = time_step * flight.velocity;
-    RTCRayHit ray = ray_of({to_floats(flight.position), to_floats(way)});
+    const Vec3 displacement = time_step * flight.velocity;
+    RTCRayHit ray = ray_of({to_floats(flight.position), to_floats(displacement)});
     embree::intersect1(scene.get(), context, ray);
     if (ray.hit.primID == kNoTriangle) {
-        flight.position += way;
+        flight.position += displacement;
         return false;
     }
     const Part& part = parts[ray.hit.geomID];
@@ -118,9 +118,9 @@ bool NaiveMotion::Impl::step(Flight& flight, double time_step, double restitutio
     const Vec3& a = part.placed[triangle[0]];
     Vec3 normal = normalized(cross(part.placed[triangle[1]] - a, part.placed[triangle[2]] - a));
     if (dot(normal, flight.velocity) > 0.0) normal = -normal;
-    const double along = -dot(normal, way);
+    const double along = -dot(normal, displacement);
     const double share = along > 0.0 ? std::clamp(dot(flight.position - a, normal) / along, 0.0, 1.0) : 0.0;
-    flight.position += share * way;
+    flight.position += share * displacement;
     flight.position += kRayOffset * max_abs(flight.position) * normal;
     Vec3 surface = part.pose.velocity +
                    cross(part.pose.angular_velocity, flight.position - part.pose.world_from_frame.translation);

@@ -388,10 +388,11 @@ void CollisionWorld::add_pages_to(std::vector<std::span<const std::byte>>& pages
 }
 
 std::size_t CollisionWorld::memory_bytes() const {
-    const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    std::size_t bytes = distance_field_.memory_bytes() + held(ranges_) + held(planes_) + held(vertices_) +
-                        held(triangles_) + held(degenerate_) + held(shapes_) + list_->memory_bytes();
-    if (clusters_) bytes += held(*clusters_);
+    const auto used_bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+    std::size_t bytes = distance_field_.memory_bytes() + used_bytes(ranges_) + used_bytes(planes_) +
+                        used_bytes(vertices_) + used_bytes(triangles_) + used_bytes(degenerate_) + used_bytes(shapes_) +
+                        list_->memory_bytes();
+    if (clusters_) bytes += used_bytes(*clusters_);
     for (const RadiusClass& one : classes_) bytes += one.bvh.memory_bytes();
     return bytes;
 }

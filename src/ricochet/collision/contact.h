@@ -20,7 +20,7 @@ struct ContactSurface {
     bool flat = true;  ///< true: a plane, cap or face of a triangle; false: an edge, a vertex or a curved surface
     /// True if the particle already slides, rolls or rests on the surface before the impact. Its normal speed there is
     /// rounding, so the impact never treats it as an approached surface.
-    bool holds = false;
+    bool is_support = false;
 };
 
 /// The first contact of a path: all surfaces that it reaches at the same time (kSimultaneousUlps), in ascending order

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ricochet/collision/foreign_surfaces.h"
+#include "ricochet/collision/surfaces_in_other_frames.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {
@@ -95,52 +95,55 @@ bool NearSurfaces::is_free_after(const Vec3& p, const Vec3& q) const {
 bool NearSurfaces::covers_chord(const Path& path, double from, double to) const {
     const bool covers_own =
         candidates_ == CandidateSet::all || ricochet::covers_chord(world(), margins_, path, from, to);
-    return covers_own && (foreign_ == nullptr || foreign_->cover_chord(from, to));
+    return covers_own && (other_frames_ == nullptr || other_frames_->cover_chord(from, to));
 }
 
-WayPoint NearSurfaces::point_at(const Vec3& p, double time) const {
-    return foreign_ == nullptr ? WayPoint{p, time, p} : foreign_->view().point_at(p, time);
+PathPoint NearSurfaces::point_at(const Vec3& p, double time) const {
+    return other_frames_ == nullptr ? PathPoint{p, time, p} : other_frames_->view().point_at(p, time);
 }
 
-WayPoint NearSurfaces::start() const { return foreign_ == nullptr ? WayPoint{start_, 0.0, start_} : foreign_->start(); }
-
-bool NearSurfaces::is_link_free(const WayPoint& p, const WayPoint& q) const {
-    return is_free(p.position, q.position) && (foreign_ == nullptr || foreign_->are_free(p, q));
+PathPoint NearSurfaces::start() const {
+    return other_frames_ == nullptr ? PathPoint{start_, 0.0, start_} : other_frames_->start();
 }
 
-std::optional<SurfaceId> NearSurfaces::link_blocker(const WayPoint& p, const WayPoint& q) const {
+bool NearSurfaces::is_segment_free(const PathPoint& p, const PathPoint& q) const {
+    return is_free(p.position, q.position) && (other_frames_ == nullptr || other_frames_->are_free(p, q));
+}
+
+std::optional<SurfaceId> NearSurfaces::segment_blocker(const PathPoint& p, const PathPoint& q) const {
     const std::optional<SurfaceId> own = blocker(p.position, q.position);
-    return own || foreign_ == nullptr ? own : foreign_->blocker(p, q);
+    return own || other_frames_ == nullptr ? own : other_frames_->blocker(p, q);
 }
 
-CollisionWorld::Nearest NearSurfaces::nearest(SurfaceId surface, const WayPoint& p) const {
-    const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.nearest(surface, p.position) : foreign_->nearest(surface, p);
+CollisionWorld::Nearest NearSurfaces::nearest(SurfaceId surface, const PathPoint& p) const {
+    const bool is_own = other_frames_ == nullptr || world().owns(surface);
+    return is_own ? geometry_.nearest(surface, p.position) : other_frames_->nearest(surface, p);
 }
 
-double NearSurfaces::signed_distance_from(SurfaceId surface, const WayPoint& p) const {
-    const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.signed_distance_from(surface, p.position) : foreign_->signed_distance_from(surface, p);
+double NearSurfaces::signed_distance_from(SurfaceId surface, const PathPoint& p) const {
+    const bool is_own = other_frames_ == nullptr || world().owns(surface);
+    return is_own ? geometry_.signed_distance_from(surface, p.position)
+                  : other_frames_->signed_distance_from(surface, p);
 }
 
-Vec3 NearSurfaces::unit_normal_of(SurfaceId surface, const WayPoint& p) const {
-    const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return is_own ? geometry_.unit_normal_of(surface, p.position) : foreign_->unit_normal_of(surface, p);
+Vec3 NearSurfaces::unit_normal_of(SurfaceId surface, const PathPoint& p) const {
+    const bool is_own = other_frames_ == nullptr || world().owns(surface);
+    return is_own ? geometry_.unit_normal_of(surface, p.position) : other_frames_->unit_normal_of(surface, p);
 }
 
-int NearSurfaces::side_of_surface(SurfaceId surface, const WayPoint& p) const {
-    const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return is_own ? world().side_of_surface(surface, p.position) : foreign_->side_of_surface(surface, p);
+int NearSurfaces::side_of_surface(SurfaceId surface, const PathPoint& p) const {
+    const bool is_own = other_frames_ == nullptr || world().owns(surface);
+    return is_own ? world().side_of_surface(surface, p.position) : other_frames_->side_of_surface(surface, p);
 }
 
 bool NearSurfaces::is_flat(SurfaceId surface) const {
-    const bool is_own = foreign_ == nullptr || world().owns(surface);
-    return is_own ? world().is_flat(surface) : foreign_->is_flat(surface);
+    const bool is_own = other_frames_ == nullptr || world().owns(surface);
+    return is_own ? world().is_flat(surface) : other_frames_->is_flat(surface);
 }
 
-double NearSurfaces::offset_at(const WayPoint& p) const {
+double NearSurfaces::offset_at(const PathPoint& p) const {
     const double own = geometry_.contact_offset(p.position);
-    return foreign_ == nullptr ? own : std::max(own, foreign_->offset_at(p));
+    return other_frames_ == nullptr ? own : std::max(own, other_frames_->offset_at(p));
 }
 
 namespace {
@@ -174,7 +177,7 @@ ContactQueryResult find_first_contact(const SurfaceGeometry& geometry, const Con
     const CollisionWorld& world = geometry.world();
     const QueryMargins margins(world, query.path, query.radius, query.beside);
     scratch.clear();
-    NarrowPhase narrow_phase(geometry, query.path, margins, query.held, scratch);
+    NarrowPhase narrow_phase(geometry, query.path, margins, query.supports, scratch);
     narrow_phase.test_planes();
     narrow_phase.test_shapes();
     const auto [ahead, tested] = test_triangles(world, margins, query, narrow_phase, scratch);

@@ -9,11 +9,11 @@
 
 #include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/look_ahead.h"
-#include "ricochet/collision/way_point.h"
+#include "ricochet/collision/path_point.h"
 
 namespace ricochet {
 
-class ForeignSurfaces;
+class SurfacesInOtherFrames;
 
 // The surfaces near a path, and the certificate of segments beside it.
 
@@ -39,23 +39,23 @@ public:
     // of every collider near it. If nothing moves, it is the straight segment.
 
     /// Adds the surfaces of other frames, which must outlive this object.
-    void join(const ForeignSurfaces& foreign) { foreign_ = &foreign; }
-    [[nodiscard]] const ForeignSurfaces* foreign() const { return foreign_; }
+    void join(const SurfacesInOtherFrames& other_frames) { other_frames_ = &other_frames; }
+    [[nodiscard]] const SurfacesInOtherFrames* other_frames() const { return other_frames_; }
     /// Returns the start of the path.
-    [[nodiscard]] WayPoint start() const;
+    [[nodiscard]] PathPoint start() const;
     /// Returns the stored position nearest to a point at a time along the path.
-    [[nodiscard]] WayPoint point_at(const Vec3& p, double time) const;
-    [[nodiscard]] bool is_link_free(const WayPoint& p, const WayPoint& q) const;
-    [[nodiscard]] std::optional<SurfaceId> link_blocker(const WayPoint& p, const WayPoint& q) const;
+    [[nodiscard]] PathPoint point_at(const Vec3& p, double time) const;
+    [[nodiscard]] bool is_segment_free(const PathPoint& p, const PathPoint& q) const;
+    [[nodiscard]] std::optional<SurfaceId> segment_blocker(const PathPoint& p, const PathPoint& q) const;
     /// CollisionWorld's functions of the same names. They accept a surface of any frame and return values in this
     /// frame.
-    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const WayPoint& p) const;
-    [[nodiscard]] double signed_distance_from(SurfaceId surface, const WayPoint& p) const;
-    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const WayPoint& p) const;
-    [[nodiscard]] int side_of_surface(SurfaceId surface, const WayPoint& p) const;
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
+    [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;
+    [[nodiscard]] Vec3 unit_normal_of(SurfaceId surface, const PathPoint& p) const;
+    [[nodiscard]] int side_of_surface(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] bool is_flat(SurfaceId surface) const;
     /// Returns the contact offset, in m, for the largest coordinate that a position has in any frame.
-    [[nodiscard]] double offset_at(const WayPoint& p) const;
+    [[nodiscard]] double offset_at(const PathPoint& p) const;
 
     /// Returns true if the surfaces include all surfaces that the path's chord between two times may intersect.
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
@@ -84,7 +84,7 @@ private:
     QueryMargins margins_;
     Vec3 start_;
     CandidateSet candidates_;
-    const ForeignSurfaces* foreign_ = nullptr;  ///< null if no other frame has surfaces near
+    const SurfacesInOtherFrames* other_frames_ = nullptr;  ///< null if no other frame has surfaces near
 };
 
 /// A path, and the facts already known about it.
@@ -97,7 +97,7 @@ struct ContactQuery {
     ContactCandidates candidates = {};
     /// Surfaces that support the particle, so that it follows them. They are no contacts, and block only segments that
     /// intersect them.
-    std::span<const SurfaceId> held = {};
+    std::span<const SurfaceId> supports = {};
     /// Distance, in m, that positions along the path may lie beside it in addition to rounding.
     double beside = 0.0;
 };

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ricochet/collision/collision_world.h"
-#include "ricochet/collision/way_point.h"
+#include "ricochet/collision/path_point.h"
 #include "ricochet/geometry/predicates/triangle_plane.h"
 #include "ricochet/geometry/sweep/path.h"
 
@@ -104,9 +104,9 @@ struct ContactScratch {
     std::vector<SurfaceId> overlapped;     ///< surfaces that the sphere already overlaps at the path's start
     std::vector<Hit> hits;
     std::vector<Approach> approaches;
-    std::vector<WayPoint> chain;  ///< ends of certified segments, see CertifiedPath
+    std::vector<PathPoint> chain;  ///< ends of certified segments, see CertifiedPath
     /// Scratch memory of queries in the frames of other bodies, one each.
-    std::vector<std::unique_ptr<ContactScratch>> foreign;
+    std::vector<std::unique_ptr<ContactScratch>> other_frames;
     /// Lists of a path among moving colliders. A MovingSweep owns them during its lifetime.
     struct Sweep {
         std::vector<BodyId> near;

@@ -268,7 +268,7 @@ bool DeformingColliders::is_free(SurfaceId surface, const StoredPosition& from, 
     return !BoxTree::meet(box, box_of(from, to, radius));
 }
 
-bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
+bool DeformingColliders::is_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
     const Box3 box = box_of(from, to, radius);
     std::vector<SurfaceId> all;
     if (begin_ <= from.time && to.time <= end_) {
@@ -291,11 +291,11 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
     });
 }
 
-bool DeformingColliders::is_late_link_free(const Mesh& mesh, const StoredPosition& from, const StoredPosition& to,
-                                           double radius) const {
+bool DeformingColliders::is_late_segment_free(const Mesh& mesh, const StoredPosition& from, const StoredPosition& to,
+                                              double radius) const {
     const MeshMoment first = moment_of(mesh, from.time);
     const MeshMoment last = moment_of(mesh, to.time);
-    const Box3 way = box_of(from, to, radius);
+    const Box3 swept = box_of(from, to, radius);
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
     return std::all_of(mesh.solid.begin(), mesh.solid.end(), [&](std::uint32_t t) {
         MovingTriangle triangle;
@@ -303,7 +303,7 @@ bool DeformingColliders::is_late_link_free(const Mesh& mesh, const StoredPositio
             const std::uint32_t vertex = mesh.triangles[t][k];
             triangle.corners[k] = {first.position(vertex), last.position(vertex)};
         }
-        if (!BoxTree::meet(box_of(triangle), way)) return true;
+        if (!BoxTree::meet(box_of(triangle), swept)) return true;
         if (!stay_apart({from.position, to.position}, 0.0, triangle)) return false;
         if (radius == 0.0) return true;
         const SurfaceId surface = mesh.first_surface + t;
@@ -312,9 +312,10 @@ bool DeformingColliders::is_late_link_free(const Mesh& mesh, const StoredPositio
     });
 }
 
-bool DeformingColliders::is_late_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const {
+bool DeformingColliders::is_late_segment_free(const StoredPosition& from, const StoredPosition& to,
+                                              double radius) const {
     return std::all_of(meshes_.begin(), meshes_.end(),
-                       [&](const Mesh& mesh) { return is_late_link_free(mesh, from, to, radius); });
+                       [&](const Mesh& mesh) { return is_late_segment_free(mesh, from, to, radius); });
 }
 
 void DeformingColliders::nearest_to(const Vec3& p, double time, std::size_t most, std::vector<SurfaceId>& out) const {

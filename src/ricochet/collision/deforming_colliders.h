@@ -83,13 +83,13 @@ public:
                                double radius) const;
     /// That of a link and all triangles. A sphere may be nearer than the radius where it is so at the start; it may not
     /// come nearer still.
-    [[nodiscard]] bool is_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
+    [[nodiscard]] bool is_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
 
     /// The same of a particle whose clock has stood still since a step before: each corner goes straight from its place
     /// at the one time to that at the other, wherever it has been between, so that the link may lead over keys. Only
     /// the centre of a sphere is followed; at the end the sphere overlaps nothing that it has not overlapped as much
     /// at the start.
-    [[nodiscard]] bool is_late_link_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
+    [[nodiscard]] bool is_late_segment_free(const StoredPosition& from, const StoredPosition& to, double radius) const;
     /// Appends the triangles nearest to a position at a time, s, of the step or not: at most `most`, the nearest first.
     void nearest_to(const Vec3& p, double time, std::size_t most, std::vector<SurfaceId>& out) const;
 
@@ -119,8 +119,8 @@ private:
     [[nodiscard]] const Mesh& mesh(std::size_t collider) const { return meshes_[mesh_of_[collider]]; }
     [[nodiscard]] const Mesh& mesh_with(SurfaceId surface) const { return mesh(colliders_->collider_of(surface)); }
     void sweep(Mesh& mesh);
-    [[nodiscard]] bool is_late_link_free(const Mesh& mesh, const StoredPosition& from, const StoredPosition& to,
-                                         double radius) const;
+    [[nodiscard]] bool is_late_segment_free(const Mesh& mesh, const StoredPosition& from, const StoredPosition& to,
+                                            double radius) const;
 
     std::shared_ptr<ColliderList> colliders_;
     std::vector<Mesh> meshes_;

@@ -32,8 +32,8 @@ double distance_at_start(const Path& path, const MovingTriangle& triangle) {
 }  // namespace
 
 DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times,
-                               double radius, std::span<const SurfaceId> held, double beside)
-    : deforming_(deforming), path_(path), times_(times), radius_(radius), tolerance_(0.0), held_(held) {
+                               double radius, std::span<const SurfaceId> supports, double beside)
+    : deforming_(deforming), path_(path), times_(times), radius_(radius), tolerance_(0.0), supports_(supports) {
     for (const Vec3& point : path.control_points()) box_.include(point);
     box_.include(path.end);
     const double largest = std::max(max_abs(box_.lower), max_abs(box_.upper));
@@ -43,8 +43,8 @@ DeformingSweep::DeformingSweep(const DeformingColliders& deforming, const Path& 
     box_.upper += Vec3{margin, margin, margin};
 }
 
-bool DeformingSweep::is_held(SurfaceId surface) const {
-    return std::find(held_.begin(), held_.end(), surface) != held_.end();
+bool DeformingSweep::is_supported(SurfaceId surface) const {
+    return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
 }
 
 bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
@@ -58,7 +58,7 @@ bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
 
 /// What is overlapped from the start, or held, blocks only what intersects it.
 double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
-    if (radius_ == 0.0 || is_held(surface)) return 0.0;
+    if (radius_ == 0.0 || is_supported(surface)) return 0.0;
     const double distance = distance_at_start(path_, triangle);
     return distance < radius_ - tolerance_ ? 0.0 : std::min(radius_, distance);
 }

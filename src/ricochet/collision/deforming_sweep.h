@@ -8,7 +8,7 @@
 
 #include "ricochet/collision/contact.h"
 #include "ricochet/collision/deforming_colliders.h"
-#include "ricochet/collision/foreign_surfaces.h"
+#include "ricochet/collision/surfaces_in_other_frames.h"
 #include "ricochet/geometry/sweep/moving_separation.h"
 #include "ricochet/geometry/sweep/path.h"
 
@@ -25,7 +25,7 @@ class DeformingSweep {
 public:
     /// held: as ContactQuery::held. beside: m, as far beside the path positions may be asked about.
     DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times, double radius,
-                   std::span<const SurfaceId> held, double beside);
+                   std::span<const SurfaceId> supports, double beside);
 
     /// The first contact with any of the triangles, in times of the path. Calls near(triangle) for each that comes near
     /// the path, in their order.
@@ -35,8 +35,8 @@ public:
         for (const SurfaceId surface : triangles) {
             const MovingTriangle triangle = deforming_.between(surface, times_.begin, times_.end);
             if (!comes_near(triangle)) continue;
-            near(ForeignSurfaces::Deforming{surface, certified_radius(surface, triangle)});
-            if (is_held(surface)) continue;
+            near(SurfacesInOtherFrames::Deforming{surface, certified_radius(surface, triangle)});
+            if (is_supported(surface)) continue;
             if (const auto hit = meet(surface, triangle)) hits.push_back(*hit);
         }
         return first_of(std::move(hits));
@@ -48,7 +48,7 @@ private:
         ContactSurface surface;
     };
 
-    [[nodiscard]] bool is_held(SurfaceId surface) const;
+    [[nodiscard]] bool is_supported(SurfaceId surface) const;
     [[nodiscard]] bool comes_near(const MovingTriangle& triangle) const;
     [[nodiscard]] double certified_radius(SurfaceId surface, const MovingTriangle& triangle) const;
     [[nodiscard]] std::optional<Hit> meet(SurfaceId surface, const MovingTriangle& triangle) const;
@@ -61,7 +61,7 @@ private:
     PathTimes times_;
     double radius_;
     double tolerance_;  ///< m, sphere_tolerance() of the path
-    std::span<const SurfaceId> held_;
+    std::span<const SurfaceId> supports_;
     Box3 box_;  ///< of the path, with all that may be asked about
 };
 

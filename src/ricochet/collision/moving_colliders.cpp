@@ -29,7 +29,7 @@ constexpr std::size_t kBodiesInBlock = 32;
 /// A pose that this thread has asked for; the same few are asked again and again.
 struct RememberedPose {
     std::uint64_t step = 0;  ///< of all steps of all scenes; 0: none
-    BodyId body = kAtRest;
+    BodyId body = kWorldBody;
     double time = 0.0;
     MovingPose pose;
 };
@@ -100,7 +100,7 @@ MovingColliders::MovingColliders(const CollisionWorld& at_rest, const std::share
       step_(next_step_of_any()) {
     for (const ColliderDescription& collider : colliders->all()) {
         if (collider.frame.empty()) {
-            body_of_collider_.push_back(kAtRest);
+            body_of_collider_.push_back(kWorldBody);
             continue;
         }
         const auto frame = frames_ ? frames_->find(collider.frame) : std::nullopt;
@@ -170,12 +170,12 @@ void MovingColliders::sweep(Body& body) const {
 }
 
 bool MovingColliders::stays_out(BodyId body, const Box3& box) const {
-    if (body != kAtRest) return !meet(bodies_[body].swept, box);
+    if (body != kWorldBody) return !meet(bodies_[body].swept, box);
     return at_rest_.planes().empty() && (at_rest_.empty() || !meet(at_rest_.bounds(), box));
 }
 
 void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& out) const {
-    if (except != kAtRest && !stays_out(kAtRest, box)) out.push_back(kAtRest);
+    if (except != kWorldBody && !stays_out(kWorldBody, box)) out.push_back(kWorldBody);
     const auto before = static_cast<std::ptrdiff_t>(out.size());
     for (const BodyId body : unbounded_) {
         if (body != except && meet(bodies_[body].swept, box)) out.push_back(body);
@@ -188,7 +188,7 @@ void MovingColliders::near(const Box3& box, BodyId except, std::vector<BodyId>& 
 
 void MovingColliders::near_at(const Box3& box, double time, std::vector<BodyId>& out) const {
     if (begin_ < end_ && time >= begin_ && time <= end_) {
-        near(box, kAtRest, out);
+        near(box, kWorldBody, out);
         return;
     }
     for (BodyId body = 0; body < bodies_.size(); ++body) out.push_back(body);
@@ -202,12 +202,12 @@ bool MovingColliders::all_stay_out(const Box3& box) const {
 
 const MotionBounds& MovingColliders::bounds(BodyId body) const {
     static const MotionBounds at_rest{};
-    return body == kAtRest || is_deforming(body) ? at_rest : bodies_[body].bounds;
+    return body == kWorldBody || is_deforming(body) ? at_rest : bodies_[body].bounds;
 }
 
 double MovingColliders::next_key(BodyId body, double time) const {
     if (is_deforming(body)) return deforming_.next_key(time);
-    return body == kAtRest ? kInfinity : frames_->next_key(bodies_[body].frame, time);
+    return body == kWorldBody ? kInfinity : frames_->next_key(bodies_[body].frame, time);
 }
 
 std::optional<double> MovingColliders::next_jump(BodyId body, double from, double until) const {

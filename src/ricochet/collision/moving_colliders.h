@@ -24,7 +24,7 @@ namespace ricochet {
 /// Number of a body: the colliders that stand in one moving frame, or a mesh that deforms.
 using BodyId = std::uint32_t;
 /// The colliders that stand in the world.
-inline constexpr BodyId kAtRest = 0xFFFFFFFFU;
+inline constexpr BodyId kWorldBody = 0xFFFFFFFFU;
 
 /// All bodies of a scene. Queries are safe from any number of threads, but not beside begin_step() and
 /// prepare_radius().
@@ -41,10 +41,10 @@ public:
     [[nodiscard]] bool empty() const { return bodies_.empty() && deforming_.empty(); }
     /// The meshes that deform. They stand in the world: their pose() is that of what is at rest.
     [[nodiscard]] const DeformingColliders& deforming() const { return deforming_; }
-    [[nodiscard]] bool is_deforming(BodyId body) const { return body != kAtRest && body >= bodies_.size(); }
+    [[nodiscard]] bool is_deforming(BodyId body) const { return body != kWorldBody && body >= bodies_.size(); }
     /// The colliders of a body with a frame in its coordinates, or those at rest.
     [[nodiscard]] const CollisionWorld& world(BodyId body) const {
-        return body == kAtRest ? at_rest_ : *bodies_[body].world;
+        return body == kWorldBody ? at_rest_ : *bodies_[body].world;
     }
     /// The body that a surface belongs to.
     [[nodiscard]] BodyId body_of(SurfaceId surface) const {
@@ -55,11 +55,11 @@ public:
     [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
     /// Where a body is at a time, s, and how it moves.
     [[nodiscard]] MovingPose pose(BodyId body, double time) const {
-        return body == kAtRest || is_deforming(body) ? MovingPose{} : pose_of(body, time);
+        return body == kWorldBody || is_deforming(body) ? MovingPose{} : pose_of(body, time);
     }
     /// Where a position of the world, m, is in a body's coordinates at a time, s.
-    [[nodiscard]] Vec3 image(BodyId body, const Vec3& world, double time) const {
-        return body == kAtRest || is_deforming(body) ? world : pose_of(body, time).image(world);
+    [[nodiscard]] Vec3 local_position(BodyId body, const Vec3& world, double time) const {
+        return body == kWorldBody || is_deforming(body) ? world : pose_of(body, time).local_position(world);
     }
     /// As CollisionWorld::prepare_radius().
     void prepare_radius(double radius);
@@ -67,8 +67,8 @@ public:
 
     /// What follows is asked within [begin, end], s.
     void begin_step(double begin, double end);
-    /// Appends the bodies that come into the box during the step, kAtRest first where its colliders do, in their order;
-    /// without `except`.
+    /// Appends the bodies that come into the box during the step, kWorldBody first where its colliders do, in their
+    /// order; without `except`.
     void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
     /// Appends the bodies with a frame that may be in the box at a time, s, in their order: all of them where the time
     /// is not in the step.
@@ -79,7 +79,7 @@ public:
     [[nodiscard]] bool stays_out(BodyId body, const Box3& box) const;
     /// Bounds of a body's motion during the step.
     [[nodiscard]] const MotionBounds& bounds(BodyId body) const;
-    /// As FrameTree::next_key(); infinite for kAtRest.
+    /// As FrameTree::next_key(); infinite for kWorldBody.
     [[nodiscard]] double next_key(BodyId body, double time) const;
     /// The first key after `from` and not after `until`, s, at which the body's velocity jumps.
     [[nodiscard]] std::optional<double> next_jump(BodyId body, double from, double until) const;
@@ -97,7 +97,9 @@ public:
     /// rad/s, by which the angular velocity of a free body differs at a time, s, from that of its path, which keeps the
     /// one of the path's middle: an impact would not keep the energy with that.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
-    [[nodiscard]] bool yields(BodyId body) const { return body < bodies_.size() && bodies_[body].mobility.has_value(); }
+    [[nodiscard]] bool is_dynamic(BodyId body) const {
+        return body < bodies_.size() && bodies_[body].mobility.has_value();
+    }
     /// How it yields at a time, s, in the world; only of one that does.
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
         return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);

@@ -32,7 +32,7 @@ constexpr int kMostFinePieces = 64;
 void MovingSweep::cut() {
     const double duration = query_.path.duration;
     const PathClock& clock = view_.clock();
-    if (view_.home() == kAtRest && lists_.near.empty() && deforming_.empty()) {
+    if (view_.reference() == kWorldBody && lists_.near.empty() && deforming_.empty()) {
         lists_.cuts.assign({0.0, duration});
         return;
     }
@@ -46,7 +46,7 @@ void MovingSweep::cut() {
             if (at > 0.0 && at < duration) keys.push_back(at);
         }
     };
-    add_keys(view_.home());
+    add_keys(view_.reference());
     for (const BodyId body : lists_.near) add_keys(body);
     for (const double key : deforming_keys()) keys.push_back(path_time_of(key));
     keys.push_back(duration);
@@ -74,8 +74,8 @@ void MovingSweep::find_rates() {
         lists_.fourth.push_back(fourth_derivative(body, world));
         rate_ = std::max(rate_, rate_of(lists_.fourth.back(), tolerance_of(body)));
     }
-    if (view_.home() != kAtRest && !deforming_.empty()) {
-        rate_ = std::max(rate_, rate_of(fourth_derivative(kAtRest, world), tolerance_of(kAtRest)));
+    if (view_.reference() != kWorldBody && !deforming_.empty()) {
+        rate_ = std::max(rate_, rate_of(fourth_derivative(kWorldBody, world), tolerance_of(kWorldBody)));
     }
 }
 
@@ -94,7 +94,7 @@ void MovingSweep::cut_finely() {
 }
 
 /// s along the path: the next cut, or before that as far as a fine piece goes, or one that meets nothing.
-double MovingSweep::end_of_piece(const WayPoint& start) {
+double MovingSweep::end_of_piece(const PathPoint& start) {
     is_clear_ = false;
     const double cut = lists_.cuts[next_];
     if (!deforming_.empty()) return cut;
@@ -114,7 +114,7 @@ double MovingSweep::end_of_piece(const WayPoint& start) {
 
 /// s along the path until which nothing of other frames comes near it; where it begins when that is less than a fine
 /// piece. Looks as far as cubics are within what the boxes of all bodies leave for that.
-double MovingSweep::clear_until(const WayPoint& start, double fine) {
+double MovingSweep::clear_until(const PathPoint& start, double fine) {
     double longest = kLongestPiece * fine;
     std::vector<double>& besides = lists_.besides;
     besides.clear();
@@ -130,7 +130,7 @@ double MovingSweep::clear_until(const WayPoint& start, double fine) {
     }
     if (!(longest >= 2.0 * fine)) return begin_;
     set_piece(std::min(lists_.cuts[next_], begin_ + longest), start);
-    const MovingView view(view_.bodies(), view_.home(), clock_);
+    const MovingView view(view_.bodies(), view_.reference(), clock_);
     double clear = piece_.duration;
     lists_.clear.clear();
     for (std::size_t k = 0; k < lists_.near.size() && clear > 0.0; ++k) {

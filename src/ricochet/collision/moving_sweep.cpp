@@ -57,7 +57,7 @@ Box3 reach_of(const Path& path, double radius) {
 }
 
 MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
-                         const WayPoint& start, ContactScratch& scratch)
+                         const PathPoint& start, ContactScratch& scratch)
     : view_(view),
       geometry_(geometry),
       query_(query),
@@ -73,21 +73,21 @@ MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry
 void MovingSweep::find_near() {
     const MovingColliders& bodies = view_.bodies();
     Box3 box = reach_of(query_.path, query_.radius);
-    if (view_.home() != kAtRest) {
+    if (view_.reference() != kWorldBody) {
         const double from_origin = largest_coordinate(query_.path) + query_.radius;
         box = {};
         // Between the ends the frame moves by no more than its speed allows.
-        const MotionBounds& bounds = bodies.bounds(view_.home());
-        const double way = query_.path.duration *
-                           (bounds.origin[1] + bounds.rotation[1] * 2.0 * from_origin + bounds_of(query_.path)[1]);
-        const double margin = way + query_.radius + kCandidateSlack * (max_abs(start_.world) + query_.radius);
+        const MotionBounds& bounds = bodies.bounds(view_.reference());
+        const double path_length = query_.path.duration * (bounds.origin[1] + bounds.rotation[1] * 2.0 * from_origin +
+                                                           bounds_of(query_.path)[1]);
+        const double margin = path_length + query_.radius + kCandidateSlack * (max_abs(start_.world) + query_.radius);
         const Vec3 by{margin, margin, margin};
         box.include(start_.world - by);
         box.include(start_.world + by);
     }
     lists_.near.clear();
     lists_.tolerances.clear();
-    bodies.near(box, view_.home(), lists_.near);
+    bodies.near(box, view_.reference(), lists_.near);
     for (const BodyId body : lists_.near) lists_.tolerances.push_back(tolerance_in(body));
     if (!bodies.deforming().empty()) find_deforming(box);
 }
@@ -104,7 +104,7 @@ void MovingSweep::find_deforming(const Box3& box) {
 }
 
 DerivativeBounds MovingSweep::world_bounds() const {
-    const MotionBounds& frame = view_.bodies().bounds(view_.home());
+    const MotionBounds& frame = view_.bodies().bounds(view_.reference());
     DerivativeBounds bounds = product(frame.rotation, bounds_of(query_.path));
     for (std::size_t n = 0; n < bounds.size(); ++n) bounds[n] += frame.origin[n];
     return bounds;
@@ -123,7 +123,7 @@ double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world
 /// m, by which a body may see a piece of the path beside where it is.
 double MovingSweep::tolerance_in(BodyId body) const {
     const CollisionWorld& world = view_.bodies().world(body);
-    const Vec3 at = view_.image(body, start_.world, 0.0);
+    const Vec3 at = view_.local_position(body, start_.world, 0.0);
     const double size = std::max(max_abs(at), query_.radius);
     double tolerance = kMovingPathTolerance * size;
     if (!world.triangles().empty()) {
@@ -145,22 +145,22 @@ double MovingSweep::tolerance_of(BodyId body) const {
 double MovingSweep::rounding() const {
     Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
     const auto include = [&](BodyId body) {
-        if (body == kAtRest) return;
+        if (body == kWorldBody) return;
         const MovingPose pose = view_.bodies().pose(body, view_.clock().begin);
         largest = max(largest, abs(pose.world_from_frame.translation));
-        const double way = view_.bodies().bounds(body).origin[1] * (view_.clock().end - view_.clock().begin);
-        largest += Vec3{way, way, way};
+        const double path_length = view_.bodies().bounds(body).origin[1] * (view_.clock().end - view_.clock().begin);
+        largest += Vec3{path_length, path_length, path_length};
     };
-    include(view_.home());
+    include(view_.reference());
     for (const BodyId body : lists_.near) include(body);
     return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
 }
 
 /// The piece as a body sees it.
-Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& start) const {
-    const WayPoint end = view.point_at(piece_.end, piece_.duration);
-    const Vec3 from = view.image(body, start.world, 0.0);
-    const Vec3 to = view.image(body, end.world, piece_.duration);
+Path MovingSweep::path_in(BodyId body, const MovingView& view, const PathPoint& start) const {
+    const PathPoint end = view.point_at(piece_.end, piece_.duration);
+    const Vec3 from = view.local_position(body, start.world, 0.0);
+    const Vec3 to = view.local_position(body, end.world, piece_.duration);
     const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
     // In less time than the clock tells apart a body jumps from its place at one time to that at the next: a cubic that
@@ -174,7 +174,7 @@ Path MovingSweep::path_in(BodyId body, const MovingView& view, const WayPoint& s
 void MovingSweep::take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
                        std::optional<Contact>& first) const {
     Contact contact = found;
-    if (body != view.home()) {
+    if (body != view.reference()) {
         find_true_time(contact, body, geometry, view);
         for (int k = 0; k < contact.count; ++k) {
             Vec3& normal = contact.surfaces[static_cast<std::size_t>(k)].normal;
@@ -208,21 +208,21 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeo
     const double most = 4.0 * tolerance_of(body);
     double time = contact.time;
     for (int k = 0; k < kNewtonSteps; ++k) {
-        const WayPoint at = view.point_at(piece_.position(time), time);
-        const Vec3 image = view.image(body, at.world, time);
+        const PathPoint at = view.point_at(piece_.position(time), time);
+        const Vec3 local_position = view.local_position(body, at.world, time);
         const Vec3 velocity = view.velocity_in(body, at, piece_.velocity(time));
         double height = 0.0;
         double rate = 0.0;
         if (is_sphere) {
-            const CollisionWorld::Nearest nearest = geometry.nearest(surface, image);
+            const CollisionWorld::Nearest nearest = geometry.nearest(surface, local_position);
             height = nearest.distance - query_.radius;
             rate = dot(velocity, nearest.normal);
         } else {
-            height = geometry.signed_distance_from(surface, image);
-            rate = dot(velocity, geometry.unit_normal_of(surface, image));
+            height = geometry.signed_distance_from(surface, local_position);
+            rate = dot(velocity, geometry.unit_normal_of(surface, local_position));
         }
         if (rate == 0.0 || std::fabs(height) > most) return;
-        if (std::fabs(height) <= ulp(std::max(max_abs(image), query_.radius))) break;
+        if (std::fabs(height) <= ulp(std::max(max_abs(local_position), query_.radius))) break;
         const double next = std::clamp(time - height / rate, 0.0, piece_.duration);
         if (std::fabs(next - contact.time) * std::fabs(rate) > most) return;
         const bool is_there = std::fabs(next - time) <= ulp(time);
@@ -230,11 +230,11 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeo
         if (is_there) break;
     }
     contact.time = time;
-    const Vec3 image = view.image(body, view.point_at(piece_.position(time), time).world, time);
+    const Vec3 local_position = view.local_position(body, view.point_at(piece_.position(time), time).world, time);
     for (int k = 0; k < contact.count; ++k) {
         ContactSurface& touched = contact.surfaces[static_cast<std::size_t>(k)];
-        const Vec3 normal = is_sphere ? geometry.nearest(touched.surface, image).normal
-                                      : geometry.unit_normal_of(touched.surface, image);
+        const Vec3 normal = is_sphere ? geometry.nearest(touched.surface, local_position).normal
+                                      : geometry.unit_normal_of(touched.surface, local_position);
         touched.normal = dot(normal, touched.normal) < 0.0 ? -normal : normal;
     }
 }
@@ -246,7 +246,7 @@ double MovingSweep::beside_path() const {
     return 4.0 * tolerance + rounding();
 }
 
-void MovingSweep::set_piece(double to, const WayPoint& start) {
+void MovingSweep::set_piece(double to, const PathPoint& start) {
     piece_ = piece_of(query_.path, begin_, to, start.position);
     clock_ = view_.clock().piece(begin_, to);
     if (times_.empty()) return;
@@ -254,66 +254,67 @@ void MovingSweep::set_piece(double to, const WayPoint& start) {
     clock_.end = times_[next_];
 }
 
-ContactQueryResult MovingSweep::sweep(const WayPoint& start) {
+ContactQueryResult MovingSweep::sweep(const PathPoint& start) {
     const double to = end_of_piece(start);
     set_piece(to, start);
     begin_ = to;
     if (to >= lists_.cuts[next_]) ++next_;
-    const MovingView view(view_.bodies(), view_.home(), clock_);
-    const WayPoint first_point{start.position, 0.0, start.world};
-    if (foreign_) {
-        foreign_->restart(view, first_point);
+    const MovingView view(view_.bodies(), view_.reference(), clock_);
+    const PathPoint first_point{start.position, 0.0, start.world};
+    if (other_frames_) {
+        other_frames_->restart(view, first_point);
     } else {
-        foreign_.emplace(view, first_point);
+        other_frames_.emplace(view, first_point);
     }
     const double beside = query_.beside + beside_path_;
     ContactQueryResult own =
-        find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.held, beside}, scratch_);
+        find_first_contact(geometry_, {piece_, query_.radius, nullptr, {}, query_.supports, beside}, scratch_);
     meet_bodies(view, first_point, own.contact);
     if (!deforming_.empty()) meet_deforming(view, first_point, beside_in_bodies(), own.contact);
-    own.near.join(*foreign_);
+    own.near.join(*other_frames_);
     return own;
 }
 
-void MovingSweep::meet_bodies(const MovingView& view, const WayPoint& start, std::optional<Contact>& first) {
+void MovingSweep::meet_bodies(const MovingView& view, const PathPoint& start, std::optional<Contact>& first) {
     const double beside = beside_in_bodies();
-    while (scratch_.foreign.size() < lists_.near.size()) scratch_.foreign.push_back(std::make_unique<ContactScratch>());
+    while (scratch_.other_frames.size() < lists_.near.size())
+        scratch_.other_frames.push_back(std::make_unique<ContactScratch>());
     for (std::size_t k = 0; k < lists_.near.size(); ++k) {
-        ContactScratch& scratch = *scratch_.foreign[k];
+        ContactScratch& scratch = *scratch_.other_frames[k];
         const SurfaceGeometry geometry(view.bodies().world(lists_.near[k]), scratch.plane_cache);
         if (is_clear_ && geometry.world().culls()) {
             scratch.clear();
             const Path path = shortened(lists_.clear[k], piece_.duration);
             const QueryMargins margins(geometry.world(), path, query_.radius, lists_.besides[k]);
-            foreign_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
+            other_frames_->add({lists_.near[k], path, {geometry, scratch, margins, path.c[0], CandidateSet::near}});
             continue;
         }
         const Path path = path_in(lists_.near[k], view, start);
         const ContactQueryResult found =
-            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.held, beside}, scratch);
+            find_first_contact(geometry, {path, query_.radius, nullptr, {}, query_.supports, beside}, scratch);
         if (found.contact) take(*found.contact, lists_.near[k], geometry, view, first);
-        foreign_->add({lists_.near[k], path, found.near});
+        other_frames_->add({lists_.near[k], path, found.near});
     }
 }
 
 /// beside: m, as far beside the path positions may be asked about.
-void MovingSweep::meet_deforming(const MovingView& view, const WayPoint& start, double beside,
+void MovingSweep::meet_deforming(const MovingView& view, const PathPoint& start, double beside,
                                  std::optional<Contact>& first) {
     const DeformingColliders& deforming = view.bodies().deforming();
-    const Path path = view.home() == kAtRest ? piece_ : path_in(kAtRest, view, start);
-    const DeformingSweep sweep(deforming, path, {clock_.begin, clock_.end}, query_.radius, query_.held, beside);
-    std::optional<Contact> contact =
-        sweep.first_contact(deforming_, [&](const ForeignSurfaces::Deforming& triangle) { foreign_->add(triangle); });
+    const Path path = view.reference() == kWorldBody ? piece_ : path_in(kWorldBody, view, start);
+    const DeformingSweep sweep(deforming, path, {clock_.begin, clock_.end}, query_.radius, query_.supports, beside);
+    std::optional<Contact> contact = sweep.first_contact(
+        deforming_, [&](const SurfacesInOtherFrames::Deforming& triangle) { other_frames_->add(triangle); });
     if (!contact) return;
     for (int k = 0; k < contact->count; ++k) {
         Vec3& normal = contact->surfaces[static_cast<std::size_t>(k)].normal;
-        normal = view.direction_from(kAtRest, normal, contact->time);
+        normal = view.direction_from(kWorldBody, normal, contact->time);
     }
     merge(*contact, first);
 }
 
 std::optional<Contact> MovingSweep::first_contact() {
-    const MovingView view(view_.bodies(), view_.home(), view_.clock());
+    const MovingView view(view_.bodies(), view_.reference(), view_.clock());
     while (!is_done()) {
         const double from = begin_;
         std::optional<Contact> contact =

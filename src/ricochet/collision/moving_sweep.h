@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "ricochet/collision/contact_query.h"
-#include "ricochet/collision/foreign_surfaces.h"
-#include "ricochet/collision/way_point.h"
+#include "ricochet/collision/path_point.h"
+#include "ricochet/collision/surfaces_in_other_frames.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/geometry/sweep/path.h"
 
@@ -35,7 +35,7 @@ class MovingSweep {
 public:
     /// query: of a path in the frame of view.home(); geometry: of the colliders there. start: of the path, stored.
     MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
-                const WayPoint& start, ContactScratch& scratch);
+                const PathPoint& start, ContactScratch& scratch);
     ~MovingSweep() { scratch_.sweep = std::move(lists_); }
     MovingSweep(const MovingSweep&) = delete;
     MovingSweep& operator=(const MovingSweep&) = delete;
@@ -47,7 +47,7 @@ public:
 
     /// Sweeps the next piece, unless all is done. start: where it begins, stored. The result is in times of the piece,
     /// and is valid until the next call; path() is then the piece in the frame of the query.
-    [[nodiscard]] ContactQueryResult sweep(const WayPoint& start);
+    [[nodiscard]] ContactQueryResult sweep(const PathPoint& start);
     [[nodiscard]] const Path& path() const { return piece_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
@@ -60,10 +60,10 @@ private:
     void cut();
     void find_rates();
     void cut_finely();
-    [[nodiscard]] double end_of_piece(const WayPoint& start);
-    [[nodiscard]] double clear_until(const WayPoint& start, double fine);
-    void set_piece(double to, const WayPoint& start);
-    void meet_bodies(const MovingView& view, const WayPoint& start, std::optional<Contact>& first);
+    [[nodiscard]] double end_of_piece(const PathPoint& start);
+    [[nodiscard]] double clear_until(const PathPoint& start, double fine);
+    void set_piece(double to, const PathPoint& start);
+    void meet_bodies(const MovingView& view, const PathPoint& start, std::optional<Contact>& first);
     [[nodiscard]] double pieces_within(double span) const;
     [[nodiscard]] double beside_path() const;
     [[nodiscard]] double beside_in_bodies() const { return 2.0 * (query_.beside + beside_path_); }
@@ -75,17 +75,17 @@ private:
     [[nodiscard]] double tolerance_of(BodyId body) const;
     [[nodiscard]] double rounding() const;
     [[nodiscard]] DerivativeBounds world_bounds() const;
-    [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const WayPoint& start) const;
+    [[nodiscard]] Path path_in(BodyId body, const MovingView& view, const PathPoint& start) const;
     void take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
               std::optional<Contact>& first) const;
     void merge(Contact contact, std::optional<Contact>& first) const;
-    void meet_deforming(const MovingView& view, const WayPoint& start, double beside, std::optional<Contact>& first);
+    void meet_deforming(const MovingView& view, const PathPoint& start, double beside, std::optional<Contact>& first);
     void find_true_time(Contact& contact, BodyId body, const SurfaceGeometry& geometry, const MovingView& view) const;
 
     MovingView view_;
     const SurfaceGeometry& geometry_;
     const ContactQuery& query_;
-    WayPoint start_;
+    PathPoint start_;
     ContactScratch& scratch_;
     ContactScratch::Sweep lists_;
     std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
@@ -98,7 +98,7 @@ private:
     bool is_clear_ = false;             // nothing of other frames comes near the piece
     int fine_left_ = 0;                 // pieces until a longer one is tried again
     int fine_after_next_ = 1;           // that many after the next one that is of no use
-    std::optional<ForeignSurfaces> foreign_;
+    std::optional<SurfacesInOtherFrames> other_frames_;
     Path piece_;
     PathClock clock_;
 };

@@ -58,11 +58,16 @@ QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double
 }
 
 NarrowPhase::NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
-                         std::span<const SurfaceId> held, ContactScratch& scratch)
-    : geometry_(geometry), world_(geometry.world()), path_(path), margins_(margins), held_(held), scratch_(scratch) {
+                         std::span<const SurfaceId> supports, ContactScratch& scratch)
+    : geometry_(geometry),
+      world_(geometry.world()),
+      path_(path),
+      margins_(margins),
+      supports_(supports),
+      scratch_(scratch) {
     if (margins.radius == 0.0) return;
     sphere_.emplace(path, margins.radius, margins.beside);
-    scratch_.overlapped.assign(held.begin(), held.end());
+    scratch_.overlapped.assign(supports.begin(), supports.end());
 }
 
 void NarrowPhase::test_planes() {
@@ -89,11 +94,11 @@ void NarrowPhase::test_shapes() {
         if (shape.shape.can_cull(path_, margins_.radius + margins_.slack)) continue;
         scratch_.shapes.push_back(k);
         if (sphere_) add_overlap(shape.surface, std::fabs(shape.shape.closest_point(path_.c[0]).distance));
-        HeldParts held;
-        for (const SurfaceId surface : held_) {
-            if (shape.owns(surface)) held.add(shape.part_of(surface));
+        SupportingParts supports;
+        for (const SurfaceId surface : supports_) {
+            if (shape.owns(surface)) supports.add(shape.part_of(surface));
         }
-        const ShapeContacts found = shape.shape.contacts(path_, margins_.radius, held);
+        const ShapeContacts found = shape.shape.contacts(path_, margins_.radius, supports);
         const int side = found.count > 0 ? shape.shape.side(path_.c[0]) : 0;
         for (const ShapeContact& contact : found.all()) {
             const bool is_flat = contact.part != ShapePart::side && !contact.on_rim;
@@ -139,7 +144,7 @@ double NarrowPhase::test_sphere(std::uint32_t triangle) {
 }
 
 void NarrowPhase::add_hit(const Hit& hit) {
-    if (std::find(held_.begin(), held_.end(), hit.surface) != held_.end()) return;
+    if (std::find(supports_.begin(), supports_.end(), hit.surface) != supports_.end()) return;
     scratch_.hits.push_back(hit);
     if (!(hit.time < first_time_)) return;
     first_time_ = hit.time;

@@ -38,7 +38,7 @@ class NarrowPhase {
 public:
     /// All arguments must outlive the object. The path must be finite. `held`: see ContactQuery.
     NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
-                std::span<const SurfaceId> held, ContactScratch& scratch);
+                std::span<const SurfaceId> supports, ContactScratch& scratch);
 
     void test_planes();
     void test_shapes();
@@ -63,7 +63,7 @@ private:
     const CollisionWorld& world_;
     const Path& path_;
     const QueryMargins& margins_;
-    std::span<const SurfaceId> held_;  ///< supporting surfaces, see ContactQuery
+    std::span<const SurfaceId> supports_;  ///< supporting surfaces, see ContactQuery
     ContactScratch& scratch_;
     std::optional<SphereSweep> sphere_;  ///< nothing for points
     double first_time_ = std::numeric_limits<double>::infinity();

@@ -69,7 +69,8 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const Movi
     std::optional<Overlap> deepest = deepest_overlap(at_rest, center, radius);
     if (bodies == nullptr || !(radius > 0.0) || !is_finite(center)) return deepest;
     for (const BodyId body : bodies_near(*bodies, center, radius, time)) {
-        const auto overlap = deepest_overlap(bodies->world(body), bodies->pose(body, time).image(center), radius);
+        const auto overlap =
+            deepest_overlap(bodies->world(body), bodies->pose(body, time).local_position(center), radius);
         if (overlap && (!deepest || overlap->distance < deepest->distance)) deepest = overlap;
     }
     const double least = radius - sphere_tolerance(radius, max_abs(center));
@@ -87,18 +88,19 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
         const MovingPose pose = bodies.pose(body, time);
         const CollisionWorld& world = bodies.world(body);
         const Vec3 position = off.value_or(center);
-        const Vec3 image = pose.image(position);
-        const double offset = contact_offset(abs(position) + abs(pose.world_from_frame.translation) + abs(image));
+        const Vec3 local_position = pose.local_position(position);
+        const double offset =
+            contact_offset(abs(position) + abs(pose.world_from_frame.translation) + abs(local_position));
         std::vector<SurfaceId> under;
-        visit_distances(world, image, offset, [&](SurfaceId surface, double /*distance*/) {
-            if (world.point_on(surface, image)) under.push_back(surface);
+        visit_distances(world, local_position, offset, [&](SurfaceId surface, double /*distance*/) {
+            if (world.point_on(surface, local_position)) under.push_back(surface);
             return offset;
         });
         std::sort(under.begin(), under.end());
         Vec3 normal;
-        for (const SurfaceId surface : under) normal += world.unit_normal_of(surface, image);
+        for (const SurfaceId surface : under) normal += world.unit_normal_of(surface, local_position);
         if (normal == Vec3{}) continue;
-        off = flush_tiny(pose.point(image + kOffsets * offset * normalized(normal)));
+        off = flush_tiny(pose.point(local_position + kOffsets * offset * normalized(normal)));
     }
     Vec3 normal;
     double offset = 0.0;

@@ -11,23 +11,23 @@ namespace {
 /// Follows a path: halves it until its chords are free, and stops at the first blocked chord.
 class PathFollower {
 public:
-    PathFollower(const NearSurfaces& near, const Path& path, const WayPoint& start, std::vector<WayPoint>& chain)
+    PathFollower(const NearSurfaces& near, const Path& path, const PathPoint& start, std::vector<PathPoint>& chain)
         : near_(near), path_(path), chain_(chain), followed_{start, std::nullopt} {
         chain_.assign(1, start);
     }
 
-    bool follow_to(const WayPoint& target, int depth) {
-        const WayPoint& from = followed_.reached;
+    bool follow_to(const PathPoint& target, int depth) {
+        const PathPoint& from = followed_.reached;
         const double time = target.time;
         const double middle = 0.5 * (from.time + time);
         const bool is_shortest = depth == 0 || middle <= from.time || middle >= time;
-        if ((is_shortest || near_.covers_chord(path_, from.time, time)) && near_.is_link_free(from, target)) {
+        if ((is_shortest || near_.covers_chord(path_, from.time, time)) && near_.is_segment_free(from, target)) {
             followed_.reached = target;
             chain_.push_back(target);
             return true;
         }
         if (is_shortest) {
-            followed_.blocker = near_.link_blocker(from, target);
+            followed_.blocker = near_.segment_blocker(from, target);
             return false;
         }
         return follow_to(near_.point_at(path_.position(middle), middle), depth - 1) && follow_to(target, depth - 1);
@@ -38,7 +38,7 @@ public:
 private:
     const NearSurfaces& near_;
     const Path& path_;
-    std::vector<WayPoint>& chain_;
+    std::vector<PathPoint>& chain_;
     CertifiedPath followed_;
 };
 
@@ -73,7 +73,7 @@ Vec3 escape_direction(const Normals& normals) {
 
 /// Returns the displacement along the normal that moves the path's position at the contact to exactly `radius` from the
 /// first surface.
-Vec3 correction_at(const NearSurfaces& near, const WayPoint& at, const Contact& contact) {
+Vec3 correction_at(const NearSurfaces& near, const PathPoint& at, const Contact& contact) {
     const SurfaceId surface = contact.first().surface;
     if (near.radius() == 0.0) return -near.signed_distance_from(surface, at) * near.unit_normal_of(surface, at);
     return (near.radius() - near.nearest(surface, at).distance) * contact.first().normal;
@@ -82,7 +82,7 @@ Vec3 correction_at(const NearSurfaces& near, const WayPoint& at, const Contact& 
 /// Returns the corrected position on the path at the contact. Two positions are not corrected. One belongs to a sphere
 /// that overlaps. The other is near the origin, and its distance from a large triangle has a rounding error larger than
 /// the query has covered.
-Vec3 position_at(const NearSurfaces& near, const WayPoint& on_path, const Contact& contact) {
+Vec3 position_at(const NearSurfaces& near, const PathPoint& on_path, const Contact& contact) {
     const Vec3& position = on_path.position;
     const Vec3 correction = correction_at(near, on_path, contact);
     const bool overlaps =
@@ -92,7 +92,7 @@ Vec3 position_at(const NearSurfaces& near, const WayPoint& on_path, const Contac
 }
 
 /// Returns a blocking surface with its normal at p, which faces p. The normal is zero if p lies in its plane.
-ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const WayPoint& p) {
+ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const PathPoint& p) {
     if (near.radius() > 0.0) {
         const auto nearest = near.nearest(surface, p);
         return {surface, nearest.normal, nearest.flat};
@@ -104,9 +104,9 @@ ContactSurface facing_surface(const NearSurfaces& near, SurfaceId surface, const
 }  // namespace
 
 CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                          std::vector<WayPoint>& chain) {
+                          std::vector<PathPoint>& chain) {
     // Most paths are free as a whole.
-    if (near.foreign() == nullptr && (path.degree == 1 || near.covers_chord(path, 0.0, until)) &&
+    if (near.other_frames() == nullptr && (path.degree == 1 || near.covers_chord(path, 0.0, until)) &&
         near.is_free(path.c[0], target)) {
         chain.resize(2);
         chain[0] = {path.c[0], 0.0, path.c[0]};
@@ -114,13 +114,14 @@ CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double unt
         return {chain[1], std::nullopt};
     }
     PathFollower follower(near, path, near.start(), chain);
-    (void)follower.follow_to(near.point_at(target, until), path.degree > 1 || near.foreign() ? kCertificateDepth : 0);
+    (void)follower.follow_to(near.point_at(target, until),
+                             path.degree > 1 || near.other_frames() ? kCertificateDepth : 0);
     return follower.followed();
 }
 
 SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
-                                std::vector<WayPoint>& chain) {
-    const WayPoint on_path = near.point_at(path.position(contact.time), contact.time);
+                                std::vector<PathPoint>& chain) {
+    const PathPoint on_path = near.point_at(path.position(contact.time), contact.time);
     const Vec3 position = position_at(near, on_path, contact);
     Normals normals;
     for (const ContactSurface& surface : contact.all()) normals.add(surface.normal);
@@ -148,7 +149,7 @@ std::optional<Vec3> step_off(const NearSurfaces& near, const Vec3& p) {
     Normals normals;
     for (const SurfaceId surface : near.surfaces_at(p)) normals.add(near.geometry().unit_normal_of(surface, p));
     if (normals.count == 0) return std::nullopt;
-    double offset = near.foreign() == nullptr ? contact_offset(p) : near.offset_at(near.start());
+    double offset = near.other_frames() == nullptr ? contact_offset(p) : near.offset_at(near.start());
     for (int attempt = 0; attempt < kSafePositionAttempts; ++attempt, offset *= kContactOffsetWidening) {
         const Vec3 position = flush_tiny(p + offset * escape_direction(normals));
         if (length(position - p) > near.slack()) break;
@@ -163,7 +164,7 @@ Contact contact_with_blocker(const NearSurfaces& near, const Path& path, const C
     contact.count = 1;
     contact.surfaces[0] = facing_surface(near, *followed.blocker, followed.reached);
     if (contact.surfaces[0].normal == Vec3{}) {
-        const WayPoint& reached = followed.reached;
+        const PathPoint& reached = followed.reached;
         contact.surfaces[0].normal =
             facing_normal(near.unit_normal_of(*followed.blocker, reached), 0, path.velocity(reached.time));
     }

@@ -14,7 +14,7 @@ namespace ricochet {
 
 /// The part of a path that certified segments could follow.
 struct CertifiedPath {
-    WayPoint reached;                  ///< the last certified position
+    PathPoint reached;                 ///< the last certified position
     std::optional<SurfaceId> blocker;  ///< surface that blocks the next, shortest segment; nothing at the target
 };
 
@@ -22,11 +22,11 @@ struct CertifiedPath {
 /// free, it is the only segment. Otherwise the arc is halved, down to kCertificateDepth. `chain` is replaced by the
 /// certified positions in order, the start first.
 [[nodiscard]] CertifiedPath follow_path(const NearSurfaces& near, const Path& path, double until, const Vec3& target,
-                                        std::vector<WayPoint>& chain);
+                                        std::vector<PathPoint>& chain);
 
 /// A certified position next to a contact.
 struct SafePosition {
-    WayPoint reached;
+    PathPoint reached;
     bool stayed = false;  ///< true: no certified position nearer to the surface than the path's start was found
     std::optional<SurfaceId> blocker;  ///< surface that blocks the path at `reached`, if that is before the contact
 };
@@ -35,7 +35,7 @@ struct SafePosition {
 /// contact_offset(), or by more if that fails. If no such position is free, it is the last certified position on the
 /// path. The start of the path is always valid. `chain`: as for follow_path().
 [[nodiscard]] SafePosition find_safe_position(const NearSurfaces& near, const Path& path, const Contact& contact,
-                                              std::vector<WayPoint>& chain);
+                                              std::vector<PathPoint>& chain);
 
 /// Returns a position for a particle that was put exactly on surfaces. It is one contact offset off them, on the side
 /// that their normals point to. The segment to it leaves these surfaces and intersects no other. `near` is that of a

@@ -39,7 +39,7 @@ MovingPose BodyPath::turned_by(double angle, double rate, double second) const {
 
 MovingPose BodyPath::at(double time) const {
     const double t = time - begin;
-    const Cubic<Vec3> moved(way, t);
+    const Cubic<Vec3> moved(center_path, t);
     const Cubic<double> turned(turns, t);
     MovingPose pose = turned_by(degrees + turned.value, turned.rate, turned.second);
     // The carrier follows its path, and the origin of the frame moves around it.
@@ -56,7 +56,7 @@ MotionBounds BodyPath::bounds(double from, double to) const {
     const double h = std::max(std::fabs(from - begin), std::fabs(to - begin));
     MotionBounds bounds;
     bounds.rotation = turn_bounds(bounds_of(turns, h));
-    bounds.origin = bounds_of(way, h);
+    bounds.origin = bounds_of(center_path, h);
     bounds.origin[0] = 0.0;
     for (std::size_t n = 1; n < bounds.origin.size(); ++n) bounds.origin[n] += length(carrier) * bounds.rotation[n];
     return bounds;

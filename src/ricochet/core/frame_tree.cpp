@@ -209,8 +209,8 @@ void prepare(FrameDescription& frame) {
             motion);
         if (const auto* swing = std::get_if<Swing>(&motion)) {
             detail::require_finite(swing->amplitude, of_frame("a motion's amplitude"), "degrees");
-        } else if (const auto* way = std::get_if<Oscillation>(&motion)) {
-            detail::require_finite(way->amplitude, of_frame("a motion's amplitude"), "m");
+        } else if (const auto* oscillation = std::get_if<Oscillation>(&motion)) {
+            detail::require_finite(oscillation->amplitude, of_frame("a motion's amplitude"), "m");
         } else if (const auto* growth = std::get_if<KeyedScale>(&motion)) {
             require_factors(frame, *growth);
         }

@@ -41,10 +41,10 @@ KeyedRotation shortest_turn(Quaternion q, double from, double to) {
 }  // namespace
 
 std::vector<FrameMotion> motions_through(const std::vector<KeyPose>& poses) {
-    std::vector<CurveKey<Vec3>> way;
-    way.reserve(poses.size());
-    for (const KeyPose& pose : poses) way.push_back({pose.time, pose.position});
-    std::vector<FrameMotion> motions{KeyedTranslation{KeyedCurve<Vec3>(std::move(way))}};
+    std::vector<CurveKey<Vec3>> translation;
+    translation.reserve(poses.size());
+    for (const KeyPose& pose : poses) translation.push_back({pose.time, pose.position});
+    std::vector<FrameMotion> motions{KeyedTranslation{KeyedCurve<Vec3>(std::move(translation))}};
     const KeyPose& first = poses.front();
     if (first.degrees != 0.0) motions.emplace_back(KeyedRotation{first.axis, KeyedCurve<double>(first.degrees)});
     for (std::size_t k = 1; k < poses.size(); ++k) {

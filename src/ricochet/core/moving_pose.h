@@ -22,9 +22,9 @@ struct MovingPose {
     [[nodiscard]] Vec3 point(const Vec3& p) const { return world_from_frame.point(p); }
     /// Returns a world point, in m, in the frame's coordinates: fl(R^T (x - t)), summed over the rows of R in their
     /// order. This formula defines, bit by bit, the local coordinates of a stored position.
-    [[nodiscard]] Vec3 image(const Vec3& x) const { return direction_image(x - world_from_frame.translation); }
+    [[nodiscard]] Vec3 local_position(const Vec3& x) const { return local_direction(x - world_from_frame.translation); }
     /// Returns a world direction in the frame's axes, R^T d.
-    [[nodiscard]] Vec3 direction_image(const Vec3& d) const { return world_from_frame.direction_back(d); }
+    [[nodiscard]] Vec3 local_direction(const Vec3& d) const { return world_from_frame.direction_back(d); }
 
     /// Returns the velocity, in m/s in world axes, of the frame's own point at p (frame coordinates): v + w x (R p).
     [[nodiscard]] Vec3 velocity_of(const Vec3& p) const {

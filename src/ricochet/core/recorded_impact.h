@@ -18,14 +18,14 @@ struct RecordedImpact {
         Vec3 velocity_after;                 ///< in m/s
         double restitution = 1.0;            ///< of its material, 0..1
         double restitution_threshold = 0.0;  ///< of its material, in m/s
-        bool holds = false;                  ///< the impact treated it as a surface that supports the particle
+        bool is_support = false;             ///< the impact treated it as a surface that supports the particle
     };
 
     double time = 0.0;  ///< in s
     RecordedMotion before;
     RecordedMotion after;
     std::vector<Surface> surfaces;
-    std::vector<std::uint32_t> held_by;  ///< surfaces of the contact interval that the impact ended
+    std::vector<std::uint32_t> supported_by;  ///< surfaces of the contact interval that the impact ended
 };
 
 }  // namespace ricochet

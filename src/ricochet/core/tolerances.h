@@ -435,7 +435,7 @@ inline constexpr double kNetworkEnergyRounding = 1e-12;
 /// Fraction of an overlap of spheres in dense contact that one step removes. Reason: the remainder of the sweeps must
 /// not add up from step to step. Half of it settles in a few steps without a jerk. Smaller: overlaps last. Larger: deep
 /// overlaps, from hard impacts, eject spheres.
-inline constexpr double kNetworkPushOut = 0.5;
+inline constexpr double kOverlapRelease = 0.5;
 
 /// Over-relaxation factor of normal impulses in sweeps over contact networks. Reason: with 1.2 boxes of 2000 spheres
 /// come to rest with two thirds of the sweeps; with 1.5 friction oscillates. Smaller: more sweeps. Larger: sweeps

@@ -24,14 +24,14 @@ using Lists = std::vector<std::vector<std::uint32_t>>;
 /// Returns the row of blocks that is eliminated as the i-th, in an order that keeps L sparse.
 std::vector<std::uint32_t> thin_order(std::size_t rows, std::span<const Pair> pairs) {
     using Pattern = Eigen::SparseMatrix<double>;
-    std::vector<Eigen::Triplet<double>> places;
-    for (std::size_t i = 0; i < rows; ++i) places.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
+    std::vector<Eigen::Triplet<double>> slots;
+    for (std::size_t i = 0; i < rows; ++i) slots.emplace_back(static_cast<int>(i), static_cast<int>(i), 1.0);
     for (const Pair& pair : pairs) {
-        places.emplace_back(static_cast<int>(pair.first), static_cast<int>(pair.second), 1.0);
-        places.emplace_back(static_cast<int>(pair.second), static_cast<int>(pair.first), 1.0);
+        slots.emplace_back(static_cast<int>(pair.first), static_cast<int>(pair.second), 1.0);
+        slots.emplace_back(static_cast<int>(pair.second), static_cast<int>(pair.first), 1.0);
     }
     Pattern pattern(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(rows));
-    pattern.setFromTriplets(places.begin(), places.end());
+    pattern.setFromTriplets(slots.begin(), slots.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> order;
     Eigen::AMDOrdering<int>()(pattern, order);
     std::vector<std::uint32_t> result;
@@ -90,15 +90,15 @@ std::vector<std::uint32_t> postorder(const std::vector<std::uint32_t>& parent) {
         if (parent[k] != kNone) below[parent[k]] += below[k];
     }
     std::vector<std::uint32_t> free(count, 0);  // first free position for the next child of each
-    std::vector<std::uint32_t> place(count, 0);
+    std::vector<std::uint32_t> slot(count, 0);
     std::uint32_t of_roots = 0;
     for (std::uint32_t k = count; k-- > 0;) {
         std::uint32_t& first = parent[k] == kNone ? of_roots : free[parent[k]];
         free[k] = first;
         first += below[k];
-        place[k] = first - 1;
+        slot[k] = first - 1;
     }
-    return place;
+    return slot;
 }
 
 }  // namespace
@@ -113,8 +113,8 @@ BlockCholesky::BlockCholesky(std::size_t rows, std::span<const Pair> pairs) {
     std::vector<std::uint32_t> order(rows);
     const std::vector<std::uint32_t> thin = thin_order(rows, pairs);
     for (std::uint32_t k = 0; k < rows; ++k) order[thin[k]] = k;
-    const std::vector<std::uint32_t> place = postorder(parents_of(later_neighbours(order, pairs)));
-    for (std::uint32_t& k : order) k = place[k];
+    const std::vector<std::uint32_t> slot = postorder(parents_of(later_neighbours(order, pairs)));
+    for (std::uint32_t& k : order) k = slot[k];
     order_ = std::move(order);
     Structure structure{{}, later_neighbours(order_, pairs)};
     structure.parent.assign(rows, kNone);
@@ -158,7 +158,7 @@ void BlockCholesky::make_fronts(const Structure& structure) {
         if (front.below.empty()) continue;
         Front& parent = fronts_[front_of_[front.below.front()]];
         parent.children.push_back(f);
-        for (const std::uint32_t row : front.below) front.places.push_back(place_in(parent, row));
+        for (const std::uint32_t row : front.below) front.slots.push_back(place_in(parent, row));
     }
     values_.resize(values);
 }
@@ -196,7 +196,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     updates_.clear();
     for (const Front& front : fronts_) {
         assemble(front, matrix);
-        if (!eliminate(dense_, front.rows(), front.columns())) return false;
+        if (!eliminate(contact_islands_, front.rows(), front.columns())) return false;
         keep(front);
     }
     return true;
@@ -205,16 +205,16 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
 /// Adds the front's own part of the matrix and the updates of its children.
 void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     const std::size_t rows = front.rows();
-    dense_.assign(rows * rows, 0.0);
+    contact_islands_.assign(rows * rows, 0.0);
     for (std::uint32_t k = 0; k < front.count; ++k) {
         const Block3& block = matrix.own[row_of_[front.begin + k]];
         for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j <= i; ++j) dense_[(3 * k + j) * rows + 3 * k + i] += block[i][j];
+            for (std::size_t j = 0; j <= i; ++j) contact_islands_[(3 * k + j) * rows + 3 * k + i] += block[i][j];
         }
     }
     for (const Entry& entry : front.entries) {
         const Block3& block = matrix.between[entry.pair];
-        double* const corner = dense_.data() + 3 * entry.column * rows + 3 * entry.row;
+        double* const corner = contact_islands_.data() + 3 * entry.column * rows + 3 * entry.row;
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 corner[j * rows + i] += entry.is_transposed ? block[j][i] : block[i][j];
@@ -228,13 +228,13 @@ void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
 
 /// Adds the last update on the stack.
 void BlockCholesky::add_update(const Front& child, std::size_t rows) {
-    const std::size_t blocks = child.places.size();
+    const std::size_t blocks = child.slots.size();
     const std::size_t size = 3 * blocks;
     const double* update = updates_.data() + updates_.size() - size * size;
     for (std::size_t column = 0; column < size; ++column, update += size) {
-        double* const to = dense_.data() + (3 * child.places[column / 3] + column % 3) * rows;
+        double* const to = contact_islands_.data() + (3 * child.slots[column / 3] + column % 3) * rows;
         for (std::size_t k = column / 3; k < blocks; ++k) {
-            for (std::size_t i = 0; i < 3; ++i) to[3 * child.places[k] + i] += update[3 * k + i];
+            for (std::size_t i = 0; i < 3; ++i) to[3 * child.slots[k] + i] += update[3 * k + i];
         }
     }
     updates_.resize(updates_.size() - size * size);
@@ -244,9 +244,9 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
 void BlockCholesky::keep(const Front& front) {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();
-    std::copy_n(dense_.begin(), rows * columns, values_.begin() + static_cast<std::ptrdiff_t>(front.values));
+    std::copy_n(contact_islands_.begin(), rows * columns, values_.begin() + static_cast<std::ptrdiff_t>(front.values));
     for (std::size_t j = columns; j < rows; ++j) {
-        const auto column = dense_.begin() + static_cast<std::ptrdiff_t>(j * rows);
+        const auto column = contact_islands_.begin() + static_cast<std::ptrdiff_t>(j * rows);
         updates_.insert(updates_.end(), column + static_cast<std::ptrdiff_t>(columns),
                         column + static_cast<std::ptrdiff_t>(rows));
     }

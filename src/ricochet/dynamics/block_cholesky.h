@@ -62,8 +62,8 @@ private:
         std::vector<std::uint32_t> below;  // rows of blocks below them, ascending in elimination order
         std::vector<Entry> entries;        // matrix blocks assembled first in this front
         std::vector<std::uint32_t> children;
-        std::vector<std::uint32_t> places;  // indices of its own `below` in its parent's front
-        std::size_t values = 0;             // offset of its columns of L in values_
+        std::vector<std::uint32_t> slots;  // indices of its own `below` in its parent's front
+        std::size_t values = 0;            // offset of its columns of L in values_
         [[nodiscard]] std::size_t rows() const { return 3 * (count + below.size()); }
         [[nodiscard]] std::size_t columns() const { return std::size_t{3} * count; }
     };
@@ -84,7 +84,7 @@ private:
     std::vector<Front> fronts_;            // children before parents
     std::vector<double> values_;           // L: the columns of every front, one front after the other
     std::vector<double> updates_;          // stack of updates for parents not yet assembled
-    std::vector<double> dense_;            // the front in elimination
+    std::vector<double> contact_islands_;  // the front in elimination
 };
 
 }  // namespace ricochet

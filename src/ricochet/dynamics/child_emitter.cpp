@@ -114,9 +114,9 @@ std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particl
                                            double time, const BirthTest& test) {
     const std::uint64_t lineage = mixed_key(parent.origin.lineage, emitter.number(), ordinal);
     const auto in_world = [&](Particle child) {
-        const Vec3 place = child.position;
-        child.position = parent.position + place;
-        child.velocity += parent.velocity + cross(emitter.description().parent->cloud->turning, place);
+        const Vec3 offset = child.position;
+        child.position = parent.position + offset;
+        child.velocity += parent.velocity + cross(emitter.description().parent->cloud->turning, offset);
         child.birth_time = time;
         return child;
     };

@@ -41,7 +41,7 @@ struct LifeBirths {
 /// Child of a cloud.
 struct CloudChild {
     Particle particle;
-    Vec3 place;  ///< position about the parent, in m
+    Vec3 offset;  ///< position about the parent, in m
 };
 
 /// Makes one child of a cloud at its position about the parent. Its velocity is that of the position plus its own

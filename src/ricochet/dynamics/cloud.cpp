@@ -42,14 +42,14 @@ Decay decay_of(const CloudRule& rule, double t) {
 
 }  // namespace
 
-PhaseState turned_place(const CloudRule& rule, const Vec3& place, double age) {
-    if (rule.turning == Vec3{}) return {place, {}};
+PhaseState turned_offset(const CloudRule& rule, const Vec3& offset, double age) {
+    if (rule.turning == Vec3{}) return {offset, {}};
     const double rate = length(rule.turning);
     const Vec3 axis = rule.turning / rate;
     const double turns = rate * age / kTwoPi;
-    const Vec3 along = dot(axis, place) * axis;
-    const Vec3 across = place - along;
-    const Vec3 now = along + sine_of_turns(turns + 0.25) * across + sine_of_turns(turns) * cross(axis, place);
+    const Vec3 along = dot(axis, offset) * axis;
+    const Vec3 across = offset - along;
+    const Vec3 now = along + sine_of_turns(turns + 0.25) * across + sine_of_turns(turns) * cross(axis, offset);
     return {now, cross(rule.turning, now)};
 }
 
@@ -57,38 +57,38 @@ double cloud_turn(const CloudRule& rule, double duration) {
     return duration * std::max({length(rule.turning), std::sqrt(rule.pull), rule.damping});
 }
 
-PhaseState CloudMember::place_at(double time) const {
-    const PhaseState about = turned_place(rule_, place_, time - birth_time_);
+PhaseState CloudMember::offset_at(double time) const {
+    const PhaseState about = turned_offset(rule_, place_, time - birth_time_);
     const double s = std::clamp(time - begin_, 0.0, parent_.duration);
     return {parent_.position(s) + about.position, parent_.velocity(s) + about.velocity};
 }
 
 PhaseState CloudMember::after(const PhaseState& state, double from, double to) const {
-    const PhaseState old_place = place_at(from);
-    const PhaseState new_place = place_at(to);
-    const Vec3 off = state.position - old_place.position;
-    const Vec3 speed = state.velocity - old_place.velocity;
+    const PhaseState old_offset = offset_at(from);
+    const PhaseState new_offset = offset_at(to);
+    const Vec3 off = state.position - old_offset.position;
+    const Vec3 speed = state.velocity - old_offset.velocity;
     const double duration = to - from;
     if (rule_.pull == 0.0 && rule_.damping == 0.0) {
-        return {flush_tiny(new_place.position + (off + duration * speed)), new_place.velocity + speed};
+        return {flush_tiny(new_offset.position + (off + duration * speed)), new_offset.velocity + speed};
     }
     const Decay decay = decay_of(rule_, duration);
     const double half = 0.5 * rule_.damping;
     const Vec3 off_then = decay.c * off + decay.s * (speed + half * off);
     const Vec3 speed_then = decay.c * speed - decay.s * (half * speed + rule_.pull * off);
-    return {flush_tiny(new_place.position + off_then), new_place.velocity + speed_then};
+    return {flush_tiny(new_offset.position + off_then), new_offset.velocity + speed_then};
 }
 
 Vec3 CloudMember::acceleration(const ForceInput& input) const {
     const double s = std::clamp(input.time - begin_, 0.0, parent_.duration);
     Vec3 sum = 2.0 * parent_.c[2] + (6.0 * s) * parent_.c[3];
     if (rule_.turning != Vec3{}) {
-        const PhaseState about = turned_place(rule_, place_, input.time - birth_time_);
+        const PhaseState about = turned_offset(rule_, place_, input.time - birth_time_);
         sum += cross(rule_.turning, about.velocity);
     }
     if (rule_.pull == 0.0 && rule_.damping == 0.0) return sum;
-    const PhaseState place = place_at(input.time);
-    return sum - rule_.pull * (input.position - place.position) - rule_.damping * (input.velocity - place.velocity);
+    const PhaseState offset = offset_at(input.time);
+    return sum - rule_.pull * (input.position - offset.position) - rule_.damping * (input.velocity - offset.velocity);
 }
 
 }  // namespace ricochet

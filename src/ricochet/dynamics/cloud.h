@@ -11,7 +11,7 @@ namespace ricochet {
 
 /// Returns the motion of a position about the parent after `age` seconds, relative to the parent. The position turns
 /// about the parent at a constant rate.
-[[nodiscard]] PhaseState turned_place(const CloudRule& rule, const Vec3& place, double age);
+[[nodiscard]] PhaseState turned_offset(const CloudRule& rule, const Vec3& offset, double age);
 
 /// Returns the angle, in rad, by which a cloud turns or swings in `duration` seconds.
 [[nodiscard]] double cloud_turn(const CloudRule& rule, double duration);
@@ -23,11 +23,11 @@ class CloudMember final : public Coupling {
 public:
     /// parent: path of the parent, which begins at `begin`, in s. place: target position about the parent at the
     /// child's birth.
-    CloudMember(const CloudRule& rule, const Path& parent, double begin, const Vec3& place, double birth_time)
-        : rule_(rule), parent_(parent), begin_(begin), place_(place), birth_time_(birth_time) {}
+    CloudMember(const CloudRule& rule, const Path& parent, double begin, const Vec3& offset, double birth_time)
+        : rule_(rule), parent_(parent), begin_(begin), place_(offset), birth_time_(birth_time) {}
 
     /// Returns the target position, with its velocity, in the world at a time, in s.
-    [[nodiscard]] PhaseState place_at(double time) const;
+    [[nodiscard]] PhaseState offset_at(double time) const;
     /// Returns the state at `to`, in s, of a child that has `state` at `from` and hits nothing.
     [[nodiscard]] PhaseState after(const PhaseState& state, double from, double to) const;
 

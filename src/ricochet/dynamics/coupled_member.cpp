@@ -92,7 +92,7 @@ Vec3 CoupledMember::acceleration(const ForceInput& input) const {
            (mutual_.start + (input.time - mutual_.begin) * mutual_.slope);
 }
 
-void Departures::reset(std::size_t members, IntegratorKind kind) {
+void PlanDeviations::reset(std::size_t members, IntegratorKind kind) {
     kind_ = kind;
     entries_.resize(members);
     for (Entry& entry : entries_) {
@@ -101,18 +101,18 @@ void Departures::reset(std::size_t members, IntegratorKind kind) {
     }
 }
 
-void Departures::record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed) {
+void PlanDeviations::record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
     entries_[member].flown.assign(flown.begin(), flown.end());
-    entries_[member].pushed = pushed;
+    entries_[member].velocity_change = velocity_change;
 }
 
-void Departures::record_at_start(std::size_t member, const Vec3& pushed) {
+void PlanDeviations::record_at_start(std::size_t member, const Vec3& velocity_change) {
     entries_[member].keeps_start = true;
-    entries_[member].pushed = pushed;
+    entries_[member].velocity_change = velocity_change;
 }
 
-void Departures::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
-                         const std::vector<std::uint8_t>& moves, std::vector<Vec3>& velocities) const {
+void PlanDeviations::correct(const ParticleSystem& system, const std::vector<Flight>& plans,
+                             const std::vector<std::uint8_t>& moves, std::vector<Vec3>& velocities) const {
     const auto left = [](const Entry& entry) { return entry.keeps_start || !entry.flown.empty(); };
     if (std::none_of(entries_.begin(), entries_.end(), left)) return;
     const std::vector<Vec3> given = momentum_changes(system, plans);
@@ -120,8 +120,8 @@ void Departures::correct(const ParticleSystem& system, const std::vector<Flight>
     for (std::size_t k = 0; k < velocities.size(); ++k) {
         if (moves[k] == 0) continue;
         if (has_left(k)) {
-            const Vec3 planned = plans[k].end_velocity - plans[k].path.duration * system.expected_push(k);
-            velocities[k] = planned + entries_[k].pushed + own_change(system, k, plans[k]);
+            const Vec3 planned = plans[k].end_velocity - plans[k].path.duration * system.expected_reaction(k);
+            velocities[k] = planned + entries_[k].velocity_change + own_change(system, k, plans[k]);
         }
         if (given[k] != Vec3{}) velocities[k] += given[k] / system.mass(k);
         if (!mutual.empty()) velocities[k] += mutual[k];
@@ -133,7 +133,7 @@ void Departures::correct(const ParticleSystem& system, const std::vector<Flight>
 /// Verlet. A departure in position grows from the bounce to the end, so twice its mean is at most its final value. A
 /// departure in velocity is complete at once. If the forces depend on velocities, the mean departure therefore acts for
 /// the whole step.
-std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
+std::vector<Vec3> PlanDeviations::mutual_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
     const double duration = plans.front().path.duration;
     const double weight = (system.has_mutual_damping() ? 1.0 : 0.5) * duration;
     const double end = system.time() + duration;
@@ -147,9 +147,9 @@ std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const
     if (planned.empty()) return {};
     for (std::size_t k = 0; k < system.size(); ++k) {
         if (!has_left(k)) continue;
-        const PhaseState departure = summed_departure(k, plans[k]);
-        positions[k] += departure.position / weight;
-        velocities[k] += departure.velocity / weight;
+        const PhaseState start_velocity = summed_deviation(k, plans[k]);
+        positions[k] += start_velocity.position / weight;
+        velocities[k] += start_velocity.velocity / weight;
     }
     std::vector<Vec3> changes = system.mutual_accelerations(end, positions, velocities);
     for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = weight * (changes[k] - planned[k]);
@@ -157,19 +157,20 @@ std::vector<Vec3> Departures::mutual_changes(const ParticleSystem& system, const
 }
 
 /// Returns the flown pieces of a member; the plan itself if nothing else is recorded.
-std::span<const FlownPiece> Departures::flown_by(std::size_t member, const FlownPiece& plan) const {
+std::span<const FlownPiece> PlanDeviations::flown_by(std::size_t member, const FlownPiece& plan) const {
     return entries_[member].flown.empty() ? std::span<const FlownPiece>(&plan, 1) : entries_[member].flown;
 }
 
 /// Returns the state, at a time in s, that forces see on a flown piece.
-PhaseState Departures::state_of(std::size_t member, const FlownPiece& piece, const Flight& plan, double time) const {
+PhaseState PlanDeviations::state_of(std::size_t member, const FlownPiece& piece, const Flight& plan,
+                                    double time) const {
     if (entries_[member].keeps_start) return {plan.start.position, plan.start.velocity};
     return piece.at(time);
 }
 
 /// Returns the integrals over the step of a member's deviation from its plan in position and velocity, in m s and m. If
 /// its forces keep their start values, the integrals cancel the second half of the force change along the plan.
-PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) const {
+PhaseState PlanDeviations::summed_deviation(std::size_t member, const Flight& plan) const {
     const FlownPiece planned = piece_of(plan);
     if (entries_[member].keeps_start) {
         const double half = 0.5 * plan.path.duration;
@@ -188,7 +189,8 @@ PhaseState Departures::summed_departure(std::size_t member, const Flight& plan) 
 
 /// Returns the momentum changes by springs, in N s by member. Threads compute the impulses of single springs; the sums
 /// are in the order of the springs.
-std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, const std::vector<Flight>& plans) const {
+std::vector<Vec3> PlanDeviations::momentum_changes(const ParticleSystem& system,
+                                                   const std::vector<Flight>& plans) const {
     std::vector<Vec3> sums(system.size());
     std::vector<ParticleSystem::Bond> changed;
     for (const ParticleSystem::Bond& bond : system.bonds()) {
@@ -206,8 +208,8 @@ std::vector<Vec3> Departures::momentum_changes(const ParticleSystem& system, con
 }
 
 /// Returns the impulse of a spring on its first end, in N s, in excess of its impulse between the planned paths.
-Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
-                                const std::vector<Flight>& plans) const {
+Vec3 PlanDeviations::impulse_change(const ParticleSystem& system, const ParticleSystem::Bond& bond,
+                                    const std::vector<Flight>& plans) const {
     const std::array<FlownPiece, 2> planned{piece_of(plans[bond.first]), piece_of(plans[bond.second])};
     const auto first = flown_by(bond.first, planned[0]);
     const auto second = flown_by(bond.second, planned[1]);
@@ -230,7 +232,7 @@ Vec3 Departures::impulse_change(const ParticleSystem& system, const ParticleSyst
 
 /// Returns the velocity change of a member by forces on single particles, in m/s, in excess of that on its planned
 /// path.
-Vec3 Departures::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
+Vec3 PlanDeviations::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
     if (system.has_uniform_forces()) return {};
     const FlownPiece planned = piece_of(plan);
     const bool keeps_start = entries_[member].keeps_start;

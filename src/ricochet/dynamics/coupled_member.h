@@ -17,7 +17,7 @@ struct FlownPiece {
     Path path;
     double begin = 0.0;     ///< start time, in s
     double duration = 0.0;  ///< followed duration, in s, at most that of the path
-    Vec3 departure;         ///< velocity at the start, in m/s
+    Vec3 start_velocity;    ///< velocity at the start, in m/s
     Vec3 arrival;           ///< velocity at the end, in m/s
     bool is_free = false;   ///< true in free flight, false in contact
 
@@ -77,15 +77,15 @@ private:
 /// If contacts balanced a member's forces at the start of the step, its forces are kept at their start values. This
 /// applies to the reactions on other members too. Otherwise the forces would turn with a pair that rolls on itself
 /// while the contact loads do not, which would brake the pair. The error is of first order in the step.
-class Departures {
+class PlanDeviations {
 public:
     /// Clears all records. members: number of members; kind: the method that made the plan.
     void reset(std::size_t members, IntegratorKind kind);
     /// Records the path that a member has flown instead of its plan, and the velocity change by surfaces meanwhile, in
     /// m/s. Several threads may call it for different members.
-    void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& pushed);
+    void record(std::size_t member, std::span<const FlownPiece> flown, const Vec3& velocity_change);
     /// Records a member whose forces keep their values at the start of the step.
-    void record_at_start(std::size_t member, const Vec3& pushed);
+    void record_at_start(std::size_t member, const Vec3& velocity_change);
     /// Corrects the velocities of the members at the end of the step, in m/s, for all recorded departures. moves: flags
     /// of the members that forces move; others keep their velocities.
     void correct(const ParticleSystem& system, const std::vector<Flight>& plans, const std::vector<std::uint8_t>& moves,
@@ -100,7 +100,7 @@ private:
                                                      const std::vector<Flight>& plans) const;
     [[nodiscard]] std::vector<Vec3> mutual_changes(const ParticleSystem& system,
                                                    const std::vector<Flight>& plans) const;
-    [[nodiscard]] PhaseState summed_departure(std::size_t member, const Flight& plan) const;
+    [[nodiscard]] PhaseState summed_deviation(std::size_t member, const Flight& plan) const;
     [[nodiscard]] std::span<const FlownPiece> flown_by(std::size_t member, const FlownPiece& plan) const;
     [[nodiscard]] PhaseState state_of(std::size_t member, const FlownPiece& piece, const Flight& plan,
                                       double time) const;
@@ -110,7 +110,7 @@ private:
 
     struct Entry {
         std::vector<FlownPiece> flown;  // empty: as planned
-        Vec3 pushed;                    // velocity change by surfaces, m/s
+        Vec3 velocity_change;           // velocity change by surfaces, m/s
         bool keeps_start = false;       // its forces keep their values at the start
     };
     std::vector<Entry> entries_;  // one per member

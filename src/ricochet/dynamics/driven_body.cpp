@@ -151,7 +151,7 @@ BodyPath DrivenBody::plan_free(const ForceField& forces, const Wrench& load, dou
     const Vec3 reached = center_ + h * (velocity_ + (0.5 * h) * first);
     const Vec3 last = acceleration_at(forces, reached, velocity_ + h * first, end) + by_load;
     BodyPath path{begin, end, map_, description_.center};
-    path.way = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
+    path.center_path = {velocity_, 0.5 * first, h > 0.0 ? (last - first) / (6.0 * h) : Vec3{}};
     const Vec3 now = inverse_inertia(map_) * angular_momentum_;
     // The angular velocity of the middle follows from half a turn with that of the start.
     const auto turned = [&](const Vec3& spin, double duration) {
@@ -174,25 +174,25 @@ BodyPath DrivenBody::plan_joint(const ForceField& forces, const Wrench& load, do
     const double by_load = along_joint(load) / inertia_;
     const double first = joint_acceleration(forces, coordinate_, rate_, begin) + by_load;
     // The prediction includes friction and motor, so that damping sees the resulting rate.
-    const auto held_at = [&](double rate) { return h > 0.0 ? held_change(rate, h) / h : 0.0; };
+    const auto held_at = [&](double rate) { return h > 0.0 ? constrained_change(rate, h) / h : 0.0; };
     const double predicted = first + held_at(rate_ + h * first);
     const double reached = coordinate_ + h * (rate_ + 0.5 * h * predicted);
     const double last = joint_acceleration(forces, reached, rate_ + h * predicted, end) + by_load;
     const double held = held_at(rate_ + 0.5 * h * (first + last));
-    std::array<double, 3> way{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
+    std::array<double, 3> center_path{rate_, 0.5 * (first + held), h > 0.0 ? (last - first) / (6.0 * h) : 0.0};
     if (is_oscillator(description_.settings) && h > 0.0) {
-        way = oscillation(description_.settings, inertia_, {coordinate_, rate_}, {reached, rate_ + h * predicted},
-                          {first, last}, h);
+        center_path = oscillation(description_.settings, inertia_, {coordinate_, rate_},
+                                  {reached, rate_ + h * predicted}, {first, last}, h);
     }
     BodyPath path{begin, end, map_, {}};
     path.axis = description_.axis;
     if (description_.joint == JointKind::slider) {
-        for (std::size_t k = 0; k < way.size(); ++k) path.way[k] = way[k] * axis_;
+        for (std::size_t k = 0; k < center_path.size(); ++k) path.center_path[k] = center_path[k] * axis_;
         return path;
     }
     path.at_begin = start_;
     path.degrees = degrees_;
-    for (std::size_t k = 0; k < way.size(); ++k) path.turns[k] = kDegrees * way[k];
+    for (std::size_t k = 0; k < center_path.size(); ++k) path.turns[k] = kDegrees * center_path[k];
     return path;
 }
 
@@ -215,7 +215,7 @@ double DrivenBody::joint_acceleration(const ForceField& forces, double coordinat
 
 /// Returns the change of a rate by motor and dry friction. The motor drives towards its rate against friction. Friction
 /// opposes the remaining motion, or stops it.
-double DrivenBody::held_change(double rate, double duration) const {
+double DrivenBody::constrained_change(double rate, double duration) const {
     const JointSettings& joint = description_.settings;
     const double motor = joint.motor_most * duration / inertia_;
     const double friction = joint.friction * duration / inertia_;
@@ -258,17 +258,18 @@ void DrivenBody::follow(const BodyPath& path, const Wrench& load, const Wrench& 
     map_ = path.at(path.end).world_from_frame;
     center_ = map_.point(description_.center);
     if (description_.joint == JointKind::free) {
-        velocity_ = rate(path.way);
+        velocity_ = rate(path.center_path);
         // Moments refer to the start position of the centre. The load acted during the whole step; the rest acts at the
         // end.
-        const Vec3 mean = h * (path.way[0] / 2.0 + h * (path.way[1] / 3.0 + (0.25 * h) * path.way[2]));
+        const Vec3 mean =
+            h * (path.center_path[0] / 2.0 + h * (path.center_path[1] / 3.0 + (0.25 * h) * path.center_path[2]));
         angular_momentum_ += h * load.moment - cross(mean, h * load.impulse);
         take({rest.impulse, rest.moment - cross(center_ - before, rest.impulse)});
         return;
     }
     if (description_.joint == JointKind::slider) {
-        coordinate_ += dot(axis_, moved(path.way));
-        rate_ = dot(axis_, rate(path.way));
+        coordinate_ += dot(axis_, moved(path.center_path));
+        rate_ = dot(axis_, rate(path.center_path));
     } else {
         degrees_ = path.degrees + moved(path.turns);
         coordinate_ = degrees_ / kDegrees;

@@ -106,7 +106,7 @@ private:
     [[nodiscard]] double joint_acceleration(const ForceField& forces, double coordinate, double rate,
                                             double time) const;
     [[nodiscard]] double along_joint(const Wrench& wrench) const;
-    [[nodiscard]] double held_change(double rate, double duration) const;
+    [[nodiscard]] double constrained_change(double rate, double duration) const;
     [[nodiscard]] Vec3 acceleration_at(const ForceField& forces, const Vec3& center, const Vec3& velocity,
                                        double time) const;
     [[nodiscard]] Vec3 center_at(double coordinate) const;

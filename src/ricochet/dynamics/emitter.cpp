@@ -362,7 +362,7 @@ void Emitter::place(RandomSequence& random, Draw& drawn) const {
 
 // Draws and sets the position. Returns the launch direction.
 Vec3 Emitter::draw_place(RandomSequence& random, Particle& particle) const {
-    const LaunchPlace launch = shape_.draw(particle.radius, random);
+    const LaunchPoint launch = shape_.draw(particle.radius, random);
     particle.position = launch.position;
     const bool own_direction = description_.direction == Vec3{};
     const Vec3 axis = own_direction ? launch.direction : normalized(description_.direction);

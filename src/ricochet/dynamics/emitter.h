@@ -135,7 +135,7 @@ using EmitterShape =
     std::variant<PointShape, DiskShape, BoxShape, SphereShape, MeshSurfaceShape, ConeShape, MeshVolumeShape>;
 
 /// Birth position with its launch direction.
-struct LaunchPlace {
+struct LaunchPoint {
     Vec3 position;
     Vec3 direction;  ///< the shape's own direction, of unit length
 };
@@ -151,17 +151,17 @@ public:
 
     /// Draws a birth position. radius: of the particle, in m; on mesh surfaces the birth keeps this distance from the
     /// surface.
-    [[nodiscard]] LaunchPlace draw(double radius, RandomSequence& random) const;
+    [[nodiscard]] LaunchPoint draw(double radius, RandomSequence& random) const;
 
     /// Smallest fraction of its box that a mesh's volume must fill, because the inside test is by rejection and must
     /// end.
     static constexpr double kSmallestFill = 1e-4;
 
 private:
-    [[nodiscard]] LaunchPlace on_disk(const DiskShape& disk, RandomSequence& random) const;
-    [[nodiscard]] LaunchPlace in_cone(const ConeShape& cone, RandomSequence& random) const;
-    [[nodiscard]] LaunchPlace on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const;
-    [[nodiscard]] LaunchPlace in_mesh(RandomSequence& random) const;
+    [[nodiscard]] LaunchPoint on_disk(const DiskShape& disk, RandomSequence& random) const;
+    [[nodiscard]] LaunchPoint in_cone(const ConeShape& cone, RandomSequence& random) const;
+    [[nodiscard]] LaunchPoint on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const;
+    [[nodiscard]] LaunchPoint in_mesh(RandomSequence& random) const;
 
     EmitterShape shape_;
     std::vector<double> cumulative_area_;         // of a mesh surface's triangles

@@ -187,7 +187,7 @@ ShapeSampler::ShapeSampler(const EmitterShape& shape) : shape_(shape) {
     }
 }
 
-LaunchPlace ShapeSampler::draw(double radius, RandomSequence& random) const {
+LaunchPoint ShapeSampler::draw(double radius, RandomSequence& random) const {
     if (const auto* disk = std::get_if<DiskShape>(&shape_)) return on_disk(*disk, random);
     if (const auto* box = std::get_if<BoxShape>(&shape_)) {
         Vec3 position = box->center;
@@ -205,7 +205,7 @@ LaunchPlace ShapeSampler::draw(double radius, RandomSequence& random) const {
     return {std::get<PointShape>(shape_).center, random.unit_vector()};
 }
 
-LaunchPlace ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random) const {
+LaunchPoint ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random) const {
     const Vec3 normal = normalized(disk.normal);
     const auto [first, second] = tangent_frame(normal);
     const Vec3 p = random.in_unit_disk();
@@ -213,7 +213,7 @@ LaunchPlace ShapeSampler::on_disk(const DiskShape& disk, RandomSequence& random)
 }
 
 // The largest of three uniform numbers has the distribution x^3, like the height in a cone.
-LaunchPlace ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random) const {
+LaunchPoint ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random) const {
     const double first_draw = random.uniform();
     const double second_draw = random.uniform();
     const double height = cone.height * std::max({first_draw, second_draw, random.uniform()});
@@ -226,7 +226,7 @@ LaunchPlace ShapeSampler::in_cone(const ConeShape& cone, RandomSequence& random)
 
 // Rounding moves the point by a few ulp of the corners, not of the point. The contact offset therefore uses the
 // corners.
-LaunchPlace ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
+LaunchPoint ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, RandomSequence& random) const {
     const double area = random.uniform() * cumulative_area_.back();
     const auto found = std::upper_bound(cumulative_area_.begin(), cumulative_area_.end() - 1, area);
     const Triangle& t = mesh.triangles[static_cast<std::size_t>(found - cumulative_area_.begin())];
@@ -244,7 +244,7 @@ LaunchPlace ShapeSampler::on_mesh(const TriangleMesh& mesh, double radius, Rando
     return {a + u * (b - a) + v * (c - a) + (radius + gap) * normal, normal};
 }
 
-LaunchPlace ShapeSampler::in_mesh(RandomSequence& random) const {
+LaunchPoint ShapeSampler::in_mesh(RandomSequence& random) const {
     Vec3 position = flush_tiny(uniform_in(inside_->box(), random));
     while (!inside_->contains(position)) position = flush_tiny(uniform_in(inside_->box(), random));
     return {position, random.unit_vector()};

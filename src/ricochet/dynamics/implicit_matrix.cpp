@@ -54,7 +54,9 @@ public:
     }
 
 private:
-    [[nodiscard]] bool is_held(std::size_t i) const { return !state_.held.empty() && state_.held[i].count > 0; }
+    [[nodiscard]] bool is_supported(std::size_t i) const {
+        return !state_.supports.empty() && state_.supports[i].count > 0;
+    }
 
     /// Returns the mass plus the contribution of the forces on one particle. If the matrix must be symmetric, only the
     /// symmetric part of that contribution is used. A pinned member has the rows of the unit matrix. In directions with
@@ -76,32 +78,32 @@ private:
                 }
             }
         }
-        if (!is_held(i)) return block;
+        if (!is_supported(i)) return block;
         block = across(block, i, i);
-        for (std::uint8_t k = 0; k < state_.held[i].count; ++k) {
-            const Vec3& n = state_.held[i].directions[k];
+        for (std::uint8_t k = 0; k < state_.supports[i].count; ++k) {
+            const Vec3& n = state_.supports[i].directions[k];
             for (std::size_t row = 0; row < 3; ++row) {
                 for (std::size_t column = 0; column < 3; ++column) {
                     block[row][column] += mass * n[static_cast<int>(row)] * n[static_cast<int>(column)];
                 }
             }
         }
-        if (state_.held[i].grip > 0.0) add_friction(block, i);
+        if (state_.supports[i].grip > 0.0) add_friction(block, i);
         return block;
     }
 
     /// Adds friction across the constraints: against any change of a slow slip, otherwise against a change of its
     /// direction.
     void add_friction(Block3& block, std::size_t i) const {
-        const HeldMotion& held = state_.held[i];
-        const Vec3 slip = held.slip_of(state_.v1[i]);
+        const SupportConstraints& supports = state_.supports[i];
+        const Vec3 slip = supports.slip_of(state_.v1[i]);
         const double speed = length(slip);
-        const bool is_slow = speed <= held.yield;
-        const double factor = state_.system.mass(i) * held.grip / std::max(speed, held.yield);
+        const bool is_slow = speed <= supports.yield;
+        const double factor = state_.system.mass(i) * supports.grip / std::max(speed, supports.yield);
         for (std::size_t column = 0; column < 3; ++column) {
             Vec3 unit;
             unit[static_cast<int>(column)] = 1.0;
-            Vec3 kept = held.across(unit);
+            Vec3 kept = supports.across(unit);
             if (!is_slow) kept -= (slip[static_cast<int>(column)] / (speed * speed)) * slip;
             for (std::size_t row = 0; row < 3; ++row) block[row][column] += factor * kept[static_cast<int>(row)];
         }
@@ -148,9 +150,9 @@ private:
 
     /// Returns a block projected across the constraints of its rows' member and of its columns' member.
     [[nodiscard]] Block3 across(const Block3& block, std::size_t of_rows, std::size_t of_columns) const {
-        if (!is_held(of_rows) && !is_held(of_columns)) return block;
-        const HeldMotion& row = state_.held[of_rows];
-        const HeldMotion& column = state_.held[of_columns];
+        if (!is_supported(of_rows) && !is_supported(of_columns)) return block;
+        const SupportConstraints& row = state_.supports[of_rows];
+        const SupportConstraints& column = state_.supports[of_columns];
         Block3 half{};
         for (std::size_t i = 0; i < 3; ++i) {
             const Vec3 kept = column.across({block[i][0], block[i][1], block[i][2]});

@@ -22,10 +22,10 @@ struct MatrixKind {
 /// State at the end of a backward Euler step of `duration` seconds. All references must outlive it.
 struct ImplicitState {
     const ParticleSystem& system;
-    double duration;                   ///< in s
-    std::span<const HeldMotion> held;  ///< by member; empty: no surface constraints
-    const std::vector<Vec3>& x1;       ///< in m
-    const std::vector<Vec3>& v1;       ///< in m/s
+    double duration;                               ///< in s
+    std::span<const SupportConstraints> supports;  ///< by member; empty: no surface constraints
+    const std::vector<Vec3>& x1;                   ///< in m
+    const std::vector<Vec3>& v1;                   ///< in m/s
 };
 
 /// Returns the negative derivative of the equations' residuals with respect to the end velocities, in kg: a row of

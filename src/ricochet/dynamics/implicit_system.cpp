@@ -54,18 +54,18 @@ constexpr double kPositionRounding = 0x1p-49;
 class BackwardEuler {
 public:
     /// guess: initial velocities; empty: those at the start.
-    BackwardEuler(const ParticleSystem& system, double h, std::span<const HeldMotion> held, std::span<const Vec3> guess,
-                  const ImplicitOptions& options)
+    BackwardEuler(const ParticleSystem& system, double h, std::span<const SupportConstraints> supports,
+                  std::span<const Vec3> guess, const ImplicitOptions& options)
         : system_(system),
           h_(h),
-          held_(held),
+          supports_(supports),
           options_(options),
           v1_(system.velocities()),
           x1_(system.size()),
           is_symmetric_(system.has_uniform_forces()) {
         if (!guess.empty()) v1_.assign(guess.begin(), guess.end());
-        for (std::size_t i = 0; i < held_.size(); ++i) {
-            if (held_[i].count > 0) v1_[i] = held_[i].across(v1_[i]) + held_[i].velocity;
+        for (std::size_t i = 0; i < supports_.size(); ++i) {
+            if (supports_[i].count > 0) v1_[i] = supports_[i].across(v1_[i]) + supports_[i].velocity;
         }
         std::vector<BlockCholesky::Pair> pairs;
         for (const ParticleSystem::Bond& bond : system_.bonds()) {
@@ -84,7 +84,7 @@ public:
         step.solved = solve();
         step.positions = x1_;
         step.velocities = v1_;
-        if (!held_.empty()) step.free_velocities = free_velocities();
+        if (!supports_.empty()) step.free_velocities = free_velocities();
         return step;
     }
 
@@ -92,12 +92,12 @@ private:
     [[nodiscard]] std::vector<Vec3> free_velocities() const {
         std::vector<Vec3> result = v1_;
         for (std::size_t i = 0; i < result.size(); ++i) {
-            if (is_held(i)) result[i] = system_.velocities()[i] + gain(i);
+            if (is_supported(i)) result[i] = system_.velocities()[i] + gain(i);
         }
         return result;
     }
 
-    [[nodiscard]] bool is_held(std::size_t i) const { return !held_.empty() && held_[i].count > 0; }
+    [[nodiscard]] bool is_supported(std::size_t i) const { return !supports_.empty() && supports_[i].count > 0; }
 
     /// Solves the equations by Newton's method. The residual is the gradient of an energy. It is the sum of the kinetic
     /// energy relative to the motion without springs, the spring energy, the dissipation, and the work of forces.
@@ -188,7 +188,8 @@ private:
     void set_residual(std::size_t i) {
         Vec3 missing = h_ * forces_[i] - system_.mass(i) * change_of(i);
         if (system_.is_pinned(i)) missing = {};
-        if (is_held(i)) missing = held_[i].across(missing) + system_.mass(i) * held_[i].friction_at(v1_[i]);
+        if (is_supported(i))
+            missing = supports_[i].across(missing) + system_.mass(i) * supports_[i].friction_at(v1_[i]);
         for (int axis = 0; axis < 3; ++axis) right_[static_cast<Eigen::Index>(3 * i) + axis] = missing[axis];
     }
 
@@ -218,7 +219,7 @@ private:
         right_.resize(static_cast<Eigen::Index>(3 * count));
         for (std::size_t i = 0; i < count; ++i) {
             energy_ += 0.5 * system_.mass(i) * length_squared(change_of(i));
-            if (is_held(i)) energy_ += system_.mass(i) * held_[i].friction_energy_at(v1_[i]);
+            if (is_supported(i)) energy_ += system_.mass(i) * supports_[i].friction_energy_at(v1_[i]);
             set_residual(i);
         }
     }
@@ -249,7 +250,7 @@ private:
     }
 
     [[nodiscard]] BlockMatrix matrix(const MatrixKind& kind) const {
-        return implicit_matrix({system_, h_, held_, x1_, v1_}, kind);
+        return implicit_matrix({system_, h_, supports_, x1_, v1_}, kind);
     }
 
     [[nodiscard]] static double largest(const Vector& vector) { return vector.lpNorm<Eigen::Infinity>(); }
@@ -264,7 +265,7 @@ private:
 
     const ParticleSystem& system_;
     double h_;
-    std::span<const HeldMotion> held_;
+    std::span<const SupportConstraints> supports_;
     const ImplicitOptions& options_;
     std::vector<double> lengths_;  // of the springs at the start, by bond, in m
     std::vector<Vec3> v1_;
@@ -281,13 +282,14 @@ private:
 
 }  // namespace
 
-SystemStep implicit_system_step(const ParticleSystem& system, double duration, std::span<const HeldMotion> held,
-                                std::span<const Vec3> guess, const ImplicitOptions& options) {
-    SystemStep whole = BackwardEuler(system, duration, held, guess, options).run();
+SystemStep implicit_system_step(const ParticleSystem& system, double duration,
+                                std::span<const SupportConstraints> supports, std::span<const Vec3> guess,
+                                const ImplicitOptions& options) {
+    SystemStep whole = BackwardEuler(system, duration, supports, guess, options).run();
     double h = duration;
     for (int halvings = 0; !whole.solved && halvings < kMostHalvedSteps; ++halvings) {
         h *= 0.5;
-        SystemStep part = BackwardEuler(system, h, held, {}, options).run();
+        SystemStep part = BackwardEuler(system, h, supports, {}, options).run();
         if (part.solved) return part;
     }
     return whole;

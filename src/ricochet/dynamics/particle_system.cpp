@@ -54,9 +54,9 @@ void ParticleSystem::assign(const Particles& particles, std::span<const std::uin
     link(particles.size());
 }
 
-void ParticleSystem::expect_pushes(std::span<const Vec3> pushes) {
-    require_same_length(pushes.size(), size(), "pushes on the members of a system");
-    for (std::size_t k = 0; k < size(); ++k) constants_[k].push = pushes[k];
+void ParticleSystem::expect_reactions(std::span<const Vec3> reactions) {
+    require_same_length(reactions.size(), size(), "pushes on the members of a system");
+    for (std::size_t k = 0; k < size(); ++k) constants_[k].reaction = reactions[k];
 }
 
 // Collects the springs between members. The caller must account for springs with only one member.
@@ -155,7 +155,7 @@ void ParticleSystem::accelerations(double time, std::span<const Vec3> positions,
                                      : spring_force_on(i, positions, velocities) / mass(i) +
                                            own_acceleration(i, time, positions[i], velocities[i]);
             if (!mutual.empty() && !is_pinned(i)) result[i] += mutual[i];
-            if (!is_pinned(i) && expected_push(i) != Vec3{}) result[i] += expected_push(i);
+            if (!is_pinned(i) && expected_reaction(i) != Vec3{}) result[i] += expected_reaction(i);
         }
     });
 }

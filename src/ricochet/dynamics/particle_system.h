@@ -70,9 +70,9 @@ public:
     [[nodiscard]] const std::vector<Vec3>& velocities() const { return velocity_; }  ///< in m/s
     /// Sets the expected acceleration of each member by surfaces in this step, in m/s^2. It is included in all
     /// accelerations until the next assign().
-    void expect_pushes(std::span<const Vec3> pushes);
+    void expect_reactions(std::span<const Vec3> reactions);
     /// Returns the expected acceleration of member i by surfaces, in m/s^2.
-    [[nodiscard]] const Vec3& expected_push(std::size_t i) const { return constants(i).push; }
+    [[nodiscard]] const Vec3& expected_reaction(std::size_t i) const { return constants(i).reaction; }
     void set_phase(std::span<const Vec3> positions, std::span<const Vec3> velocities);
     /// Computes the accelerations of all members in a state, in m/s^2; zero for pinned members.
     void accelerations(double time, std::span<const Vec3> positions, std::span<const Vec3> velocities,
@@ -120,7 +120,7 @@ private:
         double mass = 1.0;
         double radius = 0.0;
         bool pinned = false;
-        Vec3 push{};  // in m/s^2, expected from surfaces
+        Vec3 reaction{};  // in m/s^2, expected from surfaces
     };
     struct Link {
         std::uint32_t spring = 0;

@@ -156,20 +156,20 @@ SystemStep adaptive_step(const Integrator& integrator, const ParticleSystem& sys
 
 }  // namespace
 
-Vec3 HeldMotion::friction_at(const Vec3& mean) const {
+Vec3 SupportConstraints::friction_at(const Vec3& mean) const {
     if (!(grip > 0.0)) return {};
     const Vec3 slip = slip_of(mean);
     return (-grip / std::max(length(slip), yield)) * slip;
 }
 
-double HeldMotion::friction_energy_at(const Vec3& mean) const {
+double SupportConstraints::friction_energy_at(const Vec3& mean) const {
     if (!(grip > 0.0)) return 0.0;
     const double slip = length(slip_of(mean));
     return slip <= yield ? 0.5 * grip / yield * slip * slip : grip * (slip - 0.5 * yield);
 }
 
 // In the proportional range, friction removes grip / yield of the remaining slip.
-Vec3 HeldMotion::mean_of(const Vec3& free) const {
+Vec3 SupportConstraints::mean_of(const Vec3& free) const {
     if (count == 0) return free;
     Vec3 along = across(free);
     const Vec3 slip = along - spin_slip;
@@ -234,7 +234,7 @@ Flight planned_flight(IntegratorKind kind, const ParticleSystem& system, const S
 
 bool holds_coupling(IntegratorKind kind) { return kicks_first(kind) || kind == IntegratorKind::forward_euler; }
 
-Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i) {
+Vec3 constrained_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step, std::size_t i) {
     if (system.is_pinned(i)) return {};
     const Vec3& x = system.positions()[i];
     const Vec3& v = system.velocities()[i];

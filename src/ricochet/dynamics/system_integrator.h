@@ -15,7 +15,7 @@
 namespace ricochet {
 
 /// Constraints of surfaces on a member's motion in a step.
-struct HeldMotion {
+struct SupportConstraints {
     std::array<Vec3, 3> directions;  ///< orthogonal unit vectors; the velocity along the first `count` is given
     std::uint8_t count = 0;          ///< 0: no constraint
     Vec3 velocity;                   ///< mean velocity over the step along the directions, in m/s
@@ -94,7 +94,7 @@ struct SystemStep {
 /// the sum of kinetic and spring energy does not grow if surfaces act without rebound, as without surfaces.
 /// guess: velocities near the solution, in m/s; empty: unknown.
 [[nodiscard]] SystemStep implicit_system_step(const ParticleSystem& system, double duration,
-                                              std::span<const HeldMotion> held, std::span<const Vec3> guess,
+                                              std::span<const SupportConstraints> supports, std::span<const Vec3> guess,
                                               const ImplicitOptions& options = {});
 
 /// Returns the flight of member i in this step along the method's path: lines for the Euler methods, the cubic Hermite
@@ -110,7 +110,7 @@ struct SystemStep {
 /// Returns the constant coupling acceleration of member i for such a method, in m/s^2: the springs' pull at the start.
 /// For implicit_euler it is the mean over the step, since a stiff spring's pull at the start says nothing about its
 /// end.
-[[nodiscard]] Vec3 held_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step,
-                                 std::size_t i);
+[[nodiscard]] Vec3 constrained_coupling(IntegratorKind kind, const ParticleSystem& system, const SystemStep& step,
+                                        std::size_t i);
 
 }  // namespace ricochet

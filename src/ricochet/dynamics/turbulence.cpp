@@ -27,12 +27,12 @@ constexpr double kMeanSquareCurl = 238536280.0 / 160243083.0;
 double fade(double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 double fade_slope(double t) { return 30.0 * t * t * (t - 1.0) * (t - 1.0); }
 
-struct LatticePlace {
+struct LatticeCell {
     std::uint32_t point;  // modulo kTable
     double offset;        // in [0, 1)
 };
 
-LatticePlace place_of(double x) {
+LatticeCell place_of(double x) {
     const double below = std::floor(x);
     const double wrapped = below - kTable * std::floor(below / kTable);
     if (!(wrapped >= 0.0 && wrapped < kTable)) return {0, 0.0};  // not finite
@@ -60,7 +60,7 @@ public:
 
     // slice: index of one of many independent noises.
     [[nodiscard]] Vec3 curl(const Vec3& position, std::uint32_t slice) const {
-        const LatticePlace at[3] = {place_of(position.x), place_of(position.y), place_of(position.z)};
+        const LatticeCell at[3] = {place_of(position.x), place_of(position.y), place_of(position.z)};
         double weight[3][2];
         double slope[3][2];
         for (int axis = 0; axis < 3; ++axis) {
@@ -140,7 +140,7 @@ private:
 
     [[nodiscard]] Vec3 curl(const Octave& octave, const Vec3& position, double time) const {
         const Vec3 point = position * octave.frequency + octave.offset;
-        const LatticePlace now = place_of(octave.rate * time);
+        const LatticeCell now = place_of(octave.rate * time);
         const std::uint32_t slice = octave.first_slice + now.point;
         const double next = fade(now.offset);
         if (next == 0.0) return noise_.curl(point, slice);

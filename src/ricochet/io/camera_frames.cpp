@@ -21,29 +21,29 @@ std::optional<Vec3> vector_field(const VtkPolyData& frame, const char* name) {
 
 }  // namespace
 
-CameraPlace camera_place(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
-                         const Simulation& simulation) {
+CameraPosition camera_place(const CameraDescription& camera, const Vec3& up, const FrameTree* frames,
+                            const Simulation& simulation) {
     const double time = simulation.time();
-    CameraPlace place{camera.path ? camera.path->value(time) : camera.position,
-                      camera.target_path ? camera.target_path->value(time) : camera.target, up};
-    if (camera.frame.empty()) return place;
+    CameraPosition camera_position{camera.path ? camera.path->value(time) : camera.position,
+                                   camera.target_path ? camera.target_path->value(time) : camera.target, up};
+    if (camera.frame.empty()) return camera_position;
     const AffineMap map = world_from_frame(camera.frame, frames, simulation);
-    return {map.point(place.position), map.point(place.target), camera.up ? map.direction(up) : up};
+    return {map.point(camera_position.position), map.point(camera_position.target), camera.up ? map.direction(up) : up};
 }
 
-void add_camera(VtkPolyData& frame, const CameraPlace& place) {
+void add_camera(VtkPolyData& frame, const CameraPosition& camera_position) {
     const auto add = [&](const char* name, const Vec3& v) { frame.fields.push_back({name, {v.x, v.y, v.z}}); };
-    add("camera_position", place.position);
-    add("camera_target", place.target);
-    add("camera_up", place.up);
+    add("camera_position", camera_position.position);
+    add("camera_target", camera_position.target);
+    add("camera_up", camera_position.up);
 }
 
-std::optional<CameraPlace> camera_of_frame(const VtkPolyData& frame) {
+std::optional<CameraPosition> camera_of_frame(const VtkPolyData& frame) {
     const auto position = vector_field(frame, "camera_position");
     const auto target = vector_field(frame, "camera_target");
     const auto up = vector_field(frame, "camera_up");
     if (!position || !target || !up) return std::nullopt;
-    return CameraPlace{*position, *target, *up};
+    return CameraPosition{*position, *target, *up};
 }
 
 }  // namespace ricochet

@@ -84,7 +84,7 @@ std::vector<Solid> moving_solids(const Simulation& simulation) {
 
 /// Returns a particle's start position in the collider's reference frame.
 Vec3 start_in(const Simulation& simulation, std::size_t collider, const Particle& particle) {
-    return simulation.collider_pose(collider, particle.birth_time).image(particle.position);
+    return simulation.collider_pose(collider, particle.birth_time).local_position(particle.position);
 }
 
 bool overlaps(const Simulation& simulation, std::span<const Solid> moving, const Particle& p) {
@@ -350,8 +350,8 @@ void SceneReview::review_fit(const Starts& starts, const OpenMesh& open) {
 bool SceneReview::falls_to(const Particle& particle, const OpenMesh& open) const {
     const Box3& box = open.box;
     const MovingPose pose = simulation_.collider_pose(open.number, particle.birth_time);
-    const Vec3 from = pose.image(particle.position);
-    const Vec3 fall = pose.direction_image(fall_);
+    const Vec3 from = pose.local_position(particle.position);
+    const Vec3 fall = pose.local_direction(fall_);
     if (box.contains(from)) return true;
     double begin = 0.0;
     double end = std::numeric_limits<double>::infinity();

@@ -43,13 +43,13 @@ std::vector<std::string> pair_method_warnings(const Simulation& simulation, cons
 
 std::optional<std::string> long_step_warning(const SimulationOptions& options, const Box3& scene, const Vec3& fall) {
     const double step = std::min(options.time_step, options.duration);
-    const double way = 0.5 * length(fall) * step * step;
+    const double displacement = 0.5 * length(fall) * step * step;
     const double size = scene.empty() ? 0.0 : scene.diagonal();
-    if (options.flow || !(size > 0.0) || !(way > size)) return std::nullopt;
+    if (options.flow || !(size > 0.0) || !(displacement > size)) return std::nullopt;
     return fmt::format(
         "simulation.time_step: in one step of {:.3g} s, a free fall from rest covers {:.3g} m, and the whole scene is "
         "{:.3g} m: times are in s, lengths in m; use a step of {:.1g} s or less, in which it covers a hundredth of it",
-        step, way, size, 0.1 * std::sqrt(2.0 * size / length(fall)));
+        step, displacement, size, 0.1 * std::sqrt(2.0 * size / length(fall)));
 }
 
 }  // namespace ricochet

@@ -12,7 +12,7 @@
 #include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/geometry/mesh/vertex_welder.h"
 #include "ricochet/queries/mesh_index.h"
-#include "ricochet/queries/ray_places.h"
+#include "ricochet/queries/ray_crossings.h"
 
 namespace ricochet {
 namespace {
@@ -79,10 +79,10 @@ std::optional<double> winding_number(const MeshIndex& mesh, const Ray& ray) {
         if (!angle) return std::nullopt;
         half_angles += edge.surplus * *angle;
     }
-    thread_local std::vector<RayPlace> places;
-    all_places(mesh, {ray, std::numeric_limits<double>::infinity()}, places);
+    thread_local std::vector<RayCrossing> places;
+    all_crossings(mesh, {ray, std::numeric_limits<double>::infinity()}, places);
     double crossings = 0.0;
-    for (const RayPlace& place : places) crossings += place.crossing;
+    for (const RayCrossing& place : places) crossings += place.crossing;
     return crossings - half_angles / (2.0 * std::numbers::pi);
 }
 

@@ -16,7 +16,7 @@
 #include "ricochet/queries/mesh_index.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "ricochet/queries/no_hits.h"
-#include "ricochet/queries/ray_places.h"
+#include "ricochet/queries/ray_crossings.h"
 
 namespace ricochet {
 namespace {
@@ -63,11 +63,11 @@ void for_each_ray(const RayBatch& rays, const Answer& answer) {
 MeshHits MeshQueries::first_hits(const RayBatch& rays) const {
     MeshHits hits = no_hits(rays.origins.size());
     for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
-        const std::optional<RayPlace> place = first_place(*index_, question);
-        if (!place) return;
-        hits.triangle[i] = place->triangle;
-        hits.distance[i] = question.ray.distance(place->t);
-        hits.point[i] = question.ray.at(place->t);
+        const std::optional<RayCrossing> crossing_point = first_crossing_on(*index_, question);
+        if (!crossing_point) return;
+        hits.triangle[i] = crossing_point->triangle;
+        hits.distance[i] = question.ray.distance(crossing_point->t);
+        hits.point[i] = question.ray.at(crossing_point->t);
     });
     return hits;
 }
@@ -83,9 +83,9 @@ std::vector<std::uint8_t> MeshQueries::occluded(const RayBatch& rays) const {
 std::vector<std::uint64_t> MeshQueries::count_hits(const RayBatch& rays) const {
     std::vector<std::uint64_t> counts(rays.origins.size(), 0);
     for_each_ray(rays, [&](std::size_t, std::size_t i, const RayQuestion& question) {
-        thread_local std::vector<RayPlace> places;
-        all_places(*index_, question, places);
-        counts[i] = places.size();
+        thread_local std::vector<RayCrossing> crossings;
+        all_crossings(*index_, question, crossings);
+        counts[i] = crossings.size();
     });
     return counts;
 }
@@ -96,14 +96,14 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
     all.first.assign(count + 1, 0);
     struct Found {
         std::size_t ray;
-        RayPlace place;
+        RayCrossing crossing_point;
     };
     std::vector<std::vector<Found>> blocks((count + kQuestionBlock - 1) / kQuestionBlock);
     for_each_ray(rays, [&](std::size_t block, std::size_t i, const RayQuestion& question) {
-        thread_local std::vector<RayPlace> places;
-        all_places(*index_, question, places);
-        all.first[i + 1] = places.size();
-        for (const RayPlace& place : places) blocks[block].push_back({i, place});
+        thread_local std::vector<RayCrossing> crossings;
+        all_crossings(*index_, question, crossings);
+        all.first[i + 1] = crossings.size();
+        for (const RayCrossing& crossing_point : crossings) blocks[block].push_back({i, crossing_point});
     });
     std::partial_sum(all.first.begin(), all.first.end(), all.first.begin());
     all.hits = no_hits(all.first.back());
@@ -111,13 +111,13 @@ AllMeshHits MeshQueries::all_hits(const RayBatch& rays) const {
     all.in_plane.assign(all.first.back(), 0);
     parallel_for_blocks(blocks.size(), 1, [&](std::size_t block, std::size_t, std::size_t) {
         std::size_t k = all.first[block * kQuestionBlock];
-        for (const auto& [ray, place] : blocks[block]) {
+        for (const auto& [ray, crossing_point] : blocks[block]) {
             const RayQuestion question{Ray(rays.origins[ray], rays.directions[ray]), kInfinity};
-            all.hits.triangle[k] = place.triangle;
-            all.hits.distance[k] = question.ray.distance(place.t);
-            all.hits.point[k] = question.ray.at(place.t);
-            all.crossing[k] = place.crossing;
-            all.in_plane[k++] = place.is_in_plane ? 1 : 0;
+            all.hits.triangle[k] = crossing_point.triangle;
+            all.hits.distance[k] = question.ray.distance(crossing_point.t);
+            all.hits.point[k] = question.ray.at(crossing_point.t);
+            all.crossing[k] = crossing_point.crossing;
+            all.in_plane[k++] = crossing_point.is_in_plane ? 1 : 0;
         }
         blocks[block] = {};
     });

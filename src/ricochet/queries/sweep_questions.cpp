@@ -24,7 +24,7 @@ namespace ricochet {
 namespace {
 
 /// Straight paths of points and spheres.
-struct Ways {
+struct Paths {
     std::span<const Vec3> from;
     std::span<const Vec3> to;
     std::span<const double> radii;
@@ -57,9 +57,9 @@ struct Contact {
 };
 
 template <class First>
-MeshHits first_contacts(const Ways& ways, const First& first) {
-    MeshHits hits = no_hits(ways.from.size());
-    parallel_for_blocks(ways.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+MeshHits first_contacts(const Paths& paths, const First& first) {
+    MeshHits hits = no_hits(paths.from.size());
+    parallel_for_blocks(paths.from.size(), kQuestionBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             poll_loop_stop();
             const std::optional<Contact> contact = first(i);
@@ -129,7 +129,7 @@ std::optional<Contact> sphere_contact(const MeshIndex& mesh, const TriangleBvh& 
 constexpr int kLooksForTheWayOut = 64;
 
 /// Returns the rest of a path from a time on, rounded.
-MovingPoint rest_of(const MovingPoint& way, double from) { return {way.at(from), way.to}; }
+MovingPoint rest_of(const MovingPoint& displacement, double from) { return {displacement.at(from), displacement.to}; }
 
 /// Returns the first contact after the sphere has separated from the triangle.
 std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, double radius,
@@ -235,13 +235,13 @@ private:
 }  // namespace
 
 MeshHits MeshQueries::sweep(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> radii) const {
-    const Ways ways{from, to, radii};
-    ways.require();
-    const TriangleBvh& for_spheres = index_->hierarchy(ways.largest_radius());
-    return first_contacts(ways, [&](std::size_t i) {
+    const Paths paths{from, to, radii};
+    paths.require();
+    const TriangleBvh& for_spheres = index_->hierarchy(paths.largest_radius());
+    return first_contacts(paths, [&](std::size_t i) {
         const Vec3 start = flush_tiny(from[i]);
         const Vec3 end = flush_tiny(to[i]);
-        const double radius = ways.radius(i);
+        const double radius = paths.radius(i);
         return radius > 0.0 ? sphere_contact(*index_, for_spheres, start, end, radius)
                             : point_contact(*index_, start, end);
     });
@@ -249,12 +249,12 @@ MeshHits MeshQueries::sweep(std::span<const Vec3> from, std::span<const Vec3> to
 
 MeshHits MeshQueries::sweep_moving(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const double> radii,
                                    std::span<const Vec3> vertices_after) const {
-    const Ways ways{from, to, radii};
-    ways.require();
+    const Paths paths{from, to, radii};
+    paths.require();
     require_same_length(vertices_after.size(), mesh().vertices.size(), "vertices_after");
     require_positions(vertices_after, "vertices_after");
     const MovingMesh moving(*index_, vertices_after);
-    return first_contacts(ways, [&](std::size_t i) { return moving.first({from[i], to[i]}, ways.radius(i)); });
+    return first_contacts(paths, [&](std::size_t i) { return moving.first({from[i], to[i]}, paths.radius(i)); });
 }
 
 }  // namespace ricochet

@@ -36,7 +36,7 @@ public:
 
 private:
     void advance();
-    void answer(const Contact& contact);
+    void resolve(const Contact& contact);
     void finish();
 
     void watch_progress();
@@ -44,7 +44,9 @@ private:
         return is_stuck_ || (rules_.settings.walls == WallRule::stop && flow_.leads_in(state_.time));
     }
     /// Pressed onto a surface with no time left to go anywhere along it, as after a landing at the end of the step.
-    [[nodiscard]] bool is_over() const { return flow_.is_no_way(step_.remaining()) && flow_.leads_in(state_.time); }
+    [[nodiscard]] bool is_over() const {
+        return flow_.is_negligible_path(step_.remaining()) && flow_.leads_in(state_.time);
+    }
     [[nodiscard]] double reach() const { return widening_ * kEdgeOffsets * contact_offset(state_.position); }
     [[nodiscard]] TouchRule touch_rule() const;
 
@@ -105,11 +107,11 @@ void Advector::advance() {
     surface_segments_ += halvings > 0 && !flow_.is_held() ? 1 : 0;
     longest_ = halvings > 0 ? 2.0 * duration : 2.0 * longest_;
     manifold_.touch_again(touch_rule());
-    if (contact) answer(*contact);
+    if (contact) resolve(*contact);
 }
 
 /// Counts an impact; its surfaces come first in the manifold.
-void Advector::answer(const Contact& contact) {
+void Advector::resolve(const Contact& contact) {
     ++step_.outcome().bounces;
     manifold_.remember(contact.all());
     manifold_.replace(contact.all(), touch_rule(), flow_.free_velocity());
@@ -117,7 +119,7 @@ void Advector::answer(const Contact& contact) {
     watch_progress();
     state_.velocity = is_stopped() ? Vec3{} : flow_.velocity();
     for (const ContactSurface& surface : contact.all()) {
-        step_.impact().push(surface.surface, Vec3{}, true);
+        step_.impact().record_impulse(surface.surface, Vec3{}, true);
         step_.impact().record(surface, arriving);
     }
 }
@@ -150,7 +152,7 @@ void Advector::finish() {
     const bool is_pressed = is_stuck_ || flow_.leads_in(state_.time);
     state_.velocity = is_stopped() ? Vec3{} : flow_.velocity();
     if (!is_pressed) return;
-    particle_.contact = manifold_.kept();
+    particle_.contact = manifold_.contact_state();
     if (state_.velocity != Vec3{}) return;
     // In a steady flow what does not move never will.
     const bool stays = rules_.settings.flow->is_steady() && outcome.unsimulated_time == 0.0;

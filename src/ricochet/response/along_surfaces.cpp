@@ -67,7 +67,7 @@ private:
 bool sticks(const Stuck& stuck) { return stuck.to_slip || stuck.to_turning || stuck.to_spinning; }
 
 /// That of the first moving surface on which the motion sticks; else zero.
-Vec3 carrying_velocity(std::span<const HoldingSurface> surfaces, const StuckSurfaces& stuck) {
+Vec3 carrying_velocity(std::span<const SupportSurface> surfaces, const StuckSurfaces& stuck) {
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
         if (stuck[k].to_slip && surfaces[k].velocity != Vec3{}) return surfaces[k].velocity;
     }
@@ -76,9 +76,9 @@ Vec3 carrying_velocity(std::span<const HoldingSurface> surfaces, const StuckSurf
 
 }  // namespace
 
-double speed_scale(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces) {
+double speed_scale(const Motion& motion, double radius, std::span<const SupportSurface> surfaces) {
     double scale = length(motion.velocity) + radius * length(motion.spin);
-    for (const HoldingSurface& surface : surfaces) {
+    for (const SupportSurface& surface : surfaces) {
         scale += length(surface.velocity) + radius * length(surface.angular_velocity);
     }
     return scale;
@@ -117,7 +117,7 @@ Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances) 
     return shift;
 }
 
-Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
+Motion along_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,
                       const StuckSurfaces& stuck, double braked_from) {
     const bool is_sphere = radius > 0.0;
     const bool is_free = std::none_of(stuck.begin(), stuck.begin() + surfaces.size(), sticks);
@@ -125,7 +125,7 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Holdi
     // As it is seen from a surface that carries it: what stands still there does so exactly.
     const Vec3 carried = carrying_velocity(surfaces, stuck);
     Remover remover;
-    for (const HoldingSurface& surface : surfaces) {
+    for (const SupportSurface& surface : surfaces) {
         remover.add(normal_direction(surface.normal), -dot(carried, surface.normal));
     }
     for (std::size_t k = 0; k < surfaces.size(); ++k) {

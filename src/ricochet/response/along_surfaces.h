@@ -12,12 +12,12 @@
 namespace ricochet {
 
 /// Surfaces that hold a particle at one time, at most.
-inline constexpr std::size_t kMostHolding = 3;
+inline constexpr std::size_t kMostSupports = 3;
 
 struct SurfaceMotion;
 
 /// A surface that holds a particle.
-struct HoldingSurface {
+struct SupportSurface {
     Vec3 normal;                     ///< unit, towards the particle
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
@@ -30,10 +30,10 @@ struct HoldingSurface {
     /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip; and to those of radius
     /// times angular velocity, along the surface and about its normal, since the normal turns. The change of `velocity`
     /// is part of that of the slip.
-    double bend = 0.0;
-    Vec3 slip_bend{};
-    Vec3 turning_bend{};
-    double spinning_bend = 0.0;
+    double curvature = 0.0;
+    Vec3 slip_curvature{};
+    Vec3 turning_curvature{};
+    double spinning_curvature = 0.0;
 };
 
 /// What does not move at a surface.
@@ -42,15 +42,15 @@ struct Stuck {
     bool to_turning = false;   ///< resistance to rolling holds it
     bool to_spinning = false;  ///< resistance to spinning about the normal holds it
 };
-using StuckSurfaces = std::array<Stuck, kMostHolding>;
+using StuckSurfaces = std::array<Stuck, kMostSupports>;
 
 /// The slip of a motion on a surface, see slip_velocity(): relative to the surface's material.
-[[nodiscard]] inline Vec3 slip_on(const HoldingSurface& surface, const Motion& motion, double radius) {
+[[nodiscard]] inline Vec3 slip_on(const SupportSurface& surface, const Motion& motion, double radius) {
     return slip_velocity(motion, radius, surface.normal) - surface.velocity;
 }
 
 /// The speeds that slips, rolling and spinning on these surfaces are made of, m/s: what is small next to it is none.
-[[nodiscard]] double speed_scale(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces);
+[[nodiscard]] double speed_scale(const Motion& motion, double radius, std::span<const SupportSurface> surfaces);
 
 /// The vector nearest to v that is at right angles to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
@@ -62,7 +62,7 @@ using StuckSurfaces = std::array<Stuck, kMostHolding>;
 /// The motion nearest to the given one (in energy) that is along all surfaces, and slips and turns on none where
 /// `stuck` says so.
 /// braked_from: m/s, a speed that the motion had before, whose rounding is no motion.
-[[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const HoldingSurface> surfaces,
+[[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,
                                     const StuckSurfaces& stuck, double braked_from = 0.0);
 
 /// Twice the kinetic energy over the mass of a solid sphere, or a point (radius 0), m^2/s^2.

@@ -11,8 +11,8 @@
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/dynamics/stability.h"
 #include "ricochet/response/along_surfaces.h"
-#include "ricochet/response/held_surfaces.h"
-#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/impact_resolver.h"
+#include "ricochet/response/manifold_surfaces.h"
 #include "ricochet/response/normal_rate.h"
 
 namespace ricochet {
@@ -41,7 +41,7 @@ public:
     [[nodiscard]] Vec3 velocity(const Vec3& position, double time) const override {
         const Vec3 free = flow_.velocity(position, time);
         if (!is_finite(free)) refuse_if_in_range(free, position, time);
-        std::array<Vec3, kMostHolding> normals;
+        std::array<Vec3, kMostSupports> normals;
         return surfaces_.empty() ? free : along_all(free, normals_at(position, normals));
     }
     [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
@@ -49,8 +49,8 @@ public:
     [[nodiscard]] Vec3 put_on(Vec3 position, double distance) const {
         constexpr int kCorrections = 3;
         for (int k = 0; k < kCorrections; ++k) {
-            std::array<Vec3, kMostHolding> normals;
-            std::array<double, kMostHolding> lifts{};
+            std::array<Vec3, kMostSupports> normals;
+            std::array<double, kMostSupports> lifts{};
             const auto at = normals_at(position, normals);
             for (std::size_t i = 0; i < surfaces_.size(); ++i) {
                 const SurfaceId surface = surfaces_[i].surface;
@@ -71,7 +71,7 @@ private:
                         "{:.6g} s, expected finite numbers",
                         g.x, g.y, g.z, particle_, x.x, x.y, x.z, time));
     }
-    std::span<const Vec3> normals_at(const Vec3& position, std::array<Vec3, kMostHolding>& normals) const {
+    std::span<const Vec3> normals_at(const Vec3& position, std::array<Vec3, kMostSupports>& normals) const {
         for (std::size_t i = 0; i < surfaces_.size(); ++i) {
             const ContactSurface& surface = surfaces_[i];
             normals[i] = surface.flat ? surface.normal : round_normal(geometry_, surface, position);
@@ -109,19 +109,19 @@ Path cut(Path path, double duration) {
 
 }  // namespace
 
-void Holders::add(std::size_t point, const Vec3& normal) {
+void SupportSet::add(std::size_t point, const Vec3& normal) {
     points_[count_] = point;
     normals_[count_++] = normal;
 }
 
-void Holders::remove(std::size_t k) {
+void SupportSet::remove(std::size_t k) {
     for (--count_; k < count_; ++k) {
         points_[k] = points_[k + 1];
         normals_[k] = normals_[k + 1];
     }
 }
 
-bool Holders::has(std::size_t point) const {
+bool SupportSet::has(std::size_t point) const {
     return std::find(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_), point) !=
            points_.begin() + static_cast<std::ptrdiff_t>(count_);
 }
@@ -135,9 +135,10 @@ bool ConstrainedFlow::leads_in(double time) const {
         return std::any_of(normals.begin(), normals.end(), [&](const Vec3& normal) { return dot(v, normal) < 0.0; });
     };
     if (is_into(flow_.velocity(state_.position, time))) return true;
-    Path way = flow_path(rules_.settings.integrator, flow_, state_.position, time, kShortestRelease * step_, 0.0).path;
-    way.c[0] = {};
-    const ControlPoints points = way.control_points();
+    Path trajectory =
+        flow_path(rules_.settings.integrator, flow_, state_.position, time, kShortestRelease * step_, 0.0).path;
+    trajectory.c[0] = {};
+    const ControlPoints points = trajectory.control_points();
     return std::any_of(points.begin(), points.end(), is_into);
 }
 
@@ -172,7 +173,7 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
     }
 }
 
-bool ConstrainedFlow::is_no_way(double duration) const {
+bool ConstrainedFlow::is_negligible_path(double duration) const {
     return duration <= kNoProgress * step_ && is_no_progress(duration, velocity());
 }
 
@@ -187,10 +188,10 @@ bool ConstrainedFlow::dips(const Path& path, double time) const {
 }
 
 /// Those whose reaction to the flow is not zero.
-Holders ConstrainedFlow::holders_now() const {
+SupportSet ConstrainedFlow::holders_now() const {
     const auto normals = manifold_.normals();
     const auto loads = normal_accelerations(free_velocity(), normals);
-    Holders holders;
+    SupportSet holders;
     for (std::size_t k = 0; k < normals.size(); ++k) {
         if (loads[k] > 0.0) holders.add(k, normals[k]);
     }
@@ -199,7 +200,7 @@ Holders ConstrainedFlow::holders_now() const {
 
 Path ConstrainedFlow::free_path(double duration) {
     Surfaces surfaces;
-    const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
+    const FlowAlong along(flow_, geometry_, supports(surfaces), state_.id);
     const FlowPath free = flow_path(rules_.settings.integrator, along, state_.position, state_.time, duration,
                                     next_duration_, kShortestSubstep * step_);
     next_duration_ = free.next_duration;
@@ -209,7 +210,7 @@ Path ConstrainedFlow::free_path(double duration) {
 }
 
 /// The holders as a path goes along them: what is not followed on an arc counts as flat.
-std::span<const ContactSurface> ConstrainedFlow::holding(Surfaces& surfaces) const {
+std::span<const ContactSurface> ConstrainedFlow::supports(Surfaces& surfaces) const {
     for (std::size_t k = 0; k < holders_.size(); ++k) {
         surfaces[k] = manifold_[holders_.point(k)];
         surfaces[k].flat = surfaces[k].flat || followed_count_ == 0;
@@ -235,12 +236,12 @@ void ConstrainedFlow::find_followed() {
 /// An arc up to where a holder lets go, or ends.
 ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const {
     Part part{path, 0};
-    const auto let_go = let_go_by(part.path.end, state_.time + part.path.duration);
-    if (!let_go) return part;
-    part.ended_by = *let_go;
+    const auto release_at = released_by(part.path.end, state_.time + part.path.duration);
+    if (!release_at) return part;
+    part.ended_by = *release_at;
     const double until = bisect(0.0, part.path.duration, kReleaseHalvings, [&](double s) {
                              const std::optional<std::size_t> by =
-                                 s > 0.0 ? let_go_by(arc(s).end, state_.time + s) : std::nullopt;
+                                 s > 0.0 ? released_by(arc(s).end, state_.time + s) : std::nullopt;
                              if (by) part.ended_by = *by;
                              return !by;
                          }).high;
@@ -251,11 +252,11 @@ ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const
 /// The way of so many seconds along the holders, as the cubic through its ends.
 Path ConstrainedFlow::arc(double duration) const {
     Surfaces surfaces;
-    const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
+    const FlowAlong along(flow_, geometry_, supports(surfaces), state_.id);
     const Vec3& from = state_.position;
-    const FlowPath way = flow_path(rules_.settings.integrator, along, from, state_.time, duration, duration);
-    const double passed = way.path.duration;
-    const Vec3 end = along.put_on(way.path.end, state_.radius + contact_offset(way.path.end));
+    const FlowPath trajectory = flow_path(rules_.settings.integrator, along, from, state_.time, duration, duration);
+    const double passed = trajectory.path.duration;
+    const Vec3 end = along.put_on(trajectory.path.end, state_.radius + contact_offset(trajectory.path.end));
     Path path =
         hermite_path(from, along.velocity(from, state_.time), end, along.velocity(end, state_.time + passed), passed);
     lift_middle(geometry_, manifold_, state_.radius, path);
@@ -263,8 +264,8 @@ Path ConstrainedFlow::arc(double duration) const {
 }
 
 /// The holder that the flow no longer presses the particle onto there, or whose rim it has come to.
-std::optional<std::size_t> ConstrainedFlow::let_go_by(const Vec3& position, double time) const {
-    std::array<Vec3, kMostHolding> normals;
+std::optional<std::size_t> ConstrainedFlow::released_by(const Vec3& position, double time) const {
+    std::array<Vec3, kMostSupports> normals;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
         const ContactSurface support = manifold_[holders_.point(k)];
         if (!support.flat && geometry_.nearest(support.surface, position).rim) return k;
@@ -314,7 +315,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
         const double until = bisect(0.0, path.duration, kReleaseHalvings, holds).high;
         part.ended_by = weakest(flow_at(until));
         Surfaces surfaces;
-        const FlowAlong along(flow_, geometry_, holding(surfaces), state_.id);
+        const FlowAlong along(flow_, geometry_, supports(surfaces), state_.id);
         part.path = flow_path(rules_.settings.integrator, along, state_.position, state_.time, until, until).path;
     }
     Path& held = part.path;
@@ -342,8 +343,8 @@ ConstrainedFlow::Part ConstrainedFlow::until_rim(const Path& path, double reach)
 Path ConstrainedFlow::lifted(Path path) const {
     const CollisionWorld& world = rules_.world;
     const double offset = contact_offset(path.end);
-    Holders lifting;
-    std::array<double, kMostHolding> lifts{};
+    SupportSet lifting;
+    std::array<double, kMostSupports> lifts{};
     for (std::size_t k = 0; k < holders_.size(); ++k) {
         const ContactSurface support = manifold_[holders_.point(k)];
         const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;

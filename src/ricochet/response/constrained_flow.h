@@ -20,7 +20,7 @@
 namespace ricochet {
 
 /// The contact points that hold a particle, by their numbers in the manifold.
-class Holders {
+class SupportSet {
 public:
     void add(std::size_t point, const Vec3& normal);
     /// k < size().
@@ -32,8 +32,8 @@ public:
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
 
 private:
-    std::array<std::size_t, kMostHolding> points_{};
-    std::array<Vec3, kMostHolding> normals_;
+    std::array<std::size_t, kMostSupports> points_{};
+    std::array<Vec3, kMostSupports> normals_;
     std::size_t count_ = 0;
 };
 
@@ -61,7 +61,7 @@ public:
     [[nodiscard]] double time_to_release(double remaining) const;
 
     /// True when it leads so little along surfaces in that time, s, that a path is not worth making, see kNoProgress.
-    [[nodiscard]] bool is_no_way(double duration) const;
+    [[nodiscard]] bool is_negligible_path(double duration) const;
 
     /// The next path, at most `duration` long, s, and at most `reach`, m, beyond the rim of a flat surface. Contact
     /// points that the particle is past are removed.
@@ -85,15 +85,15 @@ private:
         std::size_t ended_by = 0;
     };
 
-    [[nodiscard]] Holders holders_now() const;
+    [[nodiscard]] SupportSet holders_now() const;
     [[nodiscard]] Path free_path(double duration);
-    using Surfaces = std::array<ContactSurface, kMostHolding>;
+    using Surfaces = std::array<ContactSurface, kMostSupports>;
 
     void find_followed();
-    [[nodiscard]] std::span<const ContactSurface> holding(Surfaces& surfaces) const;
+    [[nodiscard]] std::span<const ContactSurface> supports(Surfaces& surfaces) const;
     [[nodiscard]] Part arc_until_release(const Path& path) const;
     [[nodiscard]] Path arc(double duration) const;
-    [[nodiscard]] std::optional<std::size_t> let_go_by(const Vec3& position, double time) const;
+    [[nodiscard]] std::optional<std::size_t> released_by(const Vec3& position, double time) const;
     [[nodiscard]] double longest_arc(double duration) const;
     [[nodiscard]] Part until_release(const Path& path) const;
     [[nodiscard]] std::size_t weakest(const Vec3& g) const;
@@ -111,8 +111,8 @@ private:
     double next_duration_ = 0.0;  // s, of an adaptive method
     std::uint32_t substeps_ = 0;  // paths that have been asked of the integrator
     bool is_coarse_ = false;
-    Holders holders_;  // of the last path
-    std::array<SurfaceId, kMostHolding> followed_{};
+    SupportSet holders_;  // of the last path
+    std::array<SurfaceId, kMostSupports> followed_{};
     std::size_t followed_count_ = 0;
     int chords_ = 0;  // round edges so far
 };

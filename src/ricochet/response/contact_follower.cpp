@@ -31,23 +31,23 @@ bool follows_varying_forces(IntegratorKind kind) {
 }
 
 /// How long an arc lasts, s, and how it ends.
-struct ArcEnd {
+struct CurvedEnd {
     double time = 0.0;
     bool leaves_surface = false;
     bool jams = false;
 };
-ArcEnd end_of(const ContactArc& arc) {
-    using Hold = ContactArc::Hold;
+CurvedEnd end_of(const CurvedContact& arc) {
+    using SupportChange = CurvedContact::SupportChange;
     constexpr int kHalvings = 40;
-    const auto hold_at = [&](double time) { return arc.hold_on(arc.at(time), time); };
-    const auto is_as_before = [&](double time) { return hold_at(time) == Hold::as_before; };
+    const auto support_after = [&](double time) { return arc.support_at(arc.at(time), time); };
+    const auto is_as_before = [&](double time) { return support_after(time) == SupportChange::as_before; };
     const double longest = arc.longest();
     if (is_as_before(longest)) return {longest};
     const Bracket change = bisect(0.0, longest, kHalvings, is_as_before);
-    const ContactArc::State from = arc.at(change.high);
+    const CurvedContact::State from = arc.at(change.high);
     if (arc.jumps(arc.at(change.low), from)) return {change.low, false, true};
-    const Hold hold = arc.hold_on(from, change.high);
-    return {hold == Hold::turned ? change.low : change.high, hold == Hold::none};
+    const SupportChange hold = arc.support_at(from, change.high);
+    return {hold == SupportChange::turned ? change.low : change.high, hold == SupportChange::none};
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         particle_.spin = Vec3{};
         return {std::nullopt, false, true};
     }
-    if (!manifold_.bends() && !manifold_.is_turned(impact_)) {
+    if (!manifold_.is_curved() && !manifold_.is_turned(impact_)) {
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
             particle_.spin = interval.motion.spin;
@@ -119,29 +119,29 @@ Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
 }
 
 ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
-    const Grip grip = manifold_.grip(pull.pressure, step_.duration());
+    const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
     const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull.forces,
-                                                   manifold_.holding(impact_).all(), grip, duration);
+                                                   manifold_.supports(impact_).all(), grip, duration);
     manifold_.load(interval);
     return interval;
 }
 
 /// Follows one interval on flat surfaces.
 ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, const Pull& pull) {
-    const FlatWay way = way_along(flat);
-    if (way.path.duration <= 0.0) return {std::nullopt, true, false};
+    const FlatPath trajectory = path_along(flat);
+    if (trajectory.path.duration <= 0.0) return {std::nullopt, true, false};
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 turned = flat.motion().velocity - state_.velocity;
     const Vec3 from = state_.position;
     const double most = twice_kinetic({state_.velocity, particle_.spin}, state_.radius);
     held_.find();
-    Stop stop{step_.follow(way.path, held_.all()), way.leaves_surface, false};
+    Stop stop{step_.follow(trajectory.path, held_.all()), trajectory.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
     const bool is_over = !stop.is_early() || elapsed >= interval.duration;
     Motion motion =
-        motion_after(interval, elapsed, is_over, state_.velocity, state_.radius, manifold_.holding(impact_).all());
+        motion_after(interval, elapsed, is_over, state_.velocity, state_.radius, manifold_.supports(impact_).all());
     const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
     if (!manifold_.is_driven(impact_)) {
         limit_energy(motion, state_.radius, most + 2.0 * work,
@@ -149,16 +149,16 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     }
     // Also what surfaces take of a slip that ends: friction turns while it does, and not all of it ends by itself.
     const Vec3 stopped = motion.velocity - state_.velocity;
-    manifold_.record_push(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, impact_);
+    manifold_.record_impulse(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, impact_);
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    step_.log().note_contact(pull.forces, way.path, pull.acts, held_.all());
+    step_.log().note_contact(pull.forces, trajectory.path, pull.acts, held_.all());
     held_.meet(stop.contact);
     return stop;
 }
 
 /// The way of an interval, up to where a surface ends; its end keeps the contact offset.
-ContactFollower::FlatWay ContactFollower::way_along(const FlatInterval& interval) const {
+ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval) const {
     Path path = interval.path(state_.position, interval.duration());
     if (!is_finite(path.end)) return {path, false};
     const double slack = kEdgeOffsets * step_.geometry().contact_offset(state_.position);
@@ -178,8 +178,8 @@ ContactFollower::FlatWay ContactFollower::way_along(const FlatInterval& interval
 /// nearer to the others, also where the end lies a little beyond a rim.
 void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) const {
     const SurfaceGeometry& geometry = step_.geometry();
-    std::array<Vec3, kMostHolding> normals;
-    std::array<double, kMostHolding> lifts{};
+    std::array<Vec3, kMostSupports> normals;
+    std::array<double, kMostSupports> lifts{};
     std::size_t count = 0;
     double largest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
@@ -200,82 +200,83 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
 /// Follows one arc.
 ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double duration) {
     held_.find();
-    const ContactManifold::Holding materials = manifold_.holding(impact_);
-    const Grip grip = manifold_.grip(pull.pressure, step_.duration());
-    const ContactArc arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
-                         {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
-                          tolerance(), rules_.frame});
+    const ContactManifold::SupportList materials = manifold_.supports(impact_);
+    const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
+    const CurvedContact arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
+                            {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
+                             tolerance(), rules_.frame});
     if (arc.plan().at_rest) {
         particle_.spin = arc.plan().motion.spin;
         return {std::nullopt, false, true};
     }
-    std::optional<ArcWay> way = way_along(arc);
-    if (!way) return {std::nullopt, true, false};
+    std::optional<CurvedPath> trajectory = path_along(arc);
+    if (!trajectory) return {std::nullopt, true, false};
     const Vec3& from = state_.position;
-    const bool is_short = length(way->end.position - from) <= kTouchingOffsets * step_.geometry().contact_offset(from);
-    if (way->jams && (is_short || !(way->path.duration > 0.0))) {
+    const bool is_short =
+        length(trajectory->end.position - from) <= kTouchingOffsets * step_.geometry().contact_offset(from);
+    if (trajectory->jams && (is_short || !(trajectory->path.duration > 0.0))) {
         particle_.spin = Vec3{};
         return {std::nullopt, false, true};
     }
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 velocity_before = state_.velocity;
-    std::optional<Contact> contact = move_along(*way, arc);
+    std::optional<Contact> contact = move_along(*trajectory, arc);
     const double elapsed = before - step_.remaining();
     const Vec3 forces_after = pull.acts ? rules_.forces.acceleration(state_) : Vec3{};
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
     manifold_.load(arc.plan());
-    manifold_.record_push(state_.velocity - velocity_before - by_forces, elapsed, impact_);
-    step_.log().note_contact(pull.forces, way->path, pull.acts, held_.all());
+    manifold_.record_impulse(state_.velocity - velocity_before - by_forces, elapsed, impact_);
+    step_.log().note_contact(pull.forces, trajectory->path, pull.acts, held_.all());
     held_.meet(contact);
-    Stop stop{contact, way->leaves_surface, false};
-    if (!stop.is_early()) held_.touch_again(way->turning_point);
+    Stop stop{contact, trajectory->leaves_surface, false};
+    if (!stop.is_early()) held_.touch_again(trajectory->turning_point);
     return stop;
 }
 
 /// The way of an arc, up to where nothing holds it any more or another part of a surface begins; none where that is
 /// at once.
-std::optional<ContactFollower::ArcWay> ContactFollower::way_along(const ContactArc& arc) const {
-    if (arc.hold_on(arc.start(), 0.0) == ContactArc::Hold::none) return std::nullopt;
-    ArcWay way;
-    const ArcEnd end = end_of(arc);
-    way.leaves_surface = end.leaves_surface;
-    way.jams = end.jams;
-    if (!(end.time > 0.0) && !way.jams) return std::nullopt;
-    lead_until(end.time, arc, way);
-    if (end.time > 0.0) keep_to_pieces(arc, way);  // else it jams at once, and has no path
+std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const CurvedContact& arc) const {
+    if (arc.support_at(arc.start(), 0.0) == CurvedContact::SupportChange::none) return std::nullopt;
+    CurvedPath trajectory;
+    const CurvedEnd end = end_of(arc);
+    trajectory.leaves_surface = end.leaves_surface;
+    trajectory.jams = end.jams;
+    if (!(end.time > 0.0) && !trajectory.jams) return std::nullopt;
+    lead_until(end.time, arc, trajectory);
+    if (end.time > 0.0) keep_to_pieces(arc, trajectory);  // else it jams at once, and has no path
     // In 1e-46 s and less the cubic between two places that are one but for rounding has no coefficients.
-    if (!way.jams && !can_be_followed(way.path)) return std::nullopt;
-    return way;
+    if (!trajectory.jams && !can_be_followed(trajectory.path)) return std::nullopt;
+    return trajectory;
 }
 
 /// Shortens the way to where another part of a surface begins.
-void ContactFollower::keep_to_pieces(const ContactArc& arc, ArcWay& way) const {
-    way.turning_point = way.path.end;
+void ContactFollower::keep_to_pieces(const CurvedContact& arc, CurvedPath& trajectory) const {
+    trajectory.turning_point = trajectory.path.end;
     // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
-    for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(way.path.end)); ++k) {
-        const double on = time_on_pieces(way.path);
-        if (!(on < way.path.duration)) break;
-        way.turning_point = way.path.position(on);
-        way.jams = false;
-        way.leaves_surface = held_.has_left_face(way.turning_point);
-        lead_until(on, arc, way);
+    for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(trajectory.path.end)); ++k) {
+        const double on = time_on_pieces(trajectory.path);
+        if (!(on < trajectory.path.duration)) break;
+        trajectory.turning_point = trajectory.path.position(on);
+        trajectory.jams = false;
+        trajectory.leaves_surface = held_.has_left_face(trajectory.turning_point);
+        lead_until(on, arc, trajectory);
     }
 }
 
-void ContactFollower::lead_until(double time, const ContactArc& arc, ArcWay& way) const {
-    way.end = arc.at(time);
+void ContactFollower::lead_until(double time, const CurvedContact& arc, CurvedPath& trajectory) const {
+    trajectory.end = arc.at(time);
     if (!(time > 0.0)) return;
-    way.path = hermite_path(arc.start().position, arc.start().motion.velocity, way.end.position,
-                            way.end.motion.velocity, time);
-    lift_middle(step_.geometry(), manifold_, state_.radius, way.path);
+    trajectory.path = hermite_path(arc.start().position, arc.start().motion.velocity, trajectory.end.position,
+                                   trajectory.end.motion.velocity, time);
+    lift_middle(step_.geometry(), manifold_, state_.radius, trajectory.path);
 }
 
 /// The time on the path, s, from which another part of a surface is touched, if only for a while.
 double ContactFollower::time_on_pieces(const Path& path) const {
     constexpr int kLooks = 4;
     constexpr int kHalvings = 32;
-    const auto is_on_part = [&](double time) { return !held_.touches_next_part(path.position(time)); };
+    const auto is_on_part = [&](double time) { return !held_.touches_next_substep(path.position(time)); };
     for (int k = 1; k <= kLooks; ++k) {
         const double time = k < kLooks ? (static_cast<double>(k) / kLooks) * path.duration : path.duration;
         if (!is_on_part(time)) return bisect(0.0, time, kHalvings, is_on_part).high;
@@ -284,18 +285,18 @@ double ContactFollower::time_on_pieces(const Path& path) const {
 }
 
 /// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
-std::optional<Contact> ContactFollower::move_along(ArcWay& way, const ContactArc& arc) {
-    CloserLooks looks;
+std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const CurvedContact& arc) {
+    RefinementBudget looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
         const Vec3 there = arc.at(time).position;
         if (!looks.may_improve(tried.position(time), there, step_.geometry().contact_offset(there))) return {};
-        way.leaves_surface = way.jams = false;
-        lead_until(time, arc, way);
-        keep_to_pieces(arc, way);
-        return way.path;
+        trajectory.leaves_surface = trajectory.jams = false;
+        lead_until(time, arc, trajectory);
+        keep_to_pieces(arc, trajectory);
+        return trajectory.path;
     };
-    const std::optional<Contact> contact = step_.follow(way.path, held_.all(), closer);
-    const Motion motion = contact ? arc.at(contact->time).motion : way.jams ? Motion{} : way.end.motion;
+    const std::optional<Contact> contact = step_.follow(trajectory.path, held_.all(), closer);
+    const Motion motion = contact ? arc.at(contact->time).motion : trajectory.jams ? Motion{} : trajectory.end.motion;
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
     return contact;

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "ricochet/collision/contact_scratch.h"
-#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/contact_interval.h"
 #include "ricochet/response/contact_manifold.h"
+#include "ricochet/response/curved_contact.h"
 #include "ricochet/response/flat_interval.h"
-#include "ricochet/response/held_motion.h"
-#include "ricochet/response/held_surfaces.h"
+#include "ricochet/response/manifold_surfaces.h"
 #include "ricochet/response/particle_step.h"
 #include "ricochet/response/response.h"
 
@@ -42,18 +42,18 @@ public:
     /// The interval that it would be if all that is touched were flat. It loads the manifold.
     [[nodiscard]] ContactInterval plan(const Pull& pull, double duration);
     /// What holds it takes part in an impact on something else.
-    void take_part_in(Contact& contact) const { held_.take_part_in(contact); }
+    void join_impact(Contact& contact) const { held_.join_impact(contact); }
 
 private:
     /// What a particle follows in one contact interval on flat surfaces.
-    struct FlatWay {
+    struct FlatPath {
         Path path;
         bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
     };
     /// What it follows on an arc.
-    struct ArcWay {
+    struct CurvedPath {
         Path path;  ///< a cubic that is no more than near the arc between its ends
-        ContactArc::State end;
+        CurvedContact::State end;
         Vec3 turning_point;           ///< on the way, where another part of a surface begins; else its end
         bool leaves_surface = false;  ///< nothing holds it any more at its end
         bool jams = false;            ///< it is stuck at its end
@@ -65,23 +65,23 @@ private:
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
     [[nodiscard]] FlatInterval plan_by_middle(PlannedInterval begin, double pressure, double duration);
     [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
-    [[nodiscard]] FlatWay way_along(const FlatInterval& interval) const;
+    [[nodiscard]] FlatPath path_along(const FlatInterval& interval) const;
     void keep_offset(Path& path, const FlatInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
-    [[nodiscard]] std::optional<ArcWay> way_along(const ContactArc& arc) const;
-    void lead_until(double time, const ContactArc& arc, ArcWay& way) const;
-    void keep_to_pieces(const ContactArc& arc, ArcWay& way) const;
+    [[nodiscard]] std::optional<CurvedPath> path_along(const CurvedContact& arc) const;
+    void lead_until(double time, const CurvedContact& arc, CurvedPath& trajectory) const;
+    void keep_to_pieces(const CurvedContact& arc, CurvedPath& trajectory) const;
     [[nodiscard]] double time_on_pieces(const Path& path) const;
-    [[nodiscard]] std::optional<Contact> move_along(ArcWay& way, const ContactArc& arc);
+    [[nodiscard]] std::optional<Contact> move_along(CurvedPath& trajectory, const CurvedContact& arc);
     [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;
 
     ParticleStep& step_;
     const ResponseRules& rules_;
     MovingParticle& particle_;
     ForceInput& state_;
-    ImpactAnswer& impact_;
+    ImpactResolver& impact_;
     ContactManifold& manifold_;
-    HeldSurfaces held_;
+    ManifoldSurfaces held_;
     double clock_ = -std::numeric_limits<double>::infinity();  // s, at the last look
     int timeless_ = 0;                                         // intervals in a row in which it stood still
 };

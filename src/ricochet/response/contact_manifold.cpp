@@ -5,8 +5,8 @@
 #include <initializer_list>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/held_motion.h"
-#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/contact_interval.h"
+#include "ricochet/response/impact_resolver.h"
 
 namespace ricochet {
 namespace {
@@ -43,9 +43,9 @@ void ContactManifold::clear() {
     surfaces_ = {};
 }
 
-void ContactManifold::recall(const KeptContact& kept) {
-    surfaces_ = kept.surfaces;
-    count_ = kept.count;
+void ContactManifold::recall(const ContactState& contact_state) {
+    surfaces_ = contact_state.surfaces;
+    count_ = contact_state.count;
 }
 
 void ContactManifold::remove(std::size_t k) {
@@ -95,12 +95,12 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
     }
     const std::span<const ContactSurface> candidates = std::span(all).first(count);
     clear();
-    if (count > kMostPoints) add_holding(candidates, pull);
+    if (count > kMostPoints) add_supports(candidates, pull);
     for (const ContactSurface& surface : candidates) add(surface);
 }
 
 /// The first one, two or three that leave nothing of a pull into any of the others.
-void ContactManifold::add_holding(std::span<const ContactSurface> candidates, const Vec3& pull) {
+void ContactManifold::add_supports(std::span<const ContactSurface> candidates, const Vec3& pull) {
     const double rounding = kProjectionRounding * length(pull);
     std::array<Vec3, kMostPoints> normals;
     const auto is_enough = [&](std::initializer_list<std::size_t> chosen) {
@@ -133,11 +133,11 @@ void ContactManifold::add_holding(std::span<const ContactSurface> candidates, co
     }
 }
 
-void ContactManifold::touch_again(const KeptContact& kept, const TouchRule& rule) {
+void ContactManifold::touch_again(const ContactState& contact_state, const TouchRule& rule) {
     clear();
-    for (std::size_t k = 0; k < kept.count; ++k) {
-        remember(kept.surfaces[k]);
-        if (const auto surface = touched(kept.surfaces[k], rule)) add(*surface);
+    for (std::size_t k = 0; k < contact_state.count; ++k) {
+        remember(contact_state.surfaces[k]);
+        if (const auto surface = touched(contact_state.surfaces[k], rule)) add(*surface);
     }
 }
 
@@ -167,7 +167,7 @@ std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const 
     const bool is_beside_rim = is_point && nearest.rim;
     const double above = nearest.distance - particle_.radius;
     if (above > (is_beside_rim ? rule.beyond_rim : rule.above) || above < -rule.overlap) return std::nullopt;
-    if (dot(particle_.velocity, nearest.normal) > rule.departure) return std::nullopt;
+    if (dot(particle_.velocity, nearest.normal) > rule.separation_speed) return std::nullopt;
     if (!is_beside_rim) return ContactSurface{surface, nearest.normal, nearest.flat};
     // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
     const double distance = geometry_.signed_distance_from(surface, p);
@@ -182,48 +182,48 @@ void ContactManifold::load(const Vec3& pull) {
     for (std::size_t k = 0; k < count_; ++k) loads_[k] = accelerations[k] * normals_[k];
 }
 
-void ContactManifold::load(const ContactInterval& interval) { loads_ = interval.push; }
+void ContactManifold::load(const ContactInterval& interval) { loads_ = interval.reaction; }
 
-ContactManifold::Holding ContactManifold::holding(const ImpactAnswer& impact) const {
-    Holding holding;
+ContactManifold::SupportList ContactManifold::supports(const ImpactResolver& impact) const {
+    SupportList supports;
     for (std::size_t k = 0; k < count_; ++k) {
         const Material& material = impact.material_of(surfaces_[k]);
-        holding.surfaces[holding.count++] = {normals_[k],
-                                             material.friction,
-                                             material.rolling_friction,
-                                             material.spinning_friction,
-                                             impact.velocity_of((*this)[k]),
-                                             impact.angular_velocity_of(surfaces_[k]),
-                                             material.drives() ? &material.motion : nullptr};
+        supports.surfaces[supports.count++] = {normals_[k],
+                                               material.friction,
+                                               material.rolling_friction,
+                                               material.spinning_friction,
+                                               impact.velocity_of((*this)[k]),
+                                               impact.angular_velocity_of(surfaces_[k]),
+                                               material.drives() ? &material.motion : nullptr};
     }
-    return holding;
+    return supports;
 }
 
-bool ContactManifold::is_driven(const ImpactAnswer& impact) const {
+bool ContactManifold::is_driven(const ImpactResolver& impact) const {
     return std::any_of(surfaces_.begin(), surfaces_.begin() + count_,
                        [&](SurfaceId surface) { return impact.material_of(surface).drives(); });
 }
 
-bool ContactManifold::is_turned(const ImpactAnswer& impact) const {
+bool ContactManifold::is_turned(const ImpactResolver& impact) const {
     return std::any_of(surfaces_.begin(), surfaces_.begin() + count_, [&](SurfaceId surface) {
         const Material& material = impact.material_of(surface);
         return material.drives() && material.motion.angular_velocity != Vec3{};
     });
 }
 
-Grip ContactManifold::grip(double pressure, double step) const {
+FrictionLimits ContactManifold::grip(double pressure, double step) const {
     return {pressure, step / kShortestIntervals, kTouchingOffsets * geometry_.contact_offset(particle_.position)};
 }
 
-void ContactManifold::record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const {
+void ContactManifold::record_impulse(const Vec3& velocity_change, double elapsed, ImpactResolver& impact) const {
     Vec3 left = velocity_change;
     for (std::size_t k = 1; k < count_; ++k) {
         if (loads_[k] == Vec3{}) continue;
         const Vec3 part = elapsed * loads_[k];
-        impact.push(surfaces_[k], part, false);
+        impact.record_impulse(surfaces_[k], part, false);
         left -= part;
     }
-    impact.push(surfaces_[0], left, false);
+    impact.record_impulse(surfaces_[0], left, false);
 }
 
 std::optional<Vec3> turned_along(const Vec3& velocity, std::span<const Vec3> normals) {

@@ -11,12 +11,12 @@
 
 #include "ricochet/collision/contact_scratch.h"
 #include "ricochet/response/along_surfaces.h"
-#include "ricochet/response/held_motion.h"
+#include "ricochet/response/contact_interval.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
 
-class ImpactAnswer;
+class ImpactResolver;
 
 /// When a particle touches a surface.
 struct TouchRule {
@@ -26,7 +26,8 @@ struct TouchRule {
     double above = 0.0;       ///< m, largest distance of the sphere (or the point) from the surface
     double overlap = 0.0;     ///< m, by how much a sphere may overlap the surface
     double beyond_rim = 0.0;  ///< m, largest distance of a point from the rim of a flat surface that it is beside
-    double departure = std::numeric_limits<double>::infinity();  ///< m/s along the normal, above which it has left
+    double separation_speed =
+        std::numeric_limits<double>::infinity();  ///< m/s along the normal, above which it has left
 };
 
 /// The contact points of one particle, at most three: more do not matter to where a pressed particle can go. An edge
@@ -44,17 +45,17 @@ public:
     [[nodiscard]] ContactSurface operator[](std::size_t k) const { return {surfaces_[k], normals_[k], flat_[k]}; }
     [[nodiscard]] std::span<const Vec3> normals() const { return {normals_.data(), count_}; }
     /// True when one of the surfaces does.
-    [[nodiscard]] bool bends() const {
+    [[nodiscard]] bool is_curved() const {
         return !std::all_of(flat_.begin(), flat_.begin() + count_, [](bool flat) { return flat; });
     }
     /// True when one of the surfaces moves and grips.
-    [[nodiscard]] bool is_driven(const ImpactAnswer& impact) const;
+    [[nodiscard]] bool is_driven(const ImpactResolver& impact) const;
     /// True when the velocity of one that does is not the same everywhere.
-    [[nodiscard]] bool is_turned(const ImpactAnswer& impact) const;
+    [[nodiscard]] bool is_turned(const ImpactResolver& impact) const;
     /// What the next step begins with.
-    [[nodiscard]] KeptContact kept() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
+    [[nodiscard]] ContactState contact_state() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// What the last step has kept, without normals yet: touch_again() has to follow.
-    void recall(const KeptContact& kept);
+    void recall(const ContactState& contact_state);
 
     /// Adds a contact point, unless one with the same normal, or the face whose seam it is, is there already.
     void add(const ContactSurface& surface);
@@ -75,9 +76,9 @@ public:
     void replace(std::span<const ContactSurface> surfaces, const TouchRule& rule, const Vec3& pull);
     /// Of the surfaces kept those that are still touched, as they are touched now. They replace what was touched
     /// before.
-    void touch_again(const KeptContact& kept, const TouchRule& rule);
+    void touch_again(const ContactState& contact_state, const TouchRule& rule);
     /// The same of what was touched before.
-    void touch_again(const TouchRule& rule) { touch_again(kept(), rule); }
+    void touch_again(const TouchRule& rule) { touch_again(contact_state(), rule); }
 
     /// Distributes over the contact points what a pull, m/s^2, presses onto them.
     void load(const Vec3& pull);
@@ -88,26 +89,26 @@ public:
     /// The same as an interval says it.
     void load(const ContactInterval& interval);
     /// The contact points with their materials.
-    struct Holding {
-        std::array<HoldingSurface, kMostHolding> surfaces;
+    struct SupportList {
+        std::array<SupportSurface, kMostSupports> surfaces;
         std::size_t count = 0;
-        [[nodiscard]] std::span<const HoldingSurface> all() const { return {surfaces.data(), count}; }
+        [[nodiscard]] std::span<const SupportSurface> all() const { return {surfaces.data(), count}; }
     };
-    [[nodiscard]] Holding holding(const ImpactAnswer& impact) const;
+    [[nodiscard]] SupportList supports(const ImpactResolver& impact) const;
     /// How they grip, in a step of this duration, s. pressure: as Grip::pressure.
-    [[nodiscard]] Grip grip(double pressure, double step) const;
+    [[nodiscard]] FrictionLimits grip(double pressure, double step) const;
     /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its part by its load, what
     /// is left on the first.
-    void record_push(const Vec3& velocity_change, double elapsed, ImpactAnswer& impact) const;
+    void record_impulse(const Vec3& velocity_change, double elapsed, ImpactResolver& impact) const;
 
 private:
-    static constexpr std::size_t kMostPoints = kMostHolding;
+    static constexpr std::size_t kMostPoints = kMostSupports;
     static constexpr std::size_t kMostRecent = 6;
     static constexpr std::size_t kMostCandidates = 16;  // of contact points, before three are chosen
 
     void set(std::size_t k, const ContactSurface& surface);
     void remember(SurfaceId surface);
-    void add_holding(std::span<const ContactSurface> candidates, const Vec3& pull);
+    void add_supports(std::span<const ContactSurface> candidates, const Vec3& pull);
     [[nodiscard]] bool is_same_point(const ContactSurface& known, const ContactSurface& surface) const;
     [[nodiscard]] std::optional<ContactSurface> touched(SurfaceId surface, const TouchRule& rule) const;
 

@@ -156,12 +156,12 @@ std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> 
         if (chosen >= 1U << normals.size()) continue;
         const std::array<double, 3> weights = weights_of(r, normals, chosen);
         Vec3 rest = r;
-        bool pushes = true;
+        bool is_pressed = true;
         for (std::size_t k = 0; k < normals.size(); ++k) {
             rest -= weights[k] * normals[k];
-            pushes = pushes && weights[k] >= 0.0;
+            is_pressed = is_pressed && weights[k] >= 0.0;
         }
-        if (!pushes || !(length(rest) < 0.5 * best_error)) continue;
+        if (!is_pressed || !(length(rest) < 0.5 * best_error)) continue;
         best = weights;
         best_error = length(rest);
     }

@@ -46,7 +46,7 @@ ContactPhase::ContactPhase(ParticleStep& step)
 
 std::optional<Contact> ContactPhase::resume(double rounding) {
     if (particle_.contact.count == 0) return std::nullopt;
-    const KeptContact before = std::exchange(particle_.contact, KeptContact{});
+    const ContactState before = std::exchange(particle_.contact, ContactState{});
     manifold_.touch_again(before, TouchRule::at(step_.geometry(), state_.position));
     if (before.is_placed()) gather();
     if (rounding > 0.0) drop_rounding(rounding);
@@ -95,9 +95,9 @@ void ContactPhase::record_weight() {
     if (!manifold_.empty()) static_cast<void>(follower_.plan({forces}, step_.remaining()));
     const Vec3 change = -state_.velocity - step_.remaining() * forces;
     if (manifold_.empty()) {
-        impact_.push(particle_.contact.surfaces[0], change, false);
+        impact_.record_impulse(particle_.contact.surfaces[0], change, false);
     } else {
-        manifold_.record_push(change, step_.remaining(), impact_);
+        manifold_.record_impulse(change, step_.remaining(), impact_);
     }
 }
 
@@ -105,11 +105,11 @@ std::optional<Contact> ContactPhase::stay(const Contact& contact) {
     state_.velocity = Vec3{};
     manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
     gather();
-    const KeptContact kept = manifold_.kept();
+    const ContactState contact_state = manifold_.contact_state();
     lift();
-    const std::span<const SurfaceId> held_by = std::span(kept.surfaces).first(kept.count);
-    auto met = step_.wait(step_.remaining(), held_by);
-    step_.log().note_stay(held_by);
+    const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
+    auto met = step_.wait(step_.remaining(), supported_by);
+    step_.log().note_stay(supported_by);
     return met;
 }
 
@@ -134,8 +134,8 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
     // A body that yields answers its surfaces one after the other, which does not end in a narrow wedge of them. There,
     // contact takes the approach.
     const MovingColliders* const bodies = rules_.bodies;
-    if (bodies != nullptr && bodies->yields(bodies->body_of(manifold_[0].surface))) return std::nullopt;
-    std::array<double, kMostHolding> departures{};
+    if (bodies != nullptr && bodies->is_dynamic(bodies->body_of(manifold_[0].surface))) return std::nullopt;
+    std::array<double, kMostSupports> departures{};
     const auto is_hit_at = [&](const Vec3& velocity) {
         for (std::size_t k = 0; k < manifold_.size(); ++k) departures[k] = dot(velocity, manifold_.normals()[k]);
         return *std::min_element(departures.begin(), departures.begin() + manifold_.size()) < -slow;
@@ -143,14 +143,14 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
     if (!is_hit_at(state_.velocity)) return std::nullopt;
     const Vec3 velocity = support_.velocity_after_rebounds(rules_.forces.acceleration(state_));
     if (!is_hit_at(velocity)) return std::nullopt;
-    impact_.push(support.surface, velocity - state_.velocity, false);
+    impact_.record_impulse(support.surface, velocity - state_.velocity, false);
     state_.velocity = velocity;
     Contact contact;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         if (departures[k] > step_.resting_speed()) continue;
         ContactSurface& surface = contact.surfaces[static_cast<std::size_t>(contact.count++)];
         surface = manifold_[k];
-        surface.holds = std::fabs(departures[k]) <= rounding;
+        surface.is_support = std::fabs(departures[k]) <= rounding;
     }
     return contact;
 }
@@ -158,7 +158,7 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
 /// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.
 void ContactPhase::land(const Motion& arriving) {
     const Vec3 before = state_.velocity;  // with the rebound, whose impulse is recorded already
-    std::array<ImpactSurface, kMostHolding> surfaces;
+    std::array<ImpactSurface, kMostSupports> surfaces;
     for (std::size_t k = 0; k < manifold_.size(); ++k) surfaces[k] = impact_.landing_on(manifold_[k]);
     Motion after = solve_impact(arriving, state_.radius, std::span(surfaces).first(manifold_.size())).after;
     const auto speed = [&](const Motion& motion) {
@@ -170,7 +170,7 @@ void ContactPhase::land(const Motion& arriving) {
     state_.velocity = project_off(after.velocity, manifold_.normals());
     particle_.spin = after.spin;
     manifold_.load(before - state_.velocity);
-    manifold_.record_push(state_.velocity - before, 1.0, impact_);
+    manifold_.record_impulse(state_.velocity - before, 1.0, impact_);
 }
 
 /// Where flights are straight until the forces act at their end, they lead back at once onto a surface that bends
@@ -184,7 +184,7 @@ std::optional<Contact> ContactPhase::drift(const Flight& flight) {
     const double before = step_.remaining();
     const double rebound = std::max(0.0, dot(velocity, support->normal));
     state_.velocity = project_off(velocity - rebound * support->normal, manifold_.normals());
-    impact_.push(support->surface, state_.velocity - velocity, false);
+    impact_.record_impulse(support->surface, state_.velocity - velocity, false);
     const auto contact = follow_surface(true);
     step_.log().note_impact();
     state_.velocity += (before - step_.remaining()) * forces;
@@ -207,12 +207,12 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
             project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
     }
     if (const auto still = rest_beside_rounding({state_.velocity, particle_.spin}, state_.radius, forces,
-                                                manifold_.holding(impact_).all(), manifold_.grip(1.0, step_.duration()),
-                                                step_.duration())) {
+                                                manifold_.supports(impact_).all(),
+                                                manifold_.grip(1.0, step_.duration()), step_.duration())) {
         state_.velocity = still->velocity;
         particle_.spin = still->spin;
     }
-    impact_.push(support.surface, state_.velocity - before, false);
+    impact_.record_impulse(support.surface, state_.velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();
     const double restitution = slow_restitution(support.surface);
     if (!(pressing > 0.0) || rattles || restitution == 1.0) return {};
@@ -238,7 +238,7 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
         left -= before - step_.remaining();
     }
     if (step_.remaining() <= 0.0) {
-        particle_.contact = manifold_.kept();
+        particle_.contact = manifold_.contact_state();
         particle_.contact.cascade_left = std::max(0.0, left);
     }
     return {};
@@ -263,7 +263,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
             if (auto contact = wait(until, forces)) return contact;
         }
     }
-    if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.kept();
+    if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.contact_state();
     return std::nullopt;
 }
 
@@ -301,8 +301,8 @@ bool ContactPhase::lands() const {
 
 /// What rests keeps off its surfaces by what the world's coordinates are rounded by, which may grow as it is carried.
 void ContactPhase::lift() {
-    std::array<Vec3, kMostHolding> normals;
-    std::array<double, kMostHolding> lifts{};
+    std::array<Vec3, kMostSupports> normals;
+    std::array<double, kMostSupports> lifts{};
     const double offset = step_.geometry().contact_offset(state_.position);
     bool is_low = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
@@ -344,21 +344,21 @@ bool ContactPhase::rests_on(double time) {
 /// Time passes at rest; the surfaces carry the weight. Returns what comes to it there.
 std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     const Vec3 before = state_.velocity;
-    const KeptContact kept = manifold_.kept();
-    const std::span<const SurfaceId> held_by = std::span(kept.surfaces).first(kept.count);
+    const ContactState contact_state = manifold_.contact_state();
+    const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
     state_.velocity = Vec3{};
     if (!step_.is_near_bodies()) {
-        manifold_.record_push(-before - duration * forces, duration, impact_);
+        manifold_.record_impulse(-before - duration * forces, duration, impact_);
         step_.log().note_impact();
         static_cast<void>(step_.wait(duration));
-        step_.log().note_stay(held_by);  // what stays where it is gains nothing by forces
+        step_.log().note_stay(supported_by);  // what stays where it is gains nothing by forces
         return std::nullopt;
     }
     step_.log().note_impact();
     const double left = step_.remaining();
     lift();
-    auto contact = step_.wait(duration, held_by);
-    if (contact) follower_.take_part_in(*contact);
+    auto contact = step_.wait(duration, supported_by);
+    if (contact) follower_.join_impact(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
     if (rules_.frame != nullptr) {
@@ -366,8 +366,8 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         middle.time -= 0.5 * elapsed;
         mean = rules_.forces.acceleration(middle);
     }
-    manifold_.record_push(-before - elapsed * mean, elapsed, impact_);
-    step_.log().note_stay(held_by);
+    manifold_.record_impulse(-before - elapsed * mean, elapsed, impact_);
+    step_.log().note_stay(supported_by);
     return contact;
 }
 
@@ -379,10 +379,10 @@ std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     if (state_.position != start && is_back && !step_.is_near_bodies()) step_.return_to_start();
     if (const auto contact = wait(step_.remaining(), forces)) return contact;
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
-    const bool stays =
-        held && began_still_ && began_spin_ == particle_.spin && state_.position == start && began_ == manifold_.kept();
+    const bool stays = held && began_still_ && began_spin_ == particle_.spin && state_.position == start &&
+                       began_ == manifold_.contact_state();
     step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
-    particle_.contact = manifold_.kept();
+    particle_.contact = manifold_.contact_state();
     return std::nullopt;
 }
 

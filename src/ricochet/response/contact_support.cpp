@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_arc.h"
-#include "ricochet/response/held_motion.h"
+#include "ricochet/response/contact_interval.h"
+#include "ricochet/response/curved_contact.h"
 
 namespace ricochet {
 
@@ -29,7 +29,7 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
-        if (surface.holds || !(approach > 0.0)) return true;
+        if (surface.is_support || !(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
         if (rebound >= step_.resting_speed()) return false;  // no slow rebound is as fast
         return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));
@@ -56,95 +56,96 @@ double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& f
 }
 
 std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {
-    const Pushes pushes = pushes_together(forces, fastest);
+    const PointAccelerations accelerations = combined_accelerations(forces, fastest);
     std::optional<ContactSurface> support;
     double hardest = 0.0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (!(length(pushes[k]) > hardest)) continue;
-        hardest = length(pushes[k]);
+        if (!(length(accelerations[k]) > hardest)) continue;
+        hardest = length(accelerations[k]);
         support = manifold_[k];
     }
     return support;
 }
 
 std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
-    const Pushes pushes = pushes_together(forces, step_.resting_speed());
-    const ContactManifold::Holding holding = manifold_.holding(impact_);
-    std::array<HoldingSurface, kMostHolding> surfaces;
+    const PointAccelerations accelerations = combined_accelerations(forces, step_.resting_speed());
+    const ContactManifold::SupportList supports = manifold_.supports(impact_);
+    std::array<SupportSurface, kMostSupports> surfaces;
     std::size_t count = 0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (pushes[k] != Vec3{}) surfaces[count++] = holding.surfaces[k];
+        if (accelerations[k] != Vec3{}) surfaces[count++] = supports.surfaces[k];
     }
     if (count < 2) return std::nullopt;
-    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    const std::span<const SupportSurface> together(surfaces.data(), count);
     return along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
 }
 
 Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
-    const Pushes pushes = pushes_together(forces, step_.resting_speed());
+    const PointAccelerations accelerations = combined_accelerations(forces, step_.resting_speed());
     const double rounding = kSlowSlip * length(state_.velocity);
-    std::array<Vec3, kMostHolding> normals;
+    std::array<Vec3, kMostSupports> normals;
     std::size_t count = 0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const Vec3& normal = manifold_.normals()[k];
-        if (pushes[k] != Vec3{} && dot(state_.velocity, normal) >= -rounding) normals[count++] = normal;
+        if (accelerations[k] != Vec3{} && dot(state_.velocity, normal) >= -rounding) normals[count++] = normal;
     }
     return along_all(state_.velocity, std::span(normals).first(count));
 }
 
 /// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
 /// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
-ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, double fastest) const {
+ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest) const {
     bool has_lossless = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) has_lossless = has_lossless || !has_losses(manifold_[k]);
-    const Pushes pushes = pushes_together(forces, fastest, true);
-    if (!has_lossless) return pushes;
+    const PointAccelerations accelerations = combined_accelerations(forces, fastest, true);
+    if (!has_lossless) return accelerations;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
-        if (has_losses(manifold_[k]) && pushes[k] != Vec3{}) return pushes;
+        if (has_losses(manifold_[k]) && accelerations[k] != Vec3{}) return accelerations;
     }
-    return pushes_together(forces, fastest, false);
+    return combined_accelerations(forces, fastest, false);
 }
 
 /// The same. die_out: bounces on surfaces without losses do, between them and others.
-ContactSupport::Pushes ContactSupport::pushes_together(const Vec3& forces, double fastest, bool die_out) const {
-    Pushes pushes{};
-    std::array<HoldingSurface, kMostHolding> surfaces;
-    std::array<std::size_t, kMostHolding> number{};
+ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest,
+                                                                          bool die_out) const {
+    PointAccelerations accelerations{};
+    std::array<SupportSurface, kMostSupports> surfaces;
+    std::array<std::size_t, kMostSupports> number{};
     std::size_t count = 0;
-    const ContactManifold::Holding holding = manifold_.holding(impact_);
+    const ContactManifold::SupportList supports = manifold_.supports(impact_);
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
-        if (!(dot(state_.velocity, surface.normal) <= fastest_departure(surface, forces, fastest, die_out))) continue;
-        surfaces[count] = holding.surfaces[k];
+        if (!(dot(state_.velocity, surface.normal) <= fastest_separation(surface, forces, fastest, die_out))) continue;
+        surfaces[count] = supports.surfaces[k];
         if (!surface.flat)
-            surfaces[count].bend = ContactArc::bend_of(step_.geometry(), state_, surface, state_.velocity);
+            surfaces[count].curvature = CurvedContact::curvature_of(step_.geometry(), state_, surface, state_.velocity);
         number[count++] = k;
     }
     if (count == 1) {
         const ContactSurface alone = manifold_[number[0]];
-        pushes[number[0]] = std::max(0.0, pressing_on(alone, forces)) * alone.normal;
-        return pushes;
+        accelerations[number[0]] = std::max(0.0, pressing_on(alone, forces)) * alone.normal;
+        return accelerations;
     }
-    const std::span<const HoldingSurface> together(surfaces.data(), count);
+    const std::span<const SupportSurface> together(surfaces.data(), count);
     const StuckSurfaces stuck = sticking(together);
     const Motion motion = along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, stuck);
-    const Grip grip = manifold_.grip(1.0, step_.duration());
+    const FrictionLimits grip = manifold_.grip(1.0, step_.duration());
     const ContactInterval interval =
         plan_interval(motion, state_.radius, forces, together, grip, step_.remaining(), stuck);
-    for (std::size_t i = 0; i < count; ++i) pushes[number[i]] = interval.push[i];
-    return pushes;
+    for (std::size_t i = 0; i < count; ++i) accelerations[number[i]] = interval.reaction[i];
+    return accelerations;
 }
 
 /// The speed, m/s, up to which it may leave a surface that will hold it.
-double ContactSupport::fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
-                                         bool die_out) const {
+double ContactSupport::fastest_separation(const ContactSurface& surface, const Vec3& forces, double fastest,
+                                          bool die_out) const {
     if (has_losses(surface)) return fastest;
     const double slow = slow_rebound(surface, forces, fastest > step_.resting_speed(), die_out);
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 
 /// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
-StuckSurfaces ContactSupport::sticking(std::span<const HoldingSurface> surfaces) const {
+StuckSurfaces ContactSupport::sticking(std::span<const SupportSurface> surfaces) const {
     StuckSurfaces stuck{};
     const Motion motion{state_.velocity, particle_.spin};
     const double scale = speed_scale(motion, state_.radius, surfaces);
@@ -178,7 +179,7 @@ bool ContactSupport::is_pressed(const Vec3& forces) const {
 double ContactSupport::pressing_on(const ContactSurface& surface, const Vec3& forces) const {
     const double by_forces = -dot(forces, surface.normal);
     if (surface.flat) return by_forces;
-    return by_forces - ContactArc::bend_of(step_.geometry(), state_, surface, state_.velocity);
+    return by_forces - CurvedContact::curvature_of(step_.geometry(), state_, surface, state_.velocity);
 }
 
 }  // namespace ricochet

@@ -45,22 +45,22 @@ public:
 
 private:
     /// By the number of the contact point.
-    using Pushes = std::array<Vec3, kMostHolding>;
+    using PointAccelerations = std::array<Vec3, kMostSupports>;
 
     [[nodiscard]] bool has_losses(const ContactSurface& surface) const;
     [[nodiscard]] double slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                       bool dies_out) const;
-    [[nodiscard]] double fastest_departure(const ContactSurface& surface, const Vec3& forces, double fastest,
-                                           bool die_out) const;
-    [[nodiscard]] Pushes pushes_together(const Vec3& forces, double fastest) const;
-    [[nodiscard]] Pushes pushes_together(const Vec3& forces, double fastest, bool die_out) const;
-    [[nodiscard]] StuckSurfaces sticking(std::span<const HoldingSurface> surfaces) const;
+    [[nodiscard]] double fastest_separation(const ContactSurface& surface, const Vec3& forces, double fastest,
+                                            bool die_out) const;
+    [[nodiscard]] PointAccelerations combined_accelerations(const Vec3& forces, double fastest) const;
+    [[nodiscard]] PointAccelerations combined_accelerations(const Vec3& forces, double fastest, bool die_out) const;
+    [[nodiscard]] StuckSurfaces sticking(std::span<const SupportSurface> surfaces) const;
 
     const ParticleStep& step_;
     const ResponseRules& rules_;
     const MovingParticle& particle_;
     const ForceInput& state_;
-    const ImpactAnswer& impact_;
+    const ImpactResolver& impact_;
     const ContactManifold& manifold_;
 };
 

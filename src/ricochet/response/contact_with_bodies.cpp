@@ -11,67 +11,67 @@ namespace {
 /// Of a surface that it touches, which is one of the body's.
 Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, BodyId body, SurfaceId surface) {
     const MovingPose pose = rules.bodies->pose(body, particle.state.time);
-    const Vec3 seen = pose.image(particle.state.position);
+    const Vec3 seen = pose.local_position(particle.state.position);
     const Vec3 along = rules.bodies->world(body).nearest(surface, seen).normal;
     return pose.world_from_frame.direction(along);
 }
 
 /// A particle as it is seen from a body's frame, and the forces on it there over its mass, m/s^2.
 struct SeenFromBody {
-    SeenFromBody(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body)
+    SeenFromBody(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body)
         : frame(rules.bodies), state(particle.state) {
         frame.set(body);
         const RecordedMotion motion =
             frame.in_frame({state.position, state.velocity, particle.spin}, particle.state.time);
         state.position = motion.position;
         state.velocity = motion.velocity;
-        pull = rides.rules_of(body).forces.acceleration(state);
+        pull = frame_rules.rules_of(body).forces.acceleration(state);
     }
     [[nodiscard]] Vec3 direction(const Vec3& in_world) const { return frame.direction_in_frame(in_world, state.time); }
 
-    HomeFrame frame;
+    ReferenceFrame frame;
     ForceInput state;
     Vec3 pull;
 };
 
-double slowest_rebound_from(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body,
-                            const Vec3& normal) {
+double slowest_rebound_from(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle,
+                            BodyId body, const Vec3& normal) {
     const double slow = rules.settings.resting_speed;
-    if (!rules.bodies->yields(body)) return slow;
-    const SeenFromBody seen(rules, rides, particle, body);
+    if (!rules.bodies->is_dynamic(body)) return slow;
+    const SeenFromBody seen(rules, frame_rules, particle, body);
     const double pressing = std::fabs(dot(seen.pull, seen.direction(normal)));
     return std::max(slow, 0.5 * kShortestPart * rules.settings.time_step * pressing);
 }
 
 }  // namespace
 
-bool lets_go(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle, BodyId body) {
+bool releases(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body) {
     const RecordedMotion motion{particle.state.position, particle.state.velocity, particle.spin};
-    HomeFrame frame(rules.bodies);
+    ReferenceFrame frame(rules.bodies);
     frame.set(body);
     const double jump = length(frame.in_frame(motion, particle.state.time).velocity);
-    if (!rules.bodies->yields(body)) return jump > rules.settings.resting_speed;
+    if (!rules.bodies->is_dynamic(body)) return jump > rules.settings.resting_speed;
     const Mobility mobility = rules.bodies->mobility(body, particle.state.time);
     const Vec3 push = normal_in_world(rules, particle, body, particle.contact.surfaces[0]);
     const double weight = particle.state.mass * dot(mobility.change_at(particle.state.position, push), push);
-    return jump * std::max(1.0, weight) > slowest_rebound_from(rules, rides, particle, body, push);
+    return jump * std::max(1.0, weight) > slowest_rebound_from(rules, frame_rules, particle, body, push);
 }
 
-double slowest_rebound(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle,
+double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle,
                        const Contact& contact) {
     double slow = rules.settings.resting_speed;
     for (const ContactSurface& surface : contact.all()) {
         const BodyId body = rules.bodies->body_of(surface.surface);
-        slow = std::max(slow, slowest_rebound_from(rules, rides, particle, body, surface.normal));
+        slow = std::max(slow, slowest_rebound_from(rules, frame_rules, particle, body, surface.normal));
     }
     return slow;
 }
 
-std::optional<double> speed_let_go(const ResponseRules& rules, const Rides& rides, const MovingParticle& particle,
-                                   SurfaceId surface) {
+std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules& frame_rules,
+                                   const MovingParticle& particle, SurfaceId surface) {
     const BodyId body = rules.bodies->body_of(surface);
-    if (!rules.bodies->yields(body)) return std::nullopt;
-    const SeenFromBody seen(rules, rides, particle, body);
+    if (!rules.bodies->is_dynamic(body)) return std::nullopt;
+    const SeenFromBody seen(rules, frame_rules, particle, body);
     const Vec3 normal = seen.direction(normal_in_world(rules, particle, body, surface));
     const double speed = std::fabs(dot(seen.state.velocity, normal));
     const double of_step =
@@ -80,11 +80,11 @@ std::optional<double> speed_let_go(const ResponseRules& rules, const Rides& ride
     return speed;
 }
 
-Contact part_that_holds(const Contact& contact) {
+Contact supporting_part(const Contact& contact) {
     Contact part = contact;
     part.count = 0;
     for (const ContactSurface& surface : contact.all()) {
-        if (surface.holds) part.surfaces[static_cast<std::size_t>(part.count++)] = surface;
+        if (surface.is_support) part.surfaces[static_cast<std::size_t>(part.count++)] = surface;
     }
     return part;
 }

@@ -89,7 +89,7 @@ public:
     [[nodiscard]] std::size_t sweeps() const { return sweeps_; }
 
     /// Force of a contact.
-    [[nodiscard]] double push(std::size_t contact) const { return force_[contact]; }
+    [[nodiscard]] double reaction(std::size_t contact) const { return force_[contact]; }
     /// Force of a resistance along its directions.
     [[nodiscard]] std::array<double, 2> force_of(std::size_t resistance) const;
     /// What all forces together change the motion by.

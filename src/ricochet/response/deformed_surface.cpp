@@ -48,21 +48,21 @@ double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const 
 /// True where a point that touches a triangle has it below, or stands on its rim and goes no further beyond: above a
 /// convex edge it is over neither face, by its height.
 bool is_point_over(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
-                   const Vec3& velocity, const Vec3& normal, double departure) {
+                   const Vec3& velocity, const Vec3& normal, double separation_speed) {
     const double offset = deforming.offset_of(surface);
     const Vec3& p = particle.position;
     const double beyond = beyond_rim(deforming, surface, p, particle.time);
     if (beyond == 0.0) return true;
     const Vec3 slip = velocity - dot(velocity, normal) * normal;
     const double speed = length(slip);
-    if (speed <= kStandingSlip * departure) return true;
+    if (speed <= kStandingSlip * separation_speed) return true;
     const Vec3 next = p + (kLookOffsets * offset / speed) * slip;
     return beyond_rim(deforming, surface, next, particle.time) <= beyond + kOverRim * offset;
 }
 
 /// The surface as the particle touches it now; nothing when it does not.
 std::optional<Candidate> touched(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
-                                 double departure) {
+                                 double separation_speed) {
     const double reach = kTouchingOffsets * deforming.offset_of(surface);
     const Vec3& p = particle.position;
     const CollisionWorld::Nearest nearest = deforming.nearest(surface, p, particle.time);
@@ -76,9 +76,10 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
             const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
             found.contact.surface = {surface, height < 0.0 ? -normal : normal, true};
         }
-        found.is_over = is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal, departure);
+        found.is_over =
+            is_point_over(deforming, particle, surface, velocity, found.contact.surface.normal, separation_speed);
     }
-    found.is_left = dot(velocity, found.contact.surface.normal) > departure;
+    found.is_left = dot(velocity, found.contact.surface.normal) > separation_speed;
     return found;
 }
 
@@ -164,7 +165,7 @@ void add_rest_of_planes(const DeformingColliders& deforming, const ForceInput& p
 }  // namespace
 
 std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming, const ForceInput& particle,
-                                              double departure) {
+                                              double separation_speed) {
     std::vector<DeformedContact> all;
     if (deforming.empty()) return all;
     double margin = 0.0;
@@ -177,7 +178,7 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
     deforming.near({particle.position - by, particle.position + by}, near);
     std::vector<Candidate> found;
     for (const SurfaceId surface : near) {
-        if (auto one = touched(deforming, particle, surface, departure)) found.push_back(std::move(*one));
+        if (auto one = touched(deforming, particle, surface, separation_speed)) found.push_back(std::move(*one));
     }
     if (particle.radius == 0.0) drop_beyond_convex_edges(deforming, particle, found);
     std::erase_if(found, [](const Candidate& one) { return one.is_left; });
@@ -198,7 +199,8 @@ std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deformin
     return all;
 }
 
-SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& particle, const ContactSurface& surface) {
+CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInput& particle,
+                            const ContactSurface& surface) {
     const DeformingColliders::Motion motion = deforming.motion_at(surface.surface, particle.position, particle.time);
     const Vec3& n = surface.normal;
     const Vec3 slip = particle.velocity - motion.velocity;

@@ -23,19 +23,19 @@ struct DeformedContact {
 /// along the normal, relative to the surface, above which it has left. A point is held by the triangles that it is
 /// over, and next to their rims by those only that do not lie behind one of them: beyond a convex edge is nothing.
 [[nodiscard]] std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming,
-                                                            const ForceInput& particle, double departure);
+                                                            const ForceInput& particle, double separation_speed);
 
 /// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
-/// (HoldingSurface::bend and slip_bend). Its points are not accelerated between keys. With the normal n, which changes
-/// by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' = s relative to
-/// that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an edge of the
-/// direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
-struct SurfaceBend {
-    double bend = 0.0;
-    Vec3 slip_bend;
+/// (SupportSurface::bend and slip_curvature). Its points are not accelerated between keys. With the normal n, which
+/// changes by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' = s
+/// relative to that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an edge
+/// of the direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
+struct CurvatureTerms {
+    double curvature = 0.0;
+    Vec3 slip_curvature;
 };
-[[nodiscard]] SurfaceBend bend_of(const DeformingColliders& deforming, const ForceInput& particle,
-                                  const ContactSurface& surface);
+[[nodiscard]] CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInput& particle,
+                                          const ContactSurface& surface);
 
 /// How far a position is from the nearest of a contact's triangles at a time, on the side that its normal points to.
 struct SurfaceHeight {

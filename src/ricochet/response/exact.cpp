@@ -1,24 +1,24 @@
 #include "ricochet/response/exact.h"
 
 #include "ricochet/response/contact_phase.h"
-#include "ricochet/response/kept_hold.h"
 #include "ricochet/response/particle_mover.h"
-#include "ricochet/response/riding.h"
+#include "ricochet/response/reference_frame.h"
+#include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 
 ExactResponse::ExactResponse(const ResponseRules& rules) : Response(rules) {
-    if (rules.bodies != nullptr) rides_ = std::make_unique<Rides>(rules_);
+    if (rules.bodies != nullptr) frame_rules_ = std::make_unique<FrameRules>(rules_);
 }
 
 ExactResponse::~ExactResponse() = default;
 
 MoveOutcome ExactResponse::move(MovingParticle& particle, double duration, MoveScratch& scratch) const {
-    return ParticleMover(rules_, rides_.get(), particle, duration, scratch).run();
+    return ParticleMover(rules_, frame_rules_.get(), particle, duration, scratch).run();
 }
 
-HeldAcceleration ExactResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
-    return hold_by_kept(rules_, particle, pull);
+SupportedAcceleration ExactResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
+    return acceleration_in_contact(rules_, particle, pull);
 }
 
 void ExactResponse::add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const {

@@ -18,7 +18,7 @@
 
 namespace ricochet {
 
-class Rides;
+class FrameRules;
 
 /// See the top of this file.
 class ExactResponse final : public Response {
@@ -31,10 +31,11 @@ public:
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
     void add_weight(const MovingParticle& particle, double duration, std::vector<SurfaceHit>& hits) const override;
-    [[nodiscard]] HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const override;
+    [[nodiscard]] SupportedAcceleration supported_acceleration(const MovingParticle& particle,
+                                                               const Vec3& pull) const override;
 
 private:
-    std::unique_ptr<Rides> rides_;  ///< null where nothing moves
+    std::unique_ptr<FrameRules> frame_rules_;  ///< null where nothing moves
 };
 
 }  // namespace ricochet

@@ -23,11 +23,11 @@ PlannedInterval FlatInterval::mean_until(double time) const {
     return result;
 }
 
-double FlatInterval::work_until(double time, const Vec3& way) const {
+double FlatInterval::work_until(double time, const Vec3& displacement) const {
     const PlannedInterval mean = mean_until(time);
     // What is faster later is pushed on for longer by what the forces are later.
     const double later = time * time / 6.0 * dot(mean.forces - begin_.forces, mean.interval.acceleration);
-    return dot(mean.forces, way) + later;
+    return dot(mean.forces, displacement) + later;
 }
 
 }  // namespace ricochet

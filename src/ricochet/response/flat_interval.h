@@ -3,7 +3,7 @@
 #pragma once
 
 #include "ricochet/geometry/sweep/path.h"
-#include "ricochet/response/held_motion.h"
+#include "ricochet/response/contact_interval.h"
 
 namespace ricochet {
 
@@ -25,13 +25,13 @@ public:
     [[nodiscard]] double duration() const { return middle_.interval.duration; }
     [[nodiscard]] const Motion& motion() const { return middle_.interval.motion; }
     /// Whether a surface holds it in its middle.
-    [[nodiscard]] bool is_held_by(std::size_t k) const { return middle_.interval.push[k] != Vec3{}; }
+    [[nodiscard]] bool is_held_by(std::size_t k) const { return middle_.interval.reaction[k] != Vec3{}; }
     /// The way from x, as far as it goes in `time` seconds.
     [[nodiscard]] Path path(const Vec3& x, double time) const;
     /// The same motion after `time` seconds, with accelerations and forces that stay.
     [[nodiscard]] PlannedInterval mean_until(double time) const;
     /// Work of the forces over the mass, m^2/s^2, in the first `time` seconds, which lead this way.
-    [[nodiscard]] double work_until(double time, const Vec3& way) const;
+    [[nodiscard]] double work_until(double time, const Vec3& displacement) const;
 
 private:
     PlannedInterval begin_;

@@ -32,20 +32,21 @@ private:
     /// Of surfaces with the same normal the first counts, or one that is approached faster by more than rounding.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
-        if (!added.holds && departure_from(added) < 0.0) restitution_ = std::min(restitution_, added.restitution);
+        if (!added.is_support && separation_speed(added) < 0.0)
+            restitution_ = std::min(restitution_, added.restitution);
         is_driven_ = is_driven_ || added.velocity != Vec3{} || added.angular_velocity != Vec3{};
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& known = surfaces_[surface_of_[c]];
             if (length(known.normal - added.normal) > kSameDirection) continue;
             const double rounding = kSameDirection * (length(before_.velocity) + length(added.velocity));
-            if (departure_from(added) < departure_from(known) - rounding) surface_of_[c] = surface;
+            if (separation_speed(added) < separation_speed(known) - rounding) surface_of_[c] = surface;
             return;
         }
         surface_of_[count_++] = surface;
     }
 
     /// m/s, along the normal, before.
-    [[nodiscard]] double departure_from(const ImpactSurface& surface) const {
+    [[nodiscard]] double separation_speed(const ImpactSurface& surface) const {
         return dot(before_.velocity, surface.normal) - surface.advance;
     }
 
@@ -53,8 +54,8 @@ private:
         problem_.clear();
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
-            const double rebound = surface.holds ? 0.0 : restitution;
-            problem_.add({normal_direction(surface.normal), (1.0 + rebound) * departure_from(surface)});
+            const double rebound = surface.is_support ? 0.0 : restitution;
+            problem_.add({normal_direction(surface.normal), (1.0 + rebound) * separation_speed(surface)});
         }
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
@@ -85,21 +86,21 @@ private:
     ImpactResult whole(double restitution) {
         set_up(restitution);
         problem_.solve_with_most(CoulombProblem::Effort::all);
-        return answer();
+        return solution();
     }
 
     /// Compression without rebound, and the part e of its impulses once more.
     [[nodiscard]] ImpactResult repeated(ImpactResult result) const {
         result.after.velocity += restitution_ * (result.after.velocity - before_.velocity);
         result.after.spin += restitution_ * (result.after.spin - before_.spin);
-        for (Vec3& push : result.push) push *= 1.0 + restitution_;
-        keep_held(result);
+        for (Vec3& velocity_change : result.velocity_change) velocity_change *= 1.0 + restitution_;
+        keep_supported_only(result);
         return result;
     }
 
     /// The normal speed on a surface that holds is rounding, and impulses that are repeated turn it around: no approach
     /// to such a surface is left.
-    void keep_held(ImpactResult& result) const {
+    void keep_supported_only(ImpactResult& result) const {
         std::array<Vec3, ImpactResult::kMostSurfaces> normals;
         std::array<double, ImpactResult::kMostSurfaces> lifts{};
         std::size_t count = 0;
@@ -107,7 +108,7 @@ private:
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
             const double approach = surface.advance - dot(result.after.velocity, surface.normal);
-            if (!surface.holds || !(approach > 0.0)) continue;
+            if (!surface.is_support || !(approach > 0.0)) continue;
             normals[count] = surface.normal;
             lifts[count++] = approach;
             last = surface_of_[c];
@@ -115,25 +116,25 @@ private:
         if (count == 0) return;
         const Vec3 shift = shift_by({normals.data(), count}, {lifts.data(), count});
         result.after.velocity += shift;
-        result.push[last] += shift;
+        result.velocity_change[last] += shift;
     }
 
     /// With all friction, where that is found quickly.
     [[nodiscard]] std::optional<ImpactResult> find(double restitution) {
         set_up(restitution);
         if (!problem_.solve(CoulombProblem::Effort::some)) return std::nullopt;
-        return answer();
+        return solution();
     }
 
-    [[nodiscard]] ImpactResult answer() const {
+    [[nodiscard]] ImpactResult solution() const {
         ImpactResult result;
         std::size_t resistance = 0;
         for (std::size_t c = 0; c < count_; ++c) {
             const ImpactSurface& surface = surfaces_[surface_of_[c]];
-            Vec3& push = result.push[surface_of_[c]];
-            push = problem_.push(c) * surface.normal;
+            Vec3& velocity_change = result.velocity_change[surface_of_[c]];
+            velocity_change = problem_.reaction(c) * surface.normal;
             if (surface.friction == 0.0) continue;
-            push += along_tangents(problem_.force_of(resistance++), surface.normal);
+            velocity_change += along_tangents(problem_.force_of(resistance++), surface.normal);
         }
         const MotionVector change = problem_.change();
         result.after = before_;
@@ -145,7 +146,7 @@ private:
     /// What rounding may do to twice the energy over the mass: more where surfaces press against each other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
         double squared_pushes = twice_kinetic(before_, radius_);
-        for (const Vec3& push : result.push) squared_pushes += length_squared(push);
+        for (const Vec3& velocity_change : result.velocity_change) squared_pushes += length_squared(velocity_change);
         return kEnergyRounding * squared_pushes;
     }
 
@@ -157,7 +158,7 @@ private:
     [[nodiscard]] double most_allowed(const ImpactResult& result) const {
         double sum = twice_kinetic(before_, radius_);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-            if (surfaces_[k].velocity != Vec3{}) sum += 2.0 * dot(result.push[k], surfaces_[k].velocity);
+            if (surfaces_[k].velocity != Vec3{}) sum += 2.0 * dot(result.velocity_change[k], surfaces_[k].velocity);
         }
         return sum;
     }

@@ -27,7 +27,7 @@ struct ImpactSurface {
     double advance = 0.0;
     /// The particle is in lasting contact with it: what it may still approach it by is rounding, and no rebound of its
     /// own follows.
-    bool holds = false;
+    bool is_support = false;
 };
 
 /// What an impact does.
@@ -36,7 +36,7 @@ struct ImpactResult {
 
     Motion after;
     /// By what each surface changes the velocity, m/s: its impulse over the mass. In their order.
-    std::array<Vec3, kMostSurfaces> push{};
+    std::array<Vec3, kMostSurfaces> velocity_change{};
 };
 
 /// The motion after an impact of a point (radius 0) or solid sphere with surfaces that it touches, at most

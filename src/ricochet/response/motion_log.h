@@ -9,8 +9,8 @@
 #include "ricochet/core/motion_part.h"
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/geometry/sweep/path.h"
+#include "ricochet/response/reference_frame.h"
 #include "ricochet/response/response.h"
-#include "ricochet/response/riding.h"
 
 namespace ricochet {
 
@@ -18,30 +18,31 @@ namespace ricochet {
 /// What it is given must outlive it.
 class MotionLog {
 public:
-    MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch, const HomeFrame& home)
-        : rules_(rules), particle_(particle), scratch_(scratch), home_(home) {
+    MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch,
+              const ReferenceFrame& reference)
+        : rules_(rules), particle_(particle), scratch_(scratch), reference_(reference) {
         if (!scratch.record_motions) return;
-        scratch.held_by.clear();
+        scratch.supported_by.clear();
         last_ = motion(), time_ = particle.state.time;
     }
 
     /// It has flown.
     void note_flight() {
         if (!scratch_.record_motions) return;
-        if (particle_.state.time > time_) scratch_.held_by.clear();
+        if (particle_.state.time > time_) scratch_.supported_by.clear();
         add(MotionPart::Kind::flight, {}, true);
     }
     /// It has met surfaces, or has been let go by them, or nothing has happened; without time.
     void note_impact() {
         if (!scratch_.record_motions) return;
-        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
+        const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();
         if (motion() == last_) return;
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
     /// Surfaces have held it while it has followed the beginning of a path. force: over the mass at the begin, m/s^2;
-    /// acts: false where forces have been in the velocity from the step's start on. held_by: those surfaces.
-    void note_contact(const Vec3& force, const Path& path, bool acts, std::span<const SurfaceId> held_by) {
-        if (!acts) return note_stay(held_by);
+    /// acts: false where forces have been in the velocity from the step's start on. supported_by: those surfaces.
+    void note_contact(const Vec3& force, const Path& path, bool acts, std::span<const SurfaceId> supported_by) {
+        if (!acts) return note_stay(supported_by);
         if (!scratch_.record_motions) return;
         const bool is_steady = rules_.forces.is_uniform_for(particle_.state);
         ForceInput middle = particle_.state;
@@ -50,22 +51,22 @@ public:
         middle.position = path.position(0.5 * elapsed);
         middle.velocity = path.velocity(0.5 * elapsed);
         const Vec3 half_way = is_steady ? force : rules_.forces.acceleration(middle);
-        add_contact({force, half_way, rules_.forces.acceleration(particle_.state)}, is_steady, held_by);
+        add_contact({force, half_way, rules_.forces.acceleration(particle_.state)}, is_steady, supported_by);
     }
     /// Surfaces have held it, and no force has done work.
-    void note_stay(std::span<const SurfaceId> held_by) {
-        if (scratch_.record_motions) add_contact({}, true, held_by);
+    void note_stay(std::span<const SurfaceId> supported_by) {
+        if (scratch_.record_motions) add_contact({}, true, supported_by);
     }
 
 private:
     [[nodiscard]] RecordedMotion motion() const {
-        return home_.in_world({particle_.state.position, particle_.state.velocity, particle_.spin},
-                              particle_.state.time);
+        return reference_.in_world({particle_.state.position, particle_.state.velocity, particle_.spin},
+                                   particle_.state.time);
     }
-    void add_contact(const std::array<Vec3, 3>& forces, bool steady, std::span<const SurfaceId> held_by) {
-        const bool is_driven = std::exchange(scratch_.driven, false) || home_.is_moving();
+    void add_contact(const std::array<Vec3, 3>& forces, bool steady, std::span<const SurfaceId> supported_by) {
+        const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::contact, forces, steady);
-        scratch_.held_by.assign(held_by.begin(), held_by.end());
+        scratch_.supported_by.assign(supported_by.begin(), supported_by.end());
     }
     void add(MotionPart::Kind kind, const std::array<Vec3, 3>& forces, bool steady) {
         const RecordedMotion begin = std::exchange(last_, motion());
@@ -76,7 +77,7 @@ private:
     const ResponseRules& rules_;
     const MovingParticle& particle_;
     MoveScratch& scratch_;
-    const HomeFrame& home_;
+    const ReferenceFrame& reference_;
     RecordedMotion last_;
     double time_ = 0.0;  // s
 };

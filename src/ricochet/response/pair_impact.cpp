@@ -13,7 +13,7 @@ constexpr double kSolved = 0x1p-54;
 
 double effective_inverse_mass(const PairBody& a, const PairBody& b) { return a.inverse_mass + b.inverse_mass; }
 
-void push(PairBody& a, PairBody& b, const Vec3& normal, const Vec3& impulse) {
+void apply_impulse(PairBody& a, PairBody& b, const Vec3& normal, const Vec3& impulse) {
     a.velocity -= a.inverse_mass * impulse;
     b.velocity += b.inverse_mass * impulse;
     const Vec3 moment = cross(normal, impulse);
@@ -97,7 +97,7 @@ public:
             PairContact& contact = contacts_[k];
             const Vec3 along = impulses_[k] * contact.normal;
             if (part < 1.0) contact.impulse = along + part * (contact.impulse - along);
-            push(first(contact), second(contact), contact.normal, contact.impulse);
+            apply_impulse(first(contact), second(contact), contact.normal, contact.impulse);
         }
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
@@ -131,16 +131,17 @@ private:
             }
             return sum;
         };
-        const auto push_all = [&](bool is_friction) {
+        const auto apply_to_all = [&](bool is_friction) {
             for (std::size_t k = 0; k < contacts_.size(); ++k) {
                 PairContact& contact = contacts_[k];
                 const Vec3 along = impulses_[k] * contact.normal;
-                push(first(contact), second(contact), contact.normal, is_friction ? contact.impulse - along : along);
+                apply_impulse(first(contact), second(contact), contact.normal,
+                              is_friction ? contact.impulse - along : along);
             }
         };
-        push_all(false);
+        apply_to_all(false);
         const double at_first = power();
-        push_all(true);
+        apply_to_all(true);
         const double curvature = power() - at_first;  // the energy changes by f at_first + f^2 curvature / 2
         bodies_ = before;
         return curvature > 0.0 ? std::clamp(-2.0 * at_first / curvature, 0.0, 1.0) : 1.0;
@@ -150,8 +151,8 @@ private:
     [[nodiscard]] double needed(std::size_t k) {
         const PairContact& contact = contacts_[k];
         const double inverse = effective_inverse_mass(first(contact), second(contact));
-        const double departure = dot(second(contact).velocity - first(contact).velocity, contact.normal);
-        return inverse > 0.0 ? (targets_[k] - departure) / inverse : 0.0;
+        const double separation_speed = dot(second(contact).velocity - first(contact).velocity, contact.normal);
+        return inverse > 0.0 ? (targets_[k] - separation_speed) / inverse : 0.0;
     }
 
     void iterate() {
@@ -164,7 +165,7 @@ private:
                 const double next = std::max(0.0, impulses_[k] + needed(k));
                 const double more = next - impulses_[k];
                 impulses_[k] = next;
-                push(first(contact), second(contact), contact.normal, more * contact.normal);
+                apply_impulse(first(contact), second(contact), contact.normal, more * contact.normal);
                 change = std::max(change, std::fabs(more) * effective_inverse_mass(first(contact), second(contact)));
             }
             if (change <= kSolved * fastest) break;
@@ -194,8 +195,8 @@ double approach_of(const PairBody& a, const PairBody& b) {
     return -dot(b.velocity - a.velocity, along) / length(along);
 }
 
-void answer_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
-                         std::span<PairContact> contacts) {
+void resolve_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
+                          std::span<PairContact> contacts) {
     ImpactProblem(laws, resting_speed, bodies, contacts).solve();
 }
 

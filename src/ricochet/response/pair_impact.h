@@ -48,7 +48,7 @@ struct PairContact {
 /// where restitution is 1 and friction 0.
 /// Sources: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988; O. R. Walton, R. L.
 /// Braun, Acta Mechanica 63, 1986 (friction of spheres); R. Tonge et al., ACM TOG 31, 2012 (mass splitting).
-void answer_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
-                         std::span<PairContact> contacts);
+void resolve_pair_impacts(const PairMaterials& laws, double resting_speed, std::vector<PairBody>& bodies,
+                          std::span<PairContact> contacts);
 
 }  // namespace ricochet

@@ -29,7 +29,7 @@ void cut(Flight& flight, double duration, const Integrator& integrator, const Fo
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
     // What is copied here is large: no contact is assigned without need.
-    let_go_speed_ = particle_.contact.let_go_speed();
+    let_go_speed_ = particle_.contact.release_speed();
     std::optional<Contact> contact = resume();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
@@ -38,31 +38,31 @@ MoveOutcome ParticleMover::run() {
         if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
         while (contact && !outcome.is_absorbed() && step_.has_budget() && has_room()) {
             step_.impact().release(*contact);
-            contact = answer(flight, *contact);
+            contact = resolve(flight, *contact);
         }
         if (outcome.is_absorbed()) break;
-        if (contact && !goes_along(contact)) {
+        if (contact && !follows_receding_body(contact)) {
             step_.stop();
             break;
         }
     }
     if (particle_.contact.count == 0) {
-        particle_.contact = let_go_speed_ ? KeptContact::let_go(*let_go_speed_) : KeptContact{};
+        particle_.contact = let_go_speed_ ? ContactState::release_at(*let_go_speed_) : ContactState{};
     }
-    if (rides_ != nullptr) step_.store_position();
-    step_.impact().close_book();
+    if (frame_rules_ != nullptr) step_.store_position();
+    step_.impact().finish_recording();
     step_.log().note_impact();
     return outcome;
 }
 
 /// At a surface that moves: what a kick has done for the time that is left is taken back, and done by the forces.
-std::optional<Contact> ParticleMover::answer_without_kick(const Flight& flight, const Contact& contact) {
+std::optional<Contact> ParticleMover::resolve_without_impulse(const Flight& flight, const Contact& contact) {
     if (!flies_anew_) {
         particle_.state.velocity -= step_.remaining() * flight.acceleration;
         step_.log().note_flight();  // of the integrator's doing, not of the surfaces'
     }
-    flies_anew_ = is_without_kick_ = true;
-    return answer(Flight{}, contact);
+    flies_anew_ = is_without_impulse_ = true;
+    return resolve(Flight{}, contact);
 }
 
 /// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
@@ -76,7 +76,7 @@ bool ParticleMover::has_room() {
 /// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several, and of meshes
 /// that deform, until those of one are left.
 std::optional<Contact> ParticleMover::resume() {
-    if (rides_ == nullptr) return contact_phase_.resume();
+    if (frame_rules_ == nullptr) return contact_phase_.resume();
     if (!step_.catch_up() || particle_.contact.count == 0) return std::nullopt;
     return resume_among_bodies();
 }
@@ -91,7 +91,7 @@ double ParticleMover::planned_duration(bool is_first) const {
 /// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
 std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
     const double remaining = planned_duration(is_first);
-    const Integrator integrator = is_without_kick_ ? IntegratorKind::ballistic : rules_.settings.integrator;
+    const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
     flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
                       : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
@@ -108,33 +108,35 @@ std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
 /// After an impact contact goes on with the surfaces that have held it, if it does not leave them: without a landing.
 /// At the end of a step they are kept for the next one. Returns the next contact.
 std::optional<Contact> ParticleMover::go_on(const Flight& flight, const Contact& contact) {
-    const Contact held = part_that_holds(contact);
+    const Contact held = supporting_part(contact);
     if (held.count == 0) return std::nullopt;
     if (step_.remaining() > 0.0) return begin_contact(flight, held, {particle_.state.velocity, particle_.spin});
-    KeptContact kept;
+    ContactState contact_state;
     for (const ContactSurface& surface : held.all()) {
         const bool is_left =
-            step_.impact().departure_from(surface) > kLeavingRounding * length(particle_.state.velocity);
-        if (!is_left && kept.count < kept.surfaces.size()) kept.surfaces[kept.count++] = surface.surface;
+            step_.impact().separation_speed(surface) > kLeavingRounding * length(particle_.state.velocity);
+        if (!is_left && contact_state.count < contact_state.surfaces.size())
+            contact_state.surfaces[contact_state.count++] = surface.surface;
     }
-    particle_.contact = kept;
+    particle_.contact = contact_state;
     return std::nullopt;
 }
 
 /// Answers an impact. Returns the next contact when the particle slides into one.
-std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact& contact) {
+std::optional<Contact> ParticleMover::resolve(const Flight& flight, const Contact& contact) {
     const bool moves = has_moving(contact);
-    if (moves && flight.kick_duration > 0.0) return answer_without_kick(flight, contact);
+    if (moves && flight.kick_duration > 0.0) return resolve_without_impulse(flight, contact);
     has_met_moving_ = has_met_moving_ || moves;
     contact_phase_.remember(contact);
     const Motion arriving{particle_.state.velocity, particle_.spin};
     if (moves) step_.impact().note_driven();
     // A slow one cuts no step short: it begins contact.
-    const double slow = moves ? slowest_rebound(rules_, *rides_, particle_, contact) : rules_.settings.resting_speed;
+    const double slow =
+        moves ? slowest_rebound(rules_, *frame_rules_, particle_, contact) : rules_.settings.resting_speed;
     step_.set_resting_speed(slow);
     const bool is_fast = moves && step_.impact().approach(contact.all()) > slow;
     const bool is_resumed = lands_again(contact, slow);
-    const std::optional<double> let_go_speed = is_resumed ? std::exchange(let_go_speed_, {}) : std::nullopt;
+    const std::optional<double> release_speed = is_resumed ? std::exchange(let_go_speed_, {}) : std::nullopt;
     step_.impact().set_hits(!is_resumed);
     const bool is_impact = step_.impact().reflect(contact.all(), is_fast);
     step_.impact().set_hits(true);
@@ -143,15 +145,15 @@ std::optional<Contact> ParticleMover::answer(const Flight& flight, const Contact
     // A kicked particle that lands does so anew, without a rebound.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     if (step_.outcome().is_absorbed()) return std::nullopt;
-    if (is_fast && step_.impact().waits_for(contact.all())) return wait_for_body(contact);
+    if (is_fast && step_.impact().waits_for(contact.all())) return follow_receding_body(contact);
     const double before = step_.remaining();
     auto next = begin_contact(flight, contact, arriving);
     const auto has_begun = [&] { return next || particle_.contact.count > 0 || step_.remaining() < before; };
     if (!has_begun() && flight.kick_duration == 0.0) next = go_on(flight, contact);
-    if (!has_begun() && !let_go_speed_) let_go_speed_ = let_go_speed;
+    if (!has_begun() && !let_go_speed_) let_go_speed_ = release_speed;
     if (!moves || has_begun()) return next;
     // It goes on into a body that leaves it, but is where its path has it until the move's end.
-    if (step_.impact().approach_of_paths(contact.all()) > slow) return wait_for_body(contact);
+    if (step_.impact().approach_of_paths(contact.all()) > slow) return follow_receding_body(contact);
     step_.impact().go_with_paths(contact.all());
     return next;
 }

@@ -13,12 +13,12 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const Integrat
     const Path& path = flight.path;
     if (!can_follow(path)) return std::nullopt;
     if (is_among_bodies(path)) return follow_among_bodies(flight, integrator);
-    const Vec3 departure = state().velocity;
+    const Vec3 separation_speed = state().velocity;
     const ContactQuery query{path, state().radius, look_ahead, candidates};
     ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
     const double elapsed = go(query, found);
     state().velocity = velocity_at(integrator, rules_->forces, flight, elapsed);
-    record_flown(path, elapsed, departure, true);
+    record_flown(path, elapsed, separation_speed, true);
     if (look_ahead != nullptr && !found.contact && state().position == path.end) {
         const LookAheadResult& ahead = found.ahead;
         outcome_.free_for = std::max(0.0, ahead.free_until - path.duration);
@@ -30,12 +30,12 @@ std::optional<Contact> ParticleStep::follow(const Flight& flight, const Integrat
 
 std::optional<Contact> ParticleStep::follow(const Flight& flight) {
     if (!can_follow(flight.path)) return std::nullopt;
-    const Vec3 departure = state().velocity;
+    const Vec3 separation_speed = state().velocity;
     const ContactQuery query{flight.path, state().radius, nullptr, {}};
     ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
     const double elapsed = go(query, found);
     state().velocity = velocity_at(rules_->settings.integrator, rules_->forces, flight, elapsed);
-    record_flown(flight.path, elapsed, departure, false);
+    record_flown(flight.path, elapsed, separation_speed, false);
     return found.contact;
 }
 
@@ -49,7 +49,7 @@ bool ParticleStep::can_follow(const Path& path) {
 /// False where all that moves stays away from the path: it is followed as where nothing moves.
 bool ParticleStep::is_among_bodies(const Path& path) const {
     if (rules_->bodies == nullptr) return false;
-    return home_.is_moving() || !rules_->bodies->all_stay_out(reach_of(path, particle_.state.radius));
+    return reference_.is_moving() || !rules_->bodies->all_stay_out(reach_of(path, particle_.state.radius));
 }
 
 /// To the contact found, or to the end of the path; what is met on the way is the contact then. s, that it has taken.
@@ -65,7 +65,7 @@ double ParticleStep::go_along(const ContactQuery& query, ContactQueryResult& fou
     const NearSurfaces& near = found.near;
     std::optional<Contact>& contact = found.contact;
     const bool starts_there =
-        contact ? contact->time == 0.0 : query.radius > 0.0 && query.held.empty() && near.starts_in_overlap();
+        contact ? contact->time == 0.0 : query.radius > 0.0 && query.supports.empty() && near.starts_in_overlap();
     if (starts_there && !near.surfaces_at(path.c[0]).empty()) {
         leave_surface(near);
         contact.reset();
@@ -89,7 +89,7 @@ void ParticleStep::stop_at_contact(const ContactQuery& query, ContactQueryResult
     const SafePosition safe = find_safe_position(near, query.path, *contact, scratch_.contacts.chain);
     outcome_.stayed += safe.stayed ? 1 : 0;
     state().position = safe.reached.position;
-    const bool is_held = !query.held.empty() || near.foreign() != nullptr;
+    const bool is_held = !query.supports.empty() || near.other_frames() != nullptr;
     if (!is_held || !safe.blocker || safe.reached.time >= contact->time) return;
     contact = contact_with_blocker(near, query.path, {safe.reached, safe.blocker});
 }
@@ -98,18 +98,19 @@ void ParticleStep::stop_at_contact(const ContactQuery& query, ContactQueryResult
 /// polygon is free.
 CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const ContactQuery& query) {
     const Path& path = query.path;
-    std::vector<WayPoint>& chain = scratch_.contacts.chain;
+    std::vector<PathPoint>& chain = scratch_.contacts.chain;
     const auto is_free_outside = [&] {
-        if (query.held.empty() || path.degree != 3) return false;
+        if (query.supports.empty() || path.degree != 3) return false;
         ControlPoints outside = path.control_points();
         outside.point[3] = path.end;
         chain.assign(1, near.start());
         for (std::size_t k = 1; k < 4; ++k) {
             const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
-            const WayPoint next = near.point_at(outside.point[k], time);
+            const PathPoint next = near.point_at(outside.point[k], time);
             if (!near.is_free(chain.back().position, next.position)) return false;
             // In other frames it is no hull of the path, near which alone their surfaces are known.
-            if (near.foreign() != nullptr && !is_link_free(*near.foreign(), chain.back(), next)) return false;
+            if (near.other_frames() != nullptr && !is_segment_free(*near.other_frames(), chain.back(), next))
+                return false;
             chain.push_back(next);
         }
         return true;
@@ -118,13 +119,13 @@ CertifiedPath ParticleStep::follow_freely(const NearSurfaces& near, const Contac
     if (query.radius == 0.0 && is_free_outside()) return end_of_chain();
     const CertifiedPath followed = follow_path(near, path, path.duration, path.end, chain);
     if (!followed.blocker || query.radius == 0.0) return followed;
-    std::vector<WayPoint> until_there = chain;
+    std::vector<PathPoint> until_there = chain;
     if (is_free_outside()) return end_of_chain();
     chain.swap(until_there);
     return followed;
 }
 
-std::optional<Contact> ParticleStep::wait(double duration, std::span<const SurfaceId> held) {
+std::optional<Contact> ParticleStep::wait(double duration, std::span<const SurfaceId> supports) {
     const Path here = line_path(state().position, Vec3{}, duration);
     if (!is_among_bodies(here)) {
         stay_until(clock_of(here).end);
@@ -132,7 +133,7 @@ std::optional<Contact> ParticleStep::wait(double duration, std::span<const Surfa
         record_flown(here, duration, Vec3{}, false);
         return std::nullopt;
     }
-    const Travel travelled = travel_among_bodies({here, state().radius, nullptr, {}, held});
+    const Travel travelled = travel_among_bodies({here, state().radius, nullptr, {}, supports});
     if (!travelled.contact) state().position = here.end;  // bit by bit, wherever its frame goes
     record_flown(here, travelled.elapsed, Vec3{}, false);
     return travelled.contact;
@@ -200,9 +201,9 @@ void ParticleStep::leave_surface(const NearSurfaces& near) {
 bool ParticleStep::step_off_in_frame(const NearSurfaces& near) {
     const auto position = step_off(near, state().position);
     if (!position) return false;
-    const WayPoint to = near.point_at(*position, 0.0);
+    const PathPoint to = near.point_at(*position, 0.0);
     if (!near.is_free_after(state().position, to.position)) return false;
-    if (near.foreign() != nullptr && !near.foreign()->are_free(near.start(), to)) return false;
+    if (near.other_frames() != nullptr && !near.other_frames()->are_free(near.start(), to)) return false;
     if (scratch_.record_segments) {
         scratch_.segments.push_back({stored_.position, to.world, state().time, stored_.time, stored_.time});
     }
@@ -212,9 +213,9 @@ bool ParticleStep::step_off_in_frame(const NearSurfaces& near) {
 }
 
 void ParticleStep::record_chain(const PathClock& clock) {
-    const std::vector<WayPoint>& chain = scratch_.contacts.chain;
+    const std::vector<PathPoint>& chain = scratch_.contacts.chain;
     const bool is_timed = rules_->bodies != nullptr;
-    const auto time_of = [&](const WayPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
+    const auto time_of = [&](const PathPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
     if (is_timed) stored_ = {chain.back().world, time_of(chain.back())};
     if (!scratch_.record_segments) return;
     for (std::size_t k = 1; k < chain.size(); ++k) {

@@ -12,15 +12,15 @@
 #include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/safe_position.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/motion_log.h"
-#include "ricochet/response/riding.h"
+#include "ricochet/response/reference_frame.h"
 
 namespace ricochet {
 
 /// Whether a contact that was found on an approximate path deserves a path that ends there. Each brings that nearer to
 /// the way that it stands for, by its fourth power where it is a cubic between two states of that.
-class CloserLooks {
+class RefinementBudget {
 public:
     /// tried: where the contact is on the path; there: where the way is at that time, whose contact offset is given.
     [[nodiscard]] bool may_improve(const Vec3& tried, const Vec3& there, double offset) {
@@ -41,10 +41,10 @@ public:
         : rules_(&rules),
           particle_(particle),
           scratch_(scratch),
-          home_(rules.bodies),
+          reference_(rules.bodies),
           geometry_(rules.world, scratch.contacts.plane_cache),
-          impact_(rules, particle, scratch, outcome_, home_),
-          log_(rules, particle, scratch, home_),
+          impact_(rules, particle, scratch, outcome_, reference_),
+          log_(rules, particle, scratch, reference_),
           start_(particle.state.position),
           stored_{particle.state.position, particle.stored_time},
           first_segment_(scratch.segments.size()),
@@ -61,13 +61,13 @@ public:
     /// The same in contact with surfaces.
     std::optional<Contact> follow(const Flight& flight);
     /// The same for a path whose velocity is the particle's, along surfaces that hold it where there are any.
-    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held = {}) {
-        return follow(path, held, [](double, const Path&) { return std::optional<Path>(); });
+    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> supports = {}) {
+        return follow(path, supports, [](double, const Path&) { return std::optional<Path>(); });
     }
     /// The same for a path that is only an approximation: shorter(time, path) says which path to try next where one has
     /// come to a contact at a time, or nothing where the path is close enough there.
     template <class Shorter>
-    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> held, const Shorter& shorter);
+    std::optional<Contact> follow(const Path& path, std::span<const SurfaceId> supports, const Shorter& shorter);
     /// Calls found(surface) for all surfaces near the particle: planes, shapes, triangles, each in ascending order.
     template <class Found>
     void visit_near(const Found& found);
@@ -75,7 +75,7 @@ public:
     template <class Found>
     void visit_near_in(const SurfaceGeometry& geometry, const Vec3& position, double beside, const Found& found);
     /// Lets time pass where the particle is, s. Returns what comes to it there.
-    std::optional<Contact> wait(double duration, std::span<const SurfaceId> held = {});
+    std::optional<Contact> wait(double duration, std::span<const SurfaceId> supports = {});
     /// Gives up the time that is left.
     void stop();
     /// Back along its own segments to where the step began, where nothing that moves is near.
@@ -94,17 +94,17 @@ public:
     void enter(BodyId body, const ResponseRules& rules, Contact* contact);
     /// From now on it is that in the world again.
     void leave(const ResponseRules& rules, Contact* contact);
-    /// Until end_part(): the step ends at this time, s, or where it ends anyway. After that the body's velocity may be
-    /// another.
-    void begin_part(double until);
-    void end_part();
+    /// Until end_substep(): the step ends at this time, s, or where it ends anyway. After that the body's velocity may
+    /// be another.
+    void begin_substep(double until);
+    void end_substep();
     /// The frame that the state is given in.
-    [[nodiscard]] const HomeFrame& home() const { return home_; }
+    [[nodiscard]] const ReferenceFrame& reference() const { return reference_; }
     /// What a ball of a radius, m, would meet first on a path in the world; nothing is moved. held: as
     /// ContactQuery::held.
     [[nodiscard]] std::optional<Contact> first_contact(const Path& path, double radius,
-                                                       std::span<const SurfaceId> held) {
-        return first_contact_among_bodies({path, radius, nullptr, {}, held});
+                                                       std::span<const SurfaceId> supports) {
+        return first_contact_among_bodies({path, radius, nullptr, {}, supports});
     }
     /// Moves it in no time to a position in the world, where that is a free link; else it stays.
     void shift_to(const Vec3& position);
@@ -118,7 +118,7 @@ public:
     [[nodiscard]] MovingParticle& particle() { return particle_; }
     [[nodiscard]] ForceInput& state() { return particle_.state; }
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }
-    [[nodiscard]] ImpactAnswer& impact() { return impact_; }
+    [[nodiscard]] ImpactResolver& impact() { return impact_; }
     [[nodiscard]] MotionLog& log() { return log_; }
     [[nodiscard]] MoveOutcome& outcome() { return outcome_; }
     /// m/s, of the slowest rebound that is one: the scene's, or what a body that yields makes of it.
@@ -160,24 +160,27 @@ private:
     [[nodiscard]] Travel travel_among_bodies(const ContactQuery& query);
     [[nodiscard]] std::optional<Contact> first_contact_among_bodies(const ContactQuery& query);
     [[nodiscard]] PathClock clock_of(const Path& path) const;
-    [[nodiscard]] MovingView view_of(const Path& path) const { return {*rules_->bodies, home_.body(), clock_of(path)}; }
-    void record_flown_in_world(const Path& path, double duration, const Vec3& departure);
-    [[nodiscard]] WayPoint here(const MovingView& view) const { return view.stored(stored_.position, 0.0); }
-    void turn_contact(Contact* contact, const HomeFrame& from, const HomeFrame& to) const;
+    [[nodiscard]] MovingView view_of(const Path& path) const {
+        return {*rules_->bodies, reference_.body(), clock_of(path)};
+    }
+    void record_flown_in_world(const Path& path, double duration, const Vec3& separation_speed);
+    [[nodiscard]] PathPoint here(const MovingView& view) const { return view.stored(stored_.position, 0.0); }
+    void turn_contact(Contact* contact, const ReferenceFrame& from, const ReferenceFrame& to) const;
     [[nodiscard]] bool carry_on(BodyId frame, double until);
-    [[nodiscard]] bool carry(BodyId frame, const Vec3& image, double until, int depth);
-    [[nodiscard]] bool take_link(const StoredPosition& next);
-    void go_along_link(const StoredPosition& next);
-    [[nodiscard]] bool take_late_link(const Vec3& position);
+    [[nodiscard]] bool carry(BodyId frame, const Vec3& local_position, double until, int depth);
+    [[nodiscard]] bool take_segment(const StoredPosition& next);
+    void advance_along_segment(const StoredPosition& next);
+    [[nodiscard]] bool take_late_segment(const Vec3& position);
     [[nodiscard]] bool catch_up_directly();
-    [[nodiscard]] bool is_link_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const;
+    [[nodiscard]] bool is_segment_free_of_bodies(const StoredPosition& from, const StoredPosition& to) const;
     [[nodiscard]] Vec3 carried_by_mesh(SurfaceId surface, double until) const;
     [[nodiscard]] bool carry_by_mesh(SurfaceId surface, double until, int depth);
     [[nodiscard]] bool carry_by_meshes(double until);
-    [[nodiscard]] bool is_link_free(const StoredPosition& from, const StoredPosition& to) const;
-    [[nodiscard]] bool is_link_free(const ForeignSurfaces& foreign, const WayPoint& from, const WayPoint& to) const {
+    [[nodiscard]] bool is_segment_free(const StoredPosition& from, const StoredPosition& to) const;
+    [[nodiscard]] bool is_segment_free(const SurfacesInOtherFrames& foreign, const PathPoint& from,
+                                       const PathPoint& to) const {
         const PathClock& clock = foreign.view().clock();
-        return is_link_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
+        return is_segment_free({from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
     }
     [[nodiscard]] bool wait_out(double until);
     void wait_by_turns(double until);
@@ -192,29 +195,30 @@ private:
     void record_chain(const PathClock& clock);
     void pass(double duration);
     /// Of a piece of what the particle has flown, after it.
-    void record_flown(const Path& path, double duration, const Vec3& departure, bool is_free) {
+    void record_flown(const Path& path, double duration, const Vec3& separation_speed, bool is_free) {
         if (!scratch_.record_flown) return;
-        if (home_.is_moving()) {
-            record_flown_in_world(path, duration, departure);
+        if (reference_.is_moving()) {
+            record_flown_in_world(path, duration, separation_speed);
             return;
         }
-        scratch_.flown.push_back({path, state().time - duration, duration, departure, state().velocity, is_free});
+        scratch_.flown.push_back(
+            {path, state().time - duration, duration, separation_speed, state().velocity, is_free});
     }
 
     const ResponseRules* rules_;
     MovingParticle& particle_;
     MoveScratch& scratch_;
-    HomeFrame home_;
+    ReferenceFrame reference_;
     SurfaceGeometry geometry_;
     MoveOutcome outcome_;
-    ImpactAnswer impact_;
+    ImpactResolver impact_;
     MotionLog log_;
     Vec3 start_;
-    StoredPosition stored_;           // where something moves
-    std::optional<double> part_end_;  // s, of begin_part()
-    double rest_after_part_ = 0.0;    // s
-    double whole_step_end_ = 0.0;     // s
-    std::size_t first_segment_;       // of this step among those recorded
+    StoredPosition stored_;              // where something moves
+    std::optional<double> substep_end_;  // s, of begin_substep()
+    double rest_after_substep_ = 0.0;    // s
+    double whole_step_end_ = 0.0;        // s
+    std::size_t first_segment_;          // of this step among those recorded
     double duration_;
     double remaining_;
     double resting_speed_;
@@ -222,11 +226,12 @@ private:
 };
 
 template <class Shorter>
-std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> held, const Shorter& shorter) {
+std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const SurfaceId> supports,
+                                            const Shorter& shorter) {
     if (!can_follow(path)) return std::nullopt;
-    const Vec3 departure = state().velocity;
+    const Vec3 separation_speed = state().velocity;
     Path followed = path;
-    const ContactQuery query{followed, state().radius, nullptr, {}, held};
+    const ContactQuery query{followed, state().radius, nullptr, {}, supports};
     const auto takes_shorter = [&](const std::optional<Contact>& contact) {
         const std::optional<Path> next = contact ? shorter(contact->time, followed) : std::nullopt;
         // In next to no time a cubic has coefficients beyond all bounds; the longer path will do.
@@ -239,20 +244,20 @@ std::optional<Contact> ParticleStep::follow(const Path& path, std::span<const Su
         }
         const Travel travelled = travel_among_bodies(query);
         state().velocity = followed.velocity(travelled.elapsed);
-        record_flown(followed, travelled.elapsed, departure, false);
+        record_flown(followed, travelled.elapsed, separation_speed, false);
         return travelled.contact;
     }
     ContactQueryResult found = find_first_contact(geometry_, query, scratch_.contacts);
     while (takes_shorter(found.contact)) found = find_first_contact(geometry_, query, scratch_.contacts);
     const double elapsed = go(query, found);
     state().velocity = followed.velocity(elapsed);
-    record_flown(followed, elapsed, departure, false);
+    record_flown(followed, elapsed, separation_speed, false);
     return found.contact;
 }
 
 template <class Found>
 void ParticleStep::visit_near(const Found& found) {
-    const double beside = home_.is_moving() ? kTouchingOffsets * geometry_.contact_offset(state().position) : 0.0;
+    const double beside = reference_.is_moving() ? kTouchingOffsets * geometry_.contact_offset(state().position) : 0.0;
     visit_near_in(geometry_, state().position, beside, found);
 }
 

@@ -7,9 +7,9 @@
 #include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/impact_answer.h"
-#include "ricochet/response/kept_hold.h"
+#include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/side_watch.h"
+#include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
@@ -33,7 +33,7 @@ Vec3 brake(const Vec3& v, double most, double speed, double stopping) {
 }
 
 /// What contacts do to a particle.
-struct ContactPush {
+struct ContactForces {
     Vec3 acceleration;       ///< m/s^2
     Vec3 spin_acceleration;  ///< rad/s^2
 };
@@ -67,7 +67,7 @@ public:
 
     MoveOutcome run(double duration);
     /// What contacts add to a pull where it is now.
-    [[nodiscard]] HeldAcceleration hold(const Vec3& pull);
+    [[nodiscard]] SupportedAcceleration supported_acceleration(const Vec3& pull);
 
 private:
     void survey(double duration);
@@ -77,7 +77,7 @@ private:
     std::optional<BodyState> midpoint(const BodyState& now, double h);
     std::optional<BodyState> rk4(const BodyState& now, double h);
     bool find_contacts(const Vec3& position, std::vector<Proximity>& out);
-    ContactPush push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts, double weight);
+    ContactForces force_at(const BodyState& body, double time, const std::vector<Proximity>& contacts, double weight);
     [[nodiscard]] PenaltyContact contact_of(const Proximity& view, const Vec3& center) const;
     void begin_contacts();
 
@@ -87,7 +87,7 @@ private:
     ForceInput& state_;
     MoveScratch& scratch_;
     MoveOutcome outcome_;
-    ImpactAnswer impact_;
+    ImpactResolver impact_;
     SideWatch watch_;
     double substep_ = 0.0;           // s
     std::vector<Proximity>& seen_;   // contacts where the particle is
@@ -112,12 +112,13 @@ MoveOutcome PenaltyMover::run(double duration) {
     return outcome_;
 }
 
-HeldAcceleration PenaltyMover::hold(const Vec3& pull) {
+SupportedAcceleration PenaltyMover::supported_acceleration(const Vec3& pull) {
     substep_ = rules_.settings.time_step / rules_.settings.penalty.substeps;
     seen_.clear();
     if (watch_.in_contact()) watch_.find_near(state_.position, state_.position, 0.0, seen_);
-    const ContactPush push = push_at({state_.position, {state_.velocity, particle_.spin}}, state_.time, seen_, 0.0);
-    return {pull + (push.acceleration - rules_.forces.acceleration(state_)), push.spin_acceleration};
+    const ContactForces contact_force =
+        force_at({state_.position, {state_.velocity, particle_.spin}}, state_.time, seen_, 0.0);
+    return {pull + (contact_force.acceleration - rules_.forces.acceleration(state_)), contact_force.spin_acceleration};
 }
 
 /// One wide query instead of one a sub-step, as long as nothing is near.
@@ -162,7 +163,7 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
         case IntegratorKind::implicit_euler:  // refused by make_response()
             break;
     }
-    const ContactPush k = push_at(now, state_.time, seen_, h);
+    const ContactForces k = force_at(now, state_.time, seen_, h);
     const Motion motion{now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration};
     const bool drifts_first = rules_.settings.integrator.kind == IntegratorKind::forward_euler;
     return BodyState{now.position + h * (drifts_first ? now.motion.velocity : motion.velocity), motion};
@@ -171,25 +172,25 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
 /// Velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982); forces that depend on
 /// the velocity see the one predicted with the first force.
 std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
-    const ContactPush k0 = push_at(now, state_.time, seen_, 0.5 * h);
+    const ContactForces k0 = force_at(now, state_.time, seen_, 0.5 * h);
     BodyState next;
     next.position = flush_tiny(now.position + h * now.motion.velocity + (0.5 * h * h) * k0.acceleration);
     next.motion = {now.motion.velocity + h * k0.acceleration, now.motion.spin + h * k0.spin_acceleration};
     if (!find_contacts(next.position, stage_)) return std::nullopt;
-    const ContactPush k1 = push_at(next, state_.time + h, stage_, 0.5 * h);
+    const ContactForces k1 = force_at(next, state_.time + h, stage_, 0.5 * h);
     next.motion = {now.motion.velocity + (0.5 * h) * (k0.acceleration + k1.acceleration),
                    now.motion.spin + (0.5 * h) * (k0.spin_acceleration + k1.spin_acceleration)};
     return next;
 }
 
 std::optional<BodyState> PenaltyMover::midpoint(const BodyState& now, double h) {
-    const ContactPush k0 = push_at(now, state_.time, seen_, 0.0);
+    const ContactForces k0 = force_at(now, state_.time, seen_, 0.0);
     const double half = 0.5 * h;
     const BodyState middle{
         now.position + half * now.motion.velocity,
         {now.motion.velocity + half * k0.acceleration, now.motion.spin + half * k0.spin_acceleration}};
     if (!find_contacts(middle.position, stage_)) return std::nullopt;
-    const ContactPush k = push_at(middle, state_.time + half, stage_, h);
+    const ContactForces k = force_at(middle, state_.time + half, stage_, h);
     return BodyState{now.position + h * middle.motion.velocity,
                      {now.motion.velocity + h * k.acceleration, now.motion.spin + h * k.spin_acceleration}};
 }
@@ -198,14 +199,14 @@ std::optional<BodyState> PenaltyMover::rk4(const BodyState& now, double h) {
     constexpr std::array<double, 4> kAt{0.0, 0.5, 0.5, 1.0};
     constexpr std::array<double, 4> kWeights{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
     BodyState sum = now;
-    ContactPush k;
+    ContactForces k;
     Vec3 velocity = now.motion.velocity;
     for (std::size_t i = 0; i < kAt.size(); ++i) {
         const double s = kAt[i] * h;
         const BodyState stage{now.position + s * velocity,
                               {now.motion.velocity + s * k.acceleration, now.motion.spin + s * k.spin_acceleration}};
         if (i > 0 && !find_contacts(stage.position, stage_)) return std::nullopt;
-        k = push_at(stage, state_.time + s, i > 0 ? stage_ : seen_, kWeights[i] * h);
+        k = force_at(stage, state_.time + s, i > 0 ? stage_ : seen_, kWeights[i] * h);
         velocity = stage.motion.velocity;
         sum.position += (kWeights[i] * h) * velocity;
         sum.motion.velocity += (kWeights[i] * h) * k.acceleration;
@@ -241,23 +242,23 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view, const Vec3& cente
 }
 
 /// What the forces and the contacts do to a body. weight: s of it that the integrator takes, for the surfaces' totals.
-ContactPush PenaltyMover::push_at(const BodyState& body, double time, const std::vector<Proximity>& contacts,
-                                  double weight) {
+ContactForces PenaltyMover::force_at(const BodyState& body, double time, const std::vector<Proximity>& contacts,
+                                     double weight) {
     ForceInput input = state_;
     input.position = body.position;
     input.velocity = body.motion.velocity;
     input.time = time;
-    ContactPush push{rules_.forces.acceleration(input), {}};
+    ContactForces contact_force{rules_.forces.acceleration(input), {}};
     const double inertia = 0.4 * state_.mass * state_.radius * state_.radius;  // solid sphere
     for (const Proximity& view : contacts) {
         const ContactForce force = force_of(contact_of(view, body.position), body.motion, state_.radius,
                                             {rules_.settings.penalty.friction_speed, substep_});
         const Vec3 acceleration = force.force / state_.mass;
-        push.acceleration += acceleration;
-        if (inertia > 0.0) push.spin_acceleration += force.torque / inertia;
-        if (weight > 0.0) impact_.push(view.surface, weight * acceleration, false);
+        contact_force.acceleration += acceleration;
+        if (inertia > 0.0) contact_force.spin_acceleration += force.torque / inertia;
+        if (weight > 0.0) impact_.record_impulse(view.surface, weight * acceleration, false);
     }
-    return push;
+    return contact_force;
 }
 
 /// Contacts that begin where the particle is now: counted, recorded, and answered at once by surfaces of chance.
@@ -270,7 +271,7 @@ void PenaltyMover::begin_contacts() {
             impact_.reflect({&surface, 1});
             if (outcome_.is_absorbed()) return;
         } else {
-            impact_.push(view.surface, Vec3{}, true);
+            impact_.record_impulse(view.surface, Vec3{}, true);
             impact_.record(surface, state_.velocity);
             // The contact's impulse is yet to come; what arrives along the normal stands for it.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
@@ -349,18 +350,19 @@ MoveOutcome PenaltyResponse::move(MovingParticle& particle, double duration, Mov
     return PenaltyMover(rules_, distance_, damping_ratios_, particle, scratch, lists).run(duration);
 }
 
-HeldAcceleration PenaltyResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+SupportedAcceleration PenaltyResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
     ProbedParticle probe(particle);
     PenaltyScratch lists;
-    return PenaltyMover(rules_, distance_, damping_ratios_, probe.particle, probe.scratch, lists).hold(pull);
+    return PenaltyMover(rules_, distance_, damping_ratios_, probe.particle, probe.scratch, lists)
+        .supported_acceleration(pull);
 }
 
 void PenaltyResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
     set_first_sides(distance_, position, sides);
 }
 
-void PenaltyResponse::inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const {
-    settle_child_sides(distance_, place, sides);
+void PenaltyResponse::inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const {
+    settle_child_sides(distance_, start, sides);
 }
 
 }  // namespace ricochet

@@ -5,9 +5,9 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/impact_answer.h"
-#include "ricochet/response/kept_hold.h"
+#include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/side_watch.h"
+#include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
@@ -44,7 +44,7 @@ public:
         }
         state_.position = put_back(flush_tiny(state_.position));
         if (scratch_.record_segments) scratch_.segments.push_back({from_, state_.position, state_.time - duration});
-        if (!contacts_.empty()) answer(duration);
+        if (!contacts_.empty()) resolve(duration);
         return outcome_;
     }
 
@@ -104,7 +104,7 @@ private:
     }
 
     /// The velocity check and the bounce.
-    void answer(double duration) {
+    void resolve(double duration) {
         const bool approaches = std::any_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
             return dot(state_.velocity, contact.normal) < 0.0;
         });
@@ -137,7 +137,7 @@ private:
     ForceInput& state_;
     MoveScratch& scratch_;
     MoveOutcome outcome_;
-    ImpactAnswer impact_;
+    ImpactResolver impact_;
     SideWatch watch_;
     Vec3 from_;
     Vec3 pull_;  // the forces' acceleration at the start
@@ -152,19 +152,19 @@ MoveOutcome ProjectResponse::move(MovingParticle& particle, double duration, Mov
     return Projector(rules_, distance_, particle, scratch, lists).run(duration);
 }
 
-HeldAcceleration ProjectResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
+SupportedAcceleration ProjectResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
     ProbedParticle probe(particle);
     SideScratch lists;
-    return hold_by(rules_, particle, pull,
-                   Projector(rules_, distance_, probe.particle, probe.scratch, lists).touched());
+    return acceleration_on(rules_, particle, pull,
+                           Projector(rules_, distance_, probe.particle, probe.scratch, lists).touched());
 }
 
 void ProjectResponse::first_sides(const Vec3& position, std::span<SideMemory> sides) const {
     set_first_sides(distance_, position, sides);
 }
 
-void ProjectResponse::inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const {
-    settle_child_sides(distance_, place, sides);
+void ProjectResponse::inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const {
+    settle_child_sides(distance_, start, sides);
 }
 
 }  // namespace ricochet

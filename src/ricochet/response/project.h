@@ -29,10 +29,11 @@ public:
     explicit ProjectResponse(const ResponseRules& rules) : Response(rules), distance_(rules.world) {}
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
-    [[nodiscard]] HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const override;
+    [[nodiscard]] SupportedAcceleration supported_acceleration(const MovingParticle& particle,
+                                                               const Vec3& pull) const override;
     [[nodiscard]] bool keeps_sides() const override { return true; }
     void first_sides(const Vec3& position, std::span<SideMemory> sides) const override;
-    void inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const override;
+    void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const override;
 
 private:
     SignedDistance distance_;

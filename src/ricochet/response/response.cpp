@@ -11,7 +11,7 @@
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/response/advect.h"
 #include "ricochet/response/exact.h"
-#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/penalty.h"
 #include "ricochet/response/project.h"
 #include "ricochet/response/rollback.h"
@@ -102,42 +102,45 @@ std::string_view name_of(ResponseKind kind) {
 
 std::span<const ResponseKind> response_kinds() { return kKinds; }
 
-HeldAcceleration Response::hold(const MovingParticle& /*particle*/, const Vec3& pull) const { return {pull}; }
+SupportedAcceleration Response::supported_acceleration(const MovingParticle& /*particle*/, const Vec3& pull) const {
+    return {pull};
+}
 
-void Response::take_up(MovingParticle& particle, const Vec3& change, double duration, MoveScratch& scratch) const {
+void Response::apply_correction(MovingParticle& particle, const Vec3& change, double duration,
+                                MoveScratch& scratch) const {
     MoveOutcome outcome;
-    ImpactAnswer impact(rules_, particle, scratch, outcome);
-    Vec3 owed = change;
+    ImpactResolver impact(rules_, particle, scratch, outcome);
+    Vec3 corrections = change;
     const bool is_carried = rules_.bodies != nullptr && particle.contact.count > 0 &&
-                            rules_.bodies->body_of(particle.contact.surfaces[0]) != kAtRest;
+                            rules_.bodies->body_of(particle.contact.surfaces[0]) != kWorldBody;
     if (is_carried) {
         // It goes with its body, which takes what comes so late.
-        impact.push(particle.contact.surfaces[0], -owed, false, Vec3{});
-        impact.close_book();
+        impact.record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
+        impact.finish_recording();
         return;
     }
     const Vec3 pull = rules_.forces.acceleration(particle.state);
-    const HeldAcceleration before = hold(particle, pull);
-    const HeldAcceleration after = hold(particle, pull + change / duration);
+    const SupportedAcceleration before = supported_acceleration(particle, pull);
+    const SupportedAcceleration after = supported_acceleration(particle, pull + change / duration);
     if (after.count > 0) {
         const Vec3 kept = duration * (after.acceleration - before.acceleration);
         const Vec3 by_surfaces = kept - change;
         // What each gives more than before; rounding goes with the first.
         Vec3 left = by_surfaces;
         for (std::size_t k = 1; k < after.count; ++k) {
-            Vec3 given = duration * after.push[k];
+            Vec3 given = duration * after.reaction[k];
             for (std::size_t j = 0; j < before.count; ++j) {
-                if (before.surfaces[j] == after.surfaces[k]) given -= duration * before.push[j];
+                if (before.surfaces[j] == after.surfaces[k]) given -= duration * before.reaction[j];
             }
             left -= given;
-            impact.push(after.surfaces[k], given, false, Vec3{});
+            impact.record_impulse(after.surfaces[k], given, false, Vec3{});
         }
-        impact.push(after.surfaces[0], left, false, Vec3{});
+        impact.record_impulse(after.surfaces[0], left, false, Vec3{});
         particle.spin += duration * (after.spin_acceleration - before.spin_acceleration);
-        owed = kept;
+        corrections = kept;
     }
-    particle.state.velocity += owed;
-    impact.close_book();
+    particle.state.velocity += corrections;
+    impact.finish_recording();
 }
 
 void Response::add_weight(const MovingParticle& /*particle*/, double /*duration*/,
@@ -147,7 +150,7 @@ void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides
     std::fill(sides.begin(), sides.end(), SideMemory{});
 }
 
-void Response::inherit_sides(const ChildPlace& /*place*/, std::span<SideMemory> /*sides*/) const {}
+void Response::inherit_sides(const ChildStart& /*place*/, std::span<SideMemory> /*sides*/) const {}
 
 Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
                     const Integrator& integrator) {

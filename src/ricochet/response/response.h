@@ -42,7 +42,7 @@ struct ColliderLoad {
     double mass = 0.0;         ///< kg, of the particle
     Vec3 impulse;              ///< N s, given to the surface
     Vec3 moment;               ///< N m s, given about the origin of the collider's frame, in world axes
-    Vec3 place;                ///< m, of the particle's centre in the world
+    Vec3 particle_center;      ///< m, of the particle's centre in the world
     Vec3 couple;               ///< N m s, given besides the moment that the impulse has at `place`
     double work = 0.0;         ///< J, given
     double lost_energy = 0.0;  ///< J, kinetic, that the particle has lost by the impact; with the impact's last load
@@ -61,7 +61,7 @@ struct MoveScratch {
     std::vector<MotionPart> motions;      ///< filled when record_motions, by the exact response
     std::vector<ColliderLoad> loads;      ///< filled when record_loads
     std::vector<RecordedImpact> impacts;  ///< impacts with a rebound; filled when record_motions, by the exact response
-    std::vector<SurfaceId> held_by;       ///< surfaces of the contact interval that has just ended, for `impacts`
+    std::vector<SurfaceId> supported_by;  ///< surfaces of the contact interval that has just ended, for `impacts`
     bool record_contacts = false;
     bool record_segments = false;
     bool record_flown = false;
@@ -71,7 +71,7 @@ struct MoveScratch {
 };
 
 /// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.
-struct KeptContact {
+struct ContactState {
     std::array<SurfaceId, 3> surfaces{};  ///< 0 beyond count
     std::uint8_t count = 0;               ///< 0: it flies
     double cascade_left = 0.0;            ///< s of a bounce cascade that the end of the step has cut in two
@@ -81,13 +81,13 @@ struct KeptContact {
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
     /// Of a particle in flight that a jump of a body's velocity has let go: m/s, at which it leaves the body.
-    [[nodiscard]] static KeptContact let_go(double speed) { return {{}, 0, kLetGo - speed}; }
-    [[nodiscard]] std::optional<double> let_go_speed() const {
+    [[nodiscard]] static ContactState release_at(double speed) { return {{}, 0, kLetGo - speed}; }
+    [[nodiscard]] std::optional<double> release_speed() const {
         if (count > 0 || !(cascade_left <= kLetGo)) return std::nullopt;
         return kLetGo - cascade_left;
     }
 
-    friend bool operator==(const KeptContact&, const KeptContact&) = default;
+    friend bool operator==(const ContactState&, const ContactState&) = default;
 
 private:
     static constexpr double kLetGo = -2.0;
@@ -107,7 +107,7 @@ struct MovingParticle {
     Vec3 spin;         ///< rad/s
     std::uint64_t id = 0;
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
-    KeptContact contact{};             ///< what it is in contact with; contact goes on in the next step
+    ContactState contact{};            ///< what it is in contact with; contact goes on in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
     /// N s: an impact that changes its momentum by as much removes it there, as if it were absorbed.
     double shatter_impulse = std::numeric_limits<double>::infinity();
@@ -125,11 +125,11 @@ struct MovingParticle {
     /// Impacts of it in earlier parts of the time step, where something cuts that into parts: one budget for all.
     std::uint32_t bounces_before = 0;
     /// How it rests on a body, in the body's frame, where it rides on one; with a contact that is kept.
-    struct Ridden {
+    struct Attachment {
         Vec3 position;  ///< m
         Vec3 spin;      ///< rad/s, relative to the body
     };
-    std::optional<Ridden> ridden = std::nullopt;
+    std::optional<Attachment> attachment = std::nullopt;
 
     /// s after the end of the move for which flights are planned on: they are cut where the move ends, so that their
     /// paths are those of a longer one.
@@ -175,18 +175,18 @@ struct MoveOutcome {
 inline constexpr std::uint32_t kImpactStream = 0xFFFFFFFFU;
 
 /// What forces make of the motion of a particle where it is now, with the surfaces that it is in contact with.
-struct HeldAcceleration {
+struct SupportedAcceleration {
     Vec3 acceleration{};                  ///< m/s^2, with what the surfaces give
     Vec3 spin_acceleration{};             ///< rad/s^2
     std::array<SurfaceId, 3> surfaces{};  ///< the first `count`
-    std::array<Vec3, 3> push{};           ///< m/s^2, of each
+    std::array<Vec3, 3> reaction{};       ///< m/s^2, of each
     std::uint8_t count = 0;
 };
 
 class FrameForces;
 
 /// Where a particle spawned by another begins.
-struct ChildPlace {
+struct ChildStart {
     Vec3 parent_start;     ///< m, where the parent's move began
     Vec3 position;         ///< m
     double radius = 0.0;   ///< m
@@ -239,14 +239,15 @@ public:
     /// The sides of all colliders that a new particle is on. sides.size() == number of colliders.
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
     /// The same of a particle that another spawns. sides: in, those of the parent where its move began.
-    virtual void inherit_sides(const ChildPlace& place, std::span<SideMemory> sides) const;
+    virtual void inherit_sides(const ChildStart& particle_center, std::span<SideMemory> sides) const;
 
     /// What forces that accelerate it by `pull`, m/s^2, leave it under this response in the contact that it is in.
     /// Surfaces that move hold nothing here.
-    [[nodiscard]] virtual HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const;
+    [[nodiscard]] virtual SupportedAcceleration supported_acceleration(const MovingParticle& particle,
+                                                                       const Vec3& pull) const;
     /// Gives a particle at the end of its step of `duration` seconds a change of velocity, m/s, that is still owed to
     /// it: as if it had been a part of the forces in that step. What surfaces take of it is recorded.
-    void take_up(MovingParticle& particle, const Vec3& change, double duration, MoveScratch& scratch) const;
+    void apply_correction(MovingParticle& particle, const Vec3& change, double duration, MoveScratch& scratch) const;
 
     [[nodiscard]] const ResponseRules& rules() const { return rules_; }
 

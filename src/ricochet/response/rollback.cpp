@@ -5,7 +5,7 @@
 
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/kept_hold.h"
+#include "ricochet/response/supported_acceleration.h"
 
 namespace ricochet {
 namespace {
@@ -48,7 +48,8 @@ private:
                 scratch.segments.clear();
                 const std::size_t first_hit = scratch.hits.size();
                 body(p, events_[i], scratch);
-                for (std::size_t k = first_hit; k < scratch.hits.size(); ++k) p.pushed -= scratch.hits[k].impulse;
+                for (std::size_t k = first_hit; k < scratch.hits.size(); ++k)
+                    p.surface_impulse -= scratch.hits[k].impulse;
                 p.segments.insert(p.segments.end(), scratch.segments.begin(), scratch.segments.end());
             }
         });
@@ -92,7 +93,7 @@ private:
                 p.is_out = true;
                 p.outcome.unsimulated_time += p.stop - at;
             } else if (found.blocked) {
-                mover.answer();
+                mover.resolve();
             }
             if (p.outcome.is_absorbed()) return;
             rest_in_pit(p, mover, found.free, at);
@@ -124,8 +125,8 @@ MoveOutcome RollbackResponse::move(MovingParticle& particle, double duration, Mo
     return outcome;
 }
 
-HeldAcceleration RollbackResponse::hold(const MovingParticle& particle, const Vec3& pull) const {
-    return hold_by_kept(rules_, particle, pull, rollback_touch(rules_, particle.state, 0.0));
+SupportedAcceleration RollbackResponse::supported_acceleration(const MovingParticle& particle, const Vec3& pull) const {
+    return acceleration_in_contact(rules_, particle, pull, rollback_touch(rules_, particle.state, 0.0));
 }
 
 void move_together(const ResponseRules& rules, std::span<SystemParticle> particles, double from, double to,

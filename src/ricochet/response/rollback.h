@@ -24,7 +24,7 @@
 #include "ricochet/collision/obstacles.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/contact_motion.h"
-#include "ricochet/response/impact_answer.h"
+#include "ricochet/response/impact_resolver.h"
 #include "ricochet/response/response.h"
 
 namespace ricochet {
@@ -35,7 +35,8 @@ public:
     explicit RollbackResponse(const ResponseRules& rules) : Response(rules) {}
 
     MoveOutcome move(MovingParticle& particle, double duration, MoveScratch& scratch) const override;
-    [[nodiscard]] HeldAcceleration hold(const MovingParticle& particle, const Vec3& pull) const override;
+    [[nodiscard]] SupportedAcceleration supported_acceleration(const MovingParticle& particle,
+                                                               const Vec3& pull) const override;
 };
 
 /// A particle as one of a system that goes back together.
@@ -45,7 +46,7 @@ struct SystemParticle {
     double stop = 0.0;   ///< s, and ends
     MoveOutcome outcome = {};
     std::vector<Segment> segments = {};  ///< filled when the scratch records segments
-    Vec3 pushed{};                       ///< N s, that surfaces have given it
+    Vec3 surface_impulse{};              ///< N s, that surfaces have given it
     bool is_out = false;                 ///< it is done with the step: its budget is spent, or it rests in a pit
     int idle = 0;                        ///< pieces of contact in a row without progress
 };
@@ -69,7 +70,7 @@ struct CollisionBracket {
 
 /// In contact is what is nearer than the particle can move within the tolerance of a time of contact, and is not left
 /// faster than the resting speed. kick: m/s, at which what rests may have come down.
-[[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double kick);
+[[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double force_velocity);
 
 /// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
 inline constexpr double kLeastProgress = 0x1p-20;
@@ -94,13 +95,13 @@ public:
     /// Goes along the piece for a time that the bracket has found free.
     void advance(double elapsed);
     /// Answers what blocks at the bracket's blocked end. The particle has gone to its free end.
-    void answer();
+    void resolve();
     /// True while it slides, rolls or rests.
     [[nodiscard]] bool in_contact() const { return !manifold_.empty(); }
     /// Rests where it is for the time given.
     void rest(double duration);
     /// Keeps the contact for the next step.
-    void keep_contact() { particle_.contact = manifold_.kept(); }
+    void keep_contact() { particle_.contact = manifold_.contact_state(); }
     [[nodiscard]] bool has_budget() const { return outcome_.meetings() < rules_.settings.bounce_budget; }
 
 private:
@@ -125,7 +126,7 @@ private:
     MoveOutcome& outcome_;
     SurfaceGeometry geometry_;
     ContactManifold manifold_;
-    ImpactAnswer impact_;
+    ImpactResolver impact_;
     Trial trial_;
     Vec3 from_;              // where the piece began
     Vec3 blocked_position_;  // the bracket's blocked end

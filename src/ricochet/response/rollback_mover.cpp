@@ -42,9 +42,9 @@ Vec3 lift_to_surface(const ContactSurface& support, const Path& path, const Coll
 
 }  // namespace
 
-TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double kick) {
+TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double force_velocity) {
     const double resting_speed = rules.settings.resting_speed;
-    const double speed = std::max({length(state.velocity), resting_speed, kick});
+    const double speed = std::max({length(state.velocity), resting_speed, force_velocity});
     const double reach = kTouchingOffsets * contact_offset(state.position) +
                          kTouchBrackets * rules.settings.rollback.time_tolerance * speed;
     return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
@@ -79,7 +79,7 @@ void RollbackMover::run(double duration) {
             outcome_.unsimulated_time = remaining;
             break;
         }
-        if (found.blocked) answer();
+        if (found.blocked) resolve();
         if (outcome_.is_absorbed()) return;
         idle = in_contact() && found.free < kLeastProgress * duration ? idle + 1 : 0;
         if (idle > kMaxSlowContacts) {
@@ -94,7 +94,7 @@ void RollbackMover::run(double duration) {
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
-    manifold_.record_push(-state_.velocity - duration * pull_, duration, impact_);
+    manifold_.record_impulse(-state_.velocity - duration * pull_, duration, impact_);
     state_.velocity = particle_.spin = Vec3{};
     state_.time += duration;
     outcome_.end = MoveEnd::resting;
@@ -184,17 +184,17 @@ void RollbackMover::follow_interval(double elapsed) {
     const bool is_over = elapsed >= interval_->duration;
     const Motion motion = rests ? interval_->motion
                                 : motion_after(*interval_, elapsed, is_over, flight_.path.velocity(elapsed),
-                                               state_.radius, manifold_.holding(impact_).all());
+                                               state_.radius, manifold_.supports(impact_).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    manifold_.record_push(state_.velocity - before - elapsed * pull_, elapsed, impact_);
+    manifold_.record_impulse(state_.velocity - before - elapsed * pull_, elapsed, impact_);
     outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
 }
 
 /// Bounces, or stays on what it has hit when all rebounds are slow and something presses it on.
-void RollbackMover::answer() {
+void RollbackMover::resolve() {
     ++outcome_.bounces;
     outcome_.end = MoveEnd::moving;
     Obstacles(rules_.world, from_, state_.radius).gather(blocked_position_, state_.position, state_.velocity, hit_);
@@ -242,8 +242,9 @@ bool RollbackMover::will_stay() const {
 TouchRule RollbackMover::touch_rule() const {
     // What rests under symplectic Euler has come down at the speed of a step's kick.
     const bool is_kicked_down = kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight;
-    const double kick = is_kicked_down ? rules_.settings.time_step * length(rules_.forces.acceleration(state_)) : 0.0;
-    return rollback_touch(rules_, state_, kick);
+    const double force_velocity =
+        is_kicked_down ? rules_.settings.time_step * length(rules_.forces.acceleration(state_)) : 0.0;
+    return rollback_touch(rules_, state_, force_velocity);
 }
 
 /// Plans an interval on what is in contact; none when nothing presses the particle on, or the surface ends here.
@@ -255,9 +256,9 @@ void RollbackMover::plan_contact(double duration) {
         manifold_.clear();
         return;
     }
-    const Grip grip = manifold_.grip(kicked ? 0.0 : 1.0, duration);
-    interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_, manifold_.holding(impact_).all(),
-                              grip, duration);
+    const FrictionLimits grip = manifold_.grip(kicked ? 0.0 : 1.0, duration);
+    interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_,
+                              manifold_.supports(impact_).all(), grip, duration);
     manifold_.load(*interval_);
     limit_interval();
 }
@@ -291,7 +292,7 @@ void RollbackMover::turn_along() {
     manifold_.touch_again(touch_rule());
     const auto turned = turned_along(state_.velocity, manifold_.normals());
     if (manifold_.empty() || !turned) return;
-    impact_.push(manifold_[0].surface, *turned - state_.velocity, false);
+    impact_.record_impulse(manifold_[0].surface, *turned - state_.velocity, false);
     state_.velocity = *turned;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/impact_problem.h"
 
@@ -20,36 +20,38 @@ constexpr int kCorrections = 3;
 }  // namespace
 
 bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
-    const ImpactAnswer& impact = step_.impact();
+    const ImpactResolver& impact = step_.impact();
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = impact.material_of(surface.surface);
-        const double approach = impact.advance_of(surface) - dot(arriving.velocity, surface.normal);
-        if (surface.holds || !(approach > 0.0)) return true;
+        const double approach = impact.surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
+        if (surface.is_support || !(approach > 0.0)) return true;
         return !material.is_random() && material.restitution_at(approach) * approach < step_.resting_speed();
     });
 }
 
 /// Loses what leads into the surfaces; false where they leave it no way out.
 bool SharedContact::land() {
-    ImpactAnswer& impact = step_.impact();
+    ImpactResolver& impact = step_.impact();
     const double before = fastest();
     // What goes on along all of them has landed already.
     const bool is_along = std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return departure_from(one) >= -kStopRounding * before;
+        return separation_speed(one) >= -kStopRounding * before;
     });
     if (is_along) return true;
-    std::array<ImpactSurface, kMostHolding> surfaces;
+    std::array<ImpactSurface, kMostSupports> surfaces;
     for (std::size_t k = 0; k < count_; ++k) surfaces[k] = impact.landing_on(touched_[k].surface);
     const ImpactResult result =
         solve_impact({state_.velocity, particle_.spin}, state_.radius, std::span(surfaces).first(count_));
     state_.velocity = result.after.velocity;
     particle_.spin = result.after.spin;
     for (std::size_t k = 0; k < count_; ++k) {
-        if (result.push[k] != Vec3{}) impact.push(touched_[k].surface.surface, result.push[k], false);
+        if (result.velocity_change[k] != Vec3{}) {
+            impact.record_impulse(touched_[k].surface.surface, result.velocity_change[k], false);
+        };
     }
     const double scale = before + length(state_.velocity);
     return std::all_of(touched().begin(), touched().end(),
-                       [&](const Touched& one) { return impact.departure_from(one.surface) >= -kSlowSlip * scale; });
+                       [&](const Touched& one) { return impact.separation_speed(one.surface) >= -kSlowSlip * scale; });
 }
 
 /// Returns the speed, m/s, that scales the rounding of departures: beside a surface at rest, the velocity of a particle
@@ -62,39 +64,39 @@ double SharedContact::fastest() const {
 
 /// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What
 /// does not press is left.
-SharedContact::Hold SharedContact::settle(double duration) {
+SharedContact::SupportKind SharedContact::settle(double duration) {
     const Vec3 leaving = state_.velocity;
     for (;;) {
-        std::array<Vec3, kMostHolding> normals;
-        std::array<double, kMostHolding> departures{};
+        std::array<Vec3, kMostSupports> normals;
+        std::array<double, kMostSupports> departures{};
         for (std::size_t k = 0; k < count_; ++k) {
             normals[k] = touched_[k].surface.normal;
-            departures[k] = -departure_from(touched_[k]);
+            departures[k] = -separation_speed(touched_[k]);
         }
         state_.velocity += shift_by({normals.data(), count_}, {departures.data(), count_});
         const std::size_t before = count_;
-        const Hold hold = plan(duration);
-        std::size_t kept = 0;
+        const SupportKind hold = plan(duration);
+        std::size_t contact_state = 0;
         for (std::size_t k = 0; k < count_; ++k) {
-            const bool is_left = interval_.push[k] == Vec3{} && departures[k] < 0.0;
-            if (!is_left) touched_[kept++] = touched_[k];
+            const bool is_left = interval_.reaction[k] == Vec3{} && departures[k] < 0.0;
+            if (!is_left) touched_[contact_state++] = touched_[k];
         }
-        if (kept == before || kept == 0 || hold != Hold::shared) {
+        if (contact_state == before || contact_state == 0 || hold != SupportKind::shared) {
             // Surfaces of one frame answer the departure from them by themselves.
-            if (hold != Hold::shared) state_.velocity = leaving;
-            if (hold == Hold::shared) {
-                step_.impact().push(touched_[0].surface.surface, state_.velocity - leaving, false);
+            if (hold != SupportKind::shared) state_.velocity = leaving;
+            if (hold == SupportKind::shared) {
+                step_.impact().record_impulse(touched_[0].surface.surface, state_.velocity - leaving, false);
             }
             return hold;
         }
-        count_ = kept;
+        count_ = contact_state;
         state_.velocity = leaving;
     }
 }
 
 /// Where it slips no faster than `most`, m/s: rounding of an impact that has stopped it. Where friction is just what
 /// holds it, nothing else would end that slip, whose direction turns at once.
-StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const HoldingSurface> surfaces,
+StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const SupportSurface> surfaces,
                                       double most) const {
     StuckSurfaces stuck{};
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
@@ -104,51 +106,51 @@ StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const Hold
 }
 
 /// Plans the next interval in the frame in which none of the surfaces advances.
-SharedContact::Hold SharedContact::plan(double duration) {
-    std::array<Vec3, kMostHolding> normals;
-    std::array<double, kMostHolding> advances{};
-    std::array<HoldingSurface, kMostHolding> surfaces;
+SharedContact::SupportKind SharedContact::plan(double duration) {
+    std::array<Vec3, kMostSupports> normals;
+    std::array<double, kMostSupports> advances{};
+    std::array<SupportSurface, kMostSupports> surfaces;
     for (std::size_t k = 0; k < count_; ++k) {
         normals[k] = touched_[k].surface.normal;
         advances[k] = dot(touched_[k].velocity, normals[k]);
     }
     shift_ = shift_by({normals.data(), count_}, {advances.data(), count_});
-    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = holding(touched_[k], shift_);
+    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = supports(touched_[k], shift_);
     const Vec3 forces = step_.rules().forces.acceleration(state_);
     const double reach = kTouchingOffsets * contact_offset(state_.position);
-    const Grip grip{1.0, step_.duration() / kShortestIntervals, reach};
+    const FrictionLimits grip{1.0, step_.duration() / kShortestIntervals, reach};
     const Motion motion{state_.velocity - shift_, particle_.spin};
-    const std::span<const HoldingSurface> holding_it(surfaces.data(), count_);
-    interval_ = plan_interval(motion, state_.radius, forces, holding_it, grip, duration,
-                              sticking(motion, holding_it, kNegligibleSpeed * duration * length(forces)));
+    const std::span<const SupportSurface> supporting_it(surfaces.data(), count_);
+    interval_ = plan_interval(motion, state_.radius, forces, supporting_it, grip, duration,
+                              sticking(motion, supporting_it, kNegligibleSpeed * duration * length(forces)));
     std::optional<BodyId> holder;
     bool is_shared = false;
     for (std::size_t k = 0; k < count_; ++k) {
-        if (interval_.push[k] == Vec3{}) continue;
+        if (interval_.reaction[k] == Vec3{}) continue;
         is_shared = is_shared || (holder && *holder != touched_[k].body) || deforms(touched_[k]);
         holder = touched_[k].body;
     }
-    if (!holder) return Hold::none;
-    if (is_shared) return Hold::shared;
+    if (!holder) return SupportKind::none;
+    if (is_shared) return SupportKind::shared;
     // One frame's surfaces hold it; others are only touched.
-    std::size_t kept = 0;
+    std::size_t contact_state = 0;
     for (std::size_t k = 0; k < count_; ++k) {
-        if (touched_[k].body == *holder) touched_[kept++] = touched_[k];
+        if (touched_[k].body == *holder) touched_[contact_state++] = touched_[k];
     }
-    count_ = kept;
-    return Hold::single;
+    count_ = contact_state;
+    return SupportKind::single;
 }
 
 /// A position at a time put at the contact offset from the surfaces that press on it, and not behind others.
 Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
-        std::array<Vec3, kMostHolding> normals;
-        std::array<double, kMostHolding> lifts{};
+        std::array<Vec3, kMostSupports> normals;
+        std::array<double, kMostSupports> lifts{};
         std::size_t count = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             const Height height = height_above(touched_[k], end, time);
             const double missing = state_.radius + height.offset - height.above;
-            if (interval_.push[k] == Vec3{} && !(missing > 0.0)) continue;
+            if (interval_.reaction[k] == Vec3{} && !(missing > 0.0)) continue;
             normals[count] = height.normal;
             lifts[count++] = missing;
         }
@@ -171,9 +173,9 @@ void SharedContact::lift() {
 /// stopped: lifts it, by 4 s (1 - s) of a height over its duration. The lift turns with the surfaces, and is one for
 /// all of them: one off each surface by itself would lead into others that hold the particle as well.
 void SharedContact::lift_middle(Path& path) const {
-    std::array<Vec3, kMostHolding> normals;
-    std::array<Vec3, kMostHolding> last_normals;
-    std::array<double, kMostHolding> lifts{};
+    std::array<Vec3, kMostSupports> normals;
+    std::array<Vec3, kMostSupports> last_normals;
+    std::array<double, kMostSupports> lifts{};
     std::size_t count = 0;
     bool is_behind = false;
     for (std::size_t k = 0; k < count_; ++k) {
@@ -187,7 +189,7 @@ void SharedContact::lift_middle(Path& path) const {
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
         }
         if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) behind = 0.0;
-        if (interval_.push[k] == Vec3{} && behind == 0.0) continue;
+        if (interval_.reaction[k] == Vec3{} && behind == 0.0) continue;
         is_behind = is_behind || behind > 0.0;
         normals[count] = height_at(0.0).normal;
         last_normals[count] = height_at(path.duration).normal;
@@ -204,7 +206,7 @@ void SharedContact::lift_middle(Path& path) const {
 }
 
 /// Along the interval, to where the surfaces will be.
-Path SharedContact::way(double duration) const {
+Path SharedContact::interval_path(double duration) const {
     const Vec3 velocity = interval_.motion.velocity + shift_;
     const Vec3 last = velocity + duration * interval_.acceleration;
     const Vec3 end = state_.position + duration * (velocity + (0.5 * duration) * interval_.acceleration);
@@ -216,19 +218,19 @@ Path SharedContact::way(double duration) const {
 
 /// m/s, what a surface has changed the velocity by in an interval: about an edge as much in its direction at the end as
 /// in that at the start.
-Vec3 SharedContact::push_of(std::size_t k, double elapsed, bool has_arrived) const {
+Vec3 SharedContact::velocity_change_of(std::size_t k, double elapsed, bool has_arrived) const {
     const Touched& one = touched_[k];
-    const Vec3 push = elapsed * interval_.push[k];
-    if (push == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return push;
+    const Vec3 reaction = elapsed * interval_.reaction[k];
+    if (reaction == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return reaction;
     const Vec3& n = one.surface.normal;
-    return push + 0.5 * dot(push, n) * (height_above(one, state_.position, state_.time).normal - n);
+    return reaction + 0.5 * dot(reaction, n) * (height_above(one, state_.position, state_.time).normal - n);
 }
 
 /// Relative to all that presses on it.
 bool SharedContact::rests() const {
     bool is_held = false;
     for (std::size_t k = 0; k < count_; ++k) {
-        if (interval_.push[k] == Vec3{}) continue;
+        if (interval_.reaction[k] == Vec3{}) continue;
         const Touched& one = touched_[k];
         const double rounding = kStopRounding * (length(state_.velocity) + length(one.velocity));
         if (length(state_.velocity - one.velocity) > rounding) return false;
@@ -240,11 +242,11 @@ bool SharedContact::rests() const {
 }
 
 /// The same, to where a surface ends: `duration`, s, is shortened to that.
-Path SharedContact::way_until_rim(double& duration) const {
-    Path path = way(duration);
+Path SharedContact::path_until_rim(double& duration) const {
+    Path path = interval_path(duration);
     if (const double on = until_rim(path); on < duration) {
         duration = on;
-        path = way(duration);
+        path = interval_path(duration);
     }
     return path;
 }
@@ -259,31 +261,31 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
     const double shortest = std::min(before, step_.duration() / kShortestIntervals);
     Followed followed;
     followed.duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
-    const Path path = way_until_rim(followed.duration);
+    const Path path = path_until_rim(followed.duration);
     // Between its ends the path is beside surfaces that turn; up to a contact it ends on them as well.
-    CloserLooks looks;
+    RefinementBudget looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
         if (!(time > 0.0)) return {};
-        Path next = way(time);
+        Path next = interval_path(time);
         if (!looks.may_improve(tried.position(time), next.end, contact_offset(next.end))) return {};
         followed.duration = time;
         return next;
     };
-    const std::vector<SurfaceId> held_by = held(path);
-    followed.contact = step_.follow(path, held_by, closer);
+    const std::vector<SurfaceId> supported_by = supporting(path);
+    followed.contact = step_.follow(path, supported_by, closer);
     if (followed.contact) lift();
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
     // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
     if (has_arrived || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;
     for (std::size_t k = 0; k < count_; ++k) {
-        const Vec3 push = push_of(k, elapsed, has_arrived);
-        if (has_arrived) state_.velocity += push - elapsed * interval_.push[k];
-        if (push != Vec3{}) step_.impact().push(touched_[k].surface.surface, push, false);
+        const Vec3 reaction = velocity_change_of(k, elapsed, has_arrived);
+        if (has_arrived) state_.velocity += reaction - elapsed * interval_.reaction[k];
+        if (reaction != Vec3{}) step_.impact().record_impulse(touched_[k].surface.surface, reaction, false);
     }
     particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
     step_.impact().note_driven();
-    step_.log().note_contact(forces, path, true, held_by);
+    step_.log().note_contact(forces, path, true, supported_by);
     return followed;
 }
 
@@ -303,13 +305,13 @@ std::optional<Contact> SharedContact::follow() {
         const std::optional<double> jump = next_jump();
         double most = std::min(step_.remaining(), longest());
         if (jump) most = std::clamp(*jump - state_.time, 0.0, most);
-        const Hold hold = settle(most);
-        if (hold == Hold::single) particle_.contact = kept();
-        if (hold != Hold::shared) return std::nullopt;
+        const SupportKind hold = settle(most);
+        if (hold == SupportKind::single) particle_.contact = contact_state();
+        if (hold != SupportKind::shared) return std::nullopt;
         const double begin = state_.time;
         Followed followed = follow_interval(most);
         if (followed.contact) {
-            take_part_in(*followed.contact);
+            join_impact(*followed.contact);
             return followed.contact;
         }
         has_jumped = jump && followed.duration >= *jump - begin;
@@ -317,7 +319,7 @@ std::optional<Contact> SharedContact::follow() {
     }
     // At a jump a body goes on with another velocity, and the particle with its own.
     if (step_.remaining() <= 0.0 && !has_jumped) {
-        particle_.contact = kept();
+        particle_.contact = contact_state();
         if (rests()) step_.outcome().end = MoveEnd::resting;
     }
     return std::nullopt;

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "ricochet/response/contact_interval.h"
 #include "ricochet/response/contact_manifold.h"
-#include "ricochet/response/held_motion.h"
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
@@ -33,13 +33,13 @@ private:
     /// A surface that is touched, as the world sees it.
     struct Touched {
         ContactSurface surface;
-        BodyId body = kAtRest;
+        BodyId body = kWorldBody;
         Vec3 velocity;  ///< m/s, of the surface and its material at the contact
         Vec3 turning;   ///< rad/s, of the body
         /// Of a mesh that deforms: DeformedContact::all; at the rim of a triangle others that it is a rim of.
         std::vector<SurfaceId> all;
     };
-    enum class Hold { shared, single, none };
+    enum class SupportKind { shared, single, none };
 
     void gather();
     void gather_in(BodyId body);
@@ -51,12 +51,12 @@ private:
     [[nodiscard]] bool is_on_deforming() const;
     [[nodiscard]] bool land();
     [[nodiscard]] double fastest() const;
-    [[nodiscard]] Hold settle(double duration);
-    [[nodiscard]] double departure_from(const Touched& touched) const;
-    [[nodiscard]] Hold plan(double duration);
-    [[nodiscard]] StuckSurfaces sticking(const Motion& motion, std::span<const HoldingSurface> surfaces,
+    [[nodiscard]] SupportKind settle(double duration);
+    [[nodiscard]] double separation_speed(const Touched& touched) const;
+    [[nodiscard]] SupportKind plan(double duration);
+    [[nodiscard]] StuckSurfaces sticking(const Motion& motion, std::span<const SupportSurface> surfaces,
                                          double most) const;
-    [[nodiscard]] HoldingSurface holding(const Touched& touched, const Vec3& shift) const;
+    [[nodiscard]] SupportSurface supports(const Touched& touched, const Vec3& shift) const;
     [[nodiscard]] double longest() const;
     [[nodiscard]] std::optional<double> next_jump() const;
     /// How long the path of an interval was, s, and what ended it.
@@ -65,10 +65,10 @@ private:
         std::optional<Contact> contact;
     };
     [[nodiscard]] Followed follow_interval(double most);
-    [[nodiscard]] Path way(double duration) const;
-    [[nodiscard]] Path way_until_rim(double& duration) const;
+    [[nodiscard]] Path interval_path(double duration) const;
+    [[nodiscard]] Path path_until_rim(double& duration) const;
     [[nodiscard]] double until_rim(const Path& path) const;
-    [[nodiscard]] Vec3 push_of(std::size_t k, double elapsed, bool has_arrived) const;
+    [[nodiscard]] Vec3 velocity_change_of(std::size_t k, double elapsed, bool has_arrived) const;
     /// Of a surface, from a position at a time.
     struct Height {
         Vec3 normal;
@@ -79,11 +79,11 @@ private:
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time) const;
     void lift();
     void lift_middle(Path& path) const;
-    [[nodiscard]] std::vector<SurfaceId> held(const Path& path) const;
+    [[nodiscard]] std::vector<SurfaceId> supporting(const Path& path) const;
     [[nodiscard]] static Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position);
     [[nodiscard]] bool goes_on(const ContactSurface& surface) const;
-    void take_part_in(Contact& contact) const;
-    [[nodiscard]] KeptContact kept() const;
+    void join_impact(Contact& contact) const;
+    [[nodiscard]] ContactState contact_state() const;
     [[nodiscard]] bool rests() const;
     [[nodiscard]] std::span<const Touched> touched() const { return {touched_.data(), count_}; }
     [[nodiscard]] MovingView view_at(double time) const;
@@ -91,7 +91,7 @@ private:
     ParticleStep& step_;
     MovingParticle& particle_;
     ForceInput& state_;
-    std::array<Touched, kMostHolding> touched_;
+    std::array<Touched, kMostSupports> touched_;
     std::size_t count_ = 0;
     Vec3 shift_;  ///< m/s, of the frame that the interval is planned in
     ContactInterval interval_;

@@ -5,22 +5,22 @@
 #include <span>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/response/contact_arc.h"
+#include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/shared_contact.h"
 
 namespace ricochet {
 
 MovingView SharedContact::view_at(double time) const {
-    return {*step_.rules().bodies, kAtRest, {time, time, time, 0.0, 0.0}};
+    return {*step_.rules().bodies, kWorldBody, {time, time, time, 0.0, 0.0}};
 }
 
 /// All that is touched, of all frames, but what is left.
 void SharedContact::gather() {
     const double margin = state_.radius + kEdgeOffsets * contact_offset(state_.position);
     const Vec3 by{margin, margin, margin};
-    std::vector<BodyId> near{kAtRest};
-    step_.rules().bodies->near({state_.position - by, state_.position + by}, kAtRest, near);
+    std::vector<BodyId> near{kWorldBody};
+    step_.rules().bodies->near({state_.position - by, state_.position + by}, kWorldBody, near);
     count_ = 0;
     for (const BodyId body : near) gather_in(body);
     gather_deforming();
@@ -28,9 +28,9 @@ void SharedContact::gather() {
 
 void SharedContact::gather_deforming() {
     const MovingColliders& bodies = *step_.rules().bodies;
-    const double departure = step_.resting_speed();
-    for (const DeformedContact& contact : touched_surfaces(deforming(), state_, departure)) {
-        if (count_ == kMostHolding) return;
+    const double separation_speed = step_.resting_speed();
+    for (const DeformedContact& contact : touched_surfaces(deforming(), state_, separation_speed)) {
+        if (count_ == kMostSupports) return;
         Touched& touched = touched_[count_++];
         const ContactSurface& surface = contact.surface;
         touched.surface = surface;
@@ -46,7 +46,7 @@ void SharedContact::gather_in(BodyId body) {
     const CollisionWorld& world = view.bodies().world(body);
     if (world.empty()) return;
     ForceInput seen = state_;
-    seen.position = view.image(body, state_.position, 0.0);
+    seen.position = view.local_position(body, state_.position, 0.0);
     seen.velocity = view.velocity_in(body, {state_.position, 0.0, state_.position}, state_.velocity);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(world, planes);
@@ -55,7 +55,7 @@ void SharedContact::gather_in(BodyId body) {
     const double reach = kTouchingOffsets * offset;
     const TouchRule rule{reach, reach, reach, step_.resting_speed()};
     step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
-    for (std::size_t k = 0; k < manifold.size() && count_ < kMostHolding; ++k) {
+    for (std::size_t k = 0; k < manifold.size() && count_ < kMostSupports; ++k) {
         Touched& touched = touched_[count_++];
         touched.surface = manifold[k];
         touched.all.clear();
@@ -83,27 +83,27 @@ bool SharedContact::is_on_deforming() const {
     return std::any_of(touched().begin(), touched().end(), [&](const Touched& one) { return deforms(one); });
 }
 
-double SharedContact::departure_from(const Touched& touched) const {
+double SharedContact::separation_speed(const Touched& touched) const {
     return dot(state_.velocity - touched.velocity, touched.surface.normal);
 }
 
 /// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
 /// (omega x n) . (v - w), and by what its curvature adds; a_s: of its own point there.
-HoldingSurface SharedContact::holding(const Touched& touched, const Vec3& shift) const {
-    const ImpactAnswer& impact = step_.impact();
+SupportSurface SharedContact::supports(const Touched& touched, const Vec3& shift) const {
+    const ImpactResolver& impact = step_.impact();
     const Material& material = impact.material_of(touched.surface.surface);
     const Vec3& n = touched.surface.normal;
     const Vec3 relative = touched.velocity - shift;
-    HoldingSurface held{n,
+    SupportSurface held{n,
                         material.friction,
                         material.rolling_friction,
                         material.spinning_friction,
                         relative - dot(relative, n) * n,
                         impact.angular_velocity_of(touched.surface.surface)};
     if (deforms(touched)) {
-        const SurfaceBend bent = bend_of(deforming(), state_, touched.surface);
-        held.bend = bent.bend;
-        held.slip_bend = bent.slip_bend;
+        const CurvatureTerms bent = curvature_of(deforming(), state_, touched.surface);
+        held.curvature = bent.curvature;
+        held.slip_curvature = bent.slip_curvature;
         return held;
     }
     const MovingView view = view_at(state_.time);
@@ -113,16 +113,16 @@ HoldingSurface SharedContact::holding(const Touched& touched, const Vec3& shift)
     const Vec3 carried = cross(turning, arm);
     const Vec3 of_surface = pose.acceleration + cross(pose.angular_acceleration, arm) + cross(turning, carried);
     const Vec3 slip = state_.velocity - pose.velocity - carried;
-    held.bend = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
+    held.curvature = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
     const Vec3 change = of_surface + cross(turning, slip);
-    held.slip_bend = dot(change, n) * n - change;
+    held.slip_curvature = dot(change, n) * n - change;
     if (touched.surface.flat) return held;
     ForceInput seen = state_;
-    seen.position = view.image(touched.body, state_.position, 0.0);
+    seen.position = view.local_position(touched.body, state_.position, 0.0);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(view.bodies().world(touched.body), planes);
-    const ContactSurface in_frame{touched.surface.surface, pose.direction_image(n), false};
-    held.bend += ContactArc::bend_of(geometry, seen, in_frame, pose.direction_image(slip));
+    const ContactSurface in_frame{touched.surface.surface, pose.local_direction(n), false};
+    held.curvature += CurvedContact::curvature_of(geometry, seen, in_frame, pose.local_direction(slip));
     return held;
 }
 
@@ -135,17 +135,17 @@ SharedContact::Height SharedContact::height_above(const Touched& touched, const 
     const MovingView view = view_at(time);
     const CollisionWorld& world = view.bodies().world(touched.body);
     const SurfaceId surface = touched.surface.surface;
-    const Vec3 image = view.image(touched.body, position, 0.0);
-    Vec3 normal = world.unit_normal_of(surface, image);
-    double height = world.signed_distance_from(surface, image);
+    const Vec3 local_position = view.local_position(touched.body, position, 0.0);
+    Vec3 normal = world.unit_normal_of(surface, local_position);
+    double height = world.signed_distance_from(surface, local_position);
     if (!touched.surface.flat && !world.is_shape(surface)) {
-        const CollisionWorld::Nearest nearest = world.nearest(surface, image);
+        const CollisionWorld::Nearest nearest = world.nearest(surface, local_position);
         normal = nearest.normal;
         height = nearest.distance;
     }
     normal = view.direction_from(touched.body, normal, 0.0);
     const double side = dot(normal, touched.surface.normal) < 0.0 ? -1.0 : 1.0;
-    return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(image))};
+    return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(local_position))};
 }
 
 /// s, in which surfaces turn little, and bend little under the particle.
@@ -182,14 +182,14 @@ double SharedContact::until_rim(const Path& path) const {
     double most = path.duration;
     for (std::size_t k = 0; k < count_; ++k) {
         const Touched& one = touched_[k];
-        if (interval_.push[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
+        if (interval_.reaction[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
         most = std::min(most, time_over(deforming(), {one.surface, one.all}, position_at, path.duration, state_.time));
     }
     return most;
 }
 
 /// Those that a path goes along. At a rim others end there too: they are nothing else to it where it ends off them.
-std::vector<SurfaceId> SharedContact::held(const Path& path) const {
+std::vector<SurfaceId> SharedContact::supporting(const Path& path) const {
     const double end = path.duration >= step_.remaining() ? particle_.step_end : state_.time + path.duration;
     std::vector<SurfaceId> list;
     for (const Touched& one : touched()) {
@@ -199,9 +199,9 @@ std::vector<SurfaceId> SharedContact::held(const Path& path) const {
         }
         list.push_back(one.surface.surface);
         const MovingView view = view_at(end);
-        const Vec3 image = view.image(one.body, path.end, 0.0);
+        const Vec3 local_position = view.local_position(one.body, path.end, 0.0);
         std::copy_if(one.all.begin(), one.all.end(), std::back_inserter(list), [&](SurfaceId other) {
-            return view.bodies().world(one.body).nearest(other, image).distance >= state_.radius;
+            return view.bodies().world(one.body).nearest(other, local_position).distance >= state_.radius;
         });
     }
     std::sort(list.begin(), list.end());
@@ -219,9 +219,9 @@ bool SharedContact::goes_on(const ContactSurface& surface) const {
 }
 
 /// What holds it takes part in its impact on something else.
-void SharedContact::take_part_in(Contact& contact) const {
+void SharedContact::join_impact(Contact& contact) const {
     for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
-        surface.holds = surface.holds || goes_on(surface);
+        surface.is_support = surface.is_support || goes_on(surface);
     }
     for (const Touched& one : touched()) {
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
@@ -230,14 +230,14 @@ void SharedContact::take_part_in(Contact& contact) const {
         if (is_there || contact.count == Contact::kMostSurfaces) continue;
         ContactSurface& added = contact.surfaces[static_cast<std::size_t>(contact.count++)];
         added = one.surface;
-        added.holds = true;
+        added.is_support = true;
     }
 }
 
-KeptContact SharedContact::kept() const {
-    KeptContact kept;
-    for (const Touched& one : touched()) kept.surfaces[kept.count++] = one.surface.surface;
-    return kept;
+ContactState SharedContact::contact_state() const {
+    ContactState contact_state;
+    for (const Touched& one : touched()) contact_state.surfaces[contact_state.count++] = one.surface.surface;
+    return contact_state;
 }
 
 }  // namespace ricochet

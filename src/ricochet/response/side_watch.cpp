@@ -18,12 +18,12 @@ void set_first_sides(const SignedDistance& distance, const Vec3& position, std::
     for (const SurfacePoint& point : on) sides[point.collider].side = 1;
 }
 
-void settle_child_sides(const SignedDistance& distance, const ChildPlace& place, std::span<SideMemory> sides) {
+void settle_child_sides(const SignedDistance& distance, const ChildStart& start, std::span<SideMemory> sides) {
     SideScratch lists;
-    SideWatch watch(distance, sides, place.radius, lists);
-    watch.find_near(place.position, place.parent_start, 0.0, lists.seen);
+    SideWatch watch(distance, sides, start.radius, lists);
+    watch.find_near(start.position, start.parent_start, 0.0, lists.seen);
     watch.settle(lists.seen);
-    for (SideMemory& memory : sides) memory.touching = memory.touching && place.goes_on;
+    for (SideMemory& memory : sides) memory.touching = memory.touching && start.goes_on;
 }
 
 bool SideWatch::is_behind(const SurfacePoint& point, const Vec3& position, const Vec3& from) const {

@@ -35,7 +35,7 @@ void set_first_sides(const SignedDistance& distance, const Vec3& position, std::
 
 /// The sides of a child, from those of its parent: it is behind what the parent was in front of, or still behind, where
 /// that lies between the start of the parent's move and the birth.
-void settle_child_sides(const SignedDistance& distance, const ChildPlace& place, std::span<SideMemory> sides);
+void settle_child_sides(const SignedDistance& distance, const ChildStart& start, std::span<SideMemory> sides);
 
 /// Keeps the sides of one particle. It is behind a surface when its path there crosses the collider an odd number of
 /// times; when an even number (it may have gone through an edge, or right through), when its side is another than where

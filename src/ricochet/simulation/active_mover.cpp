@@ -13,7 +13,7 @@
 #include "ricochet/response/rollback.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/heat_stage.h"
-#include "ricochet/simulation/sleeping_piles.h"
+#include "ricochet/simulation/sleeping_islands.h"
 
 namespace ricochet {
 
@@ -101,10 +101,11 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.motions.clear();
     scratch.impacts.clear();
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
-    scratch.record_flown = as_planned && parts_.coupled.wants_departure_of(i);
+    scratch.record_flown = as_planned && parts_.coupled.wants_deviation_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
     if (scratch.record_flown)
-        note_departure(i, particle, outcome, scratch.flown, pushed_by(std::span(scratch.hits).subspan(first_hit)));
+        record_deviation(i, particle, outcome, scratch.flown,
+                         velocity_change_by(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.meter != nullptr) {
         parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
     }
@@ -118,15 +119,15 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
         scratch.records[k].radius = particle.state.whole_radius;
     }
     if (i < bounces_.size()) bounces_[i] += outcome.meetings();
-    const Pushes pushes{std::span(scratch.hits).subspan(first_hit), {}, {}};
-    take_over(i, particle, outcome, life.end, pushes, record, lead != nullptr);
+    const MoveImpulses impulses{std::span(scratch.hits).subspan(first_hit), {}, {}};
+    write_back(i, particle, outcome, life.end, impulses, record, lead != nullptr);
 }
 
-void ActiveMover::kick(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
-                       MoveScratch& scratch) {
+void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration,
+                                        const Coupling& pull, MoveScratch& scratch) {
     MovingParticle particle = load(i, time);
     particle.state.coupling = &pull;
-    parts_.response.take_up(particle, change, duration, scratch);
+    parts_.response.apply_correction(particle, change, duration, scratch);
     parts_.store.particles().velocity[i] = particle.state.velocity;
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
@@ -162,7 +163,7 @@ bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& mem
     return true;
 }
 
-void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record) {
+void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record) {
     const std::size_t i = member.particle;
     MovingParticle& moving = member.moving;
     const TimeSpan life = life_in(i, step);
@@ -180,7 +181,7 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
         if (moving.state.whole_radius > 0.0) contact.radius = moving.state.whole_radius;
     }
     record_lists(member.lists.hits, member.lists.loads, member.lists.records, record);
-    if (!member.is_fixed && life.begin == step.begin && life.end == step.end) note_departure(member);
+    if (!member.is_fixed && life.begin == step.begin && life.end == step.end) record_deviation(member);
     if (i < bounces_.size()) bounces_[i] += member.outcome.meetings();
     if (member.is_fixed) {
         parts_.schedule.leave_alone(i);
@@ -188,7 +189,7 @@ void ActiveMover::take_over(IslandMember& member, const TimeSpan& step, BlockRec
     }
     // One that slept on walls alone has weighed on them until now.
     if (parts_.store.is_asleep(i)) record.lost_impulses += add_weight(i, life.begin, 1.0);
-    take_over(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_push}, record);
+    write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -216,11 +217,11 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
                                 moved.segments, record.violations);
         }
         const bool as_planned = moved.start == step.begin && moved.stop == step.end;
-        if (as_planned && parts_.coupled.wants_departure_of(i)) {
+        if (as_planned && parts_.coupled.wants_deviation_of(i)) {
             std::vector<FlownPiece> flown;
-            note_departure(i, moved.particle, moved.outcome, flown, moved.pushed);
+            record_deviation(i, moved.particle, moved.outcome, flown, moved.surface_impulse);
         }
-        take_over(i, moved.particle, moved.outcome, moved.stop, {{}, moved.pushed, {}}, record);
+        write_back(i, moved.particle, moved.outcome, moved.stop, {{}, moved.surface_impulse, {}}, record);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }
@@ -233,7 +234,7 @@ std::vector<ColliderLoad> ActiveMover::preview(const ParticleRange& range, const
         for (std::size_t i = range.begin + begin; i < range.begin + end; ++i) {
             const TimeSpan life = life_in(i, step);
             if (parts_.store.is_fixed(i) || life.end <= life.begin) continue;
-            if (!is_near_yielding(parts_.store.force_input(i, life.begin), life.end - life.begin)) continue;
+            if (!is_near_dynamic_body(parts_.store.force_input(i, life.begin), life.end - life.begin)) continue;
             MovingParticle particle = load(i, life.begin);
             particle.step_end = life.end;
             static_cast<void>(parts_.response.move(particle, life.end - life.begin, scratch));
@@ -247,15 +248,15 @@ std::vector<ColliderLoad> ActiveMover::preview(const ParticleRange& range, const
 }
 
 /// False where it cannot come to a body that yields, unless something else throws it there.
-bool ActiveMover::is_near_yielding(const ForceInput& state, double duration) const {
+bool ActiveMover::is_near_dynamic_body(const ForceInput& state, double duration) const {
     const ResponseRules& rules = parts_.response.rules();
     const double speed = length(state.velocity) + duration * length(rules.forces.acceleration(state));
     const double reach = state.radius + 2.0 * duration * speed;
     const Vec3 by{reach, reach, reach};
     const Box3 box{state.position - by, state.position + by};
     std::vector<BodyId> near;
-    rules.bodies->near(box, kAtRest, near);
-    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies->yields(body); });
+    rules.bodies->near(box, kWorldBody, near);
+    return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies->is_dynamic(body); });
 }
 
 // The part of the step in which it lives.
@@ -277,14 +278,14 @@ MovingParticle ActiveMover::load(std::size_t i, double start) {
     return particle;
 }
 
-void ActiveMover::take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                            const Pushes& pushes, BlockRecord& record, bool is_pulled) {
+void ActiveMover::write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                             const MoveImpulses& impulses, BlockRecord& record, bool is_pulled) {
     Particles& particles = parts_.store.particles();
     const auto is_fast = [&] { return length_squared(particles.velocity[i]) > kMaxSpeed * kMaxSpeed; };
     const bool was_fast = is_fast();
     const bool in_contact = !parts_.schedule.is_without_contact(i) || !flies_on(moved, outcome);
     parts_.store.store(i, moved, outcome, in_contact, !parts_.coupled.holds(i) && !is_pulled);
-    if (!was_fast && is_fast()) record.note({i, length(particles.velocity[i]), runaway_cause(i, pushes)});
+    if (!was_fast && is_fast()) record.note({i, length(particles.velocity[i]), runaway_cause(i, impulses)});
     if (outcome.end == MoveEnd::held) particles.accounted_until[i] = until;
     if (outcome.unsimulated_time > 0.0) record.cut_off.push_back({i, outcome.unsimulated_time});
     schedule_query(i, moved, outcome, until, is_pulled);
@@ -317,8 +318,8 @@ std::uint64_t ActiveMover::add_weight(std::size_t i, double until, double sign) 
     if (totals.empty() || !(elapsed > 0.0)) return 0;
     std::vector<SurfaceHit> hits;
     const std::uint64_t id = parts_.store.particles().id[i];
-    if (piles_ != nullptr && piles_->has(id)) {
-        piles_->add_weight(id, elapsed, hits);
+    if (sleeping_islands_ != nullptr && sleeping_islands_->has(id)) {
+        sleeping_islands_->add_weight(id, elapsed, hits);
     } else if (parts_.store.is_asleep(i)) {
         MovingParticle sleeper = parts_.store.load(i, until, true);
         sleeper.state.coupling = parts_.coupled.coupling_of(i);

@@ -9,7 +9,7 @@
 
 #include "ricochet/core/box3.h"
 #include "ricochet/core/vec3.h"
-#include "ricochet/response/pair_island.h"
+#include "ricochet/response/event_island.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/offspring.h"
@@ -21,7 +21,7 @@ namespace ricochet {
 
 class CloudMotion;
 class FrictionMeter;
-class SleepingPiles;
+class SleepingIslands;
 
 // The particles that need a query in a step, and the blocks in which threads move them.
 
@@ -110,8 +110,8 @@ public:
                   const Lead* lead = nullptr);
     /// Gives a led particle a change of velocity, m/s, at a time, s, as if it had been a part of the forces in the
     /// `duration` seconds before it; surfaces that hold it take their part.
-    void kick(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
-              MoveScratch& scratch);
+    void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
+                               MoveScratch& scratch);
     /// Hands over what particles have done since prepare().
     void record_lists(const MoveScratch& scratch, BlockRecord& record);
     /// Whose particles move() leaves alone; it must outlive the mover.
@@ -123,17 +123,18 @@ public:
     // For particles that act on each other.
 
     /// What forces that accelerate particle i by `pull` at a time, s, leave it in the contact that it is in, m/s^2.
-    [[nodiscard]] Vec3 held_acceleration(std::size_t i, double time, const Vec3& pull);
+    [[nodiscard]] Vec3 supported_acceleration(std::size_t i, double time, const Vec3& pull);
     /// Gives particles in contact what they are owed at the end of a part of the step.
-    void take_up(std::span<const CoupledMotion::Owed> owed, const TimeSpan& part, std::vector<BlockRecord>& blocks);
+    void apply_correction(std::span<const CoupledMotion::VelocityCorrection> corrections, const TimeSpan& part,
+                          std::vector<BlockRecord>& blocks);
 
     // For spheres that meet each other, which are moved together.
 
     /// Makes a new member a particle as it sets out. False where it does not live in the step.
     [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Takes over where it has gone and what it has done.
-    void take_over(IslandMember& member, const TimeSpan& step, BlockRecord& record);
-    /// Begins to fetch from memory what set_out() and take_over() use of a particle.
+    void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
+    /// Begins to fetch from memory what set_out() and write_back() use of a particle.
     void prefetch(std::size_t i) const {
         parts_.store.prefetch(i);
         parts_.schedule.prefetch(i);
@@ -152,7 +153,7 @@ public:
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);
     /// Whose sleepers' weights are theirs; it must outlive the mover.
-    void set_piles(const SleepingPiles* piles) { piles_ = piles; }
+    void set_sleeping_islands(const SleepingIslands* sleeping_islands) { sleeping_islands_ = sleeping_islands; }
     /// A sphere that has slept on others takes part from a time on, s. Before the pile has forgotten it.
     void wake(std::size_t i, double time);
     /// Shows the verifier, where there is one, that it has stayed where it is in a step.
@@ -160,26 +161,26 @@ public:
 
 private:
     void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
-    [[nodiscard]] bool is_near_yielding(const ForceInput& state, double duration) const;
+    [[nodiscard]] bool is_near_dynamic_body(const ForceInput& state, double duration) const;
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
-    void note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                        std::vector<FlownPiece>& flown, const Vec3& pushed);
-    void note_departure(IslandMember& member);
-    [[nodiscard]] static Vec3 pushed_by(std::span<const SurfaceHit> hits);
+    void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                          std::vector<FlownPiece>& flown, const Vec3& velocity_change);
+    void record_deviation(IslandMember& member);
+    [[nodiscard]] static Vec3 velocity_change_by(std::span<const SurfaceHit> hits);
     void record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
                       std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     /// What surfaces and other spheres have given a particle in a move.
-    struct Pushes {
+    struct MoveImpulses {
         std::span<const SurfaceHit> hits{};
         Vec3 by_surfaces{};  ///< N s, besides the hits
         Vec3 by_spheres{};   ///< m/s
     };
     /// is_pulled: others lead it, so that it neither sleeps nor flies by what is known of forces.
-    void take_over(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
-                   const Pushes& pushes, BlockRecord& record, bool is_pulled = false);
-    [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const Pushes& pushes) const;
+    void write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
+                    const MoveImpulses& impulses, BlockRecord& record, bool is_pulled = false);
+    [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const MoveImpulses& impulses) const;
     void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                         bool is_pulled);
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
@@ -187,7 +188,7 @@ private:
     void prefetch_vertices(std::size_t i) const;
 
     MoverParts parts_;
-    const SleepingPiles* piles_ = nullptr;
+    const SleepingIslands* sleeping_islands_ = nullptr;
     const CloudMotion* clouds_ = nullptr;
     std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); of those behind its end nothing
 };

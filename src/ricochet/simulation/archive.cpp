@@ -163,7 +163,7 @@ void Simulation::Impl::require_sound_state() const {
         for (const SurfaceId surface : p.support[i]) {
             require(surface == kNoSupport || surface < world.surface_count(), "a particle on no surface");
             const bool may_sleep_there =
-                surface == kNoSupport || !bodies || bodies->body_of(surface) == kAtRest || p.held[i] == 0;
+                surface == kNoSupport || !bodies || bodies->body_of(surface) == kWorldBody || p.held[i] == 0;
             require(may_sleep_there, "a particle that sleeps on a surface that moves");
         }
         const bool moves = p.frozen[i] == 0;
@@ -172,8 +172,8 @@ void Simulation::Impl::require_sound_state() const {
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
         require(!pairs || pairs->has_material(i), "a particle of no material");
-        const bool is_let_go = p.cascade_left[i] < 0.0 && p.cascade_left[i] != KeptContact::kPlaced;
-        require(!is_let_go || bodies, "a particle that a body has let go, without bodies");
+        const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
+        require(!is_released || bodies, "a particle that a body has let go, without bodies");
         require(store.is_sound(i), "a particle with a history that none can have");
         require(!clouds || clouds->is_sound(i, store.next_id()), "a particle of a cloud that there is not");
     }
@@ -297,7 +297,7 @@ void Simulation::restore_particles(const ByteSource& source) {
         throw InputError("the particles are damaged: they are not in the order of their ids");
     }
     part.compact(keep);
-    impl().take_in({Impl::bytes_of(part)});
+    impl().insert_particles({Impl::bytes_of(part)});
     impl().require_sound_state();
     impl().share.add_births(count);
     if (!impl().store.may_sleep()) impl().wake_all_sleepers();

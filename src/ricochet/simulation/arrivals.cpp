@@ -64,30 +64,30 @@ Arrival Simulation::Impl::arrival_of(Particle& particle) const {
 }
 
 /// What is born touching a surface begins in contact with it.
-KeptContact Simulation::Impl::contact_of(const Particle& particle) const {
+ContactState Simulation::Impl::contact_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_in_range(position) || particle.pinned) return {};
     if (const auto contact = contact_in(world, particle, position)) return *contact;
     if (!bodies) return {};
     const double time = std::max(0.0, particle.birth_time);
     for (const BodyId body : bodies_near(*bodies, position, particle.radius, time)) {
-        const Vec3 image = bodies->pose(body, time).image(position);
-        if (const auto contact = contact_in(bodies->world(body), particle, image)) return *contact;
+        const Vec3 local_position = bodies->pose(body, time).local_position(position);
+        if (const auto contact = contact_in(bodies->world(body), particle, local_position)) return *contact;
     }
     return {};
 }
 
 /// With surfaces that stand in one frame, where the particle is at a position; nothing where it touches none of them.
-std::optional<KeptContact> Simulation::Impl::contact_in(const CollisionWorld& of_frame, const Particle& particle,
-                                                        const Vec3& position) const {
-    KeptContact contact;
+std::optional<ContactState> Simulation::Impl::contact_in(const CollisionWorld& of_frame, const Particle& particle,
+                                                         const Vec3& position) const {
+    ContactState contact;
     const double reach = kTouchingOffsets * contact_offset(position);
     for (const SurfaceId surface : surfaces_touched(of_frame, position, particle.radius, reach)) {
         // What chance answers, answers each touch.
-        if (materials[world.material_of(surface)].is_random()) return KeptContact{};
+        if (materials[world.material_of(surface)].is_random()) return ContactState{};
         contact.surfaces[0] = surface;
         contact.count = 1;
-        contact.cascade_left = KeptContact::kPlaced;
+        contact.cascade_left = ContactState::kPlaced;
     }
     return contact.count > 0 ? std::optional(contact) : std::nullopt;
 }
@@ -107,13 +107,13 @@ void Simulation::Impl::add_all(std::span<Particle* const> added, const std::func
             for (std::size_t k = begin; k < end; ++k) arrivals[k] = arrival_of(*part[k]);
         });
         for (std::size_t k = 0; k < part.size(); ++k) {
-            let_in(std::move(*part[k]), arrivals[k]);
+            insert(std::move(*part[k]), arrivals[k]);
             if (after) after(first + k);
         }
     }
 }
 
-void Simulation::Impl::let_in(Particle&& particle, const Arrival& arrival) {
+void Simulation::Impl::insert(Particle&& particle, const Arrival& arrival) {
     SimulationStatistics& statistics = recorder.statistics();
     statistics.started_in_overlap += arrival.overlap ? 1 : 0;
     statistics.started_inside += arrival.starts_inside ? 1 : 0;

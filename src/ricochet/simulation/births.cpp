@@ -91,7 +91,7 @@ void StepBirths::make(Wave& wave) {
     for (std::size_t j = 0; j < mine.size(); ++j) {
         if (!made[j]) refused.push_back(mine[j]);
     }
-    keep_those_here(wave, mine, made);
+    keep_local(wave, mine, made);
     if (is_told) refused = gather_list_to_all(share_.ranks(), refused);
     for (const std::uint64_t k : refused) wave[k].is_refused = true;
     refused_by_overlap_ += refused.size();
@@ -101,8 +101,7 @@ void StepBirths::make(Wave& wave) {
 }
 
 // Where most are refused, or live elsewhere, they take no memory until the step ends.
-void StepBirths::keep_those_here(Wave& wave, std::span<const std::size_t> mine,
-                                 std::vector<std::optional<Particle>>& made) {
+void StepBirths::keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made) {
     std::vector<std::size_t> here;
     for (std::size_t j = 0; j < mine.size(); ++j) {
         if (!made[j] || !share_.has_place_for(limits_.first_id + taken_ + mine[j])) continue;

@@ -67,7 +67,7 @@ private:
                          std::vector<std::optional<Particle>>& made) const;
     void look_among(const Wave& wave, std::span<const std::size_t> mine,
                     std::vector<std::optional<Particle>>& made) const;
-    void keep_those_here(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made);
+    void keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made);
     [[nodiscard]] bool may_be_refused(const Wave& wave) const;
     void give_ids();
 

@@ -32,7 +32,8 @@ namespace ricochet {
     bodies->near_at(box, time, near);
     for (const BodyId body : near) {
         ContactScratch own;
-        if (!is_clear(bodies->world(body), own, bodies->image(body, from, time), bodies->image(body, to, time))) {
+        if (!is_clear(bodies->world(body), own, bodies->local_position(body, from, time),
+                      bodies->local_position(body, to, time))) {
             return false;
         }
     }

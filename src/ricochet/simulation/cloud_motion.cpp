@@ -77,23 +77,23 @@ bool CloudMotion::is_parent(std::size_t i) const {
 bool CloudMotion::is_sound(std::size_t i, std::uint64_t next_id) const {
     if (!leads(i)) return true;
     const std::uint32_t emitter = store_.particles().origin[i].emitter;
-    if (emitter >= emitters_.size() || members_[i].parent >= next_id || !is_finite(members_[i].place)) return false;
+    if (emitter >= emitters_.size() || members_[i].parent >= next_id || !is_finite(members_[i].offset)) return false;
     const auto& parent = emitters_[emitter].description().parent;
     return parent && parent->cloud;
 }
 
 void CloudMotion::compact(const std::vector<std::uint8_t>& keep) { keep_marked(members_, keep); }
 
-void CloudMotion::before_move(const ParticleRange& batch) {
+void CloudMotion::before_move(const ParticleRange& spawn_generation) {
     const Particles& particles = store_.particles();
-    starts_.resize(batch.size());
-    for (std::size_t i = batch.begin; i < batch.end; ++i) {
-        if (is_parent(i)) starts_[i - batch.begin] = {particles.position[i], particles.velocity[i]};
+    starts_.resize(spawn_generation.size());
+    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
+        if (is_parent(i)) starts_[i - spawn_generation.begin] = {particles.position[i], particles.velocity[i]};
     }
 }
 
 /// Of parents that go with nobody themselves.
-void CloudMotion::note_tracks(const ParticleRange& batch, const TimeSpan& step,
+void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
                               const std::vector<BlockRecord>& blocks) {
     std::vector<ContactRecord> all;
     for (const BlockRecord& block : blocks) {
@@ -101,18 +101,19 @@ void CloudMotion::note_tracks(const ParticleRange& batch, const TimeSpan& step,
     }
     const RecordsByParticle records(std::move(all));
     const Particles& particles = store_.particles();
-    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
         if (!is_parent(i) || leads(i)) continue;
         const std::uint64_t id = particles.id[i];
-        tracks_[id] = {flight_knots(particles, i, starts_[i - batch.begin], step.begin, step.end, records.of(id)),
-                       store_.has_ended(i, step.end)};
+        tracks_[id] = {
+            flight_knots(particles, i, starts_[i - spawn_generation.begin], step.begin, step.end, records.of(id)),
+            store_.has_ended(i, step.end)};
     }
 }
 
 /// The batch's children, those of each generation together.
-std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& batch) const {
+std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& spawn_generation) const {
     std::vector<std::size_t> all;
-    for (std::size_t i = batch.begin; i < batch.end; ++i) {
+    for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
         if (leads(i) && !store_.is_fixed(i)) all.push_back(i);
     }
     const auto generation = [&](std::size_t i) { return store_.particles().origin[i].generation; };
@@ -126,9 +127,9 @@ std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange
     return levels;
 }
 
-void CloudMotion::move(const ParticleRange& batch, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
-    note_tracks(batch, step, blocks);
-    for (const std::vector<std::size_t>& level : levels_of(batch)) {
+void CloudMotion::move(const ParticleRange& spawn_generation, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    note_tracks(spawn_generation, step, blocks);
+    for (const std::vector<std::size_t>& level : levels_of(spawn_generation)) {
         const std::size_t first = blocks.size();
         blocks.resize(first + blocks_of(level.size()));
         std::vector<Track> tracks(level.size());
@@ -188,7 +189,7 @@ bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scr
         if (to.time < journey.now) continue;
         if (!fly_along(journey, from, to, scratch, record)) return false;
         const bool is_last = k + 2 == knots.size();  // what ends with an impact gives none of that to its children
-        if (!(is_last && parent.ends)) kick(journey, from, to, scratch);
+        if (!(is_last && parent.ends)) add_forces(journey, from, to, scratch);
     }
     return parent.ends && journey.now >= knots.back().time;
 }
@@ -197,7 +198,7 @@ CloudMember CloudMotion::member_of(std::size_t i, const FlightKnot& from, const 
     const double duration = to.time - from.time;
     const Path path = duration > 0.0 ? hermite_path(from.position, from.after, to.position, to.before, duration)
                                      : line_path(from.position, from.after, 0.0);
-    return {rule_of(i), path, from.time, members_[i].place, store_.particles().birth_time[i]};
+    return {rule_of(i), path, from.time, members_[i].offset, store_.particles().birth_time[i]};
 }
 
 /// Along one flight of the parent, whose end is an impact of it or the end of the step. False where the child's life in
@@ -218,7 +219,7 @@ bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const Flig
 }
 
 /// At the end of a flight of the parent: what its impact has changed its velocity by, its child's changes by too.
-void CloudMotion::kick(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch) {
+void CloudMotion::add_forces(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch) {
     const std::size_t i = journey.particle;
     Particles& particles = store_.particles();
     const Vec3 change = to.after - to.before;
@@ -229,7 +230,7 @@ void CloudMotion::kick(Journey& journey, const FlightKnot& from, const FlightKno
     } else {
         const double held_for = to.time > from.time ? to.time - from.time : response_->rules().settings.time_step;
         const CloudMember member = member_of(i, from, to);
-        mover_.kick(i, change, to.time, held_for, member, scratch);
+        mover_.apply_velocity_change(i, change, to.time, held_for, member, scratch);
     }
     if (journey.track == nullptr) return;
     journey.track->knots.push_back({to.time, particles.position[i], before, particles.velocity[i]});
@@ -281,7 +282,7 @@ void CloudMotion::part_from_leavers(const Retirement& retirement, double time) {
         for (const std::size_t i : level) {
             const auto parent = parents.find(members_[i].parent);
             const bool stays =
-                parent != parents.end() && retirement.departure_of(parent->second, time) == Departure::none;
+                parent != parents.end() && retirement.removal_reason(parent->second, time) == RemovalReason::none;
             if (!stays) part(i, time);
         }
     }

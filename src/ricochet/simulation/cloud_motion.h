@@ -39,9 +39,9 @@ public:
 
     void begin_step() { tracks_.clear(); }
     /// Keeps the states of parents that are about to be moved.
-    void before_move(const ParticleRange& batch);
+    void before_move(const ParticleRange& spawn_generation);
     /// Moves the children of the batch once all others in it have been moved, parents before their children.
-    void move(const ParticleRange& batch, const TimeSpan& step, std::vector<BlockRecord>& blocks);
+    void move(const ParticleRange& spawn_generation, const TimeSpan& step, std::vector<BlockRecord>& blocks);
     /// At the end of a step: children of parents that leave the bounds are let go, or end too.
     void part_from_leavers(const Retirement& retirement, double time);
 
@@ -49,11 +49,11 @@ public:
     void append() { members_.emplace_back(); }
     void compact(const std::vector<std::uint8_t>& keep);
     /// A particle that has been appended goes with its parent.
-    void join(std::size_t i, const CloudPlace& place) { members_[i] = {place.parent, place.place}; }
+    void join(std::size_t i, const CloudMembership& offset) { members_[i] = {offset.parent, offset.offset}; }
     /// Saves or restores whom particles go with; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a, std::size_t particles) {
-        const auto member = [&](Member& m) { a(m.parent), a(m.place); };
+        const auto member = [&](Member& m) { a(m.parent), a(m.offset); };
         archive_entries(a, members_, member, particles);
     }
     /// True when what is kept of a particle can be.
@@ -63,7 +63,7 @@ private:
     static constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
     struct Member {
         std::uint64_t parent = kNobody;  ///< id
-        Vec3 place;                      ///< m, about it, at the child's birth
+        Vec3 offset;                     ///< m, about it, at the child's birth
     };
     struct Track {
         std::vector<FlightKnot> knots;
@@ -73,14 +73,15 @@ private:
 
     [[nodiscard]] const CloudRule& rule_of(std::size_t i) const;
     [[nodiscard]] bool is_parent(std::size_t i) const;
-    [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& batch) const;
-    void note_tracks(const ParticleRange& batch, const TimeSpan& step, const std::vector<BlockRecord>& blocks);
+    [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& spawn_generation) const;
+    void note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
+                     const std::vector<BlockRecord>& blocks);
     void move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record, Track& track);
     [[nodiscard]] bool follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record);
     [[nodiscard]] CloudMember member_of(std::size_t i, const FlightKnot& from, const FlightKnot& to) const;
     [[nodiscard]] bool fly_along(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch,
                                  BlockRecord& record);
-    void kick(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch);
+    void add_forces(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch);
     void fly_piece(Journey& journey, const CloudMember& member, double until, MoveScratch& scratch,
                    BlockRecord& record);
     void part(std::size_t i, double time);

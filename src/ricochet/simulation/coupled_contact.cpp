@@ -29,53 +29,54 @@ bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<co
 }  // namespace
 
 /// N s, that surfaces have given a particle.
-Vec3 ActiveMover::pushed_by(std::span<const SurfaceHit> hits) {
+Vec3 ActiveMover::velocity_change_by(std::span<const SurfaceHit> hits) {
     Vec3 sum;
     for (const SurfaceHit& hit : hits) sum -= hit.impulse;
     return sum;
 }
 
 /// pushed: N s, that surfaces have given it.
-void ActiveMover::note_departure(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                                 std::vector<FlownPiece>& flown, const Vec3& pushed) {
+void ActiveMover::record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
+                                   std::vector<FlownPiece>& flown, const Vec3& velocity_change) {
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
     const Flight& plan = *parts_.coupled.flight_of(i);
     note_flown(plan, moved, flown);
     if (moved.planned == nullptr || outcome.meetings() > 0 || !is_as_planned(plan, moved, flown)) {
-        parts_.coupled.record_departure(i, flown, pushed / moved.state.mass);
+        parts_.coupled.add_deviation(i, flown, velocity_change / moved.state.mass);
     }
 }
 
-void ActiveMover::note_departure(IslandMember& member) {
+void ActiveMover::record_deviation(IslandMember& member) {
     const std::size_t i = member.particle;
-    if (!parts_.coupled.wants_departure_of(i)) return;
+    if (!parts_.coupled.wants_deviation_of(i)) return;
     const MovingParticle& moving = member.moving;
-    const Vec3 pushed = pushed_by(member.lists.hits) + moving.state.mass * member.pair_push;
+    const Vec3 velocity_change =
+        velocity_change_by(member.lists.hits) + moving.state.mass * member.pair_velocity_change;
     const bool is_there = !member.is_gone() && member.outcome.unsimulated_time == 0.0;
     if (!member.is_planned) {
-        note_departure(i, moving, member.outcome, member.way, pushed);
+        record_deviation(i, moving, member.outcome, member.trajectory, velocity_change);
     } else if (is_there) {
-        parts_.coupled.record_planned_contact(i, pushed / moving.state.mass);
+        parts_.coupled.record_planned_contact(i, velocity_change / moving.state.mass);
     }
 }
 
-Vec3 ActiveMover::held_acceleration(std::size_t i, double time, const Vec3& pull) {
+Vec3 ActiveMover::supported_acceleration(std::size_t i, double time, const Vec3& pull) {
     MovingParticle particle = parts_.store.load(i, time, !parts_.schedule.is_without_contact(i));
-    return parts_.response.hold(particle, pull).acceleration;
+    return parts_.response.supported_acceleration(particle, pull).acceleration;
 }
 
-void ActiveMover::take_up(std::span<const CoupledMotion::Owed> owed, const TimeSpan& part,
-                          std::vector<BlockRecord>& blocks) {
+void ActiveMover::apply_correction(std::span<const CoupledMotion::VelocityCorrection> corrections, const TimeSpan& part,
+                                   std::vector<BlockRecord>& blocks) {
     const std::size_t first = blocks.size();
-    blocks.resize(first + blocks_of(owed.size()));
+    blocks.resize(first + blocks_of(corrections.size()));
     Particles& particles = parts_.store.particles();
-    parallel_for_blocks(owed.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(corrections.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
         prepare(scratch);
         for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = owed[k].particle;
+            const std::uint32_t i = corrections[k].particle;
             MovingParticle particle = load(i, part.end);
-            parts_.response.take_up(particle, owed[k].change, part.end - part.begin, scratch);
+            parts_.response.apply_correction(particle, corrections[k].change, part.end - part.begin, scratch);
             particles.velocity[i] = particle.state.velocity;
             particles.spin[i] = parts_.store.spin_of(i, particle);
         }

@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kBlock = 256;
 
 /// An energy, J, that rounding explains: all springs stretched by a part of their length that no one asks about.
-double negligible_energy(const SpringNetwork& network) {
+double negligible_energy(const SpringNetwork& island) {
     double sum = 0.0;
-    for (const Spring& spring : network.springs()) {
+    for (const Spring& spring : island.springs()) {
         const double stretch = kNegligibleStretch * spring.rest_length;
         sum += 0.5 * spring.stiffness * stretch * stretch;
     }
@@ -50,8 +50,8 @@ constexpr double kSpared = 0.1;
 
 /// How closely a step is solved.
 struct Closeness {
-    double tolerance;    ///< of Newton's method
-    double least_yield;  ///< of friction, see PlannedContacts::find()
+    double tolerance;              ///< of Newton's method
+    double smallest_inverse_mass;  ///< of friction, see PlannedContacts::find()
 };
 /// Before it is known what surfaces hold: friction that yields more is found in fewer iterations.
 constexpr Closeness kRough{1e-5, 1e-3};
@@ -67,7 +67,7 @@ double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> veloci
 }
 
 /// m, by which members are foreseen elsewhere than surfaces, as they are found, leave them.
-std::vector<Vec3> missed_ways(const SystemStep& step, std::span<const HeldMotion> found) {
+std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportConstraints> found) {
     std::vector<Vec3> missed(found.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
         missed[k] = step.duration * (found[k].mean_of(step.free_velocities[k]) - step.velocities[k]);
@@ -76,7 +76,7 @@ std::vector<Vec3> missed_ways(const SystemStep& step, std::span<const HeldMotion
 }
 
 /// J, by which springs are stretched by that.
-double misplaced_energy(const ParticleSystem& system, const SystemStep& step, std::span<const Vec3> missed) {
+double residual_energy(const ParticleSystem& system, const SystemStep& step, std::span<const Vec3> missed) {
     double sum = 0.0;
     for (const ParticleSystem::Bond& bond : system.bonds()) {
         const Spring& spring = system.spring_of(bond);
@@ -135,11 +135,12 @@ std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles,
 
 /// What holds a member at the start of the step is expected to go on with that: others would feel it fall through what
 /// it lies on, and the plan could not rest.
-std::vector<Vec3> CoupledMotion::expected_pushes(const Particles& particles, const Hold& hold) const {
+std::vector<Vec3> CoupledMotion::expected_reactions(const Particles& particles,
+                                                    const ContactAcceleration& contact_acceleration) const {
     const std::vector<Vec3>& x = system_.positions();
     const std::vector<Vec3>& v = system_.velocities();
     const std::vector<Vec3> mutual = system_.mutual_accelerations(system_.time(), x, v);
-    std::vector<Vec3> pushes(system_.size());
+    std::vector<Vec3> impulses(system_.size());
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = system_.members()[k];
@@ -147,21 +148,22 @@ std::vector<Vec3> CoupledMotion::expected_pushes(const Particles& particles, con
             Vec3 pull = system_.spring_force_on(k, x, v) / system_.mass(k) +
                         system_.own_acceleration(k, system_.time(), x[k], v[k]);
             if (!mutual.empty()) pull += mutual[k];
-            if (is_finite(pull)) pushes[k] = hold(i, pull) - pull;
+            if (is_finite(pull)) impulses[k] = contact_acceleration(i, pull) - pull;
         }
     });
-    return pushes;
+    return impulses;
 }
 
 double CoupledMotion::plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
-                           const Hold& hold) {
+                           const ContactAcceleration& contact_acceleration) {
     system_.assign(particles, members_of(particles, time), time);
     mutual_.assign(particles, system_.members());
     slots_.assign(particles.size(), kNoSlot);
     flights_.resize(system_.size());
     if (system_.size() == 0) return duration;
     const bool is_implicit = !solver_ && integrator_.kind == IntegratorKind::implicit_euler;
-    if (!holds_coupling(integrator_.kind)) system_.expect_pushes(expected_pushes(particles, hold));
+    if (!holds_coupling(integrator_.kind))
+        system_.expect_reactions(expected_reactions(particles, contact_acceleration));
     const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
     if (!springs_.empty()) watch_energy(step);
     is_unsolved_ = is_unsolved_ || !step.solved;
@@ -174,10 +176,10 @@ void CoupledMotion::plan_flights(const SystemStep& step) {
     const bool holds = holds_coupling(integrator_.kind);
     const IntegratorKind kind = solver_ ? IntegratorKind::rk4 : integrator_.kind;  // a solver's path: the cubic
     coupled_.resize(system_.size());
-    departures_.reset(system_.size(), kind);
+    deviations_.reset(system_.size(), kind);
     parallel_for_blocks(system_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            coupled_[k] = holds ? CoupledMember(held_coupling(integrator_.kind, system_, step, k))
+            coupled_[k] = holds ? CoupledMember(constrained_coupling(integrator_.kind, system_, step, k))
                                 : CoupledMember(system_, flights_, k, mutual_pull(step, k));
             flights_[k] = planned_flight(kind, system_, step, k);
             flights_[k].start.coupling = &coupled_[k];
@@ -229,33 +231,33 @@ SystemStep CoupledMotion::among_surfaces(double duration, const Particles& parti
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
     const double first_try = std::max(first_try_, kLeastPart * terms_.time_step);
     const bool is_part = first_try_ > 0.0 && first_try < 0.75 * duration;
-    Foreseen foreseen = foresee(is_part ? first_try : duration, spins, contacts);
+    SupportPrediction prediction = predict(is_part ? first_try : duration, spins, contacts);
     bool is_cut = false;
     int vain = 0;
-    double h = foreseen.step.duration;
-    while (!foreseen.has_settled && 0.5 * h >= kLeastPart * terms_.time_step && vain < kMostVainCuts) {
-        Foreseen half = foresee(0.5 * h, spins, contacts);
+    double h = prediction.step.duration;
+    while (!prediction.has_settled && 0.5 * h >= kLeastPart * terms_.time_step && vain < kMostVainCuts) {
+        SupportPrediction half = predict(0.5 * h, spins, contacts);
         h = half.step.duration;
-        const bool is_better = half.has_settled || half.misplaced < kWorthCutting * foreseen.misplaced;
+        const bool is_better = half.has_settled || half.residual < kWorthCutting * prediction.residual;
         vain = is_better ? 0 : vain + 1;
         is_cut = is_cut || is_better;
-        if (is_better) foreseen = std::move(half);
+        if (is_better) prediction = std::move(half);
     }
-    h = foreseen.step.duration;
+    h = prediction.step.duration;
     if (is_cut || is_part) first_try_ = is_cut ? h : 2.0 * h;
-    SystemStep step = std::move(foreseen.step);
-    if (!foreseen.is_close) {
-        step = implicit_system_step(system_, h, foreseen.held, step.velocities, {kNewtonTolerance, between_});
+    SystemStep step = std::move(prediction.step);
+    if (!prediction.is_close) {
+        step = implicit_system_step(system_, h, prediction.held, step.velocities, {kNewtonTolerance, between_});
     }
-    step.solved = step.solved && foreseen.has_settled;
+    step.solved = step.solved && prediction.has_settled;
     return step;
 }
 
 /// What surfaces hold follows from the step and decides it: it is solved again until it agrees with what was foreseen
 /// for it, and closely only then.
-CoupledMotion::Foreseen CoupledMotion::foresee(double duration, std::span<const Vec3> spins,
-                                               const PlannedContacts& contacts) const {
-    Foreseen best;
+CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::span<const Vec3> spins,
+                                                        const PlannedContacts& contacts) const {
+    SupportPrediction best;
     SystemStep step;
     step.velocities = system_.velocities();
     for (std::size_t k = 0; k < system_.size(); ++k) {
@@ -265,28 +267,29 @@ CoupledMotion::Foreseen CoupledMotion::foresee(double duration, std::span<const 
     }
     const double negligible = kForesight * kinetic_energy(system_, step.velocities) + least_energy_;
     bool is_close = false;
-    std::vector<HeldMotion> held = contacts.find(system_, step.velocities, spins, duration, kRough.least_yield);
+    std::vector<SupportConstraints> held =
+        contacts.find(system_, step.velocities, spins, duration, kRough.smallest_inverse_mass);
     for (int pass = 0, worse = 0; pass < kMostForesights && worse < kMostWorse; ++pass) {
         const Closeness& closeness = is_close ? kClose : kRough;
         step = implicit_system_step(system_, duration, held, step.velocities, {closeness.tolerance, between_});
         duration = step.duration;
-        const auto find = [&](double least_yield) {
-            return contacts.find(system_, step.free_velocities, spins, duration, least_yield);
+        const auto find = [&](double smallest_inverse_mass) {
+            return contacts.find(system_, step.free_velocities, spins, duration, smallest_inverse_mass);
         };
-        std::vector<HeldMotion> found = find(closeness.least_yield);
-        double misplaced = misplaced_energy(system_, step, missed_ways(step, found));
-        const bool has_settled = misplaced <= negligible;
+        std::vector<SupportConstraints> found = find(closeness.smallest_inverse_mass);
+        double residual = residual_energy(system_, step, missed_paths(step, found));
+        const bool has_settled = residual <= negligible;
         if (has_settled && !is_close) {
             is_close = true;
-            held = find(kClose.least_yield);
+            held = find(kClose.smallest_inverse_mass);
             continue;
         }
-        if (has_settled) misplaced += misplaced_energy(system_, step, contacts.bends(system_, step, found));
+        if (has_settled) residual += residual_energy(system_, step, contacts.bends(system_, step, found));
         ++worse;
-        if (has_settled || best.held.empty() || misplaced < best.misplaced) {
+        if (has_settled || best.held.empty() || residual < best.residual) {
             const double lost = lost_in(step);  // where surfaces throw members back it can be below 0
-            const bool is_true = has_settled && lost >= -negligible && misplaced <= negligible + kSpared * lost;
-            best = {step, held, misplaced, is_true, is_close};
+            const bool is_true = has_settled && lost >= -negligible && residual <= negligible + kSpared * lost;
+            best = {step, held, residual, is_true, is_close};
             worse = 0;
         }
         if (has_settled) break;
@@ -324,7 +327,7 @@ void CoupledMotion::watch_energy(const SystemStep& step) {
         const Vec3& v1 = step.velocities[k];
         Vec3 pull = system_.own_acceleration(k, system_.time(), system_.positions()[k], v0) +
                     system_.own_acceleration(k, system_.time() + step.duration, step.positions[k], v1);
-        pull += 2.0 * system_.expected_push(k);
+        pull += 2.0 * system_.expected_reaction(k);
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
         // The way that the velocities mean: forward Euler's, which sets out without the forces, would have no work.
@@ -371,17 +374,17 @@ CoupledMotion::Correction CoupledMotion::correct_velocities(Particles& particles
         const std::uint32_t i = system_.members()[k];
         velocities[k] = particles.velocity[i];
         const bool is_fixed = particles.pinned[i] != 0 || particles.frozen[i] != 0 || particles.absorbed[i] != 0;
-        const bool is_unknown = is_in_contact(particles, i) && !departures_.has_left(k);
+        const bool is_unknown = is_in_contact(particles, i) && !deviations_.has_left(k);
         moves[k] = is_fixed || is_unknown ? 0 : 1;
     }
-    departures_.correct(system_, flights_, moves, velocities);
+    deviations_.correct(system_, flights_, moves, velocities);
     for (std::size_t k = 0; k < system_.size(); ++k) {
         const std::uint32_t i = system_.members()[k];
         if (velocities[k] == particles.velocity[i]) continue;
         const bool is_runaway = length(velocities[k]) > kMaxSpeed && length(particles.velocity[i]) <= kMaxSpeed;
         if (is_runaway && !correction.runaway) correction.runaway = i, correction.runaway_speed = length(velocities[k]);
         if (is_in_contact(particles, i)) {
-            correction.owed.push_back({i, velocities[k] - particles.velocity[i]});
+            correction.corrections.push_back({i, velocities[k] - particles.velocity[i]});
         } else {
             particles.velocity[i] = velocities[k];
         }

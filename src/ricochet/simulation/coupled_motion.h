@@ -32,13 +32,11 @@ public:
                   const ForceField& forces, const Integrator& integrator, const Terms& terms);
 
     /// True when particles may act on each other, or a solver of the user's own steps them.
-    [[nodiscard]] bool is_active() const {
-        return !stands_aside_ && (solver_ || !springs_.empty() || !mutual_.empty());
-    }
+    [[nodiscard]] bool is_active() const { return !is_disabled_ && (solver_ || !springs_.empty() || !mutual_.empty()); }
     /// Others have the particles: what there is of springs is kept only for states that are restored.
-    void stand_aside() { stands_aside_ = true; }
+    void disable() { is_disabled_ = true; }
     /// What the forces on particle i, m/s^2, leave it in the contact that it is in.
-    using Hold = std::function<Vec3(std::size_t i, const Vec3& pull)>;
+    using ContactAcceleration = std::function<Vec3(std::size_t i, const Vec3& pull)>;
 
     /// To be called whenever particles were added or removed.
     void bind(const Particles& particles);
@@ -46,7 +44,7 @@ public:
     /// foresees what surfaces do to them, for the implicit method; hold: for the methods that follow forces as they
     /// vary. Throws DivergedError when what comes out is nonsense.
     double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
-                const Hold& hold);
+                const ContactAcceleration& contact_acceleration);
 
     /// between: called between the iterations of plan() with the implicit method; what it throws comes out of it.
     /// Empty: nothing is.
@@ -63,29 +61,31 @@ public:
     /// True when what surfaces are expected to give member i is in its planned flight: only others reckon with that,
     /// it itself meets its surfaces.
     [[nodiscard]] bool is_planned_in_contact(std::size_t i) const {
-        return holds(i) && system_.expected_push(slots_[i]) != Vec3{};
+        return holds(i) && system_.expected_reaction(slots_[i]) != Vec3{};
     }
     /// True when what member i flies instead of its plan is to be noted.
-    [[nodiscard]] bool wants_departure_of(std::size_t i) const {
+    [[nodiscard]] bool wants_deviation_of(std::size_t i) const {
         return holds(i) && flights_[slots_[i]].start.coupling->varies();
     }
     /// Notes it, and what surfaces have given it meanwhile, m/s; several threads may do so for different members.
-    void record_departure(std::size_t i, std::span<const FlownPiece> flown, const Vec3& pushed) {
-        departures_.record(slots_[i], flown, pushed);
+    void add_deviation(std::size_t i, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
+        deviations_.record(slots_[i], flown, velocity_change);
     }
 
     /// The same of a member that has been planned together with what it presses on, with its forces at the start.
-    void record_planned_contact(std::size_t i, const Vec3& pushed) { departures_.record_at_start(slots_[i], pushed); }
+    void record_planned_contact(std::size_t i, const Vec3& velocity_change) {
+        deviations_.record_at_start(slots_[i], velocity_change);
+    }
 
     /// A change of velocity that is owed to a particle in contact, m/s.
-    struct Owed {
+    struct VelocityCorrection {
         std::uint32_t particle = 0;
         Vec3 change;
     };
     struct Correction {
-        std::vector<Owed> owed;                ///< to those in contact
-        std::optional<std::uint32_t> runaway;  ///< the first particle that it has brought beyond kMaxSpeed
-        double runaway_speed = 0.0;            ///< m/s
+        std::vector<VelocityCorrection> corrections;  ///< to those in contact
+        std::optional<std::uint32_t> runaway;         ///< the first particle that it has brought beyond kMaxSpeed
+        double runaway_speed = 0.0;                   ///< m/s
     };
     /// After the move of what was planned: gives members in flight what their springs and forces have given them
     /// beyond what they have seen of it.
@@ -119,18 +119,20 @@ private:
     [[nodiscard]] MutualPull mutual_pull(const SystemStep& step, std::size_t k) const;
     [[nodiscard]] SystemStep stepped(double duration);
     [[nodiscard]] double shortest_part() const;
-    [[nodiscard]] std::vector<Vec3> expected_pushes(const Particles& particles, const Hold& hold) const;
+    [[nodiscard]] std::vector<Vec3> expected_reactions(const Particles& particles,
+                                                       const ContactAcceleration& contact_acceleration) const;
     /// What surfaces hold in a step, and its solution with that.
-    struct Foreseen {
+    struct SupportPrediction {
         SystemStep step;
-        std::vector<HeldMotion> held;
-        double misplaced = 0.0;  // J, that springs get by what was not foreseen
+        std::vector<SupportConstraints> held;
+        double residual = 0.0;  // J, that springs get by what was not foreseen
         bool has_settled = false;
         bool is_close = false;  // solved to the tolerance of steps
     };
     [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
                                             const PlannedContacts& contacts);
-    [[nodiscard]] Foreseen foresee(double duration, std::span<const Vec3> spins, const PlannedContacts& contacts) const;
+    [[nodiscard]] SupportPrediction predict(double duration, std::span<const Vec3> spins,
+                                            const PlannedContacts& contacts) const;
     [[nodiscard]] double lost_in(const SystemStep& step) const;
     void plan_flights(const SystemStep& step);
     [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
@@ -146,12 +148,12 @@ private:
     std::vector<std::uint32_t> slots_;    // of every particle: its number among the members
     std::vector<Flight> flights_;         // of the members
     std::vector<CoupledMember> coupled_;  // what the flights' starts point to
-    Departures departures_;               // of the members, from the flights
+    PlanDeviations deviations_;           // of the members, from the flights
     double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
     std::uint64_t unsolved_steps_ = 0;
     bool is_unsolved_ = false;    // a part of the present step
     std::uint32_t substeps_ = 0;  // of an adaptive method in the present step
-    bool stands_aside_ = false;
+    bool is_disabled_ = false;
     std::function<void()> between_;
 
     // What forces and walls have put in, J, and what the method has made out of nothing.

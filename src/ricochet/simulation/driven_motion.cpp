@@ -57,28 +57,28 @@ DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frame
         frame_of_.push_back(*frame);
         BodyId id = 0;
         while (colliders_ != nullptr && id < colliders_->size() && colliders_->frame_of(id) != *frame) ++id;
-        collider_of_.push_back(colliders_ != nullptr && id < colliders_->size() ? id : kAtRest);
-        if (collider_of_.back() != kAtRest) colliders_->set_mobility(id, bodies_.back().mobility());
+        collider_of_.push_back(colliders_ != nullptr && id < colliders_->size() ? id : kWorldBody);
+        if (collider_of_.back() != kWorldBody) colliders_->set_mobility(id, bodies_.back().mobility());
     }
     loads_.resize(bodies_.size());
-    lying_.resize(bodies_.size());
+    resting_loads_.resize(bodies_.size());
     contacts_.resize(bodies_.size());
     relaxations_.resize(bodies_.size());
     shares_.resize(bodies_.size(), 1.0);
 }
 
 void DrivenMotion::begin_step() {
-    for (std::size_t k = 0; k < bodies_.size() && lying_for_ > 0.0; ++k) {
-        const Wrench& lain = lying_[k];
-        loads_[k] = {lain.impulse / lying_for_, lain.moment / lying_for_};
-        lying_[k] = {};
+    for (std::size_t k = 0; k < bodies_.size() && resting_time_ > 0.0; ++k) {
+        const Wrench& lain = resting_loads_[k];
+        loads_[k] = {lain.impulse / resting_time_, lain.moment / resting_time_};
+        resting_loads_[k] = {};
     }
-    lying_for_ = 0.0;
+    resting_time_ = 0.0;
     parts_ = 0;
     for (BodyContacts& contacts : contacts_) contacts.begin_step();
 }
 
-double DrivenMotion::yielded(const ColliderLoad& load) const {
+double DrivenMotion::became_dynamic(const ColliderLoad& load) const {
     const auto body = loads_on_bodies().body_of(load);
     if (!body) return 0.0;
     const AffineMap map = planned(*body).at(load.time).world_from_frame;
@@ -86,7 +86,7 @@ double DrivenMotion::yielded(const ColliderLoad& load) const {
     return mobility.energy_by(wrench_of(load, mobility.center));
 }
 
-double DrivenMotion::next_part_end(double begin, double end) const {
+double DrivenMotion::next_substep_end(double begin, double end) const {
     constexpr double kAboutAll = 1.1;  // no part is left that is much shorter
     return end - begin > kAboutAll * longest_part_ ? begin + longest_part_ : end;
 }
@@ -104,7 +104,7 @@ void DrivenMotion::set_shares(std::vector<double> shares) {
     if (shares == shares_) return;
     shares_ = std::move(shares);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (collider_of_[k] == kAtRest) continue;
+        if (collider_of_[k] == kWorldBody) continue;
         Mobility mobility = bodies_[k].mobility();
         mobility.of_mass = shares_[k] * mobility.of_mass;
         mobility.of_inertia = shares_[k] * mobility.of_inertia;
@@ -142,7 +142,7 @@ void DrivenMotion::plan_paths(double begin, double end) {
                 "shorter time step or weaker forces",
                 end, bodies_[k].description().frame));
         }
-        tell_of_jump(k, paths_of(k).size() - 1);
+        publish_velocity_jump(k, paths_of(k).size() - 1);
     }
     is_planned_ = true;
 }
@@ -207,16 +207,16 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     return preview.empty() ? end : end_of(tallies, preview.back().time, end);
 }
 
-LyingLoad DrivenMotion::lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
+RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
     // What is entered at the end of what was planned may be a rounding behind it.
     const bool is_whole = until >= planned_end();
-    return loads_on_bodies().lying_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
+    return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
 
 /// The part of a duration after which it ends where what lay on a body has left it: the load is that of the time
 /// before.
-double DrivenMotion::part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
-                                    double duration) const {
+double DrivenMotion::substep_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
+                                       double duration) const {
     constexpr double kLeast = 0.1;
     const double part = (loads_on_bodies().left_at(body, preview) - begin) / duration;
     return part > kLeast && part < 1.0 - kLeast ? part : 1.0;
@@ -253,15 +253,15 @@ double DrivenMotion::most_change(std::size_t body) const {
     return std::max(slow_, kMostBodyChange * speed);
 }
 
-DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const LyingLoad& lying, double duration) const {
+DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const {
     const Wrench& planned = loads_[body];
     // Where impacts have cut a part short, a slow impact is no force that lasts.
     const double lasts = std::max(duration, kShortestLoad * shortest_part_);
-    const Wrench back{lying.wrench.impulse / lasts, lying.wrench.moment / lasts};
+    const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
-    const double at_once = change_by(body, back, shortest_part_) / (1.0 + lying.heaviness);
+    const double at_once = change_by(body, back, shortest_part_) / (1.0 + resting_load.heaviness);
     const double most = std::max(most_change(body), at_once);
-    const Wrench varies = relaxations_[body].variation(planned, back, lying.heaviness);
+    const Wrench varies = relaxations_[body].variation(planned, back, resting_load.heaviness);
     const double change = change_by(body, varies, duration);
     const double lacking = change_by(body, lacks, duration);
     return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadFits * most, lacking <= most};
@@ -273,9 +273,10 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     if (end >= planned_end()) return false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (!(loads_on_bodies().left_at(k, preview) > end)) continue;
-        const LyingLoad lying = lying_on(k, preview, planned_end());
+        const RestingLoad resting_load = resting_load_on(k, preview, planned_end());
         const double duration = planned_end() - planned(k).begin;
-        if (lying.heaviness > 0.0 && (relaxations_[k].concerns(lying) || !fit_of(k, lying, duration).is_near))
+        if (resting_load.heaviness > 0.0 &&
+            (relaxations_[k].concerns(resting_load) || !fit_of(k, resting_load, duration).is_near))
             return true;
     }
     return false;
@@ -285,7 +286,7 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
 bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
-        if (round == 0) relaxations_[k].begin_part(loads_[k]);
+        if (round == 0) relaxations_[k].begin_substep(loads_[k]);
     }
     if (round > 0 && !was_cut_) return true;
     was_cut_ = false;
@@ -316,13 +317,13 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     const bool is_last = round % kMostLoadRounds >= most_rounds - 1;
     double longest = 1.0;  // part of the duration
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const LyingLoad lying = lying_on(k, preview, end);
-        const Fit fit = fit_of(k, lying, duration);
-        if (fit.is_near && !relaxations_[k].concerns(lying)) continue;
+        const RestingLoad resting_load = resting_load_on(k, preview, end);
+        const Fit fit = fit_of(k, resting_load, duration);
+        if (fit.is_near && !relaxations_[k].concerns(resting_load)) continue;
         if (can_shorten) longest = std::min(longest, fit.longest);
-        if (can_shorten && fit.fits) longest = std::min(longest, part_with_load(k, preview, begin, duration));
+        if (can_shorten && fit.fits) longest = std::min(longest, substep_with_load(k, preview, begin, duration));
         if (!fit.fits || longest < 1.0)
-            loads_[k] = relaxations_[k].next(bodies_[k], loads_[k], fit.back, lying.heaviness);
+            loads_[k] = relaxations_[k].next(bodies_[k], loads_[k], fit.back, resting_load.heaviness);
         fits = fits && fit.fits;
     }
     if (!fits && is_last && can_shorten) longest = std::min(longest, 0.25);
@@ -358,7 +359,7 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     for (const ColliderLoad& part : preview) {
         if (loads_on_bodies().body_of(part) != body || (part.time > end && !is_whole)) continue;
         taken += wrench_of(part, bodies_[body].moment_center());
-        given += part.work + (part.impact ? yielded(part) : 0.0);
+        given += part.work + (part.impact ? became_dynamic(part) : 0.0);
     }
     DrivenBody as_planned = bodies_[body];
     as_planned.follow(path, planned_load, load);
@@ -372,9 +373,9 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
 /// The plan stands, up to a time, s.
 void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     const double duration = end - planned(0).begin;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_part(lying_on(k, preview, end));
+    for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_substep(resting_load_on(k, preview, end));
     end_at(end);
-    limit_next_part(duration);
+    limit_next_substep(duration);
 }
 
 /// Bodies that no load fits, however short the part, as where something much heavier jams them, go on as if nothing lay
@@ -391,7 +392,7 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
 
 /// What lies on a body shows by its mean alone how it changes in a part: that may be little, over a part in which it
 /// comes and goes. So parts grow by and by.
-void DrivenMotion::limit_next_part(double duration) {
+void DrivenMotion::limit_next_substep(double duration) {
     constexpr double kGrowth = 2.0;
     if (was_shortened_) {
         longest_part_ = kGrowth * duration;
@@ -408,7 +409,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         const auto body = loads_on_bodies().body_of(load);
         if (!body) continue;
         touching[*body].push_back(load.particle);
-        if (!load.impact) lying_[*body] += wrench_of(load, bodies_[*body].moment_center());
+        if (!load.impact) resting_loads_[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const BodyPath& path = planned(k);
@@ -420,7 +421,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
         bodies_[k].follow(path, load, wrenches[k]);
     }
-    if (!bodies_.empty()) lying_for_ += planned(0).end - planned(0).begin;
+    if (!bodies_.empty()) resting_time_ += planned(0).end - planned(0).begin;
     is_planned_ = false;
     ++parts_;
 }
@@ -430,18 +431,18 @@ void DrivenMotion::take(std::span<const ColliderLoad> loads) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].take(wrenches[k]);
 }
 
-double DrivenMotion::begin_part_again(double time) {
+double DrivenMotion::repeat_substep(double time) {
     set_shares({});
     const std::vector<BodyPath>& paths = paths_of(0);
     std::size_t path = 0;
     while (path + 1 < paths.size() && paths[path + 1].begin <= time) ++path;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) tell_of_jump(k, path);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) publish_velocity_jump(k, path);
     return paths[path].end;
 }
 
 /// Whether a body's velocity jumps where one of its paths begins. All bodies have the same parts.
-void DrivenMotion::tell_of_jump(std::size_t body, std::size_t path) const {
-    if (collider_of_[body] == kAtRest) return;
+void DrivenMotion::publish_velocity_jump(std::size_t body, std::size_t path) const {
+    if (collider_of_[body] == kWorldBody) return;
     const std::vector<BodyPath>& paths = paths_of(body);
     const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
     const bool is_free = bodies_[body].description().joint == JointKind::free;

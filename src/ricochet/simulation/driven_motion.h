@@ -36,7 +36,7 @@ public:
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
 
     /// When the part that begins at a time has to end, s, at the latest; not after `end`, s.
-    [[nodiscard]] double next_part_end(double begin, double end) const;
+    [[nodiscard]] double next_substep_end(double begin, double end) const;
     /// Plans the bodies' paths over [begin, end], s, instead of what was planned last and not followed. Nothing asks
     /// for where they were before `oldest`, s, any more.
     void plan(double begin, double end, double oldest);
@@ -57,9 +57,9 @@ public:
     /// To be called at the begin of a step: what has lain on the bodies in the last one lies on them in this one, too.
     void begin_step();
     /// J, that a body takes from a load besides ColliderLoad::work: by what it yields meanwhile.
-    [[nodiscard]] double yielded(const ColliderLoad& load) const;
+    [[nodiscard]] double became_dynamic(const ColliderLoad& load) const;
     /// For what is moved through this step once more: the part that begins at a time. Returns when it ends, s.
-    double begin_part_again(double time);
+    double repeat_substep(double time);
 
     /// Saves or restores how they move; a: an archive of core/binary_archive.h.
     template <class Archive>
@@ -70,9 +70,9 @@ public:
             archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
             if (!paths.empty()) frames_->set_paths(frame, std::move(paths));
         }
-        for (Wrench& wrench : lying_) a(wrench.impulse), a(wrench.moment);
+        for (Wrench& wrench : resting_loads_) a(wrench.impulse), a(wrench.moment);
         for (BodyContacts& contacts : contacts_) archive_entries(a, contacts.now, [&](std::uint64_t& id) { a(id); });
-        a(lying_for_);
+        a(resting_time_);
         for (LoadRelaxation& relaxation : relaxations_) relaxation.archive(a);
         a(is_planned_), a(longest_part_);
     }
@@ -99,21 +99,22 @@ private:
     void plan_paths(double begin, double end);
     void set_shares(std::vector<double> shares);
     [[nodiscard]] std::vector<double> shares_of(std::span<const ColliderLoad> preview, double end) const;
-    void tell_of_jump(std::size_t body, std::size_t path) const;
+    void publish_velocity_jump(std::size_t body, std::size_t path) const;
     [[nodiscard]] LoadsOnBodies loads_on_bodies() const { return {bodies_, collider_of_, colliders_, slow_}; }
-    [[nodiscard]] LyingLoad lying_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const;
+    [[nodiscard]] RestingLoad resting_load_on(std::size_t body, std::span<const ColliderLoad> preview,
+                                              double until) const;
     [[nodiscard]] bool begin_round(std::span<const ColliderLoad> preview, double end, int round);
     [[nodiscard]] bool is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const;
-    [[nodiscard]] double part_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
-                                        double duration) const;
+    [[nodiscard]] double substep_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
+                                           double duration) const;
     [[nodiscard]] double end_of_waits(std::span<const ColliderLoad> preview, double end) const;
     [[nodiscard]] double most_change(std::size_t body) const;
     [[nodiscard]] double change_by(std::size_t body, const Wrench& load, double duration) const;
     [[nodiscard]] bool gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const;
     void accept(std::span<const ColliderLoad> preview, double end);
     [[nodiscard]] bool plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end);
-    void limit_next_part(double duration);
-    [[nodiscard]] Fit fit_of(std::size_t body, const LyingLoad& lying, double duration) const;
+    void limit_next_substep(double duration);
+    [[nodiscard]] Fit fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const;
 
     std::vector<DrivenBody> bodies_;
     std::vector<std::size_t> frame_of_;  // of each body
@@ -130,8 +131,8 @@ private:
     bool has_given_up_ = false;           // this part: no load fits
     std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it, as it will be planned next
     std::vector<Wrench> planned_loads_;   // with which the planned paths were planned
-    std::vector<Wrench> lying_;           // of each body, N s and N m s, of contact that lasted in this step so far
-    double lying_for_ = 0.0;              // s, of this step so far
+    std::vector<Wrench> resting_loads_;   // of each body, N s and N m s, of contact that lasted in this step so far
+    double resting_time_ = 0.0;           // s, of this step so far
     std::vector<BodyContacts> contacts_;  // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
     std::vector<double> shares_;               // of each body: how many times as much it yields in this part

@@ -27,11 +27,11 @@ bool is_rigid(const AffineMap& map) {
 }
 
 bool is_path(const BodyPath& path) {
-    const bool is_way_finite =
-        std::all_of(path.way.begin(), path.way.end(), [](const Vec3& v) { return ricochet::is_finite(v); });
+    const bool is_path_finite = std::all_of(path.center_path.begin(), path.center_path.end(),
+                                            [](const Vec3& v) { return ricochet::is_finite(v); });
     const bool is_turn_finite =
         std::all_of(path.turns.begin(), path.turns.end(), [](double x) { return std::isfinite(x); });
-    return std::isfinite(path.begin) && std::isfinite(path.end) && path.begin <= path.end && is_way_finite &&
+    return std::isfinite(path.begin) && std::isfinite(path.end) && path.begin <= path.end && is_path_finite &&
            is_turn_finite && std::isfinite(path.degrees) && ricochet::is_finite(path.carrier) && is_unit(path.axis) &&
            is_rigid(path.at_begin);
 }
@@ -56,12 +56,12 @@ bool DrivenMotion::has_sound_paths(std::size_t body) const {
 bool DrivenMotion::is_sound(double time) const {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const std::vector<std::uint64_t>& ids = contacts_[k].now;
-        const bool is_whole = is_body(bodies_[k]) && has_sound_paths(k) && is_finite(lying_[k]) &&
+        const bool is_whole = is_body(bodies_[k]) && has_sound_paths(k) && is_finite(resting_loads_[k]) &&
                               relaxations_[k].is_sound() && std::is_sorted(ids.begin(), ids.end());
         if (!is_whole) return false;
     }
     // A part that does not move the time on would be followed by the same one again and again.
-    return lying_for_ >= 0.0 && std::isfinite(lying_for_) && time + longest_part_ > time;
+    return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_part_ > time;
 }
 
 }  // namespace ricochet

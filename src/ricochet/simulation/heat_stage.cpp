@@ -58,8 +58,9 @@ void FrictionMeter::note(std::size_t i, const ForceInput& moved, const MoveScrat
 /// J, in contact that lasts: Simpson's rule for force times velocity, that in the middle as a cubic through both ends
 /// has it; exact for steady forces. Seen from a frame that moves, the part's forces are not those of the world.
 double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& moved) const {
-    const Vec3 way = part.end.position - part.begin.position;
-    const Vec3 middle_velocity = (1.5 / part.duration) * way - 0.25 * (part.begin.velocity + part.end.velocity);
+    const Vec3 displacement = part.end.position - part.begin.position;
+    const Vec3 middle_velocity =
+        (1.5 / part.duration) * displacement - 0.25 * (part.begin.velocity + part.end.velocity);
     std::array<Vec3, 3> forces = part.forces;
     if (bodies_ != nullptr && part.kind == MotionPart::Kind::driven) {
         ForceInput input = moved;
@@ -74,7 +75,8 @@ double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& m
                   at(part.time + half, middle, middle_velocity),
                   at(part.time + part.duration, part.end.position, part.end.velocity)};
     }
-    if (part.forces_are_steady && part.kind != MotionPart::Kind::driven) return moved.mass * dot(forces[0], way);
+    if (part.forces_are_steady && part.kind != MotionPart::Kind::driven)
+        return moved.mass * dot(forces[0], displacement);
     return moved.mass * (part.duration / 6.0) *
            (dot(forces[0], part.begin.velocity) + 4.0 * dot(forces[1], middle_velocity) +
             dot(forces[2], part.end.velocity));

@@ -38,19 +38,19 @@ struct ImpactTally::BodyOnPath {
 ImpactTally::BodyOnPath ImpactTally::at(double time) const {
     const MovingPose pose = path_->at(time);
     const Mobility local = body_->mobility();
-    const Vec3 beside = id_ == kAtRest ? Vec3{} : colliders_->turning_beside_path(id_, time);
+    const Vec3 beside = id_ == kWorldBody ? Vec3{} : colliders_->turning_beside_path(id_, time);
     return {local.seen_by(pose.world_from_frame), pose.velocity_of(local.center), pose.angular_velocity + beside};
 }
 
 void ImpactTally::add(const ColliderLoad& load) {
     const Wrench wrench = wrench_of(load, about_);
     const BodyOnPath body = at(load.time);
-    const double yields = body.mobility.energy_by(wrench_of(load, body.mobility.center));
+    const double is_dynamic = body.mobility.energy_by(wrench_of(load, body.mobility.center));
     ++count_;
     wrench_ += wrench;
     alone_ += body.energy_by(wrench, about_);
-    yielding_ += yields;
-    lost_ += load.lost_energy - load.work - yields;
+    dynamic_ += is_dynamic;
+    lost_ += load.lost_energy - load.work - is_dynamic;
     size_ += std::fabs(load.work) + std::fabs(load.lost_energy);
 }
 
@@ -62,13 +62,13 @@ bool ImpactTally::changes_energy(double time, double doubt) const {
 double ImpactTally::speed_by(Wrench wrench, const ColliderLoad& load) const {
     const Mobility body = at(load.time).mobility;
     wrench.moment += cross(about_ - body.center, wrench.impulse);
-    return length(body.change_at(load.place, wrench));
+    return length(body.change_at(load.particle_center, wrench));
 }
 
 double ImpactTally::share(double time) const {
     if (count_ < 2 || !changes_energy(time)) return 1.0;
     const BodyOnPath body = at(time);
-    return std::max(1.0, body.mobility.energy_by(body.about_center(wrench_, about_)) / yielding_);
+    return std::max(1.0, body.mobility.energy_by(body.about_center(wrench_, about_)) / dynamic_);
 }
 
 bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const ImpactTally& tally,

@@ -15,13 +15,13 @@ namespace ricochet {
 
 /// The impulse of a load, with its moment about a point.
 [[nodiscard]] inline Wrench wrench_of(const ColliderLoad& load, const Vec3& center) {
-    return {load.impulse, cross(load.place - center, load.impulse) + load.couple};
+    return {load.impulse, cross(load.particle_center - center, load.impulse) + load.couple};
 }
 
 /// A list of impacts on a body, as they are added one after the other.
 class ImpactTally {
 public:
-    /// id: that of its colliders; kAtRest where it has none. All must outlive it.
+    /// id: that of its colliders; kWorldBody where it has none. All must outlive it.
     ImpactTally(const DrivenBody& body, const BodyPath& path, const MovingColliders* colliders, BodyId id)
         : body_(&body), path_(&path), colliders_(colliders), id_(id), about_(body.moment_center()) {}
 
@@ -48,10 +48,10 @@ private:
     Vec3 about_;  // m, that moments are about
     int count_ = 0;
     Wrench wrench_;
-    double alone_ = 0.0;     // J, that the body would take from each by itself, at its time
-    double yielding_ = 0.0;  // J, of that: what it would take from each, were it at rest
-    double lost_ = 0.0;      // J, that each by itself takes off
-    double size_ = 0.0;      // J, of what was added up
+    double alone_ = 0.0;    // J, that the body would take from each by itself, at its time
+    double dynamic_ = 0.0;  // J, of that: what it would take from each, were it at rest
+    double lost_ = 0.0;     // J, that each by itself takes off
+    double size_ = 0.0;     // J, of what was added up
 };
 
 /// What has come to a body of late.

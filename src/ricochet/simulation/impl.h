@@ -19,7 +19,6 @@
 #include "ricochet/core/stop_token.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/active_mover.h"
-#include "ricochet/simulation/birth_room.h"
 #include "ricochet/simulation/births.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/coupled_motion.h"
@@ -35,6 +34,7 @@
 #include "ricochet/simulation/retirement.h"
 #include "ricochet/simulation/return_point.h"
 #include "ricochet/simulation/run_recorder.h"
+#include "ricochet/simulation/spawn_occupancy.h"
 
 namespace ricochet {
 
@@ -51,7 +51,7 @@ struct WholeRun {
 struct Arrival {
     std::optional<Overlap> overlap;  ///< with a surface
     bool starts_inside = false;      ///< in overlap, on a surface, or put off one that it was on
-    KeptContact contact;             ///< with what it touches
+    ContactState contact;            ///< with what it touches
 };
 
 /// Members refer to members above them; it is never moved.
@@ -66,22 +66,22 @@ struct Simulation::Impl {
     [[nodiscard]] TimeSpan begin_step();
     /// Particles change ranks where one of those is behind.
     void balance_ranks();
-    void give_away(GiftChoice choice);
+    void give_away(TransferChoice choice);
     /// Particles of other stores, as bytes, come to those that are here.
-    void take_in(std::vector<std::vector<std::byte>> parts);
+    void insert_particles(std::vector<std::vector<std::byte>> parts);
     void emit_particles(const TimeSpan& step);
-    void move_batch(const ParticleRange& batch, const TimeSpan& step);
-    [[nodiscard]] TimeSpan plan_part(const ParticleRange& batch, const TimeSpan& rest);
-    [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest);
+    void move_generation(const ParticleRange& generation, const TimeSpan& step);
+    [[nodiscard]] TimeSpan plan_substep(const ParticleRange& generation, const TimeSpan& rest);
+    [[nodiscard]] TimeSpan plan_coupled_motion(const ParticleRange& generation, const TimeSpan& rest);
     [[nodiscard]] double plan_on_first_rank(const TimeSpan& rest);
     [[nodiscard]] double plan_coupled(const TimeSpan& rest);
-    [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest);
-    [[nodiscard]] double settle_driven_motion(const ParticleRange& batch, TimeSpan part);
-    void record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks);
+    [[nodiscard]] TimeSpan plan_driven_motion(const ParticleRange& generation, const TimeSpan& rest);
+    [[nodiscard]] double settle_driven_motion(const ParticleRange& generation, TimeSpan part);
+    void record_part(const ParticleRange& generation, const std::vector<BlockRecord>& blocks);
     [[nodiscard]] double oldest_position() const;
     void wake_sleepers(const TimeSpan& part);
-    void move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks);
-    [[nodiscard]] WorkCounts work_of(const ParticleRange& batch, std::size_t queried,
+    void move_substep(const ParticleRange& generation, const TimeSpan& part, std::vector<BlockRecord>& blocks);
+    [[nodiscard]] WorkCounts work_of(const ParticleRange& generation, std::size_t queried,
                                      const std::vector<BlockRecord>& blocks) const;
     void order_active_set(ActiveSet& active) const;
     void stop_runaways(const std::vector<BlockRecord>& blocks, double time) const;
@@ -108,17 +108,17 @@ struct Simulation::Impl {
     /// Many, with the ids that they have, which ascend; what is found out about them, all threads find out. after:
     /// called for each once it is there.
     void add_all(std::span<Particle* const> added, const std::function<void(std::size_t)>& after = {});
-    void let_in(Particle&& particle, const Arrival& arrival);
+    void insert(Particle&& particle, const Arrival& arrival);
     [[nodiscard]] Arrival arrival_of(Particle& particle) const;
-    [[nodiscard]] KeptContact contact_of(const Particle& particle) const;
-    [[nodiscard]] std::optional<KeptContact> contact_in(const CollisionWorld& of_frame, const Particle& particle,
-                                                        const Vec3& position) const;
+    [[nodiscard]] ContactState contact_of(const Particle& particle) const;
+    [[nodiscard]] std::optional<ContactState> contact_in(const CollisionWorld& of_frame, const Particle& particle,
+                                                         const Vec3& position) const;
     /// room: filled with the spheres that are there by the first birth.
-    [[nodiscard]] BirthTests birth_tests(std::optional<BirthRoom>& room, const TimeSpan& step) const;
-    [[nodiscard]] BirthRoom room_among_spheres(const TimeSpan& step) const;
+    [[nodiscard]] BirthTests birth_tests(std::optional<SpawnOccupancy>& room, const TimeSpan& step) const;
+    [[nodiscard]] SpawnOccupancy spawn_occupancy(const TimeSpan& step) const;
     [[nodiscard]] std::optional<Overlap> overlap_of(const Particle& particle) const;
     /// Where children may be born beside their parents: nothing is between them, and spheres overlap nothing.
-    [[nodiscard]] PlaceTest place_test() const;
+    [[nodiscard]] SpawnTest spawn_test() const;
     /// Of its frame; of a mesh that deforms, which is in none, that of those at rest.
     [[nodiscard]] const CollisionWorld& world_of(std::size_t collider) const;
     void inherit_sides(std::size_t i, const Child& child);

@@ -5,7 +5,7 @@
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/simulation/stillness.h"
+#include "ricochet/simulation/sleep_rules.h"
 
 namespace ricochet {
 namespace {
@@ -45,7 +45,7 @@ constexpr double kAlongPull = 0.5;
 
 bool LastingContacts::is_sound(std::uint64_t next_id) const {
     const std::size_t surfaces = parts_.response.rules().world.surface_count();
-    return memory_.is_sound(next_id, surfaces) && piles_.is_sound(next_id, surfaces);
+    return memory_.is_sound(next_id, surfaces) && sleeping_islands_.is_sound(next_id, surfaces);
 }
 
 void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
@@ -53,10 +53,10 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
     are_children_ = range.are_children;
     wakings_ = 0;
     traces_.is_asleep.assign(range.size(), 0);
-    if (are_children_ || piles_.empty()) return;
+    if (are_children_ || sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> gone;
     std::vector<std::uint64_t> carried;
-    for (const std::uint64_t particle : piles_.particles()) {
+    for (const std::uint64_t particle : sleeping_islands_.particles()) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (!i || parts_.store.is_fixed(*i)) {
             gone.push_back(particle);
@@ -68,7 +68,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         if (is_beside_movers(particles.position[*i], particles.radius[*i])) carried.push_back(particle);
     }
     // What rests on a surface that moves goes with it, however slowly.
-    wake_alone(piles_.piles_of(carried), step.begin);
+    wake_alone(sleeping_islands_.islands_of_sleepers(carried), step.begin);
     wake(gone, step.begin);
 }
 
@@ -76,19 +76,19 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);
-    wake_alone(piles_.around(particles, contacts << std::min(farther, kFarthest)), time);
+    wake_alone(sleeping_islands_.around(particles, contacts << std::min(farther, kFarthest)), time);
     std::vector<std::uint64_t> held;
-    for (const NetworkMemory::Entry& entry : piles_.edges()) {
+    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);
         if (is_pinned(entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
     }
-    for (const SleepingPiles::Weight& weight : piles_.weights()) {
+    for (const SleepingIslands::Weight& weight : sleeping_islands_.weights()) {
         const std::optional<std::size_t> i = parts_.store.index_of(weight.particle);
         if (!i) continue;
         const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(*i, time));
         if (holds(weight.surface, -weight.force, pull)) held.push_back(weight.particle);
     }
-    wake_alone(piles_.not_joined_to(held), time);
+    wake_alone(sleeping_islands_.not_joined_to(held), time);
 }
 
 void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double time) {
@@ -99,13 +99,14 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         parts_.mover.wake(*i, time);
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
-    std::vector<NetworkMemory::Entry> contacts = piles_.wake(woken);
+    std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
     // What somebody awake does to them is remembered already, or has ended; what only leans does nothing.
     const auto has_lain = [&](std::uint64_t particle) {
-        return std::binary_search(woken.begin(), woken.end(), particle) || piles_.has(particle) || is_pinned(particle);
+        return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
+               is_pinned(particle);
     };
-    std::erase_if(contacts, [&](const NetworkMemory::Entry& entry) {
-        const NetworkKey& key = entry.key;
+    std::erase_if(contacts, [&](const WarmStartMemory::Entry& entry) {
+        const ContactKey& key = entry.key;
         const bool goes_on = memory_.find(key) != nullptr;
         return goes_on || entry.impulse.normal == 0.0 || !has_lain(key.particle) ||
                !(key.is_wall() || has_lain(key.other));
@@ -118,17 +119,17 @@ bool LastingContacts::is_pinned(std::uint64_t particle) const {
     return i && parts_.store.is_fixed(*i);
 }
 
-void LastingContacts::wake_all(double time) { wake_alone(piles_.particles(), time); }
+void LastingContacts::wake_all(double time) { wake_alone(sleeping_islands_.particles(), time); }
 
 const PairTraces& LastingContacts::find_traces() {
     const std::size_t size = traces_.is_asleep.size();
-    traces_.version = piles_.version();
+    traces_.version = sleeping_islands_.version();
     traces_.presses.assign(size, 0);
     const auto mark = [&](std::uint64_t particle) {
         const std::optional<std::size_t> i = parts_.store.index_of(particle);
         if (i && *i >= first_ && *i - first_ < size) traces_.presses[*i - first_] = 1;
     };
-    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
         mark(entry.key.particle);
         if (!entry.key.is_wall()) mark(entry.key.other);
     }
@@ -140,7 +141,7 @@ std::vector<std::uint8_t> LastingContacts::pressing() const {
     const auto mark = [&](std::uint64_t particle) {
         if (const std::optional<std::size_t> i = parts_.store.index_of(particle)) pressing[*i] = 1;
     };
-    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
         if (entry.rebounds) continue;
         mark(entry.key.particle);
         if (!entry.key.is_wall()) mark(entry.key.other);
@@ -172,8 +173,8 @@ bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, doub
     return pull == Vec3{} || dot(direction, pull) < kAlongPull * length(direction) * length(pull);
 }
 
-bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& step) {
-    if (piles_.empty() || are_children_) return false;
+bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step) {
+    if (sleeping_islands_.empty() || are_children_) return false;
     std::vector<std::uint64_t> hit;
     double largest = 1.0;  // times the radius of one that is hit
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
@@ -191,49 +192,51 @@ bool LastingContacts::wake_those_hit(const PairPlans& plans, const TimeSpan& ste
     return !hit.empty();
 }
 
-std::vector<std::uint64_t> LastingContacts::those_pushed(std::span<const PairImpactRecord> impacts,
-                                                         const DenseTrace& trace, const TimeSpan& step) const {
-    std::vector<std::uint64_t> pushed;
-    if (piles_.empty() || are_children_) return pushed;
+std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const PairImpactRecord> impacts,
+                                                            const ContactIslandTrace& trace,
+                                                            const TimeSpan& step) const {
+    std::vector<std::uint64_t> loaded;
+    if (sleeping_islands_.empty() || are_children_) return loaded;
     for (const PairImpactRecord& impact : impacts) {
-        if (piles_.has(impact.first) == piles_.has(impact.second)) continue;
+        if (sleeping_islands_.has(impact.first) == sleeping_islands_.has(impact.second)) continue;
         if (impact.approach > parts_.response.rules().settings.resting_speed)
-            pushed.push_back(piles_.has(impact.first) ? impact.first : impact.second);
+            loaded.push_back(sleeping_islands_.has(impact.first) ? impact.first : impact.second);
     }
-    for (const NetworkMemory::Entry& entry : trace.pressed) {
-        if (is_pressed_more(entry, step)) pushed.push_back(sleeper_of(entry.key));
+    for (const WarmStartMemory::Entry& entry : trace.pressed) {
+        if (is_pressed_more(entry, step)) loaded.push_back(sleeper_of(entry.key));
     }
-    return pushed;
+    return loaded;
 }
 
 /// What belts and the like drive is pushed by them for good.
-bool LastingContacts::is_carried_by_material(const NetworkIsland& network, std::size_t index) const {
+bool LastingContacts::is_carried_by_material(const ContactIsland& island, std::size_t index) const {
     const ResponseRules& rules = parts_.response.rules();
-    const std::vector<WallPush> pushes = network.pushes_of(index);
-    return std::any_of(pushes.begin(), pushes.end(), [&](const WallPush& push) {
-        return rules.materials[rules.world.material_of(push.surface)].drives();
+    const std::vector<WallImpulse> impulses = island.impulses_of(index);
+    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+        return rules.materials[rules.world.material_of(wall_impulse.surface)].drives();
     });
 }
 
-bool LastingContacts::is_held_by_surfaces(const NetworkMember& member, const NetworkIsland& network,
-                                          std::size_t index) const {
-    const std::vector<WallPush> pushes = network.pushes_of(index);
+bool LastingContacts::is_supported_by_surfaces(const ContactIslandMember& member, const ContactIsland& island,
+                                               std::size_t index) const {
+    const std::vector<WallImpulse> impulses = island.impulses_of(index);
     const Vec3 pull = parts_.response.rules().forces.acceleration(member.moving->state);
-    return std::any_of(pushes.begin(), pushes.end(),
-                       [&](const WallPush& push) { return holds(push.surface, push.velocity_change, pull); });
+    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+        return holds(wall_impulse.surface, wall_impulse.velocity_change, pull);
+    });
 }
 
 /// Whether a surface that pushes a sphere so holds it against the pull of forces: one that it rubs on can.
-bool LastingContacts::holds(SurfaceId surface, const Vec3& push, const Vec3& pull) const {
+bool LastingContacts::holds(SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) const {
     const ResponseRules& rules = parts_.response.rules();
     const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
-    return rubs || pull == Vec3{} || -dot(push, pull) > kHolding * length(push) * length(pull);
+    return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kHolding * length(wall_impulse) * length(pull);
 }
 
 /// It lives through the whole step, and nothing that moves is near.
-bool LastingContacts::may_lie(const NetworkMember& member, const TimeSpan& step) const {
+bool LastingContacts::may_sleep(const ContactIslandMember& member, const TimeSpan& step) const {
     const bool is_acted_on = member.moving->state.coupling != nullptr;  // from afar, by what may move
-    const bool is_moved = !member.is_fixed && !member.is_squeezed && member.duration == step.end - step.begin;
+    const bool is_moved = !member.is_fixed && !member.is_pinched && member.duration == step.end - step.begin;
     if (is_acted_on || !is_moved) return false;
     return !is_beside_movers(member.moving->state.position, member.radius);
 }
@@ -244,28 +247,28 @@ bool LastingContacts::is_beside_movers(const Vec3& center, double radius) const 
     return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
 }
 
-void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsland& network, const TimeSpan& step,
-                              DenseTrace& trace) const {
+void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island,
+                                 const TimeSpan& step, ContactIslandTrace& trace) const {
     if (are_children_ || !parts_.response.rules().forces.is_steady()) return;
-    const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const NetworkMember& member) {
+    const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const ContactIslandMember& member) {
         return is_beside_movers(member.moving->state.position, member.radius);
     });
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!is_slow(members[i], network.planned(i), beside_movers) || !may_lie(members[i], step)) continue;
+        if (!is_slow(members[i], island.planned(i), beside_movers) || !may_sleep(members[i], step)) continue;
         const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
-        if (!is_at_rest(members[i], network.planned(i), pull)) continue;
+        if (!is_at_rest(members[i], island.planned(i), pull)) continue;
         const std::uint64_t id = members[i].moving->id;
         const std::uint32_t enough = steps_to_sleep(members[i], pull);
-        const std::uint32_t steps = std::min(piles_.still_steps(id) + 1, enough);
+        const std::uint32_t steps = std::min(sleeping_islands_.sleep_counter(id) + 1, enough);
         trace.still.push_back({id, steps});
-        sleepy[i] = steps == enough && !is_carried_by_material(network, i) ? 1 : 0;
+        sleepy[i] = steps == enough && !is_carried_by_material(island, i) ? 1 : 0;
         is_any_sleepy = is_any_sleepy || sleepy[i] != 0;
     }
     if (!is_any_sleepy) return;
-    const std::vector<NeighbourPair> pressing = network.pressing();
+    const std::vector<NeighbourPair> pressing = island.pressing();
     std::vector<std::uint8_t> falls = sleepy;
     for (const auto& [a, b] : pressing) {
         if (sleepy[a] == 0) falls[b] = 0;
@@ -273,104 +276,106 @@ void LastingContacts::let_lie(std::span<const NetworkMember> members, NetworkIsl
     }
     std::vector<std::uint8_t> is_held(members.size(), 0);
     for (std::size_t i = 0; i < members.size(); ++i) {
-        if (falls[i] != 0) is_held[i] = members[i].is_fixed || is_held_by_surfaces(members[i], network, i) ? 1 : 0;
+        if (falls[i] != 0) is_held[i] = members[i].is_fixed || is_supported_by_surfaces(members[i], island, i) ? 1 : 0;
     }
-    keep_those_held(falls, is_held, pressing);
+    keep_supported(falls, is_held, pressing);
     for (std::size_t i = 0; i < members.size(); ++i) {
         if (falls[i] == 0 || members[i].is_fixed) continue;
         const std::uint64_t id = members[i].moving->id;
-        trace.stopped.push_back({id, members[i].moving->state.mass * network.planned(i).velocity});
-        network.let_rest(i);
+        trace.stopped.push_back({id, members[i].moving->state.mass * island.planned(i).velocity});
+        island.put_to_rest(i);
         trace.falling_asleep.push_back(id);
-        for (const WallPush& push : network.pushes_of(i)) {
+        for (const WallImpulse& wall_impulse : island.impulses_of(i)) {
             const double mass = members[i].moving->state.mass;
-            trace.weights.push_back({id, push.surface, -(mass / members[i].duration) * push.velocity_change});
+            trace.weights.push_back(
+                {id, wall_impulse.surface, -(mass / members[i].duration) * wall_impulse.velocity_change});
         }
     }
     std::sort(trace.falling_asleep.begin(), trace.falling_asleep.end());
 }
 
-void LastingContacts::end(std::span<const DenseTrace* const> traces, std::span<const PairImpactRecord> impacts,
+void LastingContacts::end(std::span<const ContactIslandTrace* const> traces, std::span<const PairImpactRecord> impacts,
                           const TimeSpan& step) {
-    if (!are_children_) loads_.pass_on(piles_, pushes_on_sleepers(traces, impacts), step);
+    if (!are_children_) loads_.pass_on(sleeping_islands_, impulses_on_sleepers(traces, impacts), step);
     if (are_children_) {
-        std::vector<NetworkMemory::Entry> pressed;
-        for (const DenseTrace* const trace : traces) {
+        std::vector<WarmStartMemory::Entry> pressed;
+        for (const ContactIslandTrace* const trace : traces) {
             pressed.insert(pressed.end(), trace->pressed.begin(), trace->pressed.end());
         }
         memory_.add(pressed);
         return;
     }
-    std::vector<const std::vector<NetworkMemory::Entry>*> pressed;
-    for (const DenseTrace* const trace : traces) pressed.push_back(&trace->pressed);
+    std::vector<const std::vector<WarmStartMemory::Entry>*> pressed;
+    for (const ContactIslandTrace* const trace : traces) pressed.push_back(&trace->pressed);
     memory_.replace(pressed);
     put_to_sleep(traces, step);
-    std::vector<SleeperPush> stopped;
-    for (const DenseTrace* const trace : traces) {
+    std::vector<SleeperImpulse> stopped;
+    for (const ContactIslandTrace* const trace : traces) {
         stopped.insert(stopped.end(), trace->stopped.begin(), trace->stopped.end());
     }
-    loads_.stop(piles_, stopped, step);
+    loads_.stop(sleeping_islands_, stopped, step);
 }
 
-std::vector<SleeperPush> LastingContacts::pushes_on_sleepers(std::span<const DenseTrace* const> traces,
-                                                             std::span<const PairImpactRecord> impacts) const {
-    std::vector<SleeperPush> pushes;
-    if (piles_.empty()) return pushes;
-    for (const DenseTrace* const trace : traces) {
-        pushes.insert(pushes.end(), trace->onto_sleepers.begin(), trace->onto_sleepers.end());
+std::vector<SleeperImpulse> LastingContacts::impulses_on_sleepers(std::span<const ContactIslandTrace* const> traces,
+                                                                  std::span<const PairImpactRecord> impacts) const {
+    std::vector<SleeperImpulse> impulses;
+    if (sleeping_islands_.empty()) return impulses;
+    for (const ContactIslandTrace* const trace : traces) {
+        impulses.insert(impulses.end(), trace->onto_sleepers.begin(), trace->onto_sleepers.end());
     }
     for (const PairImpactRecord& impact : impacts) {
-        if (piles_.has(impact.first)) pushes.push_back({impact.first, -impact.impulse});
-        if (piles_.has(impact.second)) pushes.push_back({impact.second, impact.impulse});
+        if (sleeping_islands_.has(impact.first)) impulses.push_back({impact.first, -impact.impulse});
+        if (sleeping_islands_.has(impact.second)) impulses.push_back({impact.second, impact.impulse});
     }
-    return pushes;
+    return impulses;
 }
 
-void LastingContacts::put_to_sleep(std::span<const DenseTrace* const> traces, const TimeSpan& step) {
-    std::vector<SleepingPiles::Still> still;
-    for (const DenseTrace* const trace : traces) still.insert(still.end(), trace->still.begin(), trace->still.end());
-    piles_.set_still(std::move(still));
-    wake_those_left(step);
+void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> traces, const TimeSpan& step) {
+    std::vector<SleepingIslands::SleepCounter> still;
+    for (const ContactIslandTrace* const trace : traces)
+        still.insert(still.end(), trace->still.begin(), trace->still.end());
+    sleeping_islands_.set_sleep_counters(std::move(still));
+    wake_unsupported(step);
     std::vector<std::uint64_t> falling;
-    std::vector<NetworkMemory::Entry> contacts;
-    std::vector<SleepingPiles::Weight> weights;
-    std::vector<NetworkKey> touching;
-    for (const DenseTrace* const trace : traces) {
+    std::vector<WarmStartMemory::Entry> contacts;
+    std::vector<SleepingIslands::Weight> weights;
+    std::vector<ContactKey> touching;
+    for (const ContactIslandTrace* const trace : traces) {
         const std::vector<std::uint64_t>& own = trace->falling_asleep;
         if (own.empty()) continue;
         falling.insert(falling.end(), own.begin(), own.end());
         weights.insert(weights.end(), trace->weights.begin(), trace->weights.end());
         touching.insert(touching.end(), trace->touching.begin(), trace->touching.end());
         const auto falls = [&](std::uint64_t id) { return std::binary_search(own.begin(), own.end(), id); };
-        for (const NetworkMemory::Entry& entry : trace->pressed) {
+        for (const WarmStartMemory::Entry& entry : trace->pressed) {
             if (falls(entry.key.particle) || (!entry.key.is_wall() && falls(entry.key.other)))
                 contacts.push_back(entry);
         }
     }
     // All at once: each call goes through all that sleep.
     if (falling.empty()) return;
-    piles_.add(falling, contacts, weights);
-    piles_.join(touching);
+    sleeping_islands_.add(falling, contacts, weights);
+    sleeping_islands_.join(touching);
 }
 
 /// Among colliders that move the verifier follows everybody's time.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
-    if (piles_.empty() || are_children_ || parts_.response.rules().bodies == nullptr) return;
+    if (sleeping_islands_.empty() || are_children_ || parts_.response.rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
         if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
     }
 }
 
-std::uint64_t LastingContacts::sleeper_of(const NetworkKey& key) const {
-    return piles_.has(key.particle) ? key.particle : key.other;
+std::uint64_t LastingContacts::sleeper_of(const ContactKey& key) const {
+    return sleeping_islands_.has(key.particle) ? key.particle : key.other;
 }
 
-bool LastingContacts::is_at_edge_of_sleep(const NetworkKey& key) const {
-    return !key.is_wall() && piles_.has(key.particle) != piles_.has(key.other);
+bool LastingContacts::is_at_edge_of_sleep(const ContactKey& key) const {
+    return !key.is_wall() && sleeping_islands_.has(key.particle) != sleeping_islands_.has(key.other);
 }
 
-bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const TimeSpan& step) const {
+bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const TimeSpan& step) const {
     if (!is_at_edge_of_sleep(entry.key)) return false;
     const std::uint64_t sleeper = sleeper_of(entry.key);
     const std::optional<std::size_t> i = parts_.store.index_of(sleeper);
@@ -381,11 +386,11 @@ bool LastingContacts::is_pressed_more(const NetworkMemory::Entry& entry, const T
     const std::vector<Vec3>& position = parts_.store.particles().position;
     const bool goes_aside = is_aside(*i, position[*i] - position[*other], step.begin);
     const double weights = (goes_aside ? kWeightsAside : kWeights) * state.mass * pull * (step.end - step.begin);
-    return entry.impulse.normal > kMorePressed * (piles_.load_of(sleeper) + weights);
+    return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
 }
 
 /// Of a pair: the gap between its spheres over the smaller radius. What one of them has left is wide open.
-double LastingContacts::relative_gap(const NetworkKey& key) const {
+double LastingContacts::relative_gap(const ContactKey& key) const {
     const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
     const std::optional<std::size_t> k = parts_.store.index_of(key.other);
     if (!i || !k) return INFINITY;
@@ -395,13 +400,13 @@ double LastingContacts::relative_gap(const NetworkKey& key) const {
 }
 
 /// Those that have lost what leant on them, or held them, and those that others stand in.
-void LastingContacts::wake_those_left(const TimeSpan& step) {
-    if (piles_.empty()) return;
+void LastingContacts::wake_unsupported(const TimeSpan& step) {
+    if (sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> left;
-    for (const NetworkMemory::Entry& entry : piles_.edges()) {
+    for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
         if (relative_gap(entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
     }
-    for (const NetworkMemory::Entry& entry : memory_.entries()) {
+    for (const WarmStartMemory::Entry& entry : memory_.entries()) {
         if (is_at_edge_of_sleep(entry.key) && relative_gap(entry.key) < -kSunk) left.push_back(sleeper_of(entry.key));
     }
     wake(left, step.end);

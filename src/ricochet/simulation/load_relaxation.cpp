@@ -63,9 +63,9 @@ Wrench LoadRelaxation::variation(const Wrench& planned, const Wrench& back, doub
     return sum(fitting, -1.0, first_);
 }
 
-void LoadRelaxation::end_part(const LyingLoad& lying) {
-    if (lying.heaviness > 0.0) heaviness_ = lying.heaviness;
-    is_heavy_ = lying.heaviness > kHeavyLoad;
+void LoadRelaxation::end_substep(const RestingLoad& resting_load) {
+    if (resting_load.heaviness > 0.0) heaviness_ = resting_load.heaviness;
+    is_heavy_ = resting_load.heaviness > kHeavyLoad;
 }
 
 }  // namespace ricochet

@@ -20,7 +20,7 @@
 namespace ricochet {
 
 /// What lies on a body in a part of a step.
-struct LyingLoad {
+struct RestingLoad {
     Wrench wrench;           ///< N s, and N m s about the body's moment_center()
     double heaviness = 0.0;  ///< its masses, each over that with which the body yields to it
 };
@@ -28,7 +28,7 @@ struct LyingLoad {
 class LoadRelaxation {
 public:
     /// To be called with the load of the first plan of a part of a step.
-    void begin_part(const Wrench& load) { first_ = load; }
+    void begin_substep(const Wrench& load) { first_ = load; }
     /// To be called before a load is looked for.
     void begin_search() { low_ = high_ = last_ = std::nullopt; }
     [[nodiscard]] bool is_searching() const { return low_.has_value(); }
@@ -37,13 +37,13 @@ public:
     /// By how much the load of this part differs from that of its first plan, as far as is known.
     [[nodiscard]] Wrench variation(const Wrench& planned, const Wrench& back, double heaviness) const;
     /// True where what lies on the body is heavy, or has been in the last part.
-    [[nodiscard]] bool concerns(const LyingLoad& lying) const {
-        return is_heavy_ || low_ || lying.heaviness > kHeavyLoad;
+    [[nodiscard]] bool concerns(const RestingLoad& resting_load) const {
+        return is_heavy_ || low_ || resting_load.heaviness > kHeavyLoad;
     }
     /// The load (N, N m) that is nearer to what fits, after a plan with one load came back with another.
     [[nodiscard]] Wrench next(const DrivenBody& body, const Wrench& planned, const Wrench& back, double heaviness);
     /// The part is as planned.
-    void end_part(const LyingLoad& lying);
+    void end_substep(const RestingLoad& resting_load);
 
     template <class Archive>
     void archive(Archive& a) {

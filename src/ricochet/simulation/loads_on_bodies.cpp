@@ -12,7 +12,7 @@ std::optional<std::size_t> LoadsOnBodies::body_of(const ColliderLoad& load) cons
     if (colliders_ == nullptr) return std::nullopt;
     const BodyId id = colliders_->body_of(load.surface);
     const auto found = std::find(collider_of_.begin(), collider_of_.end(), id);
-    if (id == kAtRest || found == collider_of_.end()) return std::nullopt;
+    if (id == kWorldBody || found == collider_of_.end()) return std::nullopt;
     return static_cast<std::size_t>(found - collider_of_.begin());
 }
 
@@ -28,18 +28,18 @@ bool LoadsOnBodies::lies_on(std::size_t body, const ColliderLoad& load) const {
     return (!load.impact || load.approach <= slow_) && body_of(load) == body;
 }
 
-LyingLoad LoadsOnBodies::lying_on(std::size_t body, std::span<const ColliderLoad> loads, double until) const {
-    LyingLoad lying;
+RestingLoad LoadsOnBodies::resting_load_on(std::size_t body, std::span<const ColliderLoad> loads, double until) const {
+    RestingLoad resting_load;
     std::optional<std::uint64_t> last;
     for (const ColliderLoad& load : loads) {
         if (load.time > until || !lies_on(body, load)) continue;
-        lying.wrench += wrench_of(load, bodies_[body].moment_center());
+        resting_load.wrench += wrench_of(load, bodies_[body].moment_center());
         const double size = dot(load.impulse, load.impulse);
         if (last == load.particle || !(size > 0.0)) continue;
         last = load.particle;
-        lying.heaviness += heaviness_on(body, load);
+        resting_load.heaviness += heaviness_on(body, load);
     }
-    return lying;
+    return resting_load;
 }
 
 double LoadsOnBodies::left_at(std::size_t body, std::span<const ColliderLoad> loads) const {
@@ -57,7 +57,7 @@ double LoadsOnBodies::heaviness_on(std::size_t body, const ColliderLoad& load) c
     const double size = dot(load.impulse, load.impulse);
     if (!(size > 0.0)) return 0.0;
     const Wrench wrench = wrench_of(load, bodies_[body].moment_center());
-    return load.mass * dot(bodies_[body].velocity_change(wrench, load.place), load.impulse) / size;
+    return load.mass * dot(bodies_[body].velocity_change(wrench, load.particle_center), load.impulse) / size;
 }
 
 }  // namespace ricochet

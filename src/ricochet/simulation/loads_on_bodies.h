@@ -18,7 +18,7 @@ namespace ricochet {
 /// in the order of time.
 class LoadsOnBodies {
 public:
-    /// collider_of: of each body, kAtRest where it has none. slow: m/s, of impacts that begin contact.
+    /// collider_of: of each body, kWorldBody where it has none. slow: m/s, of impacts that begin contact.
     LoadsOnBodies(std::span<const DrivenBody> bodies, std::span<const BodyId> collider_of,
                   const MovingColliders* colliders, double slow)
         : bodies_(bodies), collider_of_(collider_of), colliders_(colliders), slow_(slow) {}
@@ -28,7 +28,8 @@ public:
     /// Of each body, about its moment_center(): N s and N m s.
     [[nodiscard]] std::vector<Wrench> sums(std::span<const ColliderLoad> loads) const;
     /// What lies on a body until a time, s.
-    [[nodiscard]] LyingLoad lying_on(std::size_t body, std::span<const ColliderLoad> loads, double until) const;
+    [[nodiscard]] RestingLoad resting_load_on(std::size_t body, std::span<const ColliderLoad> loads,
+                                              double until) const;
     /// s, after which nothing of what lies on a body pushes it any more; infinite where nothing does at all.
     [[nodiscard]] double left_at(std::size_t body, std::span<const ColliderLoad> loads) const;
     /// The mass of a particle over that with which a body yields to its impulse; 0 where there is none.

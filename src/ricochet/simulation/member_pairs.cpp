@@ -14,7 +14,7 @@ constexpr std::size_t kMostSlots = 2;
 
 }  // namespace
 
-void MemberPairs::take_numbers(std::span<const IslandMember> members) {
+void MemberPairs::collect_numbers(std::span<const IslandMember> members) {
     is_by_particle_ = members.size() >= kMany;
     if (!is_by_particle_) return;
     const auto [lowest, highest] =
@@ -33,7 +33,7 @@ void MemberPairs::take_numbers(std::span<const IslandMember> members) {
 }
 
 void MemberPairs::find(std::span<const IslandMember> members, std::span<const Box3> boxes) {
-    take_numbers(members);
+    collect_numbers(members);
     if (!is_by_particle_) {
         static_cast<void>(near_.find(boxes));
         return;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ricochet/dynamics/neighbour_pairs.h"
-#include "ricochet/response/pair_island.h"
+#include "ricochet/response/event_island.h"
 
 namespace ricochet {
 
@@ -37,7 +37,7 @@ public:
     [[nodiscard]] std::span<const NeighbourPair> sorted();
 
 private:
-    void take_numbers(std::span<const IslandMember> members);
+    void collect_numbers(std::span<const IslandMember> members);
 
     NeighbourPairs near_;
     bool is_by_particle_ = false;

@@ -129,21 +129,21 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
 // Those beyond `most` are refused one and all, since the first ones, which come before them, take all the room: they
 // are one batch.
 void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
-                         std::uint64_t most, std::vector<SpawnBatch>& batches) const {
+                         std::uint64_t most, std::vector<SpawnGeneration>& spawn_generations) const {
     thread_local ContactScratch scratch;
     const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
     for (const LifeBirth& birth : births.first) {
-        batches.push_back({birth.time, emitter.number(), birth.ordinal, 1, false,
-                           trajectory.at(birth.time, world, scratch), trajectory.entry});
+        spawn_generations.push_back({birth.time, emitter.number(), birth.ordinal, 1, false,
+                                     trajectory.at(birth.time, world, scratch), trajectory.entry});
     }
     if (births.more == 0) return;
     const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
-    batches.push_back({time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false,
-                       trajectory.particle, trajectory.entry});
+    spawn_generations.push_back({time, emitter.number(), std::numeric_limits<std::uint32_t>::max(), births.more, false,
+                                 trajectory.particle, trajectory.entry});
 }
 
 void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
-                            std::vector<SpawnBatch>& batches) const {
+                            std::vector<SpawnGeneration>& spawn_generations) const {
     const ParentRule& rule = *emitter.description().parent;
     for (const ContactRecord& record : trajectory.records) {
         const bool is_last = &record == &trajectory.records.back();
@@ -157,14 +157,14 @@ void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory
         Particle parent = trajectory.particle;
         parent.position = record.position;
         parent.velocity = record.velocity_after;
-        batches.push_back(
+        spawn_generations.push_back(
             {record.time, emitter.number(), origin.impact_children, count, rule.share, parent, trajectory.entry});
         origin.impact_children += count;
     }
 }
 
 void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
-                          std::vector<SpawnBatch>& batches) const {
+                          std::vector<SpawnGeneration>& spawn_generations) const {
     if (!trajectory.died) return;
     const ParentRule& rule = *emitter.description().parent;
     std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
@@ -173,17 +173,18 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
     // What an absorbing surface has stopped spawns with the velocity of arrival. Only what is shared out has none any
     // more: its momentum has gone into the surface, and would go there again.
     const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
-    batches.push_back({last.time, emitter.number(), 0, count, rule.share,
-                       trajectory.at(last, absorbed && !rule.share ? last.before : last.after), trajectory.entry});
+    spawn_generations.push_back({last.time, emitter.number(), 0, count, rule.share,
+                                 trajectory.at(last, absorbed && !rule.share ? last.before : last.after),
+                                 trajectory.entry});
 }
 
 void Offspring::add_birth(const Emitter& emitter, const Trajectory& trajectory,
-                          std::vector<SpawnBatch>& batches) const {
+                          std::vector<SpawnGeneration>& spawn_generations) const {
     const std::uint64_t count =
         std::min<std::uint64_t>(children_of_event(emitter, trajectory.particle, 0), emitter.description().limit);
     const Trajectory::Knot& first = trajectory.knots.front();
-    batches.push_back({first.time, emitter.number(), 0, static_cast<std::uint32_t>(count), false,
-                       trajectory.at(first, first.after), trajectory.entry});
+    spawn_generations.push_back({first.time, emitter.number(), 0, static_cast<std::uint32_t>(count), false,
+                                 trajectory.at(first, first.after), trajectory.entry});
 }
 
 std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
@@ -191,7 +192,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
                                          OffspringCounts& counts) const {
     const RecordsByParticle sorted(std::move(records));
     const std::size_t count = positions_.size();
-    std::vector<std::vector<SpawnBatch>> blocks((count + kBlock - 1) / kBlock);
+    std::vector<std::vector<SpawnGeneration>> blocks((count + kBlock - 1) / kBlock);
     const std::uint64_t room = room_below(limits_.most_particles, share.living(particles.size()));
     const std::uint64_t fitting = room_below(most_that_fit_, particles.size());
     std::atomic<std::uint64_t> gathered{0};
@@ -221,19 +222,22 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
             }
         }
     });
-    std::vector<SpawnBatch> batches;
-    for (std::vector<SpawnBatch>& block : blocks) {
-        batches.insert(batches.end(), std::make_move_iterator(block.begin()), std::make_move_iterator(block.end()));
+    std::vector<SpawnGeneration> spawn_generations;
+    for (std::vector<SpawnGeneration>& block : blocks) {
+        spawn_generations.insert(spawn_generations.end(), std::make_move_iterator(block.begin()),
+                                 std::make_move_iterator(block.end()));
     }
-    return spawn(batches, particles.size(), share, counts);
+    return spawn(spawn_generations, particles.size(), share, counts);
 }
 
-std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnBatch>& batches) {
+std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnGeneration>& spawn_generations) {
     std::vector<Claim> claims;
-    claims.reserve(batches.size());
-    for (const SpawnBatch& batch : batches) {
-        claims.push_back({batch.time, batch.parent.id, batch.emitter, batch.first_ordinal, batch.count,
-                          batch.parent.origin.generation, batch.parent.mass, batch.share});
+    claims.reserve(spawn_generations.size());
+    for (const SpawnGeneration& spawn_generation : spawn_generations) {
+        claims.push_back({spawn_generation.time, spawn_generation.parent.id, spawn_generation.emitter,
+                          spawn_generation.first_ordinal, spawn_generation.count,
+                          spawn_generation.parent.origin.generation, spawn_generation.parent.mass,
+                          spawn_generation.share});
     }
     return claims;
 }
@@ -263,7 +267,7 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
 void Offspring::allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
                                OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(share.ranks().rank());
-    for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].batch = k;
+    for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].spawn_generation = k;
     std::vector<Claim> all = gather_list_to_all(share.ranks(), mine);
     std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) {
         return std::tuple(a.time, a.parent, a.emitter, a.first_ordinal) <
@@ -273,40 +277,44 @@ void Offspring::allot_together(std::vector<Claim>& mine, const RankShare& share,
     std::uint64_t born_here = 0;
     for (const Claim& claim : all) {
         if (claim.rank != rank) continue;
-        mine[claim.batch] = claim;
+        mine[claim.spawn_generation] = claim;
         born_here += claim.allowed;
     }
     if (born_here > room_below(most_that_fit_, here)) refuse_to_grow(here, bytes_each_);
 }
 
-Child Offspring::child_of(const SpawnBatch& batch, Particle&& particle, std::uint64_t number) const {
+Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& particle, std::uint64_t number) const {
     const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
-    const auto sides = std::span(sides_).subspan(batch.entry * colliders, colliders);
-    const bool is_fragment = batch.share && emitters_[batch.emitter].description().parent->on == BirthEvent::impact;
-    return {std::move(particle), positions_[batch.entry], sides, is_fragment, number, std::nullopt};
+    const auto sides = std::span(sides_).subspan(spawn_generation.entry * colliders, colliders);
+    const bool is_fragment =
+        spawn_generation.share && emitters_[spawn_generation.emitter].description().parent->on == BirthEvent::impact;
+    return {std::move(particle), positions_[spawn_generation.entry], sides, is_fragment, number, std::nullopt};
 }
 
 /// What finds no place keeps its number.
-void Offspring::add_cloud_child(const SpawnBatch& batch, std::uint32_t ordinal, std::uint64_t number,
+void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
                                 std::vector<Child>& children, OffspringCounts& counts) const {
-    const auto has_place = [&](const Particle& child) { return !place_test_ || place_test_(batch.parent, child); };
-    std::optional<CloudChild> made =
-        make_cloud_child(emitters_[batch.emitter], batch.parent, ordinal, batch.time, has_place);
+    const auto has_place = [&](const Particle& child) {
+        return !spawn_test_ || spawn_test_(spawn_generation.parent, child);
+    };
+    std::optional<CloudChild> made = make_cloud_child(emitters_[spawn_generation.emitter], spawn_generation.parent,
+                                                      ordinal, spawn_generation.time, has_place);
     if (!made) {
         ++counts.refused_by_overlap;
         return;
     }
-    children.push_back(child_of(batch, std::move(made->particle), number));
-    children.back().cloud = CloudPlace{batch.parent.id, made->place};
+    children.push_back(child_of(spawn_generation, std::move(made->particle), number));
+    children.back().cloud = CloudMembership{spawn_generation.parent.id, made->offset};
 }
 
-std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_t here, const RankShare& share,
-                                    OffspringCounts& counts) const {
-    std::stable_sort(batches.begin(), batches.end(), [](const SpawnBatch& a, const SpawnBatch& b) {
-        return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
-               std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
-    });
-    std::vector<Claim> claims = claims_of(batches);
+std::vector<Child> Offspring::spawn(std::vector<SpawnGeneration>& spawn_generations, std::size_t here,
+                                    const RankShare& share, OffspringCounts& counts) const {
+    std::stable_sort(spawn_generations.begin(), spawn_generations.end(),
+                     [](const SpawnGeneration& a, const SpawnGeneration& b) {
+                         return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
+                                std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
+                     });
+    std::vector<Claim> claims = claims_of(spawn_generations);
     if (share.is_alone()) {
         allot(claims, here, most_that_fit_, counts);
     } else {
@@ -316,26 +324,27 @@ std::vector<Child> Offspring::spawn(std::vector<SpawnBatch>& batches, std::size_
     std::size_t born_here = 0;
     for (const Claim& claim : claims) born_here += claim.allowed;
     children.reserve(born_here);
-    for (std::size_t i = 0; i < batches.size(); ++i) {
-        const SpawnBatch& batch = batches[i];
+    for (std::size_t i = 0; i < spawn_generations.size(); ++i) {
+        const SpawnGeneration& spawn_generation = spawn_generations[i];
         const Claim& claim = claims[i];
         if (claim.allowed == 0) continue;
-        const Emitter& emitter = emitters_[batch.emitter];
+        const Emitter& emitter = emitters_[spawn_generation.emitter];
         std::uint64_t number = claim.first;
-        if (batch.share) {
-            for (Particle& fragment :
-                 make_fragments(emitter, batch.parent, claim.allowed, batch.first_ordinal, batch.time)) {
-                children.push_back(child_of(batch, std::move(fragment), number++));
+        if (spawn_generation.share) {
+            for (Particle& fragment : make_fragments(emitter, spawn_generation.parent, claim.allowed,
+                                                     spawn_generation.first_ordinal, spawn_generation.time)) {
+                children.push_back(child_of(spawn_generation, std::move(fragment), number++));
             }
             continue;
         }
         for (std::uint32_t k = 0; k < claim.allowed; ++k) {
             if (emitter.description().parent->cloud) {
-                add_cloud_child(batch, batch.first_ordinal + k, number++, children, counts);
+                add_cloud_child(spawn_generation, spawn_generation.first_ordinal + k, number++, children, counts);
                 continue;
             }
-            Particle child = make_child(emitter, batch.parent, batch.first_ordinal + k, batch.time);
-            children.push_back(child_of(batch, std::move(child), number++));
+            Particle child =
+                make_child(emitter, spawn_generation.parent, spawn_generation.first_ordinal + k, spawn_generation.time);
+            children.push_back(child_of(spawn_generation, std::move(child), number++));
         }
     }
     return children;

@@ -39,13 +39,13 @@ struct OffspringLimits {
 class CloudMotion;
 
 /// Whom a particle goes with, and its place there.
-struct CloudPlace {
+struct CloudMembership {
     std::uint64_t parent = 0;  ///< id
-    Vec3 place;                ///< m, about the parent, at the child's birth
+    Vec3 offset;               ///< m, about the parent, at the child's birth
 };
 
 /// Whether a child may be born where it is, away from its parent.
-using PlaceTest = std::function<bool(const Particle& parent, const Particle& child)>;
+using SpawnTest = std::function<bool(const Particle& parent, const Particle& child)>;
 
 /// A particle spawned by another.
 struct Child {
@@ -54,7 +54,7 @@ struct Child {
     std::span<const SideMemory> parent_sides;  ///< its sides there; valid until the next before_move()
     bool goes_on = false;                      ///< a fragment: what its parent touches it is in contact with already
     std::uint64_t number = 0;                  ///< among all children of the pass, those of other ranks too
-    std::optional<CloudPlace> cloud = std::nullopt;  ///< of one that goes with its parent
+    std::optional<CloudMembership> cloud = std::nullopt;  ///< of one that goes with its parent
 };
 
 /// What a pass has spawned and refused.
@@ -80,9 +80,9 @@ public:
         bytes_each_ = bytes_each;
     }
     /// clouds: they know what parents have flown, and must outlive it. test: of each child of a cloud.
-    void set_clouds(const CloudMotion* clouds, PlaceTest test) {
+    void set_clouds(const CloudMotion* clouds, SpawnTest test) {
         clouds_ = clouds;
-        place_test_ = std::move(test);
+        spawn_test_ = std::move(test);
     }
     /// N s: the impact that ends particle i; infinity when none does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
@@ -98,7 +98,7 @@ public:
 
 private:
     /// Children of one event, or one child of a life.
-    struct SpawnBatch {
+    struct SpawnGeneration {
         double time = 0.0;
         std::uint32_t emitter = 0;
         std::uint32_t first_ordinal = 0;
@@ -118,7 +118,7 @@ private:
         double mass = 0.0;             ///< kg, the parent's
         bool share = false;
         std::uint32_t rank = 0;
-        std::uint64_t batch = 0;  ///< its number there
+        std::uint64_t spawn_generation = 0;  ///< its number there
         std::uint32_t allowed = 0;
         std::uint64_t first = 0;  ///< number of its first child among all of the pass
     };
@@ -127,21 +127,24 @@ private:
     [[nodiscard]] Trajectory trajectory_of(const Particles& particles, std::size_t i, double from, double to,
                                            std::span<const ContactRecord> records) const;
     void add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
-                  std::vector<SpawnBatch>& batches) const;
+                  std::vector<SpawnGeneration>& spawn_generations) const;
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
-                     std::vector<SpawnBatch>& batches) const;
-    void add_death(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
-    void add_birth(const Emitter& emitter, const Trajectory& trajectory, std::vector<SpawnBatch>& batches) const;
-    void add_cloud_child(const SpawnBatch& batch, std::uint32_t ordinal, std::uint64_t number,
+                     std::vector<SpawnGeneration>& spawn_generations) const;
+    void add_death(const Emitter& emitter, const Trajectory& trajectory,
+                   std::vector<SpawnGeneration>& spawn_generations) const;
+    void add_birth(const Emitter& emitter, const Trajectory& trajectory,
+                   std::vector<SpawnGeneration>& spawn_generations) const;
+    void add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
                          std::vector<Child>& children, OffspringCounts& counts) const;
-    [[nodiscard]] static std::vector<Claim> claims_of(const std::vector<SpawnBatch>& batches);
+    [[nodiscard]] static std::vector<Claim> claims_of(const std::vector<SpawnGeneration>& spawn_generations);
     void allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                OffspringCounts& counts) const;
     void allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
                         OffspringCounts& counts) const;
-    [[nodiscard]] Child child_of(const SpawnBatch& batch, Particle&& particle, std::uint64_t number) const;
-    [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnBatch>& batches, std::size_t here, const RankShare& share,
-                                           OffspringCounts& counts) const;
+    [[nodiscard]] Child child_of(const SpawnGeneration& spawn_generation, Particle&& particle,
+                                 std::uint64_t number) const;
+    [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnGeneration>& spawn_generations, std::size_t here,
+                                           const RankShare& share, OffspringCounts& counts) const;
 
     const std::vector<Emitter>& emitters_;
     OffspringLimits limits_;
@@ -149,7 +152,7 @@ private:
     double bytes_each_ = 0.0;
     std::vector<std::vector<std::uint32_t>> children_of_;  // emitters by the emitter of their parents
     const CloudMotion* clouds_ = nullptr;
-    PlaceTest place_test_;
+    SpawnTest spawn_test_;
     bool empty_ = true;
     std::size_t first_ = 0;
     std::vector<Vec3> positions_;

@@ -18,11 +18,11 @@ constexpr std::size_t kPairMotionBlock = 16;
 constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
 /// Without the table that spheres are moved by.
-verify::PairBooks books_of(const PairParts& parts) {
+verify::ImpactAudit books_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
-    verify::PairBooks books{settings.restitution, settings.friction, settings.rolling_friction,
-                            rules.settings.resting_speed, rules.forces.is_uniform() && !parts.coupled.is_active()};
+    verify::ImpactAudit books{settings.restitution, settings.friction, settings.rolling_friction,
+                              rules.settings.resting_speed, rules.forces.is_uniform() && !parts.coupled.is_active()};
     const std::vector<std::string>& names = settings.materials;
     books.materials = names.size();
     books.by_materials.assign(names.size() * names.size(),
@@ -32,8 +32,8 @@ verify::PairBooks books_of(const PairParts& parts) {
     for (const MaterialPair& pair : settings.pairs) {
         const std::size_t a = numbers.at(pair.first);
         const std::size_t b = numbers.at(pair.second);
-        const verify::PairBooks::Pair own{pair.material.restitution, pair.material.friction,
-                                          pair.material.rolling_friction};
+        const verify::ImpactAudit::Pair own{pair.material.restitution, pair.material.friction,
+                                            pair.material.rolling_friction};
         books.by_materials[a * names.size() + b] = books.by_materials[b * names.size() + a] = own;
     }
     return books;
@@ -50,46 +50,46 @@ bool PairMotion::has_material(std::size_t particle) const {
                        parts_.materials.count());
 }
 
-void PairMotion::work_off(const ParticleRange& range, const TimeSpan& step) {
+void PairMotion::solve(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
     contacts_.begin(range, step);
     do {
         do {
             plans_.find(range, step, contacts_.find_traces());
-        } while (contacts_.wake_those_hit(plans_, step));
-        islands_.work_off(range, step);
-    } while (wake_those_pushed(step));
-    for (const PairIslands::Island& island : islands_.all()) {
+        } while (contacts_.wake_hit_sleepers(plans_, step));
+        islands_.solve(range, step);
+    } while (wake_loaded_sleepers(step));
+    for (const IslandBuilder::Island& island : islands_.all()) {
         // It leaves the others alone until they are taken over.
         for (const IslandMember& member : island.members) parts_.schedule.leave_alone(member.particle);
     }
 }
 
 /// Whom islands have pushed that was asleep: nothing has been taken over yet.
-bool PairMotion::wake_those_pushed(const TimeSpan& step) {
-    std::vector<std::uint64_t> pushed;
-    for (const PairIslands::Island& island : islands_.all()) {
-        const std::vector<std::uint64_t> own = contacts_.those_pushed(island.impacts, island.trace, step);
-        pushed.insert(pushed.end(), own.begin(), own.end());
+bool PairMotion::wake_loaded_sleepers(const TimeSpan& step) {
+    std::vector<std::uint64_t> loaded;
+    for (const IslandBuilder::Island& island : islands_.all()) {
+        const std::vector<std::uint64_t> own = contacts_.loaded_sleepers(island.impacts, island.trace, step);
+        loaded.insert(loaded.end(), own.begin(), own.end());
     }
-    contacts_.wake(pushed, step.begin);
-    return !pushed.empty();
+    contacts_.wake(loaded, step.begin);
+    return !loaded.empty();
 }
 
-void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
-    std::vector<PairIslands::Island>& islands = islands_.all();
+void PairMotion::write_back(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+    std::vector<IslandBuilder::Island>& islands = islands_.all();
     const std::size_t first_block = blocks.size();
     blocks.resize(first_block + (islands.size() + kPairMotionBlock - 1) / kPairMotionBlock);
     parallel_for_blocks(islands.size(), kPairMotionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) take_over(islands[n].members, step, blocks[first_block + block]);
+        for (std::size_t n = begin; n < end; ++n) write_back(islands[n].members, step, blocks[first_block + block]);
     });
     impacts_.clear();
     meetings_.clear();
-    std::vector<const DenseTrace*> traces;
-    for (const PairIslands::Island& island : islands) {
+    std::vector<const ContactIslandTrace*> traces;
+    for (const IslandBuilder::Island& island : islands) {
         impacts_.insert(impacts_.end(), island.impacts.begin(), island.impacts.end());
         meetings_.insert(meetings_.end(), island.meetings.begin(), island.meetings.end());
-        if (island.is_dense) traces.push_back(&island.trace);
+        if (island.is_contact_island) traces.push_back(&island.trace);
         unsolved_ += island.trace.is_unsolved ? 1 : 0;
     }
     contacts_.check_sleepers(step, blocks);
@@ -99,13 +99,13 @@ void PairMotion::take_over(const TimeSpan& step, std::vector<BlockRecord>& block
     islands.clear();
 }
 
-void PairMotion::take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
+void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
     for (std::size_t m = 0; m < members.size(); ++m) {
         if (m + kPairMotionPrefetchDistance < members.size()) {
             prefetch_whole(members[m + kPairMotionPrefetchDistance]);
             parts_.mover.prefetch(members[m + kPairMotionPrefetchDistance].particle);
         }
-        parts_.mover.take_over(members[m], step, record);
+        parts_.mover.write_back(members[m], step, record);
     }
 }
 

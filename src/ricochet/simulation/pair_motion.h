@@ -1,19 +1,19 @@
 /// \file
 /// Private to the simulation: spheres that meet each other in a step.
 ///
-/// Who may meet whom is PairPlans' question, what islands of them do PairIslands', what lasts from step to step that of
-/// LastingContacts; all that meets nobody goes the ordinary way.
+/// Who may meet whom is PairPlans' question, what islands of them do IslandBuilder', what lasts from step to step that
+/// of LastingContacts; all that meets nobody goes the ordinary way.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "ricochet/response/pair_island.h"
+#include "ricochet/response/event_island.h"
+#include "ricochet/simulation/island_builder.h"
 #include "ricochet/simulation/lasting_contacts.h"
-#include "ricochet/simulation/pair_islands.h"
 #include "ricochet/simulation/pair_parts.h"
 #include "ricochet/simulation/pair_plans.h"
-#include "ricochet/verify/pair_books.h"
+#include "ricochet/verify/impact_audit.h"
 
 namespace ricochet {
 
@@ -29,9 +29,9 @@ public:
 
     /// Works off the islands among the particles of the range; none of their members is moved by the ordinary way any
     /// more in this step.
-    void work_off(const ParticleRange& range, const TimeSpan& step);
+    void solve(const ParticleRange& range, const TimeSpan& step);
     /// After the others have moved: takes over where the members have gone.
-    void take_over(const TimeSpan& step, std::vector<BlockRecord>& blocks);
+    void write_back(const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
     /// Of the last step's islands.
     [[nodiscard]] const PairCounts& counts() const { return counts_; }
@@ -40,7 +40,7 @@ public:
     /// The same for the verifier, where there is one.
     [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
     /// What it holds them against.
-    [[nodiscard]] const verify::PairBooks& books() const { return books_; }
+    [[nodiscard]] const verify::ImpactAudit& books() const { return books_; }
     /// Islands that were dense and not solved to the tolerance, in all steps.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
 
@@ -64,16 +64,16 @@ public:
     [[nodiscard]] bool is_sound(std::uint64_t next_id) const { return contacts_.is_sound(next_id); }
 
 private:
-    [[nodiscard]] bool wake_those_pushed(const TimeSpan& step);
-    void take_over(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);
+    [[nodiscard]] bool wake_loaded_sleepers(const TimeSpan& step);
+    void write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);
     void measure_overlaps(double time);
 
     PairParts parts_;
     std::size_t first_ = 0;  // of the range
     LastingContacts contacts_;
     PairPlans plans_;
-    PairIslands islands_;
-    verify::PairBooks books_;
+    IslandBuilder islands_;
+    verify::ImpactAudit books_;
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;
     PairCounts counts_;

@@ -27,7 +27,7 @@ struct PairParts {
     std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; none where all are of one
 
     /// False: impacts are worked off one after the other, whatever comes.
-    [[nodiscard]] bool may_be_dense() const { return settings.method != PairMethod::events; }
+    [[nodiscard]] bool may_be_contact_island() const { return settings.method != PairMethod::events; }
     /// Its number.
     [[nodiscard]] std::uint32_t material_of(std::size_t particle) const {
         if (!material_column) return 0;

@@ -40,15 +40,15 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     }
     ask(std::move(asked));
     near_.find(boxes_);
-    take_pairs();
+    collect_pairs();
     for (int k = 0; k < kDeflections && expect_deflections(); ++k) {
         near_.update(boxes_, changed_);
-        take_pairs();
+        collect_pairs();
     }
 }
 
 /// From those whose boxes are near each other.
-void PairPlans::take_pairs() {
+void PairPlans::collect_pairs() {
     changed_.clear();
     pairs_ = near_.all();
     add_pairs_with_sleepers();
@@ -65,7 +65,7 @@ void PairPlans::take_pairs() {
 /// What flies freely onto something that lies, presses or is expected to be deflected itself does not go on as it has
 /// declared: it says again how far it may come. False where there is none.
 bool PairPlans::expect_deflections() {
-    if (!parts_.may_be_dense()) return false;
+    if (!parts_.may_be_contact_island()) return false;
     std::vector<std::uint32_t> deflected;
     for (std::size_t n = 0; n < pairs_.size(); ++n) {
         const NeighbourPair& pair = pairs_[n];
@@ -83,20 +83,21 @@ bool PairPlans::expect_deflections() {
 }
 
 std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) const {
-    std::vector<NeighbourPair> lying;  // below, above
+    std::vector<NeighbourPair> resting_load;  // below, above
     for (const NeighbourPair& pair : pairs_) {
-        if (lies_on(pair.second, pair.first)) lying.push_back(pair);
-        if (lies_on(pair.first, pair.second)) lying.push_back({pair.second, pair.first});
+        if (lies_on(pair.second, pair.first)) resting_load.push_back(pair);
+        if (lies_on(pair.first, pair.second)) resting_load.push_back({pair.second, pair.first});
     }
     const auto by_first = [](const NeighbourPair& a, const NeighbourPair& b) { return a.first < b.first; };
-    std::sort(lying.begin(), lying.end(), by_first);
+    std::sort(resting_load.begin(), resting_load.end(), by_first);
     std::vector<std::uint8_t> is_found(boxes_.size(), 0);
     for (const std::uint32_t k : base) is_found[k] = 1;
     std::vector<NeighbourPair> stack;
     while (!base.empty()) {
         const std::uint32_t k = base.back();
         base.pop_back();
-        const auto [begin, end] = std::equal_range(lying.begin(), lying.end(), NeighbourPair{k, 0}, by_first);
+        const auto [begin, end] =
+            std::equal_range(resting_load.begin(), resting_load.end(), NeighbourPair{k, 0}, by_first);
         for (auto pair = begin; pair != end; ++pair) {
             if (is_found[pair->second] != 0) continue;
             is_found[pair->second] = 1;
@@ -111,12 +112,12 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
 bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     if (!is_free(above)) return false;
     const Particles& particles = parts_.store.particles();
-    const Vec3& place = particles.position[first_ + below];
-    const Vec3 apart = particles.position[first_ + above] - place;
+    const Vec3& center = particles.position[first_ + below];
+    const Vec3 apart = particles.position[first_ + above] - center;
     const double touching = particles.radius[first_ + above] + particles.radius[first_ + below];
     const double smaller = std::min(particles.radius[first_ + above], particles.radius[first_ + below]);
     if (length(apart) > touching + kTouching * smaller) return false;
-    return has_sunk(touching, smaller, apart, way_of_free(above).path.end - place);
+    return has_sunk(touching, smaller, apart, free_path(above).path.end - center);
 }
 
 /// What is known without asking.
@@ -134,7 +135,7 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
     std::erase_if(particles, [&](std::uint32_t k) {
         if (freedom_[k] != Freedom::unknown) return true;
         freedom_[k] = Freedom::bound;  // until it says otherwise
-        return !parts_.may_be_dense() || boxes_[k].empty() || !moves(k);
+        return !parts_.may_be_contact_island() || boxes_[k].empty() || !moves(k);
     });
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
@@ -204,13 +205,13 @@ Box3 PairPlans::reachable_box(std::uint32_t k) const {
     return duration > 0.0 ? ball_box(x, radius + reach(i, duration)) : Box3{};
 }
 
-FlownPiece PairPlans::way_of_free(std::uint32_t k) const {
+FlownPiece PairPlans::free_path(std::uint32_t k) const {
     if (const Flight* const planned = parts_.coupled.flight_of(first_ + k)) return piece_of(*planned);
     return free_way(parts_.response.rules(), parts_.store.force_input(first_ + k, step_.begin), step_.end);
 }
 
 Box3 PairPlans::box_of_free(std::uint32_t k) const {
-    const Path path = way_of_free(k).path;
+    const Path path = free_path(k).path;
     return grown(box_of(path, path.duration), kPairBoxSlack * parts_.store.particles().radius[first_ + k]);
 }
 
@@ -224,7 +225,7 @@ bool PairPlans::is_known_free(std::uint32_t k) const {
     const std::size_t i = first_ + k;
     if (parts_.store.particles().radius[i] == 0.0 || is_asleep(k) || !parts_.schedule.is_in_free_flight(i))
         return false;
-    return !parts_.may_be_dense() || (traces_->presses[k] == 0 && lives_through(i));
+    return !parts_.may_be_contact_island() || (traces_->presses[k] == 0 && lives_through(i));
 }
 
 /// By going its way, as if nobody were there.
@@ -245,30 +246,30 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     scratch.motions.clear();
     scratch.impacts.clear();
     const bool goes_on = !outcome.is_absorbed() && !outcome.is_frozen() && outcome.unsimulated_time == 0.0;
-    return goes_on && outcome.meetings() == 0 && moving.state.position == way_of_free(k).path.end;
+    return goes_on && outcome.meetings() == 0 && moving.state.position == free_path(k).path.end;
 }
 
 /// False for two whose boxes overlap that do not meet, unless others are met.
 bool PairPlans::do_meet(const NeighbourPair& pair) const {
     if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
-    const FlownPiece first = way_of_free(pair.first);
-    const FlownPiece second = way_of_free(pair.second);
+    const FlownPiece first = free_path(pair.first);
+    const FlownPiece second = free_path(pair.second);
     const std::vector<double>& radius = parts_.store.particles().radius;
     const double a = radius[first_ + pair.first];
     const double b = radius[first_ + pair.second];
     if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
     // Two that touch do not meet where forces drive them into each other, which only a plan can hold.
-    return parts_.may_be_dense() &&
+    return parts_.may_be_contact_island() &&
            has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }
 
 bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     if (!overlap(member.swept, place_of(k))) return false;
-    if (!is_free(k) || member.way.empty()) return true;
-    const FlownPiece way = way_of_free(k);
+    if (!is_free(k) || member.trajectory.empty()) return true;
+    const FlownPiece trajectory = free_path(k);
     const double distance = member.radius() + parts_.store.particles().radius[first_ + k];
-    return first_meeting(member.way, {&way, 1}, distance, 0.0).has_value();
+    return first_meeting(member.trajectory, {&trajectory, 1}, distance, 0.0).has_value();
 }
 
 /// They are in a grid of their own, which stays as long as they do.

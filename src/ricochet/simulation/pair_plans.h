@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "ricochet/dynamics/neighbour_pairs.h"
-#include "ricochet/response/pair_island.h"
+#include "ricochet/response/event_island.h"
 #include "ricochet/simulation/pair_parts.h"
 
 namespace ricochet {
@@ -67,13 +67,13 @@ private:
     [[nodiscard]] double reach(std::size_t i, double duration) const;
     [[nodiscard]] Box3 reachable_box(std::uint32_t k) const;
     [[nodiscard]] Box3 box_of_free(std::uint32_t k) const;
-    [[nodiscard]] FlownPiece way_of_free(std::uint32_t k) const;
+    [[nodiscard]] FlownPiece free_path(std::uint32_t k) const;
     [[nodiscard]] bool is_known_free(std::uint32_t k) const;
     [[nodiscard]] bool lives_through(std::size_t i) const;
     [[nodiscard]] bool flies_freely(std::uint32_t k, MoveScratch& scratch) const;
     [[nodiscard]] const Box3& place_of(std::uint32_t k) const { return is_asleep(k) ? sleeper_boxes_[k] : boxes_[k]; }
     void declare();
-    void take_pairs();
+    void collect_pairs();
     [[nodiscard]] bool expect_deflections();
     [[nodiscard]] bool lies_on(std::uint32_t above, std::uint32_t below) const;
     void add_pairs_with_sleepers();

@@ -19,8 +19,8 @@ std::uint32_t saturating_sum(std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
-                             std::size_t colliders, bool keeps_rides)
-    : keeps_rides_(keeps_rides), colliders_(colliders), may_sleep_(may_sleep) {
+                             std::size_t colliders, bool keeps_attachments)
+    : keeps_attachments_(keeps_attachments), colliders_(colliders), may_sleep_(may_sleep) {
     particles_.attributes = AttributeTable(std::move(attributes));
     particles_.keeps_origin = keeps_origin;
     temperature_column_ = particles_.attributes.find(kTemperatureAttribute);
@@ -28,7 +28,7 @@ ParticleStore::ParticleStore(std::vector<AttributeDescription> attributes, bool 
 
 ParticleStore ParticleStore::empty_copy() const {
     const auto columns = particles_.attributes.columns();
-    return {{columns.begin(), columns.end()}, particles_.keeps_origin, may_sleep_, colliders_, keeps_rides_};
+    return {{columns.begin(), columns.end()}, particles_.keeps_origin, may_sleep_, colliders_, keeps_attachments_};
 }
 
 void ParticleStore::append(Particle&& particle) {
@@ -43,18 +43,18 @@ void ParticleStore::append(Particle&& particle) {
     particles_.append(particle);
     cores_.append();
     sides_.resize(particles_.size() * colliders_);
-    if (keeps_rides_) rides_.emplace_back();
+    if (keeps_attachments_) frame_rules_.emplace_back();
 }
 
 void ParticleStore::reserve(std::size_t more) {
     particles_.reserve(more);
     grow_capacity_by(sides_, more * colliders_);
-    if (keeps_rides_) grow_capacity_by(rides_, more);
+    if (keeps_attachments_) grow_capacity_by(frame_rules_, more);
 }
 
 void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
     if (colliders_ > 0) keep_marked(sides_, keep, colliders_);
-    if (keeps_rides_) keep_marked(rides_, keep);
+    if (keeps_attachments_) keep_marked(frame_rules_, keep);
     cores_.compact(keep);
     particles_.compact(keep);
 }
@@ -73,10 +73,10 @@ MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact)
     if (in_contact) load_contact(i, particle.contact);
     particle.sides = sides_of(i);
     particle.stored_time = start;
-    if (keeps_rides_) {
-        const RideMemory& ride = rides_[i];
+    if (keeps_attachments_) {
+        const AttachmentMemory& ride = frame_rules_[i];
         if (!std::isnan(ride.stored_time)) particle.stored_time = ride.stored_time;
-        if (ride.is_ridden != 0) particle.ridden = ride.ridden;
+        if (ride.is_attached != 0) particle.attachment = ride.attachment;
     }
     return particle;
 }
@@ -97,7 +97,7 @@ Vec3 ParticleStore::spin_of(std::size_t i, const MovingParticle& moved) const {
     return (core / particles_.radius[i]) * moved.spin;
 }
 
-void ParticleStore::load_contact(std::size_t i, KeptContact& contact) const {
+void ParticleStore::load_contact(std::size_t i, ContactState& contact) const {
     for (const SurfaceId surface : particles_.support[i]) {
         if (surface != kNoSupport) contact.surfaces[contact.count++] = surface;
     }
@@ -105,7 +105,7 @@ void ParticleStore::load_contact(std::size_t i, KeptContact& contact) const {
 }
 
 void ParticleStore::store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
-                          bool may_be_held) {
+                          bool may_be_supported) {
     particles_.position[i] = moved.state.position;
     particles_.velocity[i] = moved.state.velocity;
     if (const Vec3 spin = spin_of(i, moved); particles_.spin[i] != spin) particles_.spin[i] = spin;
@@ -113,23 +113,23 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
     // What rides goes where its body goes.
-    if (in_contact) store_contact(i, moved, outcome, may_be_held && !moved.ridden);
-    if (!keeps_rides_) return;
-    rides_[i] = {};
-    if (moved.stored_time < moved.step_end) rides_[i].stored_time = moved.stored_time;
-    if (moved.ridden) rides_[i].is_ridden = 1, rides_[i].ridden = *moved.ridden;
+    if (in_contact) store_contact(i, moved, outcome, may_be_supported && !moved.attachment);
+    if (!keeps_attachments_) return;
+    frame_rules_[i] = {};
+    if (moved.stored_time < moved.step_end) frame_rules_[i].stored_time = moved.stored_time;
+    if (moved.attachment) frame_rules_[i].is_attached = 1, frame_rules_[i].attachment = *moved.attachment;
 }
 
 void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                                  bool may_be_held) {
+                                  bool may_be_supported) {
     particles_.resting[i] = outcome.is_resting() ? 1 : 0;
-    particles_.held[i] = outcome.end == MoveEnd::held && may_be_held ? 1 : 0;
+    particles_.held[i] = outcome.end == MoveEnd::held && may_be_supported ? 1 : 0;
     particles_.frozen[i] = outcome.is_frozen() ? 1 : 0;
     particles_.absorbed[i] = outcome.end == MoveEnd::shattered ? kShattered : outcome.is_absorbed() ? 1 : 0;
     set_contact(i, moved.contact);
 }
 
-void ParticleStore::set_contact(std::size_t i, const KeptContact& contact) {
+void ParticleStore::set_contact(std::size_t i, const ContactState& contact) {
     particles_.support[i].fill(kNoSupport);
     std::copy_n(contact.surfaces.begin(), contact.count, particles_.support[i].begin());
     particles_.cascade_left[i] = contact.cascade_left;
@@ -158,10 +158,11 @@ bool ParticleStore::is_sound(std::size_t i) const {
         return memory.side >= -1 && memory.side <= 1 && !std::isnan(memory.depth);
     });
     const bool is_core_inside = !cores_.has(i) || cores_.radius(i) <= particles_.radius[i];
-    const bool is_ride_finite =
-        !keeps_rides_ || (!std::isinf(rides_[i].stored_time) && is_finite(rides_[i].ridden.position) &&
-                          is_finite(rides_[i].ridden.spin) && rides_[i].is_ridden <= 1);
-    return are_sides_known && is_core_inside && is_ride_finite && std::isfinite(particles_.birth_time[i]) &&
+    const bool is_attachment_finite =
+        !keeps_attachments_ ||
+        (!std::isinf(frame_rules_[i].stored_time) && is_finite(frame_rules_[i].attachment.position) &&
+         is_finite(frame_rules_[i].attachment.spin) && frame_rules_[i].is_attached <= 1);
+    return are_sides_known && is_core_inside && is_attachment_finite && std::isfinite(particles_.birth_time[i]) &&
            !std::isnan(particles_.lifetime[i]) && std::isfinite(particles_.accounted_until[i]) &&
            std::isfinite(particles_.cascade_left[i]) && std::isfinite(particles_.unsimulated_time[i]);
 }

@@ -21,9 +21,10 @@ namespace ricochet {
 class ParticleStore {
 public:
     /// may_sleep: what holds a particle now holds it for good, so it need not be asked for again.
-    /// colliders: how many have sides that the response keeps; 0 where it keeps none. keeps_rides: colliders move.
+    /// colliders: how many have sides that the response keeps; 0 where it keeps none. keeps_attachments: colliders
+    /// move.
     ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
-                  std::size_t colliders, bool keeps_rides = false);
+                  std::size_t colliders, bool keeps_attachments = false);
 
     [[nodiscard]] const Particles& particles() const { return particles_; }
     [[nodiscard]] Particles& particles() { return particles_; }
@@ -36,7 +37,7 @@ public:
     void compact(const std::vector<std::uint8_t>& keep);
 
     /// What it touches at the start of its next step.
-    void set_contact(std::size_t i, const KeptContact& contact);
+    void set_contact(std::size_t i, const ContactState& contact);
 
     /// As what spheres in overlap collide.
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
@@ -77,17 +78,17 @@ public:
     /// Particle i as the response moves it from `start`, s. in_contact: the arrays may hold a contact of it; where they
     /// do not, they are not read, since for particles in arbitrary order each costs a cache miss.
     [[nodiscard]] MovingParticle load(std::size_t i, double start, bool in_contact);
-    /// Takes over where it has gone. in_contact: the arrays may hold a contact of it, or it has one now; may_be_held:
-    /// false for one that others pull at.
+    /// Takes over where it has gone. in_contact: the arrays may hold a contact of it, or it has one now;
+    /// may_be_supported: false for one that others pull at.
     void store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
-               bool may_be_held);
+               bool may_be_supported);
 
     /// Begins to fetch from memory what load() and store() use.
     void prefetch(std::size_t i) const;
 
     /// s, of its position as it is stored: now, but where its clock stands still.
     [[nodiscard]] double stored_time(std::size_t i, double now) const {
-        return keeps_rides_ && !std::isnan(rides_[i].stored_time) ? rides_[i].stored_time : now;
+        return keeps_attachments_ && !std::isnan(frame_rules_[i].stored_time) ? frame_rules_[i].stored_time : now;
     }
 
     /// The id of the next particle that is added.
@@ -109,19 +110,19 @@ public:
 
 private:
     void load_core(std::size_t i, MovingParticle& particle) const;
-    void load_contact(std::size_t i, KeptContact& contact) const;
-    void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_held);
+    void load_contact(std::size_t i, ContactState& contact) const;
+    void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_supported);
 
     Particles particles_;
     OverlapCores cores_;
     /// What is kept of a particle where colliders move.
-    struct RideMemory {
+    struct AttachmentMemory {
         double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, where its clock stands still; else NaN
-        std::uint8_t is_ridden = 0;
-        MovingParticle::Ridden ridden{};  ///< where it is
+        std::uint8_t is_attached = 0;
+        MovingParticle::Attachment attachment{};  ///< where it is
     };
-    std::vector<RideMemory> rides_;  // one a particle, where they are kept
-    bool keeps_rides_ = false;
+    std::vector<AttachmentMemory> frame_rules_;  // one a particle, where they are kept
+    bool keeps_attachments_ = false;
     std::vector<SideMemory> sides_;  // one a collider for every particle, for responses that keep sides
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
@@ -154,10 +155,10 @@ void ParticleStore::archive(Archive& a) {
         a(memory.side), a(memory.penetrating), a(memory.touching), a(memory.depth);
     };
     archive_entries(a, sides_, side_of, n * colliders_);
-    const auto ride_of = [&](RideMemory& ride) {
-        a(ride.stored_time), a(ride.is_ridden), a(ride.ridden.position), a(ride.ridden.spin);
+    const auto attachment_of = [&](AttachmentMemory& ride) {
+        a(ride.stored_time), a(ride.is_attached), a(ride.attachment.position), a(ride.attachment.spin);
     };
-    archive_entries(a, rides_, ride_of, keeps_rides_ ? n : 0);
+    archive_entries(a, frame_rules_, attachment_of, keeps_attachments_ ? n : 0);
 }
 
 }  // namespace ricochet

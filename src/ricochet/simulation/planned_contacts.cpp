@@ -27,13 +27,14 @@ struct PlannedContacts::Flown {
     Vec3 velocity;  ///< m/s, along the line
     Vec3 spin;      ///< rad/s
     double radius;
-    double duration;     ///< s
-    double least_yield;  ///< m/s
+    double duration;               ///< s
+    double smallest_inverse_mass;  ///< m/s
 };
 
-std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
-                                              std::span<const Vec3> spins, double duration, double least_yield) const {
-    std::vector<HeldMotion> result(system.size());
+std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
+                                                      std::span<const Vec3> spins, double duration,
+                                                      double smallest_inverse_mass) const {
+    std::vector<SupportConstraints> result(system.size());
     double fastest = 0.0;
     for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
     parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -46,16 +47,16 @@ std::vector<HeldMotion> PlannedContacts::find(const ParticleSystem& system, std:
             const SurfaceGeometry geometry(world_, scratch.plane_cache);
             const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
             if (contact)
-                result[k] =
-                    held({system.velocities()[k], velocities[k], spins[k], radius, duration, least_yield * fastest},
-                         *contact);
+                result[k] = held({system.velocities()[k], velocities[k], spins[k], radius, duration,
+                                  smallest_inverse_mass * fastest},
+                                 *contact);
         }
     });
     return result;
 }
 
 std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const SystemStep& step,
-                                         std::span<const HeldMotion> held) const {
+                                         std::span<const SupportConstraints> held) const {
     std::vector<Vec3> result(system.size());
     parallel_for_blocks(system.size(), kPlannedContactsBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         thread_local ContactScratch scratch;
@@ -86,8 +87,8 @@ std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const Sys
 /// Along the normals it gets as far as the surface, and where it rebounds back from there. Friction stops a point, and
 /// lets a sphere roll, from the impact on, as far as it can: it takes a share of the slip that the member would have,
 /// so that in proportion to what is left of it.
-HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) const {
-    HeldMotion held;
+SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& contact) const {
+    SupportConstraints held;
     const double part = contact.time / flown.duration;
     const Vec3& v = flown.velocity;
     double pressed = 0.0;  // m/s, by all normals
@@ -115,7 +116,7 @@ HeldMotion PlannedContacts::held(const Flown& flown, const Contact& contact) con
     if (!(held.grip > 0.0)) return held;
     held.spin_slip = held.across(cross(flown.spin, flown.radius * contact.first().normal));
     const double share = (1.0 - part) * (is_point ? 1.0 : kRollingShare);
-    held.yield = std::max(held.grip * (1.0 - share) / share, flown.least_yield);
+    held.yield = std::max(held.grip * (1.0 - share) / share, flown.smallest_inverse_mass);
     return held;
 }
 

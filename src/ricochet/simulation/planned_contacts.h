@@ -22,19 +22,21 @@ public:
     PlannedContacts(const CollisionWorld& world, std::span<const Material> materials, double resting_speed)
         : world_(world), materials_(materials), resting_speed_(resting_speed) {}
 
-    /// By member. velocities: those with which they would fly, m/s, in lines for a duration, s. least_yield: parts of
-    /// the largest of them up to which friction may leave a slip to what it stops, since Newton's method needs a slope.
-    [[nodiscard]] std::vector<HeldMotion> find(const ParticleSystem& system, std::span<const Vec3> velocities,
-                                               std::span<const Vec3> spins, double duration, double least_yield) const;
+    /// By member. velocities: those with which they would fly, m/s, in lines for a duration, s. smallest_inverse_mass:
+    /// parts of the largest of them up to which friction may leave a slip to what it stops, since Newton's method needs
+    /// a slope.
+    [[nodiscard]] std::vector<SupportConstraints> find(const ParticleSystem& system, std::span<const Vec3> velocities,
+                                                       std::span<const Vec3> spins, double duration,
+                                                       double smallest_inverse_mass) const;
 
     /// By member, m: by how much what surfaces hold ends elsewhere than its straight motion in a step, since they bend:
     /// by where they are at its end, and by the way that what presses on them leads along them as they turn.
     [[nodiscard]] std::vector<Vec3> bends(const ParticleSystem& system, const SystemStep& step,
-                                          std::span<const HeldMotion> held) const;
+                                          std::span<const SupportConstraints> held) const;
 
 private:
     struct Flown;
-    [[nodiscard]] HeldMotion held(const Flown& flown, const struct Contact& contact) const;
+    [[nodiscard]] SupportConstraints held(const Flown& flown, const struct Contact& contact) const;
 
     const CollisionWorld& world_;
     std::span<const Material> materials_;

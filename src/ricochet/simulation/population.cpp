@@ -20,7 +20,7 @@
 namespace ricochet {
 
 void Simulation::Impl::emit_particles(const TimeSpan& step) {
-    std::optional<BirthRoom> among;
+    std::optional<SpawnOccupancy> among;
     const BirthTests tests = birth_tests(among, step);
     const BirthLimits limits{step.end, room_below(options.most_particles, share.living(store.size())),
                              room_below(most_that_fit, store.size()), store.next_id()};
@@ -85,7 +85,7 @@ void Simulation::Impl::reserve(std::size_t more) {
 
 /// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface, and no other sphere
 /// that it can meet. Empty where there is nothing to overlap.
-BirthTests Simulation::Impl::birth_tests(std::optional<BirthRoom>& room, const TimeSpan& step) const {
+BirthTests Simulation::Impl::birth_tests(std::optional<SpawnOccupancy>& room, const TimeSpan& step) const {
     BirthTests tests;
     if (pairs || world.surface_count() > 0) {
         tests.alone = [this](const Particle& particle) {
@@ -96,7 +96,7 @@ BirthTests Simulation::Impl::birth_tests(std::optional<BirthRoom>& room, const T
     if (!pairs) return tests;
     tests.among = [this, &room, step](const Particle& particle) {
         if (!(particle.radius > 0.0) || !is_finite(particle.position)) return true;
-        if (!room) room = room_among_spheres(step);
+        if (!room) room = spawn_occupancy(step);
         const ForceInput input{particle.position, particle.velocity, particle.mass, particle.radius,
                                particle.birth_time};
         const FlyingBall ball{particle.birth_time, particle.radius, particle.position, particle.velocity,
@@ -109,8 +109,8 @@ BirthTests Simulation::Impl::birth_tests(std::optional<BirthRoom>& room, const T
 }
 
 /// As the spheres that are there go on from the step's begin.
-BirthRoom Simulation::Impl::room_among_spheres(const TimeSpan& step) const {
-    BirthRoom room(step.end);
+SpawnOccupancy Simulation::Impl::spawn_occupancy(const TimeSpan& step) const {
+    SpawnOccupancy room(step.end);
     for (std::size_t i = 0; i < store.size(); ++i) {
         const double radius = particles().radius[i];
         if (!(radius > 0.0) || particles().frozen[i] != 0) continue;
@@ -121,7 +121,7 @@ BirthRoom Simulation::Impl::room_among_spheres(const TimeSpan& step) const {
     return room;
 }
 
-PlaceTest Simulation::Impl::place_test() const {
+SpawnTest Simulation::Impl::spawn_test() const {
     return [this](const Particle& parent, const Particle& child) {
         const Vec3 position = flush_tiny(child.position);
         return is_clear_at(world, bodies.get(), child.birth_time, parent.position, position) && !overlap_of(child);
@@ -259,13 +259,13 @@ void Simulation::Impl::report_contacts() {
 }
 
 // A free flight ends before the particle's life does.
-Departure Retirement::departure_of(std::size_t i, double time) const {
-    const Departure by_bounds = is_outside(i) ? Departure::out_of_bounds : Departure::none;
+RemovalReason Retirement::removal_reason(std::size_t i, double time) const {
+    const RemovalReason by_bounds = is_outside(i) ? RemovalReason::out_of_bounds : RemovalReason::none;
     if (schedule_.is_in_free_flight(i)) return by_bounds;
     const Particles& particles = store_.particles();
-    if (particles.absorbed[i] == kShattered) return Departure::shattered;
-    if (particles.absorbed[i] != 0) return Departure::absorbed;
-    if (particles.birth_time[i] + particles.lifetime[i] <= time) return Departure::expired;
+    if (particles.absorbed[i] == kShattered) return RemovalReason::shattered;
+    if (particles.absorbed[i] != 0) return RemovalReason::absorbed;
+    if (particles.birth_time[i] + particles.lifetime[i] <= time) return RemovalReason::expired;
     return by_bounds;
 }
 
@@ -290,7 +290,7 @@ EndOfStepCounts Retirement::count_block(std::size_t begin, std::size_t end, doub
         counts.leaving += schedule_.is_in_free_flight(i) && is_outside(i) ? 1 : 0;
     }
     schedule_.visit_all_but_free_flights(begin, end, [&](std::size_t i) {
-        const bool leaves = departure_of(i, time) != Departure::none;
+        const bool leaves = removal_reason(i, time) != RemovalReason::none;
         counts.leaving += leaves ? 1 : 0;
         counts.resting += leaves ? 0 : particles.resting[i];
         counts.held += leaves ? 0 : particles.held[i];

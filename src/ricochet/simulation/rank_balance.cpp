@@ -35,9 +35,9 @@ std::uint64_t WorkCounts::work() const {
     return kQueriedWork * queried + kContactWork * contacts + kFlyingWork * flying + kIdleWork * idle;
 }
 
-RankGifts gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work) {
+RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work) {
     const double mean = mean_of(work);
-    RankGifts gifts(work.size(), 0.0);
+    RankTransfers gifts(work.size(), 0.0);
     std::size_t taker = 0;
     double room = std::max(0.0, mean - static_cast<double>(work[0]));
     for (std::size_t giver = 0; giver < work.size(); ++giver) {
@@ -63,7 +63,7 @@ void RankBalancer::keep_account(const std::vector<std::uint64_t>& work) {
     balance_.busiest = mean_ > 0.0 ? busiest_ / mean_ : 1.0;
 }
 
-std::optional<RankGifts> RankBalancer::look(Ranks& ranks, std::size_t here) {
+std::optional<RankTransfers> RankBalancer::look(Ranks& ranks, std::size_t here) {
     if (steps_++ < kSteps) return std::nullopt;
     steps_ = 1;
     std::vector<std::uint64_t> work(ranks.size() + 2, 0);
@@ -85,7 +85,7 @@ std::optional<RankGifts> RankBalancer::look(Ranks& ranks, std::size_t here) {
     return gifts_of(ranks.rank(), sum_);
 }
 
-std::uint32_t GiftChoice::next(Cost cost) {
+std::uint32_t TransferChoice::next(Cost cost) {
     if (cost == Cost::idle) return kStays;
     const double turn = static_cast<double>(seen_[static_cast<std::size_t>(cost)]++) * kGoldenPart;
     double left = turn - std::floor(turn);
@@ -99,24 +99,24 @@ std::uint32_t GiftChoice::next(Cost cost) {
 // Where particles are is asked for nowhere but here: they may go once what they have deferred is made up for.
 void Simulation::Impl::balance_ranks() {
     if (share.is_alone()) return;
-    std::optional<RankGifts> gifts = balancer.look(share.ranks(), store.size());
+    std::optional<RankTransfers> gifts = balancer.look(share.ranks(), store.size());
     if (!gifts) return;
     const bool defers = free_flights.is_deferring();
     free_flights.end_deferring();
-    give_away(GiftChoice(std::move(*gifts)));
+    give_away(TransferChoice(std::move(*gifts)));
     if (defers) free_flights.begin_deferring();
 }
 
-void Simulation::Impl::give_away(GiftChoice choice) {
+void Simulation::Impl::give_away(TransferChoice choice) {
     std::vector<std::uint32_t> goes_to(store.size());
     std::vector<std::uint8_t> keep(store.size(), 1);
     for (std::size_t i = 0; i < store.size(); ++i) {
         const bool flies = schedule.is_in_free_flight(i);
-        const auto cost = schedule.is_left_alone(i) ? GiftChoice::Cost::idle
-                          : flies                   ? GiftChoice::Cost::flying
-                                                    : GiftChoice::Cost::queried;
-        goes_to[i] = share.stays(particles().id[i]) ? GiftChoice::kStays : choice.next(cost);
-        keep[i] = goes_to[i] == GiftChoice::kStays ? 1 : 0;
+        const auto cost = schedule.is_left_alone(i) ? TransferChoice::Cost::idle
+                          : flies                   ? TransferChoice::Cost::flying
+                                                    : TransferChoice::Cost::queried;
+        goes_to[i] = share.stays(particles().id[i]) ? TransferChoice::kStays : choice.next(cost);
+        keep[i] = goes_to[i] == TransferChoice::kStays ? 1 : 0;
     }
     std::vector<std::vector<std::byte>> gifts(share.ranks().size());
     for (std::uint32_t rank = 0; rank < gifts.size(); ++rank) {
@@ -132,11 +132,11 @@ void Simulation::Impl::give_away(GiftChoice choice) {
     balancer.add_moved(before - store.size());
     std::vector<std::vector<std::byte>> parts = share.ranks().exchange(gifts);
     std::erase_if(parts, [](const auto& part) { return part.empty(); });
-    if (!parts.empty()) take_in(std::move(parts));
+    if (!parts.empty()) insert_particles(std::move(parts));
 }
 
 // In the order of their ids, as everywhere. What is known of the queries of those that are here is kept.
-void Simulation::Impl::take_in(std::vector<std::vector<std::byte>> parts) {
+void Simulation::Impl::insert_particles(std::vector<std::vector<std::byte>> parts) {
     const std::vector<std::uint64_t> here = particles().id;
     parts.insert(parts.begin(), bytes_of(store));
     ParticleStore all = store.empty_copy();

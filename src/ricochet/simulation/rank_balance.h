@@ -28,7 +28,7 @@ struct WorkCounts {
 };
 
 /// By how much of its work, 0 to 1, a rank is to give to each.
-using RankGifts = std::vector<double>;
+using RankTransfers = std::vector<double>;
 
 /// Looks every few steps whether a rank is behind.
 class RankBalancer {
@@ -48,7 +48,7 @@ public:
     void note(const WorkCounts& counts) { work_ += counts.work(); }
     /// At the begin of each step; all ranks call it. here: particles of this rank. Nothing where all particles stay
     /// where they are, which is the same on all ranks.
-    [[nodiscard]] std::optional<RankGifts> look(Ranks& ranks, std::size_t here);
+    [[nodiscard]] std::optional<RankTransfers> look(Ranks& ranks, std::size_t here);
     /// So many have left this rank.
     void add_moved(std::uint64_t count) { moved_here_ += count; }
     [[nodiscard]] const RankBalance& balance() const { return balance_; }
@@ -68,21 +68,21 @@ private:
 
 /// What the given rank gives so that all have the mean of these. Those that have too much give in their order to those
 /// that have too little in theirs.
-[[nodiscard]] RankGifts gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work);
+[[nodiscard]] RankTransfers gifts_of(std::size_t rank, const std::vector<std::uint64_t>& work);
 
 /// Which particles leave: for each the rank that it goes to, or kStays. Of particles of each cost as many, evenly over
 /// the list; those that cost nothing stay.
-class GiftChoice {
+class TransferChoice {
 public:
     static constexpr std::uint32_t kStays = ~std::uint32_t{0};
     enum class Cost : std::uint8_t { queried, flying, idle };
 
-    explicit GiftChoice(RankGifts gifts) : gifts_(std::move(gifts)) {}
+    explicit TransferChoice(RankTransfers gifts) : gifts_(std::move(gifts)) {}
     /// Of the next particle.
     [[nodiscard]] std::uint32_t next(Cost cost);
 
 private:
-    RankGifts gifts_;
+    RankTransfers gifts_;
     std::uint64_t seen_[2] = {0, 0};
 };
 

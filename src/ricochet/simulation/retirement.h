@@ -13,7 +13,7 @@
 namespace ricochet {
 
 /// Why a particle leaves.
-enum class Departure : std::uint8_t {
+enum class RemovalReason : std::uint8_t {
     none,           ///< it stays
     expired,        ///< its lifetime is over
     absorbed,       ///< by a surface
@@ -36,7 +36,7 @@ public:
         : store_(store), schedule_(schedule), bounds_(bounds) {}
 
     /// time: of the end of the step, s.
-    [[nodiscard]] Departure departure_of(std::size_t i, double time) const;
+    [[nodiscard]] RemovalReason removal_reason(std::size_t i, double time) const;
     /// All particles, by all threads.
     [[nodiscard]] EndOfStepCounts count(double time) const;
 

@@ -286,7 +286,7 @@ std::vector<Violation> RunCheck::check_end(const Particles& particles, double ti
 }
 
 std::vector<Violation> RunCheck::check_meetings(const std::vector<PairMeeting>& meetings,
-                                                const verify::PairBooks& books) {
+                                                const verify::ImpactAudit& books) {
     std::vector<Violation> found;
     for (const PairMeeting& meeting : meetings) {
         if (!verify::is_wrong(meeting, books)) continue;

@@ -19,7 +19,7 @@
 #include "ricochet/response/response.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/query_schedule.h"
-#include "ricochet/verify/pair_books.h"
+#include "ricochet/verify/impact_audit.h"
 #include "ricochet/verify/sphere_overlaps.h"
 #include "ricochet/verify/verifier.h"
 
@@ -173,11 +173,11 @@ public:
     /// Nothing is known of the step that has begun, and of those before it these violations.
     void forget_step(const std::vector<Violation>& violations) {
         begin_step();
-        begin_batch();
+        begin_generation();
         violations_ = violations;
     }
     /// The particles that are moved next.
-    void begin_batch() { batch_contacts_.clear(); }
+    void begin_generation() { batch_contacts_.clear(); }
     /// Takes over what blocks have done in a part of the step.
     void record(const std::vector<BlockRecord>& blocks);
     /// particles: how many were moved.
@@ -258,7 +258,7 @@ public:
 
     /// What is wrong with impacts of spheres on each other.
     [[nodiscard]] static std::vector<Violation> check_meetings(const std::vector<PairMeeting>& meetings,
-                                                               const verify::PairBooks& books);
+                                                               const verify::ImpactAudit& books);
     /// Which spheres stand in each other at the end of a step by more than a part of the smaller radius, and did not
     /// before, or less.
     [[nodiscard]] std::vector<Violation> check_spheres(const Particles& particles, const TimeSpan& step, double most);

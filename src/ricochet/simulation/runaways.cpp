@@ -12,13 +12,13 @@ namespace ricochet {
 
 /// The pushes without which it would not be as fast, if there are such. Surfaces at rest give no speed, unless the
 /// response has springs, which may diverge.
-RunawayCause ActiveMover::runaway_cause(std::size_t i, const Pushes& pushes) const {
+RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
     const Particles& particles = parts_.store.particles();
     const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
-    const Vec3 by_surfaces = (pushed_by(pushes.hits) + pushes.by_surfaces) / particles.mass[i];
+    const Vec3 by_surfaces = (velocity_change_by(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
     const bool may_throw = parts_.recorder.collects_loads() || parts_.response.keeps_sides();
     if (may_throw && is_slow_without(by_surfaces)) return RunawayCause::surface;
-    if (is_slow_without(pushes.by_spheres) || is_slow_without(pushes.by_spheres + by_surfaces)) {
+    if (is_slow_without(impulses.by_spheres) || is_slow_without(impulses.by_spheres + by_surfaces)) {
         return RunawayCause::spheres;
     }
     return parts_.coupled.holds(i) ? RunawayCause::others : RunawayCause::forces;

@@ -248,7 +248,7 @@ void Simulation::Impl::connect() {
     }
     if (clouds) {
         mover.set_clouds(clouds.get());
-        offspring->set_clouds(clouds.get(), place_test());
+        offspring->set_clouds(clouds.get(), spawn_test());
     }
 }
 

@@ -175,15 +175,15 @@ struct DraggedParticle {
 std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, std::size_t number) {
     const double lightest = emitter.mass.mean - emitter.mass.spread;
     if (!(lightest > 0.0) || is_cloud(emitter) || (emitter.parent && emitter.parent->share)) return {};
-    const bool is_any_way = length_squared(emitter.direction) == 0.0;
-    std::vector<Vec3> ways{emitter.direction};
-    if (is_any_way) ways = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    const bool has_any_path = length_squared(emitter.direction) == 0.0;
+    std::vector<Vec3> headings{emitter.direction};
+    if (has_any_path) headings = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     const double speed = std::abs(emitter.speed.mean) + emitter.speed.spread;
     std::vector<DraggedParticle> particles;
-    for (const Vec3& way : ways) {
+    for (const Vec3& heading : headings) {
         Particle particle;
         particle.position = bounds(emitter.shape).center();
-        particle.velocity = emitter.velocity + (speed / length(way)) * way;
+        particle.velocity = emitter.velocity + (speed / length(heading)) * heading;
         particle.mass = lightest;
         particle.radius = emitter.radius.mean + emitter.radius.spread;
         particle.birth_time = emitter.start;

@@ -19,12 +19,12 @@ namespace {
 constexpr double kWakingReach = 0x1p-36;
 
 /// True while it lives.
-class Raised {
+class ScopedFlag {
 public:
-    explicit Raised(bool& flag) : flag_(flag) { flag_ = true; }
-    ~Raised() { flag_ = false; }
-    Raised(const Raised&) = delete;
-    Raised& operator=(const Raised&) = delete;
+    explicit ScopedFlag(bool& flag) : flag_(flag) { flag_ = true; }
+    ~ScopedFlag() { flag_ = false; }
+    ScopedFlag(const ScopedFlag&) = delete;
+    ScopedFlag& operator=(const ScopedFlag&) = delete;
 
 private:
     bool& flag_;
@@ -34,16 +34,16 @@ private:
 class LeaverCounts {
 public:
     /// lost: impulses of its weight that no total could take.
-    void add(Departure departure, std::uint64_t lost) {
+    void add(RemovalReason departure, std::uint64_t lost) {
         ++counts_[static_cast<std::size_t>(departure)];
         lost_impulses_ += lost;
     }
     void add_to(SimulationStatistics& statistics) const {
-        const auto of = [this](Departure departure) { return counts_[static_cast<std::size_t>(departure)]; };
-        statistics.expired += of(Departure::expired);
-        statistics.absorbed += of(Departure::absorbed);
-        statistics.shattered += of(Departure::shattered);
-        statistics.out_of_bounds += of(Departure::out_of_bounds);
+        const auto of = [this](RemovalReason departure) { return counts_[static_cast<std::size_t>(departure)]; };
+        statistics.expired += of(RemovalReason::expired);
+        statistics.absorbed += of(RemovalReason::absorbed);
+        statistics.shattered += of(RemovalReason::shattered);
+        statistics.out_of_bounds += of(RemovalReason::out_of_bounds);
         statistics.lost_impulses += lost_impulses_;
     }
 
@@ -86,15 +86,15 @@ bool Simulation::Impl::may_defer() const {
 // Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
-    const Raised stepping(is_stepping);
+    const ScopedFlag stepping(is_stepping);
     stop.poll();
     balance_ranks();
     emit_particles(step);
-    std::optional<ParticleRange> batch = ParticleRange{0, store.size()};
+    std::optional<ParticleRange> generation = ParticleRange{0, store.size()};
     do {
-        move_batch(*batch, step);
-        batch = spawn_children(step);
-    } while (batch);
+        move_generation(*generation, step);
+        generation = spawn_children(step);
+    } while (generation);
     retire_particles(step.end);
     check_spheres(step.begin, step.end);
     check_end(step.end);
@@ -125,59 +125,59 @@ TimeSpan Simulation::Impl::begin_step() {
 
 // Coupled motion may take the step in several parts. Each is recorded for itself, so that what happens to a particle
 // stays in the order of time.
-void Simulation::Impl::move_batch(const ParticleRange& batch, const TimeSpan& step) {
-    recorder.begin_batch();
-    if ((driven.is_active() || coupled.is_active()) && !batch.are_children) mover.begin_step();
-    if (offspring) offspring->before_move(particles(), batch.begin, store.sides_from(batch.begin));
-    if (heat) heat->before_move(particles(), batch, step);
-    if (clouds) clouds->before_move(batch);
+void Simulation::Impl::move_generation(const ParticleRange& generation, const TimeSpan& step) {
+    recorder.begin_generation();
+    if ((driven.is_active() || coupled.is_active()) && !generation.are_children) mover.begin_step();
+    if (offspring) offspring->before_move(particles(), generation.begin, store.sides_from(generation.begin));
+    if (heat) heat->before_move(particles(), generation, step);
+    if (clouds) clouds->before_move(generation);
     std::vector<HeatGain> gains;
     for (double now = step.begin; now < step.end;) {
         stop.poll();
-        const TimeSpan part = plan_part(batch, {now, step.end});
+        const TimeSpan part = plan_substep(generation, {now, step.end});
         std::vector<BlockRecord> blocks;
         wake_sleepers(part);
-        move_part(batch, part, blocks);
-        if (coupled.is_active() && !batch.are_children) {
+        move_substep(generation, part, blocks);
+        if (coupled.is_active() && !generation.are_children) {
             const CoupledMotion::Correction correction = coupled.correct_velocities(store.particles());
-            mover.take_up(correction.owed, part, blocks);
+            mover.apply_correction(correction.corrections, part, blocks);
             if (correction.runaway) {
                 blocks.emplace_back().note({*correction.runaway, correction.runaway_speed, RunawayCause::others});
             }
         }
         stop_runaways(blocks, step.end);
-        record_part(batch, blocks);
+        record_part(generation, blocks);
         for (const BlockRecord& block : blocks) gains.insert(gains.end(), block.heat.begin(), block.heat.end());
         now = part.end;
     }
-    if (coupled.is_active() && !batch.are_children) coupled.settle(particles());
-    if (heat) heat->after_move(store.particles(), batch, step, std::move(gains));
-    recorder.end_batch(batch.size());
+    if (coupled.is_active() && !generation.are_children) coupled.settle(particles());
+    if (heat) heat->after_move(store.particles(), generation, step, std::move(gains));
+    recorder.end_batch(generation.size());
 }
 
-TimeSpan Simulation::Impl::plan_part(const ParticleRange& batch, const TimeSpan& rest) {
-    return driven.is_active() ? plan_driven_motion(batch, rest) : plan_coupled_motion(batch, rest);
+TimeSpan Simulation::Impl::plan_substep(const ParticleRange& generation, const TimeSpan& rest) {
+    return driven.is_active() ? plan_driven_motion(generation, rest) : plan_coupled_motion(generation, rest);
 }
 
 // Children are moved through the parts of the step that have been, with the bodies where they were.
-TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& batch, const TimeSpan& rest) {
+TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& generation, const TimeSpan& rest) {
     TimeSpan part = rest;
-    if (!batch.are_children) {
-        part.end = driven.next_part_end(part.begin, part.end);
+    if (!generation.are_children) {
+        part.end = driven.next_substep_end(part.begin, part.end);
         driven.plan(part.begin, part.end, oldest_position());
-        if (bodies) part.end = settle_driven_motion(batch, part);
+        if (bodies) part.end = settle_driven_motion(generation, part);
     } else {
-        part.end = driven.begin_part_again(part.begin);
+        part.end = driven.repeat_substep(part.begin);
     }
     if (bodies) bodies->begin_step(part.begin, part.end);
     return part;
 }
 
 // Returns the end, s, of the part that is planned, with loads that fit to what the particles do in it.
-double Simulation::Impl::settle_driven_motion(const ParticleRange& batch, TimeSpan part) {
+double Simulation::Impl::settle_driven_motion(const ParticleRange& generation, TimeSpan part) {
     for (int round = 0;; ++round) {
         bodies->begin_step(part.begin, part.end);
-        const std::vector<ColliderLoad> preview = mover.preview(batch, part);
+        const std::vector<ColliderLoad> preview = mover.preview(generation, part);
         const bool goes_on = driven.plan_again(preview, driven.cut_by(preview), round);
         part.end = driven.planned_end();
         if (!goes_on) return part.end;
@@ -193,7 +193,7 @@ double Simulation::Impl::oldest_position() const {
     return oldest;
 }
 
-void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector<BlockRecord>& blocks) {
+void Simulation::Impl::record_part(const ParticleRange& generation, const std::vector<BlockRecord>& blocks) {
     recorder.record(blocks);
     if (!share.is_alone()) share.note(blocks, particles().id);
     std::vector<ColliderLoad> loads;
@@ -202,10 +202,10 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
         recorder.add_loads(loads, *colliders);
         return;
     }
-    std::vector<ColliderLoad> with_yielding = loads;
-    for (ColliderLoad& load : with_yielding) load.work += driven.yielded(load);
-    recorder.add_loads(with_yielding, *colliders);
-    if (!batch.are_children) {
+    std::vector<ColliderLoad> with_dynamic = loads;
+    for (ColliderLoad& load : with_dynamic) load.work += driven.became_dynamic(load);
+    recorder.add_loads(with_dynamic, *colliders);
+    if (!generation.are_children) {
         driven.follow(loads);
         ++recorder.statistics().body_parts;
     } else {
@@ -214,8 +214,8 @@ void Simulation::Impl::record_part(const ParticleRange& batch, const std::vector
 }
 
 // Children join the coupled motion with the next step.
-TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& batch, const TimeSpan& rest) {
-    if (batch.are_children) return rest;
+TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& generation, const TimeSpan& rest) {
+    if (generation.are_children) return rest;
     const double whole = rest.end - rest.begin;
     const double planned = share.keeps_together() ? plan_on_first_rank(rest) : plan_coupled(rest);
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
@@ -229,7 +229,7 @@ double Simulation::Impl::plan_coupled(const TimeSpan& rest) {
     const std::vector<std::uint8_t> pressing = pairs ? pairs->pressing() : std::vector<std::uint8_t>();
     const auto hold = [&](std::size_t i, const Vec3& pull) {
         if (!pressing.empty() && pressing[i] != 0) return Vec3{};
-        return mover.held_acceleration(i, rest.begin, pull);
+        return mover.supported_acceleration(i, rest.begin, pull);
     };
     return coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
 }
@@ -251,19 +251,20 @@ void Simulation::Impl::wake_sleepers(const TimeSpan& part) {
     }
 }
 
-void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& part, std::vector<BlockRecord>& blocks) {
+void Simulation::Impl::move_substep(const ParticleRange& generation, const TimeSpan& part,
+                                    std::vector<BlockRecord>& blocks) {
     if (options.response == ResponseKind::rollback && options.rollback.global) {
-        mover.move_as_system(batch, part, blocks);
+        mover.move_as_system(generation, part, blocks);
         return;
     }
-    if (pairs) pairs->work_off(batch, part);
-    ActiveSet active = free_flights.advance(batch, part, blocks);
+    if (pairs) pairs->solve(generation, part);
+    ActiveSet active = free_flights.advance(generation, part, blocks);
     order_active_set(active);
     mover.move(active, part, blocks);
-    if (clouds) clouds->move(batch, part, blocks);
-    if (!share.is_alone()) balancer.note(work_of(batch, active.size(), blocks));
+    if (clouds) clouds->move(generation, part, blocks);
+    if (!share.is_alone()) balancer.note(work_of(generation, active.size(), blocks));
     if (!pairs) return;
-    pairs->take_over(part, blocks);
+    pairs->write_back(part, blocks);
     SimulationStatistics& statistics = recorder.statistics();
     statistics.pair_impacts += pairs->counts().impacts;
     statistics.overlap_largest = std::max(statistics.overlap_largest, pairs->counts().largest_overlap);
@@ -272,12 +273,12 @@ void Simulation::Impl::move_part(const ParticleRange& batch, const TimeSpan& par
     recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), pairs->books()));
 }
 
-WorkCounts Simulation::Impl::work_of(const ParticleRange& batch, std::size_t queried,
+WorkCounts Simulation::Impl::work_of(const ParticleRange& generation, std::size_t queried,
                                      const std::vector<BlockRecord>& blocks) const {
     WorkCounts counts;
     counts.queried = queried;
-    counts.idle = schedule.count_left_alone(batch.begin, batch.end);
-    counts.flying = batch.size() - std::min(batch.size(), counts.queried + counts.idle);
+    counts.idle = schedule.count_left_alone(generation.begin, generation.end);
+    counts.flying = generation.size() - std::min(generation.size(), counts.queried + counts.idle);
     for (const BlockRecord& block : blocks) counts.contacts += block.contacts;
     return counts;
 }
@@ -322,8 +323,8 @@ void Simulation::Impl::remove_leavers(double time) {
     std::vector<LeaverCounts> blocks(blocks_of(store.size()));
     parallel_for_blocks(store.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Departure departure = retirement.departure_of(i, time);
-            if (departure == Departure::none) continue;
+            const RemovalReason departure = retirement.removal_reason(i, time);
+            if (departure == RemovalReason::none) continue;
             keep[i] = 0;
             const double death = particles().birth_time[i] + particles().lifetime[i];
             blocks[block].add(departure, mover.add_weight(i, std::min(time, death), 1.0));

@@ -94,7 +94,7 @@ void Simulation::Impl::keep_springs_together() {
     std::vector<std::uint64_t> ids;
     for (const Spring& spring : coupled.springs().springs()) ids.insert(ids.end(), {spring.first, spring.second});
     share.keep_together(std::move(ids));
-    if (!share.is_first()) coupled.stand_aside();
+    if (!share.is_first()) coupled.disable();
 }
 
 // All ranks go as far as the first one has planned, or end with what it has come to.

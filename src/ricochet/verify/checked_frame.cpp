@@ -31,7 +31,7 @@ Side side_of(int sign) { return sign > 0 ? Side::outside : (sign < 0 ? Side::ins
 
 /// Returns the local position of a stored position in a moving frame, by the definition of MovingPose::image(): R^T (x
 /// - t).
-Vec3 image_by(const AffineMap& map, const Vec3& world) {
+Vec3 local_position_by(const AffineMap& map, const Vec3& world) {
     const Vec3 d = world - map.translation;
     const auto sum = [&](double x, double y, double z) { return d.x * x + d.y * y + d.z * z; };
     return {sum(map.row_x.x, map.row_y.x, map.row_z.x), sum(map.row_x.y, map.row_y.y, map.row_z.y),
@@ -65,12 +65,12 @@ void CheckedFrame::add(std::uint32_t collider, const VerifiedSurface& surface) {
 
 void CheckedFrame::build() { triangles_ = TriangleTree(std::exchange(to_build_, {})); }
 
-Vec3 CheckedFrame::image(const Vec3& world, double time) const {
-    return frame_ ? image_by(frames_->at(*frame_, time).world_from_frame, world) : world;
+Vec3 CheckedFrame::local_position(const Vec3& world, double time) const {
+    return frame_ ? local_position_by(frames_->at(*frame_, time).world_from_frame, world) : world;
 }
 
 void CheckedFrame::append_sides(const Vec3& p, double time, std::vector<Side>& sides) const {
-    const Vec3 seen = image(p, time);
+    const Vec3 seen = local_position(p, time);
     for (const auto& [collider, plane] : planes_)
         sides.push_back(side_of(height_sign(plane.normal, plane.point, seen)));
     for (const auto& [collider, shape] : shapes_) sides.push_back(side_of(shape.side(seen)));
@@ -78,7 +78,7 @@ void CheckedFrame::append_sides(const Vec3& p, double time, std::vector<Side>& s
 }
 
 bool CheckedFrame::is_on_surface(const Vec3& p, double time) const {
-    const Vec3 seen = image(p, time);
+    const Vec3 seen = local_position(p, time);
     bool is_on = false;
     triangles_.near_segment(seen, seen,
                             [&](const NamedTriangle& t) { is_on = is_on || intersects(seen, seen, t.corners); });
@@ -87,8 +87,8 @@ bool CheckedFrame::is_on_surface(const Vec3& p, double time) const {
 
 void CheckedFrame::find_crossings(const Segment& segment, bool starts_on_surface,
                                   std::vector<Crossing>& crossings) const {
-    const Vec3 p = image(segment.from, segment.begin);
-    const Vec3 q = image(segment.to, segment.end);
+    const Vec3 p = local_position(segment.from, segment.begin);
+    const Vec3 q = local_position(segment.to, segment.end);
     const std::size_t first = crossings.size();
     for (const auto& [collider, plane] : planes_) {
         const int of_p = height_sign(plane.normal, plane.point, p);

@@ -62,7 +62,7 @@ public:
     template <class Found>
     void visit_overlapped(const Vec3& world, double time, double radius, double largest, double way,
                           const Found& found) const {
-        const Vec3 p = image(world, time);
+        const Vec3 p = local_position(world, time);
         if (frame_) largest = std::max(largest, max_abs(p) + way);
         const double least = radius - sphere_tolerance(radius, largest);
         if (!(least > 0.0)) return;
@@ -86,7 +86,7 @@ private:
         T surface;
     };
 
-    [[nodiscard]] Vec3 image(const Vec3& world, double time) const;
+    [[nodiscard]] Vec3 local_position(const Vec3& world, double time) const;
     [[nodiscard]] bool stays_away(const Segment& segment) const;
 
     std::shared_ptr<const FrameTree> frames_;

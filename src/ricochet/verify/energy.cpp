@@ -27,7 +27,7 @@ Long work(const Vec3& force, const MotionPart& part) {
 
 /// Returns the largest possible length of the path between both ends. The bound assumes that the speed exceeds both end
 /// speeds only by the effect of the forces.
-double longest_way(const MotionPart& part, double largest_force) {
+double longest_path(const MotionPart& part, double largest_force) {
     const double speed = std::max(length(part.begin.velocity), length(part.end.velocity));
     return part.duration * (speed + part.duration * largest_force);
 }
@@ -44,7 +44,7 @@ bool gains_energy(const MotionPart& part) {
     if (!part.forces_are_steady) {
         const double change = length(middle - first) + length(last - middle);
         most = (most + 4 * work(middle, part) + work(last, part)) / 6 +
-               static_cast<Long>(change) * longest_way(part, largest_force);
+               static_cast<Long>(change) * longest_path(part, largest_force);
     }
     const double offset = std::max(contact_offset(part.begin.position), contact_offset(part.end.position));
     const double rounding =

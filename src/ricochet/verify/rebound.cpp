@@ -49,32 +49,32 @@ bool has_wrong_rebound(const RecordedImpact& impact) {
         return std::fabs(before(impact, surface)) <= kHeldSpeed * scale;
     };
     // The interval may have touched both sides of a thin body, or may have left a surface.
-    const auto holds = [&](const RecordedImpact::Surface& surface) {
-        const bool is_listed =
-            std::find(impact.held_by.begin(), impact.held_by.end(), surface.surface) != impact.held_by.end();
-        return surface.holds || (is_listed && moves_along(surface));
+    const auto is_support = [&](const RecordedImpact::Surface& surface) {
+        const bool is_listed = std::find(impact.supported_by.begin(), impact.supported_by.end(), surface.surface) !=
+                               impact.supported_by.end();
+        return surface.is_support || (is_listed && moves_along(surface));
     };
     const auto is_hit = [&](const RecordedImpact::Surface& surface) {
-        return !holds(surface) && before(impact, surface) < 0.0;
+        return !is_support(surface) && before(impact, surface) < 0.0;
     };
     double restitution = 1.0;
     // In m/s. The impact treats it as zero, and the rebound off other surfaces changes by as much.
-    double held_speed = 0.0;
+    double constrained_speed = 0.0;
     std::size_t hit = 0;
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
-        if (holds(surface) && !moves_along(surface)) return true;
-        if (holds(surface)) held_speed += std::fabs(before(impact, surface));
+        if (is_support(surface) && !moves_along(surface)) return true;
+        if (is_support(surface)) constrained_speed += std::fabs(before(impact, surface));
         if (!is_hit(surface)) continue;
         ++hit;
         restitution = std::min(restitution, restitution_of(surface, -before(impact, surface)));
     }
     const double part = impact.surfaces.size() > 1 && hit != 1 ? kReboundInWedge : kReboundRounding;
-    const double rounding = part * scale + 2.0 * held_speed;
+    const double rounding = part * scale + 2.0 * constrained_speed;
     double least = std::numeric_limits<double>::infinity();
     for (const RecordedImpact::Surface& surface : impact.surfaces) {
         // Moreau's law allows a particle to return to a surface that it was leaving, at most e times as fast. The
         // particle hits that surface next.
-        const double rebound = holds(surface) ? 0.0 : -restitution * before(impact, surface);
+        const double rebound = is_support(surface) ? 0.0 : -restitution * before(impact, surface);
         const double more = after(impact, surface) - rebound;
         if (more < -rounding) return true;
         if (is_hit(surface)) least = std::min(least, more);

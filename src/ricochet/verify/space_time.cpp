@@ -148,7 +148,7 @@ Bounded<Real> dot_of(const Offset<Real>& a, const Offset<Real>& b) {
 
 /// Returns the offset from one moving point to another, over a part of the time.
 template <class Real>
-Offset<Real> offset_of(const Way& from, const Way& to, double begin, double end) {
+Offset<Real> offset_of(const StepPath& from, const StepPath& to, double begin, double end) {
     Offset<Real> offset;
     for (int axis = 0; axis < 3; ++axis) {
         const Real first = Real(to.from[axis]) - Real(from.from[axis]);
@@ -168,12 +168,12 @@ template <class Real>
 using Vector = std::array<Real, 3>;
 
 template <class Real>
-Vector<Real> at(const Way& way, double part) {
+Vector<Real> at(const StepPath& path, double part) {
     const Real rest = 1 - Real(part);
     Vector<Real> point;
     for (std::size_t k = 0; k < 3; ++k) {
         const int axis = static_cast<int>(k);
-        point[k] = rest * Real(way.from[axis]) + Real(part) * Real(way.to[axis]);
+        point[k] = rest * Real(path.from[axis]) + Real(part) * Real(path.to[axis]);
     }
     return point;
 }
@@ -233,10 +233,10 @@ Real part_of(const Vector<Real>& edge, const Vector<Real>& offset) {
 
 class Pair {
 public:
-    Pair(const Way& point, const MovingCorners& triangle)
+    Pair(const StepPath& point, const MovingCorners& triangle)
         : point_(point),
-          corners_{Way{triangle.from.a, triangle.to.a}, Way{triangle.from.b, triangle.to.b},
-                   Way{triangle.from.c, triangle.to.c}} {}
+          corners_{StepPath{triangle.from.a, triangle.to.a}, StepPath{triangle.from.b, triangle.to.b},
+                   StepPath{triangle.from.c, triangle.to.c}} {}
 
     bool is_apart(double begin, double end, int depth) {
         bool is_in_doubt = false;
@@ -309,14 +309,14 @@ private:
             return less(less(at<Real>(point_, time), first), times(part, along));
         };
         const Vector<Real> away = away_from_edge(middle);
-        const Vector<Real> way = less(away_from_edge(end), away_from_edge(begin));
+        const Vector<Real> path = less(away_from_edge(end), away_from_edge(begin));
         return {from_center,
                 across(less(c[1], c[0]), normal),
                 across(less(c[2], c[1]), normal),
                 across(less(c[0], c[2]), normal),
                 towards(normal, less(p, c[0])),
                 away,
-                towards(across(edge, way), away)};
+                towards(across(edge, path), away)};
     }
 
     template <class Real>
@@ -325,14 +325,14 @@ private:
                 Real(c[0][2] + c[1][2] + c[2][2])};
     }
 
-    Way point_;
-    std::array<Way, 3> corners_;
+    StepPath point_;
+    std::array<StepPath, 3> corners_;
     int pieces_ = 0;
 };
 
 }  // namespace
 
-bool are_apart(const Way& point, const MovingCorners& triangle) {
+bool are_apart(const StepPath& point, const MovingCorners& triangle) {
     return Pair(point, triangle).is_apart(0.0, 1.0, kDeepest);
 }
 

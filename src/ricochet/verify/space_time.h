@@ -9,7 +9,7 @@
 namespace ricochet::verify {
 
 /// A straight path at constant speed.
-struct Way {
+struct StepPath {
     Vec3 from;
     Vec3 to;
 };
@@ -22,6 +22,6 @@ struct MovingCorners {
 
 /// Returns true only if point and triangle have no common point at any time. The proof uses doubles if their error
 /// bound leaves no doubt, otherwise a hundred digits. The result is false if they touch, or are too close to decide.
-[[nodiscard]] bool are_apart(const Way& point, const MovingCorners& triangle);
+[[nodiscard]] bool are_apart(const StepPath& point, const MovingCorners& triangle);
 
 }  // namespace ricochet::verify

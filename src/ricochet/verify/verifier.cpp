@@ -171,10 +171,10 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
     const VerifiedStep& step = judged.step;
     if (!(step.radius > 0.0) || !is_finite(step.to)) return;
     double largest = std::max(max_abs(step.from), max_abs(step.to));
-    double way = 0.0;
+    double distance = 0.0;
     for (const Segment& segment : step.segments) {
         largest = std::max({largest, max_abs(segment.from), max_abs(segment.to)});
-        way += length(segment.to - segment.from);
+        distance += length(segment.to - segment.from);
     }
     struct Name {
         std::uint32_t collider;
@@ -187,7 +187,7 @@ void Verifier::Impl::check_distance(const Judged& judged, VerifiedParticle& part
         if (!first || name.order() < first->order()) first = name;
     };
     for (const CheckedFrame& frame : frames) {
-        frame.visit_overlapped(step.to, step.stored_time, step.radius, largest, way, consider);
+        frame.visit_overlapped(step.to, step.stored_time, step.radius, largest, distance, consider);
     }
     for (const CheckedDeformation& deformation : deformations) {
         deformation.visit_overlapped(step.to, step.stored_time, step.radius, largest, consider);

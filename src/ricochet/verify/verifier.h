@@ -38,7 +38,7 @@ enum class ViolationKind : std::uint8_t {
     overlap,     ///< a sphere is nearer to a surface than its radius, by more than 1e-12 of its radius and coordinates
     energy,      ///< the particle has gained energy from surfaces, or the recorded parts of its motion do not join
     pair_overlap,  ///< a sphere overlaps another, see verify/sphere_overlaps.h
-    pair_impact,   ///< an impact between spheres fails the audit, see verify/pair_books.h
+    pair_impact,   ///< an impact between spheres fails the audit, see verify/impact_audit.h
     rebound,       ///< the rebound of an impact does not agree with its surfaces
 };
 

@@ -212,10 +212,10 @@ private:
         return document_["meshes"].size() - 1;
     }
 
-    void add_node(const std::string& name, std::size_t mesh, const Vec3& place) {
+    void add_node(const std::string& name, std::size_t mesh, const Vec3& placement) {
         Json& nodes = document_["nodes"];
         document_["scenes"][0]["nodes"].push_back(nodes.size());
-        nodes.push_back({{"name", name}, {"mesh", mesh}, {"translation", list_of(y_up(place))}});
+        nodes.push_back({{"name", name}, {"mesh", mesh}, {"translation", list_of(y_up(placement))}});
     }
 
     std::filesystem::path path_;

@@ -45,34 +45,38 @@ struct BarTexts {
     [[nodiscard]] int below() const { return kLineHeight * (1 + static_cast<int>(note.size())); }
 };
 
-void write_numbers(Image& image, const ValueRange& range, const BarPlace& place, int y) {
+void write_numbers(Image& image, const ValueRange& range, const BarPosition& bar_position, int y) {
     const std::string low = bar_number(range.low);
     const std::string middle = bar_number(0.5 * (range.low + range.high));
     const std::string high = bar_number(range.high);
-    write_text(image, place.x, y, place.dot, low);
+    write_text(image, bar_position.x, y, bar_position.dot, low);
     const int widths = text_width(low) + text_width(middle) + text_width(high);
-    if ((widths + 2 * kLetterWidth) * place.dot < place.width) {
-        write_text(image, place.x + (place.width - text_width(middle) * place.dot) / 2, y, place.dot, middle);
+    if ((widths + 2 * kLetterWidth) * bar_position.dot < bar_position.width) {
+        write_text(image, bar_position.x + (bar_position.width - text_width(middle) * bar_position.dot) / 2, y,
+                   bar_position.dot, middle);
     }
-    write_text(image, place.x + place.width - text_width(high) * place.dot, y, place.dot, high);
+    write_text(image, bar_position.x + bar_position.width - text_width(high) * bar_position.dot, y, bar_position.dot,
+               high);
 }
 
-void draw_bar(Image& image, const ColorBar& bar, const BarPlace& place) {
-    const int dot = place.dot;
+void draw_bar(Image& image, const ColorBar& bar, const BarPosition& bar_position) {
+    const int dot = bar_position.dot;
     const BarTexts texts(bar, image.width, dot);
-    const int top = place.y - texts.above() * dot;
-    shade_rectangle(image, place.x - kColorBarMargin * dot / 2, top - kColorBarMargin * dot / 2,
-                    place.width + kColorBarMargin * dot,
-                    place.height + (texts.above() + texts.below() + kColorBarMargin) * dot, 0.35);
+    const int top = bar_position.y - texts.above() * dot;
+    shade_rectangle(image, bar_position.x - kColorBarMargin * dot / 2, top - kColorBarMargin * dot / 2,
+                    bar_position.width + kColorBarMargin * dot,
+                    bar_position.height + (texts.above() + texts.below() + kColorBarMargin) * dot, 0.35);
     int y = top;
-    for (const std::string& line : texts.title) write_text(image, place.x, y, dot, line), y += kLineHeight * dot;
-    for (int x = 0; x < place.width; ++x) {
-        const Vec3 color = map_color(bar.map, place.width == 1 ? 0.0 : static_cast<double>(x) / (place.width - 1));
-        for (int row = 0; row < place.height; ++row) set_pixel(image, place.x + x, place.y + row, color);
+    for (const std::string& line : texts.title) write_text(image, bar_position.x, y, dot, line), y += kLineHeight * dot;
+    for (int x = 0; x < bar_position.width; ++x) {
+        const Vec3 color =
+            map_color(bar.map, bar_position.width == 1 ? 0.0 : static_cast<double>(x) / (bar_position.width - 1));
+        for (int row = 0; row < bar_position.height; ++row)
+            set_pixel(image, bar_position.x + x, bar_position.y + row, color);
     }
-    y = place.y + place.height + 3 * dot;
-    write_numbers(image, bar.range, place, y);
-    for (const std::string& line : texts.note) y += kLineHeight * dot, write_text(image, place.x, y, dot, line);
+    y = bar_position.y + bar_position.height + 3 * dot;
+    write_numbers(image, bar.range, bar_position, y);
+    for (const std::string& line : texts.note) y += kLineHeight * dot, write_text(image, bar_position.x, y, dot, line);
 }
 
 }  // namespace
@@ -101,9 +105,9 @@ std::vector<std::string> broken_text(const std::string& text, std::size_t letter
     return lines;
 }
 
-std::vector<BarPlace> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
+std::vector<BarPosition> bar_places(int picture_width, int picture_height, const std::vector<ColorBar>& bars) {
     const int dot = dot_of(picture_width, picture_height);
-    std::vector<BarPlace> places;
+    std::vector<BarPosition> bar_positions;
     int x = 2 * kColorBarMargin;       // dots
     int bottom = 2 * kColorBarMargin;  // in dots, of the current row above the picture's lower edge
     int tallest = 0;                   // in dots, of the tallest bar in the row
@@ -114,18 +118,18 @@ std::vector<BarPlace> bar_places(int picture_width, int picture_height, const st
             bottom += tallest + 2 * kColorBarMargin;
             tallest = 0;
         }
-        places.push_back({x * dot, picture_height - (bottom + kDotsHigh + texts.below()) * dot, texts.width() * dot,
-                          kDotsHigh * dot, dot});
+        bar_positions.push_back({x * dot, picture_height - (bottom + kDotsHigh + texts.below()) * dot,
+                                 texts.width() * dot, kDotsHigh * dot, dot});
         x += texts.width() + 3 * kColorBarMargin;
         tallest = std::max(tallest, texts.above() + kDotsHigh + texts.below());
     }
-    return places;
+    return bar_positions;
 }
 
 void draw_color_bars(Image& image, const std::vector<ColorBar>& bars) {
     if (image.width < 200 || image.height < 100) return;
-    const std::vector<BarPlace> places = bar_places(image.width, image.height, bars);
-    for (std::size_t k = 0; k < bars.size(); ++k) draw_bar(image, bars[k], places[k]);
+    const std::vector<BarPosition> bar_positions = bar_places(image.width, image.height, bars);
+    for (std::size_t k = 0; k < bars.size(); ++k) draw_bar(image, bars[k], bar_positions[k]);
 }
 
 }  // namespace ricochet

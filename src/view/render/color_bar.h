@@ -20,7 +20,7 @@ struct ColorBar {
 };
 
 /// Position and size of a bar in a picture, in pixels, with x to the right and y down.
-struct BarPlace {
+struct BarPosition {
     int x = 0;
     int y = 0;
     int width = 0;
@@ -30,8 +30,8 @@ struct BarPlace {
 
 /// Returns the positions of the bars of a picture. Each bar is as wide as its texts need. Bars stand side by side, and
 /// wrap to a new row above if the picture is too narrow.
-[[nodiscard]] std::vector<BarPlace> bar_places(int picture_width, int picture_height,
-                                               const std::vector<ColorBar>& bars);
+[[nodiscard]] std::vector<BarPosition> bar_places(int picture_width, int picture_height,
+                                                  const std::vector<ColorBar>& bars);
 
 /// Breaks a text into lines of at most `letters` characters, between words if possible.
 [[nodiscard]] std::vector<std::string> broken_text(const std::string& text, std::size_t letters);

@@ -63,8 +63,8 @@ public:
     /// Returns the unit direction to a point of the disc. u and v are in 0..1.
     [[nodiscard]] Vec3 direction(double u, double v) const {
         const DiscPoint at = on_disc({u, v});
-        const Vec3 way = middle_ + at.x * across_ + at.y * along_;
-        return (1.0 / length(way)) * way;
+        const Vec3 spread = middle_ + at.x * across_ + at.y * along_;
+        return (1.0 / length(spread)) * spread;
     }
 
 private:

@@ -19,10 +19,10 @@ Vec3 between(const PathNode& a, const PathNode& b, double time) {
 // Returns an upper bound of the deviation of the path from its chord. It is an eighth of the largest second derivative
 // times the square of the duration. The second derivative of a cubic is largest at one of its ends.
 double bend(const PathNode& a, const PathNode& b) {
-    const Vec3 way = 6.0 * (b.position - a.position);
+    const Vec3 derivative = 6.0 * (b.position - a.position);
     const double span = b.time - a.time;
-    const Vec3 at_a = way - span * (4.0 * a.velocity_after + 2.0 * b.velocity_before);
-    const Vec3 at_b = span * (2.0 * a.velocity_after + 4.0 * b.velocity_before) - way;
+    const Vec3 at_a = derivative - span * (4.0 * a.velocity_after + 2.0 * b.velocity_before);
+    const Vec3 at_b = span * (2.0 * a.velocity_after + 4.0 * b.velocity_before) - derivative;
     return 0.125 * std::max(length(at_a), length(at_b));
 }
 

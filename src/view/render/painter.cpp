@@ -33,63 +33,65 @@ Painter::Painter(const Preview& preview, const Camera& camera, const PictureOpti
       extent_(tangent_ * length(camera.target - camera.position)),
       tile_(std::pow(10.0, std::floor(std::log10(0.4 * extent_)))) {}
 
-void Painter::pixels(std::span<const PixelPlace> places, std::span<PixelLight> out, const KnownSpheres& known) const {
+void Painter::pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
+                     const KnownSpheres& known) const {
     std::array<std::optional<PixelSamples>, kPacketRays> samples;
-    std::vector<PixelSum> sums(places.size(), PixelSum(options_.exposure));
+    std::vector<PixelSum> sums(pixel_positions.size(), PixelSum(options_.exposure));
     std::array<Look, kPacketRays> room;
     Hits hits;
-    const std::span looks(room.data(), places.size());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        samples[k].emplace(places[k].x, places[k].y);
+    const std::span looks(room.data(), pixel_positions.size());
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
+        samples[k].emplace(pixel_positions[k].x, pixel_positions[k].y);
         looks[k].samples = &*samples[k];
     }
     for (int s = 0; s < options_.samples; ++s) {
-        for (std::size_t k = 0; k < places.size(); ++k) aim(looks[k], places[k], s);
+        for (std::size_t k = 0; k < pixel_positions.size(); ++k) aim(looks[k], pixel_positions[k], s);
         trace(looks, known, hits);
         add_sun_light(looks, known.shadows);
         add_sky_light(looks, known.shadows);
-        for (std::size_t k = 0; k < places.size(); ++k) add(looks[k], sums[k]);
+        for (std::size_t k = 0; k < pixel_positions.size(); ++k) add(looks[k], sums[k]);
     }
-    if (options_.samples < kGlances) add_glances(places, looks, sums, known);
-    for (std::size_t k = 0; k < places.size(); ++k) out[k] = sums[k].mean();
+    if (options_.samples < kGlances) add_glances(pixel_positions, looks, sums, known);
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) out[k] = sums[k].mean();
 }
 
 // Sets the camera ray for a sample of a pixel.
-void Painter::aim(Look& look, const PixelPlace& place, int sample) const {
+void Painter::aim(Look& look, const PixelPosition& pixel_position, int sample) const {
     look.sample = sample;
     const SamplePair at = look.get(SamplePurpose::pixel);
     const SamplePair lens = camera_.aperture > 0.0 ? look.get(SamplePurpose::lens) : SamplePair{};
-    look.ray = camera_ray(place.x + at.u, place.y + at.v, lens);
+    look.ray = camera_ray(pixel_position.x + at.u, pixel_position.y + at.v, lens);
     look.ray.time = look.samples->time(sample);
 }
 
 // Returns the number of extra rays per pixel. Pixels get more rays if their samples see different things or can have
 // missed an outline. Their neighbours get some rays too, because their samples can have missed small objects.
-std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPlace> places, std::span<const PixelSum> sums,
-                                                  const KnownSpheres& known) const {
+std::array<int, kPacketRays> Painter::rays_wanted(std::span<const PixelPosition> pixel_positions,
+                                                  std::span<const PixelSum> sums, const KnownSpheres& known) const {
     constexpr int kBeside = 4;
     constexpr double kHalfDiagonal = 1.42;  // in units of half a pixel
     std::array<bool, kPacketRays> outlines{};
     if (known.listed && !known.listed->empty()) {
         std::array<PreviewRay, kPacketRays> middles;
-        for (std::size_t k = 0; k < places.size(); ++k) {
-            middles[k] = camera_ray(places[k].x + 0.5, places[k].y + 0.5, {});
+        for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
+            middles[k] = camera_ray(pixel_positions[k].x + 0.5, pixel_positions[k].y + 0.5, {});
             middles[k].reach = sums[k].farthest();
         }
-        outlines = outlines_about(std::span(middles.data(), places.size()), *known.listed, kHalfDiagonal * half_pixel_);
+        outlines = outlines_about(std::span(middles.data(), pixel_positions.size()), *known.listed,
+                                  kHalfDiagonal * half_pixel_);
     }
     std::array<int, kPacketRays> wanted{};
-    for (std::size_t k = 0; k < places.size(); ++k) wanted[k] = sums[k].rays_wanted(outlines[k]);
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) wanted[k] = sums[k].rays_wanted(outlines[k]);
     const int beside = std::min(kBeside, *std::max_element(wanted.begin(), wanted.end()));
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         if (!outlines[k]) wanted[k] = std::max(wanted[k], beside);
     }
     return wanted;
 }
 
 // Adds more rays from the camera and to the sun.
-void Painter::add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums,
-                          const KnownSpheres& known) const {
+void Painter::add_glances(std::span<const PixelPosition> pixel_positions, std::span<Look> looks,
+                          std::span<PixelSum> sums, const KnownSpheres& known) const {
     std::array<Look, kPacketRays> room;
     Hits hits;
     std::array<PixelSum*, kPacketRays> whose{};
@@ -100,12 +102,12 @@ void Painter::add_glances(std::span<const PixelPlace> places, std::span<Look> lo
         for (std::size_t j = 0; j < count; ++j) whose[j]->add(glance(room[j]));
         count = 0;
     };
-    const std::array<int, kPacketRays> wanted = rays_wanted(places, sums, known);
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    const std::array<int, kPacketRays> wanted = rays_wanted(pixel_positions, sums, known);
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         const int end = std::min(kGlances, options_.samples + wanted[k]);
         for (int s = options_.samples; s < end; ++s) {
             room[count].samples = looks[k].samples;
-            aim(room[count], places[k], s);
+            aim(room[count], pixel_positions[k], s);
             whose[count++] = &sums[k];
             if (count == kPacketRays) look_at_all();
         }
@@ -146,23 +148,23 @@ Glance Painter::glance(const Look& look) const {
 
 std::optional<Vec3> Painter::sun_middle() const { return light_.has_sun() ? std::optional(sun_middle_) : std::nullopt; }
 
-void Painter::quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
+void Painter::quick_pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                            std::span<const SphereFind> finds, const SunShadows* shadows) const {
     std::array<PreviewRay, kPacketRays> room;
     std::array<std::optional<PreviewHit>, kPacketRays> hits;
     std::array<SunAsk, kPacketRays> asks;
-    const std::span rays(room.data(), places.size());
-    for (std::size_t k = 0; k < places.size(); ++k) {
-        rays[k] = camera_ray(places[k].x + 0.5, places[k].y + 0.5, {});
+    const std::span rays(room.data(), pixel_positions.size());
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
+        rays[k] = camera_ray(pixel_positions[k].x + 0.5, pixel_positions[k].y + 0.5, {});
         rays[k].time = 1.0;
     }
-    trace_besides(rays, std::span(hits.data(), places.size()), finds);
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    trace_besides(rays, std::span(hits.data(), pixel_positions.size()), finds);
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         asks[k].hit = hits[k] ? &*hits[k] : nullptr;
         asks[k].to_sun = sun_middle_;
     }
-    ask_sun(std::span(asks.data(), places.size()), shadows);
-    for (std::size_t k = 0; k < places.size(); ++k) {
+    ask_sun(std::span(asks.data(), pixel_positions.size()), shadows);
+    for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
         const PreviewHit* const hit = asks[k].hit;
         const bool open = options_.transparent && hit == nullptr;
         const Vec3 behind = open             ? Vec3{}

@@ -23,7 +23,7 @@
 namespace ricochet {
 
 /// Column and row of a pixel.
-struct PixelPlace {
+struct PixelPosition {
     int x = 0;
     int y = 0;
 };
@@ -44,11 +44,12 @@ public:
 
     /// Computes the pixels of one tile. `out` has as many entries as `places`. `known` describes the spheres visible
     /// there.
-    void pixels(std::span<const PixelPlace> places, std::span<PixelLight> out, const KnownSpheres& known = {}) const;
+    void pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
+                const KnownSpheres& known = {}) const;
     /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` holds the
     /// visible spheres, as many as `places`. `shadows` holds the spheres' shadows towards sun_middle(). Without them,
     /// rays find both.
-    void quick_pixels(std::span<const PixelPlace> places, std::span<PixelLight> out,
+    void quick_pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                       std::span<const SphereFind> finds = {}, const SunShadows* shadows = nullptr) const;
     /// Returns the direction to the middle of the sun, or nothing without a sun.
     [[nodiscard]] std::optional<Vec3> sun_middle() const;
@@ -84,11 +85,11 @@ private:
 
     [[nodiscard]] PreviewRay camera_ray(double x, double y, const SamplePair& lens) const;
     void trace(std::span<Look> looks, const KnownSpheres& known, Hits& hits) const;
-    void aim(Look& look, const PixelPlace& place, int sample) const;
+    void aim(Look& look, const PixelPosition& pixel_position, int sample) const;
     void add(const Look& look, PixelSum& sum) const;
-    void add_glances(std::span<const PixelPlace> places, std::span<Look> looks, std::span<PixelSum> sums,
+    void add_glances(std::span<const PixelPosition> pixel_positions, std::span<Look> looks, std::span<PixelSum> sums,
                      const KnownSpheres& known) const;
-    [[nodiscard]] std::array<int, kPacketRays> rays_wanted(std::span<const PixelPlace> places,
+    [[nodiscard]] std::array<int, kPacketRays> rays_wanted(std::span<const PixelPosition> pixel_positions,
                                                            std::span<const PixelSum> sums,
                                                            const KnownSpheres& known) const;
     [[nodiscard]] Glance glance(const Look& look) const;

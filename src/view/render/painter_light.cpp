@@ -17,11 +17,11 @@ constexpr double kMirror = 0.3;  // smoother surfaces reflect their surroundings
 // Returns a point on the lamp's disc, which faces the surface. The point lies in front of the surface. u and v are in
 // 0..1.
 Vec3 point_of(const Lamp& lamp, const PreviewHit& hit, double u, double v) {
-    const Vec3 way = lamp.position - hit.point;
-    const auto [a, b] = tangent_frame(normalized(way));
+    const Vec3 to_light = lamp.position - hit.point;
+    const auto [a, b] = tangent_frame(normalized(to_light));
     const DiscPoint at = on_disc({u, v});
-    const Vec3 off = std::min(lamp.radius, 0.5 * length(way)) * (at.x * a + at.y * b);
-    return dot(hit.normal, way + off) > 0.0 ? lamp.position + off : lamp.position - off;
+    const Vec3 off = std::min(lamp.radius, 0.5 * length(to_light)) * (at.x * a + at.y * b);
+    return dot(hit.normal, to_light + off) > 0.0 ? lamp.position + off : lamp.position - off;
 }
 
 }  // namespace
@@ -153,9 +153,9 @@ void Painter::add_sky_light(std::span<Look> looks, const SunShadows* shadows) co
 // estimates the sum of all lamps.
 Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
     const auto given = [&](const Lamp& lamp) {
-        const Vec3 way = lamp.position - hit.point;
-        const double distance = std::max(length(way), lamp.radius);
-        return std::max(0.0, dot(hit.normal, way)) / (distance * distance * distance);
+        const Vec3 to_light = lamp.position - hit.point;
+        const double distance = std::max(length(to_light), lamp.radius);
+        return std::max(0.0, dot(hit.normal, to_light)) / (distance * distance * distance);
     };
     double total = 0.0;
     for (const Lamp& lamp : lamps_) total += given(lamp) * luminance(lamp.intensity);
@@ -173,8 +173,8 @@ Vec3 Painter::lamp_light(const PreviewHit& hit, const SamplePair& at) const {
         if (left < 0.0) break;
     }
     const Vec3 start = off_surface(hit) + hit.lift;
-    const Vec3 way = point_of(*chosen, hit, within, at.v) - start;
-    if (preview_.occluded({start, normalized(way), hit.time, length(way)})) return {};
+    const Vec3 to_light = point_of(*chosen, hit, within, at.v) - start;
+    if (preview_.occluded({start, normalized(to_light), hit.time, length(to_light)})) return {};
     return chosen->intensity * (total / luminance(chosen->intensity));
 }
 

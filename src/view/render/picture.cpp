@@ -39,9 +39,9 @@ struct Sampled {
     NoisyPicture picture;
     std::vector<float> alpha;
 
-    void store(const PixelPlace& place, const PixelLight& pixel) {
-        const std::size_t index = static_cast<std::size_t>(place.y) * static_cast<std::size_t>(picture.width) +
-                                  static_cast<std::size_t>(place.x);
+    void store(const PixelPosition& pixel_position, const PixelLight& pixel) {
+        const std::size_t index = static_cast<std::size_t>(pixel_position.y) * static_cast<std::size_t>(picture.width) +
+                                  static_cast<std::size_t>(pixel_position.x);
         picture.light[index] = single(pixel.light);
         if (!alpha.empty()) alpha[index] = static_cast<float>(pixel.alpha);
         if (picture.features.empty()) return;
@@ -91,7 +91,7 @@ LaidOver laid_over_each_other(std::span<const Sprites> layers, const Preview& pr
 // Calls paint(places, lights) for the tiles of rows [begin, end) of a picture, and stores the results.
 template <class Paint>
 void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
-    std::array<PixelPlace, kPacketRays> places;
+    std::array<PixelPosition, kPacketRays> pixel_positions;
     std::array<PixelLight, kPacketRays> lights;
     const int width = out.picture.width;
     for (int top = begin; top < end; top += kTileHeight) {
@@ -99,10 +99,10 @@ void paint_tiles(int begin, int end, Sampled& out, const Paint& paint) {
             poll_loop_stop();
             std::size_t count = 0;
             for (int y = top; y < std::min(top + kTileHeight, end); ++y) {
-                for (int x = left; x < std::min(left + kTileWidth, width); ++x) places[count++] = {x, y};
+                for (int x = left; x < std::min(left + kTileWidth, width); ++x) pixel_positions[count++] = {x, y};
             }
-            paint(std::span<const PixelPlace>(places.data(), count), std::span(lights.data(), count));
-            for (std::size_t k = 0; k < count; ++k) out.store(places[k], lights[k]);
+            paint(std::span<const PixelPosition>(pixel_positions.data(), count), std::span(lights.data(), count));
+            for (std::size_t k = 0; k < count; ++k) out.store(pixel_positions[k], lights[k]);
         }
     }
 }
@@ -127,13 +127,14 @@ public:
             view_.find(begin / SphereView::band_rows(), finds);
         }
         std::array<SphereFind, kPacketRays> here;
-        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
-            for (std::size_t k = 0; k < places.size() && !finds.empty(); ++k) {
-                here[k] = finds[static_cast<std::size_t>(places[k].y - begin) * static_cast<std::size_t>(width_) +
-                                static_cast<std::size_t>(places[k].x)];
+        paint_tiles(begin, end, out, [&](std::span<const PixelPosition> pixel_positions, std::span<PixelLight> lights) {
+            for (std::size_t k = 0; k < pixel_positions.size() && !finds.empty(); ++k) {
+                here[k] =
+                    finds[static_cast<std::size_t>(pixel_positions[k].y - begin) * static_cast<std::size_t>(width_) +
+                          static_cast<std::size_t>(pixel_positions[k].x)];
             }
-            const std::span<const SphereFind> seen(here.data(), finds.empty() ? 0 : places.size());
-            painter.quick_pixels(places, lights, seen, shadows_ ? &*shadows_ : nullptr);
+            const std::span<const SphereFind> seen(here.data(), finds.empty() ? 0 : pixel_positions.size());
+            painter.quick_pixels(pixel_positions, lights, seen, shadows_ ? &*shadows_ : nullptr);
         });
     }
 
@@ -169,11 +170,11 @@ public:
         constexpr std::size_t kMost = 256;  // spheres of a tile; above this, rays are faster
         SphereTiles tiles;
         if (view_) tiles = view_->tiles(begin, end, kTileWidth);
-        paint_tiles(begin, end, out, [&](std::span<const PixelPlace> places, std::span<PixelLight> lights) {
+        paint_tiles(begin, end, out, [&](std::span<const PixelPosition> pixel_positions, std::span<PixelLight> lights) {
             KnownSpheres known{{}, shadows_ ? &*shadows_ : nullptr};
-            if (view_) known.listed = tiles.of(static_cast<std::size_t>(places[0].x / kTileWidth));
+            if (view_) known.listed = tiles.of(static_cast<std::size_t>(pixel_positions[0].x / kTileWidth));
             if (known.listed && known.listed->size() > kMost) known.listed.reset();
-            painter.pixels(places, lights, known);
+            painter.pixels(pixel_positions, lights, known);
         });
     }
 

@@ -85,16 +85,17 @@ void Preview::Impl::take_spheres(PreviewSpheres&& source) {
     spheres = {};
     sphere_ways.clear();
     has_sphere_rays = false;
-    const bool moves = !source.ways.empty();
+    const bool moves = !source.shutter_paths.empty();
     for (std::size_t i = 0; i < source.centers.size(); ++i) {
-        const bool on_the_way = !moves || std::all_of(source.ways[i].begin(), source.ways[i].end(), drawable);
+        const bool on_the_way =
+            !moves || std::all_of(source.shutter_paths[i].begin(), source.shutter_paths[i].end(), drawable);
         const bool has_size = source.radii[i] > 0.0 && source.radii[i] < kLargestDrawn;
         if (!on_the_way || !drawable(source.centers[i]) || !has_size) continue;
-        spheres.centers.push_back(moves ? source.ways[i].back() : source.centers[i]);
+        spheres.centers.push_back(moves ? source.shutter_paths[i].back() : source.centers[i]);
         spheres.radii.push_back(source.radii[i]);
         spheres.colors.push_back(source.colors[i]);
         if (!source.emissions.empty()) spheres.emissions.push_back(source.emissions[i]);
-        if (moves) sphere_ways.push_back(std::move(source.ways[i]));
+        if (moves) sphere_ways.push_back(std::move(source.shutter_paths[i]));
     }
 }
 

@@ -43,7 +43,7 @@ struct PreviewSpheres {
     std::vector<Vec3> colors;
     /// Positions of each sphere at evenly spaced times from shutter open to shutter close. All spheres have the same
     /// number of positions, 2 to 129. Empty for spheres at rest.
-    std::vector<std::vector<Vec3>> ways{};
+    std::vector<std::vector<Vec3>> shutter_paths{};
     std::vector<Vec3> emissions{};  ///< emitted light; empty: no sphere emits light
 };
 
@@ -79,11 +79,11 @@ struct GlowingLine {
 /// Copies of the shapes of Preview::set_shapes(), or of a ball of radius 1. All vectors have the same length; the last
 /// three can be empty.
 struct PreviewCopies {
-    std::vector<AffineMap> places;  ///< from shape coordinates to world coordinates, at shutter close
+    std::vector<AffineMap> placements;  ///< from shape coordinates to world coordinates, at shutter close
     std::vector<Vec3> colors;
-    std::vector<std::vector<Vec3>> ways{};  ///< path of the shape's origin, as for spheres; the linear map stays
-                                            ///< constant
-    std::vector<Vec3> emissions{};          ///< emitted light
+    std::vector<std::vector<Vec3>> shutter_paths{};  ///< path of the shape's origin, as for spheres; the linear map
+                                                     ///< stays constant
+    std::vector<Vec3> emissions{};  ///< emitted light
     /// Shape of each copy, counted from 1, or 0 for a ball. Empty: all copies use the first shape, or a ball if no
     /// shape is set.
     std::vector<std::uint32_t> shapes{};

@@ -49,12 +49,12 @@ void ShapeCopies::set_shapes(RTCDevice device, std::vector<TriangleMesh> shapes)
 
 RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& copies, const Vec3& origin) {
     copies_.clear();
-    ways_.clear();
+    shutter_paths_.clear();
     const std::uint32_t common = shapes_.empty() ? 0 : 1;
-    for (std::size_t i = 0; i < copies.places.size(); ++i) {
-        const AffineMap& map = copies.places[i];
-        const bool on_the_way =
-            copies.ways.empty() || std::all_of(copies.ways[i].begin(), copies.ways[i].end(), drawable);
+    for (std::size_t i = 0; i < copies.placements.size(); ++i) {
+        const AffineMap& map = copies.placements[i];
+        const bool on_the_way = copies.shutter_paths.empty() ||
+                                std::all_of(copies.shutter_paths[i].begin(), copies.shutter_paths[i].end(), drawable);
         if (!on_the_way || !is_drawable(map)) continue;
         copies_.push_back({inverse_of(map),
                            map.translation - origin,
@@ -62,14 +62,15 @@ RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& co
                            copies.colors[i],
                            copies.emissions.empty() ? Vec3{} : copies.emissions[i],
                            copies.shapes.empty() ? common : copies.shapes[i]});
-        if (copies.ways.empty()) continue;
-        ways_.push_back(copies.ways[i]);
-        for (Vec3& point : ways_.back()) point -= origin;
+        if (copies.shutter_paths.empty()) continue;
+        shutter_paths_.push_back(copies.shutter_paths[i]);
+        for (Vec3& point : shutter_paths_.back()) point -= origin;
     }
     if (copies_.empty()) return nullptr;
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(copies_.size()));
-    rtcSetGeometryTimeStepCount(geometry, ways_.empty() ? 1U : static_cast<unsigned>(ways_[0].size()));
+    rtcSetGeometryTimeStepCount(geometry,
+                                shutter_paths_.empty() ? 1U : static_cast<unsigned>(shutter_paths_[0].size()));
     rtcSetGeometryUserData(geometry, this);
     rtcSetGeometryBoundsFunction(geometry, &write_bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, &intersect);
@@ -78,18 +79,18 @@ RTCGeometry ShapeCopies::make_geometry(RTCDevice device, const PreviewCopies& co
 }
 
 Vec3 ShapeCopies::center_at(std::size_t copy, double time) const {
-    if (ways_.empty()) return copies_[copy].center;
-    const std::vector<Vec3>& way = ways_[copy];
-    const double at = std::clamp(time, 0.0, 1.0) * static_cast<double>(way.size() - 1);
-    const std::size_t before = std::min(static_cast<std::size_t>(at), way.size() - 2);
+    if (shutter_paths_.empty()) return copies_[copy].center;
+    const std::vector<Vec3>& shutter_path = shutter_paths_[copy];
+    const double at = std::clamp(time, 0.0, 1.0) * static_cast<double>(shutter_path.size() - 1);
+    const std::size_t before = std::min(static_cast<std::size_t>(at), shutter_path.size() - 2);
     const double part = at - static_cast<double>(before);
-    return (1.0 - part) * way[before] + part * way[before + 1];
+    return (1.0 - part) * shutter_path[before] + part * shutter_path[before + 1];
 }
 
 void ShapeCopies::write_bounds(const RTCBoundsFunctionArguments* args) {
     const auto& self = *static_cast<const ShapeCopies*>(args->geometryUserPtr);
     const Copy& copy = self.copies_[args->primID];
-    const Vec3 center = self.ways_.empty() ? copy.center : self.ways_[args->primID][args->timeStep];
+    const Vec3 center = self.shutter_paths_.empty() ? copy.center : self.shutter_paths_[args->primID][args->timeStep];
     // The box is widened to cover single-precision rounding.
     constexpr double kWider = 1.0 + 1e-5;
     const double rounding = 1e-6 * max_abs(center);

@@ -67,7 +67,7 @@ private:
 
     std::vector<Shape> shapes_;
     std::vector<Copy> copies_;
-    std::vector<std::vector<Vec3>> ways_;  // relative to the origin; empty if no copy moves
+    std::vector<std::vector<Vec3>> shutter_paths_;  // relative to the origin; empty if no copy moves
 };
 
 }  // namespace ricochet

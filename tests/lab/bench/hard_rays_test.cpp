@@ -96,7 +96,7 @@ TEST_P(HardRaysBeside, PlainEmbreeErrsOftenAndTheExactQueriesNever) {
 INSTANTIATE_TEST_SUITE_P(At, HardRaysBeside,
                          ::testing::Values(HardPlace{"origin", 0.0, 1.0}, HardPlace{"far_away", 1e8, 1.0},
                                            HardPlace{"large", 0.0, 0x1p40}, HardPlace{"small", 0.0, 0x1p-40}),
-                         [](const auto& place) { return std::string(place.param.name); });
+                         [](const auto& placement) { return std::string(placement.param.name); });
 
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

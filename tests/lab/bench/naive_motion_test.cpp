@@ -19,9 +19,9 @@ namespace RICOCHET_FILE {
 
 /// Returns a box of 2 m that is centred on the origin at 0 s and moves along x at the given speed, in m/s.
 NaiveMotion box_at(double speed) {
-    const KeyedTranslation way{KeyedCurve<Vec3>({{0.0, {}}, {100.0, {100.0 * speed, 0, 0}}})};
-    const auto frames =
-        std::make_shared<const FrameTree>(std::vector<FrameDescription>{{"box", "", {}, {0, 0, 1}, 0.0, {way}}});
+    const KeyedTranslation translation{KeyedCurve<Vec3>({{0.0, {}}, {100.0, {100.0 * speed, 0, 0}}})};
+    const auto frames = std::make_shared<const FrameTree>(
+        std::vector<FrameDescription>{{"box", "", {}, {0, 0, 1}, 0.0, {translation}}});
     const auto mesh = std::make_shared<const TriangleMesh>(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
     return NaiveMotion({{"box", MeshShape{mesh, {}, ""}, 0, "box"}}, frames);
 }

@@ -22,20 +22,22 @@ TEST(ColorBar, ShowsItsMapFromTheLowestToTheHighestColor) {
     Image image = grey(640, 360);
     const std::vector<ColorBar> bars = {{"speed", "m/s", {0.0, 12.5}, ColorMap::plasma}};
     draw_color_bars(image, bars);
-    const BarPlace place = bar_places(640, 360, bars)[0];
+    const BarPosition bar_position = bar_places(640, 360, bars)[0];
     const auto near = [](const std::array<int, 3>& pixel, std::array<int, 3> expected) {
         for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], expected[c], 1);
     };
-    near(image.pixel(place.x, place.y), {0x0d, 0x08, 0x87});
-    near(image.pixel(place.x + place.width - 1, place.y + place.height - 1), {0xf0, 0xf9, 0x21});
+    near(image.pixel(bar_position.x, bar_position.y), {0x0d, 0x08, 0x87});
+    near(image.pixel(bar_position.x + bar_position.width - 1, bar_position.y + bar_position.height - 1),
+         {0xf0, 0xf9, 0x21});
     EXPECT_EQ(image.pixel(639, 0), (std::array<int, 3>{128, 128, 128}));
 }
 
 TEST(ColorBar, BarsStandInsideThePictureBesideEachOther) {
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {1920, 1080}, {480, 480}}) {
-        const std::vector<BarPlace> places = bar_places(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
-        const BarPlace& first = places[0];
-        const BarPlace& second = places[1];
+        const std::vector<BarPosition> bar_positions =
+            bar_places(width, height, {{"speed", "m/s", {}}, {"hits", "", {}}});
+        const BarPosition& first = bar_positions[0];
+        const BarPosition& second = bar_positions[1];
         EXPECT_GT(second.x, first.x + first.width);
         EXPECT_LT(second.x + second.width, width);
         EXPECT_LT(first.y + first.height + kLetterHeight * first.dot, height);
@@ -47,13 +49,13 @@ TEST(ColorBar, ShowsTheWholeLabel) {
     const std::string name = "a_very_long_name_of_an_attribute_that_somebody_has_thought_of";
     for (const auto& [width, height] : {std::pair{640, 360}, {1280, 720}, {200, 400}, {1000, 120}}) {
         const std::vector<ColorBar> bars = {{name, "m/s", {0.0, 1.0}}, {name, "K", {0.0, 1.0}}};
-        const std::vector<BarPlace> places = bar_places(width, height, bars);
-        for (const BarPlace& place : places) {
-            EXPECT_GE(place.x, 0);
-            EXPECT_LE(place.x + place.width, width);
+        const std::vector<BarPosition> bar_positions = bar_places(width, height, bars);
+        for (const BarPosition& bar_position : bar_positions) {
+            EXPECT_GE(bar_position.x, 0);
+            EXPECT_LE(bar_position.x + bar_position.width, width);
         }
-        const bool is_beside = places[1].x > places[0].x + places[0].width;
-        EXPECT_TRUE(is_beside || places[1].y + places[1].height < places[0].y);
+        const bool is_beside = bar_positions[1].x > bar_positions[0].x + bar_positions[0].width;
+        EXPECT_TRUE(is_beside || bar_positions[1].y + bar_positions[1].height < bar_positions[0].y);
         std::string whole;
         for (const std::string& line : broken_text(name + " (m/s)", 29)) {
             EXPECT_LE(line.size(), 29U);
@@ -65,11 +67,11 @@ TEST(ColorBar, ShowsTheWholeLabel) {
     Image image = grey(960, 540);
     const std::vector<ColorBar> bars = {{"unsimulated_time_of_all", "s", {0.0, 1.0}}};
     draw_color_bars(image, bars);
-    const BarPlace place = bar_places(960, 540, bars)[0];
-    EXPECT_GE(place.width, text_width("unsimulated_time_of_all (s)"));
+    const BarPosition bar_position = bar_places(960, 540, bars)[0];
+    EXPECT_GE(bar_position.width, text_width("unsimulated_time_of_all (s)"));
     bool is_lit = false;
-    for (int y = place.y - kLetterHeight - 3; y < place.y; ++y) {
-        for (int x = place.x + place.width - 5; x < place.x + place.width; ++x) {
+    for (int y = bar_position.y - kLetterHeight - 3; y < bar_position.y; ++y) {
+        for (int x = bar_position.x + bar_position.width - 5; x < bar_position.x + bar_position.width; ++x) {
             is_lit = is_lit || image.pixel(x, y)[0] > 200;
         }
     }
@@ -92,10 +94,12 @@ TEST(ColorBar, ANoteStandsBelowTheNumbers) {
     const int line = kLetterHeight + 3;
     EXPECT_EQ(bar_places(960, 540, noted)[0].y, bar_places(960, 540, plain)[0].y - line);
     draw_color_bars(image, noted);
-    const BarPlace place = bar_places(960, 540, noted)[0];
+    const BarPosition bar_position = bar_places(960, 540, noted)[0];
     bool is_lit = false;
-    for (int y = place.y + place.height + 3 + line; y < place.y + place.height + 3 + 2 * line; ++y) {
-        for (int x = place.x; x < place.x + place.width; ++x) is_lit = is_lit || image.pixel(x, y)[0] > 200;
+    for (int y = bar_position.y + bar_position.height + 3 + line;
+         y < bar_position.y + bar_position.height + 3 + 2 * line; ++y) {
+        for (int x = bar_position.x; x < bar_position.x + bar_position.width; ++x)
+            is_lit = is_lit || image.pixel(x, y)[0] > 200;
     }
     EXPECT_TRUE(is_lit);
 }

@@ -64,7 +64,7 @@ TEST(Lamps, GlowingParticleLightsTheFloorByTheInverseSquareAndCastsShadows) {
         options.lighting = Lighting::night;
         // The camera looks past the ball: the floor below the spark is in the middle of the picture.
         const Painter painter(preview, {{0, -6, 6}, {0, 0, 0}, {0, 0, 1}, 40.0}, options, lamps);
-        const PixelPlace middle{kSize / 2, kSize / 2};
+        const PixelPosition middle{kSize / 2, kSize / 2};
         PixelLight pixel;
         painter.pixels(std::span(&middle, 1), std::span(&pixel, 1));
         return pixel.light.x / kExposure;
@@ -98,7 +98,7 @@ TEST(Lamps, ShadowsOfAGlowingParticleAreAsSoftAsItIsWide) {
         preview.prepare_sphere_rays();
         // The camera looks from the open side, below the screen.
         const Camera camera{{x - 6, 0, 0.9}, {x, 0, 0}, {0, 0, 1}, 40.0};
-        const PixelPlace middle{256, 256};
+        const PixelPosition middle{256, 256};
         PixelLight pixel;
         Painter(preview, camera, options, lamps).pixels(std::span(&middle, 1), std::span(&pixel, 1));
         return pixel.light.x;

@@ -114,8 +114,8 @@ TEST(MotionPath, BlurredBallIsDrawnAroundTheCorner) {
     const std::vector<PathNode> nodes{
         node(0.0, {-0.4, 0, 0.3}, {4, 0, -6}), {0.1, hit, {4, 0, -6}, {4, 0, 6}}, node(0.2, {0.4, 0, 0.3}, {4, 0, 6})};
     PreviewSpheres ball{{{0.4, 0, 0.3}}, {0.03}, {{0.8, 0.8, 0.8}}};
-    ball.ways.resize(1);
-    for (int step = 0; step <= 64; ++step) ball.ways[0].push_back(position_on_path(nodes, 0.2 * step / 64.0));
+    ball.shutter_paths.resize(1);
+    for (int step = 0; step <= 64; ++step) ball.shutter_paths[0].push_back(position_on_path(nodes, 0.2 * step / 64.0));
     Preview preview({}, {}, {});
     preview.set_spheres(ball);
     PictureOptions options;

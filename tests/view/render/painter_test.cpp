@@ -85,9 +85,9 @@ TEST(Painter, ShadowHasNoHighlightOfTheSun) {
         if (screened) meshes.push_back(square(4.0 * to_sun, to_sun, 1.5, 1.0));
         const Preview preview(std::move(meshes), {}, {});
         preview.prepare_sphere_rays();
-        const PixelPlace place{4, 4};
+        const PixelPosition pixel_position{4, 4};
         PixelLight pixel;
-        Painter(preview, camera, options, {}).pixels(std::span(&place, 1), std::span(&pixel, 1));
+        Painter(preview, camera, options, {}).pixels(std::span(&pixel_position, 1), std::span(&pixel, 1));
         return luminance(pixel.light);
     };
     EXPECT_GT(brightness(0.4, false), 1.1 * brightness(1.0, false));
@@ -106,9 +106,9 @@ TEST(Painter, PlanesCarryAChequerUnlessTheyArePlain) {
         const Painter painter(preview, camera, options, {});
         double least = 1.0;
         for (int x = 0; x < options.width; ++x) {
-            const PixelPlace place{x, 11};
+            const PixelPosition pixel_position{x, 11};
             PixelLight pixel;
-            painter.pixels(std::span(&place, 1), std::span(&pixel, 1));
+            painter.pixels(std::span(&pixel_position, 1), std::span(&pixel, 1));
             least = std::min(least, pixel.albedo.x);
         }
         return least;
@@ -140,9 +140,9 @@ TEST(Painter, LensBlursUnfocusedObjectsByTheThinLensRule) {
         const Painter painter(preview, camera, options);
         int count = 0;
         for (int x = 0; x < kSize; ++x) {
-            const PixelPlace place{x, kSize / 2};
+            const PixelPosition pixel_position{x, kSize / 2};
             PixelLight pixel;
-            painter.pixels(std::span(&place, 1), std::span(&pixel, 1));
+            painter.pixels(std::span(&pixel_position, 1), std::span(&pixel, 1));
             count += pixel.light.x > 0.0 ? 1 : 0;
         }
         return count;
@@ -187,13 +187,13 @@ TEST(Painter, PictureDoesNotDependOnTheMethodThatFindsSpheres) {
     for (int y = 0; y < kSize; y += 2) {
         const SphereTiles tiles = view.tiles(y, y + 2, 4);
         for (int x = 0; x < kSize; x += 4) {
-            std::array<PixelPlace, kPacketRays> places;
-            for (int k = 0; k < 8; ++k) places[static_cast<std::size_t>(k)] = {x + k % 4, y + k / 4};
+            std::array<PixelPosition, kPacketRays> pixel_positions;
+            for (int k = 0; k < 8; ++k) pixel_positions[static_cast<std::size_t>(k)] = {x + k % 4, y + k / 4};
             std::array<PixelLight, kPacketRays> by_rays;
             std::array<PixelLight, kPacketRays> known;
-            painter.pixels(places, by_rays);
-            painter.pixels(places, known, {tiles.of(static_cast<std::size_t>(x / 4)), &shadows});
-            for (std::size_t k = 0; k < places.size(); ++k) {
+            painter.pixels(pixel_positions, by_rays);
+            painter.pixels(pixel_positions, known, {tiles.of(static_cast<std::size_t>(x / 4)), &shadows});
+            for (std::size_t k = 0; k < pixel_positions.size(); ++k) {
                 if (length(known[k].light - by_rays[k].light) > 1e-3) ++differing;
             }
         }
@@ -210,10 +210,10 @@ TEST(Painter, GrainSmallerThanTheRoundingErrorIsLit) {
     options.background = Vec3{};
     const Camera camera{{0, 0, 0}, {0, 1e14, 0}, {0, 0, 1}, 45.0};
     const Painter painter(preview, camera, options);
-    const PixelPlace place{0, 0};
+    const PixelPosition pixel_position{0, 0};
     const SphereFind find{1e14, 0};
     PixelLight light;
-    painter.quick_pixels(std::span(&place, 1), std::span(&light, 1), std::span(&find, 1));
+    painter.quick_pixels(std::span(&pixel_position, 1), std::span(&light, 1), std::span(&find, 1));
     EXPECT_GT(luminance(light.light), 0.01);
 }
 
@@ -235,11 +235,11 @@ TEST(Painter, DraftDoesNotDependOnTheMethodThatFindsSpheres) {
     for (int y = 0; y < kSize; ++y) {
         if (y % SphereView::band_rows() == 0) view.find(y / SphereView::band_rows(), finds);
         for (int x = 0; x < kSize; ++x) {
-            const PixelPlace place{x, y};
+            const PixelPosition pixel_position{x, y};
             const auto row = static_cast<std::size_t>(y % SphereView::band_rows());
             std::array<PixelLight, 2> lights;
-            painter.quick_pixels(std::span(&place, 1), std::span(lights).first(1));
-            painter.quick_pixels(std::span(&place, 1), std::span(lights).subspan(1),
+            painter.quick_pixels(std::span(&pixel_position, 1), std::span(lights).first(1));
+            painter.quick_pixels(std::span(&pixel_position, 1), std::span(lights).subspan(1),
                                  std::span(finds).subspan(row * kSize + static_cast<std::size_t>(x), 1), &shadows);
             if (length(lights[0].light - lights[1].light) > 1e-3) ++differing;
         }

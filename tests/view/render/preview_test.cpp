@@ -171,7 +171,7 @@ Preview crowd() {
         moving.spheres.radii.push_back(0.05 + 0.2 * draws.uniform());
         moving.spheres.colors.push_back({draws.uniform(), 0, 0});
         const Vec3 at = 2.0 * draws.in_unit_ball();
-        moving.copies.places.push_back({{0.3, 0, 0}, {0, 0.2, 0}, {0, 0, 0.3}, at});
+        moving.copies.placements.push_back({{0.3, 0, 0}, {0, 0.2, 0}, {0, 0, 0.3}, at});
         moving.copies.colors.push_back({0, draws.uniform(), 0});
         moving.copies.shapes.push_back(i % 2 == 0 ? 1 : 0);
     }

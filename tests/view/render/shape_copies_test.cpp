@@ -28,7 +28,7 @@ TEST(ShapeCopies, StretchedBallIsAnEllipsoid) {
     Preview preview({}, {}, {});
     // The half axes are 2, 1 and 0.5.
     PreviewMoving moving;
-    moving.copies.places = {{{2, 0, 0}, {0, 1, 0}, {0, 0, 0.5}, {10, 0, 0}}};
+    moving.copies.placements = {{{2, 0, 0}, {0, 1, 0}, {0, 0, 0.5}, {10, 0, 0}}};
     moving.copies.colors = {{0.1, 0.2, 0.3}};
     preview.set_moving(moving);
     const auto end = preview.trace({{20, 0, 0}, {-1, 0, 0}});
@@ -62,7 +62,7 @@ TEST(ShapeCopies, CopyOfAMeshIsTheTransformedMesh) {
         Preview preview({}, {}, {});
         preview.set_shape(shard());
         PreviewMoving moving;
-        moving.copies.places = {map};
+        moving.copies.placements = {map};
         moving.copies.colors = {{1, 0, 0}};
         preview.set_moving(moving);
         for (int ray = 0; ray < 50; ++ray) {
@@ -83,9 +83,9 @@ TEST(ShapeCopies, CopyOfAMeshIsTheTransformedMesh) {
 TEST(ShapeCopies, CopyIsAtItsPositionAtTheTimeOfTheRay) {
     Preview preview({}, {}, {});
     PreviewMoving moving;
-    moving.copies.places = {placed({}, {8, 0, 0})};
+    moving.copies.placements = {placed({}, {8, 0, 0})};
     moving.copies.colors = {{1, 0, 0}};
-    moving.copies.ways = {{{0, 0, 0}, {4, 0, 0}, {8, 0, 0}}};
+    moving.copies.shutter_paths = {{{0, 0, 0}, {4, 0, 0}, {8, 0, 0}}};
     preview.set_moving(moving);
     for (const double time : {0.0, 0.25, 0.5, 1.0}) {
         EXPECT_TRUE(preview.trace({{8.0 * time, 0, 5}, {0, 0, -1}, time})) << time;
@@ -97,7 +97,7 @@ TEST(ShapeCopies, CopiesWithoutSizeOrPositionAreLeftOut) {
     Preview preview({}, {}, {});
     PreviewMoving moving;
     const double nan = std::nan("");
-    moving.copies.places = {
+    moving.copies.placements = {
         placed({}, {nan, 0, 0}), {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, placed({}, {3, 0, 0})};
     moving.copies.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     preview.set_moving(moving);

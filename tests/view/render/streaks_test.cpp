@@ -50,7 +50,7 @@ double floor_red(const PreviewLines& lines) {
     options.lighting = Lighting::night;
     const Camera camera{{0, -0.6, 0.6}, {0, 0, 0}, {0, 0, 1}, 40.0};
     const Painter painter(preview, camera, options, lamps_of({}, preview.glowing_lines(), 48));
-    const PixelPlace middle{32, 32};
+    const PixelPosition middle{32, 32};
     PixelLight pixel;
     painter.pixels(std::span(&middle, 1), std::span(&pixel, 1));
     return pixel.light.x / kExposure;

@@ -13,16 +13,16 @@ public:
     explicit NameCounts(FaceNameKind kind) : kind_(kind) {}
 
     void add(std::string_view name, std::size_t triangles) {
-        const auto [place, is_new] = places_.try_emplace(name, names_.size());
+        const auto [slot, is_new] = slots_.try_emplace(name, names_.size());
         if (is_new) names_.push_back({kind_, std::string(name), 0});
-        names_[place->second].triangles += triangles;
+        names_[slot->second].triangles += triangles;
     }
     [[nodiscard]] const std::vector<NamedTriangles>& names() const { return names_; }
 
 private:
     FaceNameKind kind_;
     std::vector<NamedTriangles> names_;
-    std::map<std::string_view, std::size_t> places_;  // index in names_; the texts outlive this object
+    std::map<std::string_view, std::size_t> slots_;  // index in names_; the texts outlive this object
 };
 
 // Adds a line of `g` and its words. A word that occurs twice in the line counts once.

@@ -20,7 +20,7 @@ constexpr std::uint64_t kUint16 = 5123;
 constexpr std::uint64_t kUint32 = 5125;
 constexpr std::uint64_t kFloat = 5126;
 
-std::size_t bytes_of_type(const GltfPlace& place, std::uint64_t type) {
+std::size_t bytes_of_type(const GltfLocation& location, std::uint64_t type) {
     switch (type) {
         case kInt8:
         case kUint8:
@@ -32,7 +32,7 @@ std::size_t bytes_of_type(const GltfPlace& place, std::uint64_t type) {
         case kFloat:
             return 4;
         default:
-            place.fail(fmt::format("found the componentType {}, expected 5120 to 5123, 5125 or 5126", type));
+            location.fail(fmt::format("found the componentType {}, expected 5120 to 5123, 5125 or 5126", type));
     }
 }
 
@@ -59,28 +59,28 @@ double integer_at(const char* at, bool is_normalized) {
 }
 
 // Returns the bytes from an offset on, after checking that they suffice for `count` elements.
-std::string_view require_bytes(const GltfPlace& place, std::string_view view, std::uint64_t count, std::size_t stride,
-                               std::size_t element) {
-    const std::uint64_t offset = place.whole_number("byteOffset", 0);
+std::string_view require_bytes(const GltfLocation& location, std::string_view view, std::uint64_t count,
+                               std::size_t stride, std::size_t element) {
+    const std::uint64_t offset = location.whole_number("byteOffset", 0);
     const std::uint64_t needed = count == 0 ? 0 : (count - 1) * stride + element;
     if (offset > view.size() || needed > view.size() - offset) {
-        place.fail(fmt::format("{} elements need {} bytes from byte {} on, but its bufferView has {}", count, needed,
-                               offset, view.size()));
+        location.fail(fmt::format("{} elements need {} bytes from byte {} on, but its bufferView has {}", count, needed,
+                                  offset, view.size()));
     }
     return view.substr(offset);
 }
 
-std::uint64_t count_in(const GltfPlace& place) {
-    const std::uint64_t count = place.at("count").whole_number();
+std::uint64_t count_in(const GltfLocation& location) {
+    const std::uint64_t count = location.at("count").whole_number();
     if (count > kLargestIndexCount) {
-        place.fail(fmt::format("found the count {}, expected at most {}", count, kLargestIndexCount));
+        location.fail(fmt::format("found the count {}, expected at most {}", count, kLargestIndexCount));
     }
     return count;
 }
 
 }  // namespace
 
-GltfAccessor::GltfAccessor(const GltfPlace& accessor, GltfBuffers& buffers, std::size_t components)
+GltfAccessor::GltfAccessor(const GltfLocation& accessor, GltfBuffers& buffers, std::size_t components)
     : components_(components),
       type_(accessor.at("componentType").whole_number()),
       component_bytes_(bytes_of_type(accessor, type_)),
@@ -110,7 +110,7 @@ GltfAccessor::GltfAccessor(const GltfPlace& accessor, GltfBuffers& buffers, std:
     if (accessor.has("sparse")) read_sparse(accessor, buffers);
 }
 
-GltfAccessor GltfAccessor::of_points(const GltfPlace& accessor, GltfBuffers& buffers, bool quantized) {
+GltfAccessor GltfAccessor::of_points(const GltfLocation& accessor, GltfBuffers& buffers, bool quantized) {
     GltfAccessor points(accessor, buffers, 3);
     const bool is_small = points.type_ != kFloat && points.type_ != kUint32;
     if (points.type_ != kFloat && !(quantized && is_small)) {
@@ -122,7 +122,7 @@ GltfAccessor GltfAccessor::of_points(const GltfPlace& accessor, GltfBuffers& buf
     return points;
 }
 
-GltfAccessor GltfAccessor::of_indices(const GltfPlace& accessor, GltfBuffers& buffers) {
+GltfAccessor GltfAccessor::of_indices(const GltfLocation& accessor, GltfBuffers& buffers) {
     GltfAccessor indices(accessor, buffers, 1);
     if (!is_index_type(indices.type_) || indices.is_normalized_) {
         accessor.fail("indices are unsigned integers (componentType 5121, 5123 or 5125), not normalized");
@@ -130,13 +130,13 @@ GltfAccessor GltfAccessor::of_indices(const GltfPlace& accessor, GltfBuffers& bu
     return indices;
 }
 
-void GltfAccessor::read_sparse(const GltfPlace& accessor, GltfBuffers& buffers) {
-    const GltfPlace sparse = accessor.at("sparse");
+void GltfAccessor::read_sparse(const GltfLocation& accessor, GltfBuffers& buffers) {
+    const GltfLocation sparse = accessor.at("sparse");
     const std::uint64_t count = count_in(sparse);
     if (count == 0 || count > count_) {
         sparse.fail(fmt::format("found the count {}, expected 1 to the accessor's {}", count, count_));
     }
-    const GltfPlace indices = sparse.at("indices");
+    const GltfLocation indices = sparse.at("indices");
     const std::uint64_t type = indices.at("componentType").whole_number();
     if (!is_index_type(type)) indices.fail("found another componentType, expected 5121, 5123 or 5125");
     const std::size_t size = bytes_of_type(indices, type);
@@ -152,8 +152,8 @@ void GltfAccessor::read_sparse(const GltfPlace& accessor, GltfBuffers& buffers) 
     read_sparse_values(sparse, buffers);
 }
 
-void GltfAccessor::read_sparse_values(const GltfPlace& sparse, GltfBuffers& buffers) {
-    const GltfPlace values = sparse.at("values");
+void GltfAccessor::read_sparse_values(const GltfLocation& sparse, GltfBuffers& buffers) {
+    const GltfLocation values = sparse.at("values");
     const std::size_t element = components_ * component_bytes_;
     sparse_values_ =
         require_bytes(values, buffers.view(values, "bufferView").bytes, sparse_indices_.size(), element, element);
@@ -162,8 +162,8 @@ void GltfAccessor::read_sparse_values(const GltfPlace& sparse, GltfBuffers& buff
 const char* GltfAccessor::element(std::size_t i) const {
     const auto found = std::lower_bound(sparse_indices_.begin(), sparse_indices_.end(), i);
     if (found != sparse_indices_.end() && *found == i) {
-        const auto place = static_cast<std::size_t>(found - sparse_indices_.begin());
-        return sparse_values_.data() + place * components_ * component_bytes_;
+        const auto location = static_cast<std::size_t>(found - sparse_indices_.begin());
+        return sparse_values_.data() + location * components_ * component_bytes_;
     }
     return bytes_.data() == nullptr ? nullptr : bytes_.data() + i * stride_;
 }

@@ -24,7 +24,7 @@ int base64_digit(char c) {
     return c == '/' || c == '_' ? 63 : kNoDigit;
 }
 
-std::string decode_base64(const GltfPlace& uri, std::string_view text) {
+std::string decode_base64(const GltfLocation& uri, std::string_view text) {
     while (!text.empty() && text.back() == '=') text.remove_suffix(1);
     if (text.size() % 4 == 1) uri.fail("its base64 data is cut off");
     require_memory(static_cast<double>(text.size()), "a buffer of a glTF file");
@@ -51,7 +51,7 @@ int hex_digit(char c) {
 }
 
 // Decodes percent-encoded bytes, such as "%20" for a blank.
-std::string without_percents(const GltfPlace& uri, std::string_view text) {
+std::string without_percents(const GltfLocation& uri, std::string_view text) {
     std::string plain;
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] != '%') {
@@ -74,7 +74,7 @@ bool is_within(const fs::path& path, const fs::path& folder) {
 
 // Returns the path of the file that a buffer names. It must be beside the glTF file or in a folder below, also after
 // following links.
-fs::path file_below(const GltfPlace& uri, const fs::path& folder) {
+fs::path file_below(const GltfLocation& uri, const fs::path& folder) {
     const std::string name = without_percents(uri, uri.text());
     const fs::path path(name);
     const bool climbs = std::find(path.begin(), path.end(), "..") != path.end();
@@ -93,7 +93,7 @@ fs::path file_below(const GltfPlace& uri, const fs::path& folder) {
 
 }  // namespace
 
-GltfBuffers::GltfBuffers(const GltfPlace& document, GltfSurroundings surroundings)
+GltfBuffers::GltfBuffers(const GltfLocation& document, GltfSurroundings surroundings)
     : buffers_(document.items("buffers")),
       views_(document.items("bufferViews")),
       surroundings_(std::move(surroundings)) {}
@@ -110,8 +110,8 @@ std::size_t GltfBuffers::bytes_of_files() const {
     return sum;
 }
 
-GltfBuffers::View GltfBuffers::view(const GltfPlace& owner, std::string_view key) {
-    const GltfPlace view = views_[owner.at(key).index_below(views_.size(), "bufferViews")];
+GltfBuffers::View GltfBuffers::view(const GltfLocation& owner, std::string_view key) {
+    const GltfLocation view = views_[owner.at(key).index_below(views_.size(), "bufferViews")];
     const std::string_view bytes = buffer(view.at("buffer").index_below(buffers_.size(), "buffers"));
     const std::uint64_t offset = view.whole_number("byteOffset", 0);
     const std::uint64_t length = view.at("byteLength").whole_number();
@@ -130,7 +130,7 @@ GltfBuffers::View GltfBuffers::view(const GltfPlace& owner, std::string_view key
 std::string_view GltfBuffers::buffer(std::size_t number) {
     const auto [entry, is_new] = known_.try_emplace(number);
     if (is_new) {
-        const GltfPlace buffer = buffers_[number];
+        const GltfLocation buffer = buffers_[number];
         const std::uint64_t length = buffer.at("byteLength").whole_number();
         const std::string_view bytes = bytes_of(number, buffer);
         if (length > bytes.size()) {
@@ -141,7 +141,7 @@ std::string_view GltfBuffers::buffer(std::size_t number) {
     return entry->second;
 }
 
-std::string_view GltfBuffers::bytes_of(std::size_t number, const GltfPlace& buffer) {
+std::string_view GltfBuffers::bytes_of(std::size_t number, const GltfLocation& buffer) {
     if (!buffer.has("uri")) {
         if (number != 0 || !surroundings_.chunk) {
             buffer.fail(
@@ -150,7 +150,7 @@ std::string_view GltfBuffers::bytes_of(std::size_t number, const GltfPlace& buff
         }
         return *surroundings_.chunk;
     }
-    const GltfPlace uri = buffer.at("uri");
+    const GltfLocation uri = buffer.at("uri");
     const std::string_view text = uri.text();
     if (!text.starts_with("data:")) return file_bytes(uri);
     const std::size_t comma = text.find(',');
@@ -161,7 +161,7 @@ std::string_view GltfBuffers::bytes_of(std::size_t number, const GltfPlace& buff
     return decoded_[number] = decode_base64(uri, text.substr(comma + 1));
 }
 
-std::string_view GltfBuffers::file_bytes(const GltfPlace& uri) {
+std::string_view GltfBuffers::file_bytes(const GltfLocation& uri) {
     if (!surroundings_.folder) uri.fail("names a file, expected its data in the glTF file itself");
     const fs::path path = file_below(uri, *surroundings_.folder);
     const auto found = read_.find(path);

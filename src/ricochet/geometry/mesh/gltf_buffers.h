@@ -26,7 +26,7 @@ struct GltfSurroundings {
 /// Bytes of buffers. Each buffer is fetched once, at its first use.
 class GltfBuffers {
 public:
-    GltfBuffers(const GltfPlace& document, GltfSurroundings surroundings);
+    GltfBuffers(const GltfLocation& document, GltfSurroundings surroundings);
 
     /// A buffer view: its bytes and the stride from one element to the next (0: no gaps).
     struct View {
@@ -35,7 +35,7 @@ public:
     };
     /// Returns the buffer view with the index stored under `key`. Throws InputError if the buffer or the view is
     /// shorter than declared.
-    [[nodiscard]] View view(const GltfPlace& owner, std::string_view key);
+    [[nodiscard]] View view(const GltfLocation& owner, std::string_view key);
 
     /// Returns the files that were read, sorted by name.
     [[nodiscard]] std::vector<std::filesystem::path> files() const;
@@ -44,8 +44,8 @@ public:
 
 private:
     [[nodiscard]] std::string_view buffer(std::size_t number);
-    [[nodiscard]] std::string_view bytes_of(std::size_t number, const GltfPlace& buffer);
-    [[nodiscard]] std::string_view file_bytes(const GltfPlace& uri);
+    [[nodiscard]] std::string_view bytes_of(std::size_t number, const GltfLocation& buffer);
+    [[nodiscard]] std::string_view file_bytes(const GltfLocation& uri);
 
     GltfList buffers_;
     GltfList views_;
@@ -59,9 +59,9 @@ private:
 class GltfAccessor {
 public:
     /// Makes an accessor of points: three floats each, or small integers with KHR_mesh_quantization.
-    [[nodiscard]] static GltfAccessor of_points(const GltfPlace& accessor, GltfBuffers& buffers, bool quantized);
+    [[nodiscard]] static GltfAccessor of_points(const GltfLocation& accessor, GltfBuffers& buffers, bool quantized);
     /// Makes an accessor of indices: one unsigned integer each.
-    [[nodiscard]] static GltfAccessor of_indices(const GltfPlace& accessor, GltfBuffers& buffers);
+    [[nodiscard]] static GltfAccessor of_indices(const GltfLocation& accessor, GltfBuffers& buffers);
 
     [[nodiscard]] std::size_t size() const { return count_; }
     /// Returns the point as in the file, finite or not.
@@ -71,10 +71,10 @@ public:
     [[nodiscard]] std::uint32_t no_index() const;
 
 private:
-    GltfAccessor(const GltfPlace& accessor, GltfBuffers& buffers, std::size_t components);
+    GltfAccessor(const GltfLocation& accessor, GltfBuffers& buffers, std::size_t components);
 
-    void read_sparse(const GltfPlace& accessor, GltfBuffers& buffers);
-    void read_sparse_values(const GltfPlace& sparse, GltfBuffers& buffers);
+    void read_sparse(const GltfLocation& accessor, GltfBuffers& buffers);
+    void read_sparse_values(const GltfLocation& sparse, GltfBuffers& buffers);
     [[nodiscard]] const char* element(std::size_t i) const;
     [[nodiscard]] double component(const char* at) const;
 

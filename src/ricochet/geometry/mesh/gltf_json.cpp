@@ -188,33 +188,33 @@ GltfValue parse_gltf_json(const MeshSource& source, std::string_view text) {
     return root;
 }
 
-void GltfPlace::fail(const std::string& what) const {
+void GltfLocation::fail(const std::string& what) const {
     source_->fail(path_.empty() ? what : fmt::format("{}: {}", path_, what));
 }
 
-void GltfPlace::fail_expected(std::string_view what) const {
+void GltfLocation::fail_expected(std::string_view what) const {
     fail(fmt::format("found {}, expected {}", described(*value_), what));
 }
 
-GltfPlace GltfPlace::at(std::string_view key) const {
+GltfLocation GltfLocation::at(std::string_view key) const {
     const GltfValue* found = value_->find(key);
     if (found == nullptr) fail(fmt::format("\"{}\" is missing", key));
     return {*source_, *found, path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key)};
 }
 
-GltfList GltfPlace::items(std::string_view key) const {
+GltfList GltfLocation::items(std::string_view key) const {
     if (!has(key)) return {*source_, nullptr, ""};
-    const GltfPlace list = at(key);
+    const GltfLocation list = at(key);
     const auto* values = std::get_if<GltfValue::Array>(&list.value_->value);
     if (values == nullptr) list.fail_expected("a list");
     return {*source_, values, list.path_};
 }
 
-GltfPlace GltfList::operator[](std::size_t i) const {
+GltfLocation GltfList::operator[](std::size_t i) const {
     return {*source_, (*items_)[i], fmt::format("{}[{}]", path_, i)};
 }
 
-std::uint64_t GltfPlace::whole_number() const {
+std::uint64_t GltfLocation::whole_number() const {
     // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in range.
     constexpr double kLargest = 9007199254740992.0;
     if (const auto* whole = std::get_if<std::uint64_t>(&value_->value)) {
@@ -228,52 +228,52 @@ std::uint64_t GltfPlace::whole_number() const {
     fail_expected("a whole number >= 0 that a file can hold");
 }
 
-double GltfPlace::number() const {
+double GltfLocation::number() const {
     if (const auto* whole = std::get_if<std::uint64_t>(&value_->value)) return static_cast<double>(*whole);
     const auto* number = std::get_if<double>(&value_->value);
     if (number == nullptr || !std::isfinite(*number)) fail_expected("a finite number");
     return *number;
 }
 
-const std::string& GltfPlace::text() const {
+const std::string& GltfLocation::text() const {
     const auto* text = std::get_if<std::string>(&value_->value);
     if (text == nullptr) fail_expected("a text");
     return *text;
 }
 
-std::uint32_t GltfPlace::index_below(std::size_t count, std::string_view what) const {
+std::uint32_t GltfLocation::index_below(std::size_t count, std::string_view what) const {
     const std::uint64_t index = whole_number();
     if (index >= count) fail(fmt::format("found {}, but the file has {} {}", index, count, what));
     return static_cast<std::uint32_t>(index);
 }
 
-std::uint64_t GltfPlace::whole_number(std::string_view key, std::uint64_t otherwise) const {
+std::uint64_t GltfLocation::whole_number(std::string_view key, std::uint64_t otherwise) const {
     return has(key) ? at(key).whole_number() : otherwise;
 }
 
-bool GltfPlace::flag(std::string_view key, bool otherwise) const {
+bool GltfLocation::flag(std::string_view key, bool otherwise) const {
     if (!has(key)) return otherwise;
-    const GltfPlace place = at(key);
-    const auto* flag = std::get_if<bool>(&place.value_->value);
-    if (flag == nullptr) place.fail_expected("true or false");
+    const GltfLocation location = at(key);
+    const auto* flag = std::get_if<bool>(&location.value_->value);
+    if (flag == nullptr) location.fail_expected("true or false");
     return *flag;
 }
 
-std::string GltfPlace::text(std::string_view key) const { return has(key) ? at(key).text() : std::string(); }
+std::string GltfLocation::text(std::string_view key) const { return has(key) ? at(key).text() : std::string(); }
 
-std::optional<std::uint32_t> GltfPlace::index_below(std::string_view key, std::size_t count,
-                                                    std::string_view what) const {
+std::optional<std::uint32_t> GltfLocation::index_below(std::string_view key, std::size_t count,
+                                                       std::string_view what) const {
     if (!has(key)) return std::nullopt;
     return at(key).index_below(count, what);
 }
 
-std::vector<double> GltfPlace::numbers(std::string_view key, std::size_t count) const {
-    const GltfList places = items(key);
-    if (has(key) && places.size() != count) {
-        at(key).fail(fmt::format("found {} numbers, expected {}", places.size(), count));
+std::vector<double> GltfLocation::numbers(std::string_view key, std::size_t count) const {
+    const GltfList locations = items(key);
+    if (has(key) && locations.size() != count) {
+        at(key).fail(fmt::format("found {} numbers, expected {}", locations.size(), count));
     }
     std::vector<double> numbers;
-    for (std::size_t i = 0; i < places.size(); ++i) numbers.push_back(places[i].number());
+    for (std::size_t i = 0; i < locations.size(); ++i) numbers.push_back(locations[i].number());
     return numbers;
 }
 

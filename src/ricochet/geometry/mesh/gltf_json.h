@@ -43,7 +43,7 @@ struct GltfMember {
 /// twice. Throws also if more than 4 million values would be stored.
 [[nodiscard]] GltfValue parse_gltf_json(const MeshSource& source, std::string_view text);
 
-class GltfPlace;
+class GltfLocation;
 
 /// The items of a list. Valid as long as the source and the document exist.
 class GltfList {
@@ -53,7 +53,7 @@ public:
         : source_(&source), items_(items), path_(std::move(path)) {}
 
     [[nodiscard]] std::size_t size() const { return items_ == nullptr ? 0 : items_->size(); }
-    [[nodiscard]] GltfPlace operator[](std::size_t i) const;
+    [[nodiscard]] GltfLocation operator[](std::size_t i) const;
 
 private:
     const MeshSource* source_;
@@ -64,9 +64,9 @@ private:
 /// A value that knows its location in the JSON, such as `accessors[3].count`, for messages. Each access checks that the
 /// requested value exists and has the right kind. Otherwise it throws an InputError that states the found value. Valid
 /// as long as the source and the document exist.
-class GltfPlace {
+class GltfLocation {
 public:
-    GltfPlace(const MeshSource& source, const GltfValue& value, std::string path)
+    GltfLocation(const MeshSource& source, const GltfValue& value, std::string path)
         : source_(&source), value_(&value), path_(std::move(path)) {}
 
     /// Throws InputError "file: path: what".
@@ -74,7 +74,7 @@ public:
 
     [[nodiscard]] bool has(std::string_view key) const { return value_->find(key) != nullptr; }
     /// Returns the value of a required key.
-    [[nodiscard]] GltfPlace at(std::string_view key) const;
+    [[nodiscard]] GltfLocation at(std::string_view key) const;
     /// Returns the items of the list under a key, or an empty list if the key is missing.
     [[nodiscard]] GltfList items(std::string_view key) const;
 

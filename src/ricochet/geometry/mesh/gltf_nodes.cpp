@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 8> kHarmless = {
 
 // Applies a rotation. It is divided by the square of the quaternion's length, so quarter turns are exact for any
 // rounding of the square root of 1/2.
-void turn(AffineMap& map, const GltfPlace& node, const std::vector<double>& q) {
+void turn(AffineMap& map, const GltfLocation& node, const std::vector<double>& q) {
     const double x = q[0];
     const double y = q[1];
     const double z = q[2];
@@ -35,14 +35,14 @@ void turn(AffineMap& map, const GltfPlace& node, const std::vector<double>& q) {
     map.row_z = {2.0 * (x * z - w * y) / n, 2.0 * (y * z + w * x) / n, 1.0 - 2.0 * (x * x + y * y) / n};
 }
 
-AffineMap map_of_matrix(const GltfPlace& node, const std::vector<double>& m) {
+AffineMap map_of_matrix(const GltfLocation& node, const std::vector<double>& m) {
     if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0) {
         node.fail("the last row of its matrix is not 0 0 0 1");
     }
     return {{m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}, {m[12], m[13], m[14]}};
 }
 
-AffineMap parent_from(const GltfPlace& node) {
+AffineMap parent_from(const GltfLocation& node) {
     const std::vector<double> matrix = node.numbers("matrix", 16);
     const std::vector<double> translation = node.numbers("translation", 3);
     const std::vector<double> rotation = node.numbers("rotation", 4);
@@ -66,7 +66,7 @@ AffineMap parent_from(const GltfPlace& node) {
 
 class NodeWalk {
 public:
-    explicit NodeWalk(const GltfPlace& document)
+    explicit NodeWalk(const GltfLocation& document)
         : document_(document),
           nodes_(document.items("nodes")),
           meshes_(document.items("meshes")),
@@ -109,7 +109,7 @@ private:
         }
     }
 
-    void walk_scene(const GltfPlace& scene) {
+    void walk_scene(const GltfLocation& scene) {
         const GltfList roots = scene.items("nodes");
         for (std::size_t r = 0; r < roots.size(); ++r) {
             const std::uint32_t root = roots[r].index_below(nodes_.size(), "nodes");
@@ -137,7 +137,7 @@ private:
     }
 
     void enter(std::uint32_t number, const AffineMap& world_from_parent, std::optional<std::uint32_t> named) {
-        const GltfPlace node = nodes_[number];
+        const GltfLocation node = nodes_[number];
         if (is_hidden(node)) {
             ++hidden_nodes_;
             return;
@@ -151,13 +151,13 @@ private:
         open_.push_back({number, 0, world, named});
     }
 
-    static bool is_hidden(const GltfPlace& node) {
+    static bool is_hidden(const GltfLocation& node) {
         if (!node.has("extensions") || !node.at("extensions").has(kGltfVisibility)) return false;
         return !node.at("extensions").at(kGltfVisibility).flag("visible", true);
     }
 
     // Refuses meshes that are posed by anything other than their node.
-    static void require_rigid(const GltfPlace& node, const GltfPlace& mesh) {
+    static void require_rigid(const GltfLocation& node, const GltfLocation& mesh) {
         if (node.has("skin")) {
             node.fail(
                 "its mesh is posed by the joints of a skin, which are not followed: apply the armature before "
@@ -172,7 +172,7 @@ private:
         }
     }
 
-    const GltfPlace& document_;
+    const GltfLocation& document_;
     GltfList nodes_;
     GltfList meshes_;
     std::vector<bool> has_parent_;
@@ -182,7 +182,7 @@ private:
     std::size_t hidden_nodes_ = 0;
 };
 
-bool lists(const GltfPlace& document, std::string_view key, std::string_view name) {
+bool lists(const GltfLocation& document, std::string_view key, std::string_view name) {
     const GltfList extensions = document.items(key);
     for (std::size_t i = 0; i < extensions.size(); ++i) {
         if (extensions[i].text() == name) return true;
@@ -192,9 +192,9 @@ bool lists(const GltfPlace& document, std::string_view key, std::string_view nam
 
 }  // namespace
 
-GltfScenery placed_gltf_meshes(const GltfPlace& document) { return NodeWalk(document).walk(); }
+GltfScenery placed_gltf_meshes(const GltfLocation& document) { return NodeWalk(document).walk(); }
 
-void require_known_extensions(const GltfPlace& document) {
+void require_known_extensions(const GltfLocation& document) {
     if (lists(document, "extensionsUsed", kInstancing)) {
         document.fail(fmt::format("uses {} (copies of meshes), which is not followed: export without it", kInstancing));
     }
@@ -217,6 +217,6 @@ void require_known_extensions(const GltfPlace& document) {
     }
 }
 
-bool uses_quantization(const GltfPlace& document) { return lists(document, "extensionsUsed", kQuantization); }
+bool uses_quantization(const GltfLocation& document) { return lists(document, "extensionsUsed", kQuantization); }
 
 }  // namespace ricochet

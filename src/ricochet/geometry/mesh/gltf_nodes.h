@@ -27,12 +27,12 @@ struct GltfScenery {
 
 /// Returns the meshes of the scene that the file shows (of all nodes if it has no scenes), parents before children.
 /// Throws InputError if the nodes are not a tree, or if a mesh is posed by joints or morph targets.
-[[nodiscard]] GltfScenery placed_gltf_meshes(const GltfPlace& document);
+[[nodiscard]] GltfScenery placed_gltf_meshes(const GltfLocation& document);
 
 /// Throws InputError if the file requires an unsupported extension that changes the position of triangles.
-void require_known_extensions(const GltfPlace& document);
+void require_known_extensions(const GltfLocation& document);
 
 /// Returns true if points may be small integers (KHR_mesh_quantization).
-[[nodiscard]] bool uses_quantization(const GltfPlace& document);
+[[nodiscard]] bool uses_quantization(const GltfLocation& document);
 
 }  // namespace ricochet

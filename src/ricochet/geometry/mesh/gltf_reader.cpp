@@ -75,7 +75,7 @@ GltfParts parts_of(const MeshSource& source) {
 /// Geometry that a primitive draws.
 enum class Drawing : std::uint8_t { nothing, list, strip, fan };
 
-Drawing drawing_of(const GltfPlace& primitive) {
+Drawing drawing_of(const GltfLocation& primitive) {
     constexpr std::uint64_t kTriangles = 4;
     constexpr std::uint64_t kStrip = 5;
     constexpr std::uint64_t kFan = 6;
@@ -95,7 +95,7 @@ std::array<std::size_t, 3> elements_of(Drawing drawing, std::size_t t) {
 
 class GltfReader {
 public:
-    GltfReader(const MeshSource& source, const GltfPlace& document, GltfSurroundings surroundings,
+    GltfReader(const MeshSource& source, const GltfLocation& document, GltfSurroundings surroundings,
                std::size_t free_corners)
         : source_(source),
           document_(document),
@@ -143,7 +143,7 @@ private:
     }
 
     // A primitive that draws nothing counts too, because it takes time.
-    std::uint64_t corners_in(const GltfPlace& mesh) {
+    std::uint64_t corners_in(const GltfLocation& mesh) {
         std::uint64_t corners = 0;
         const GltfList primitives = mesh.items("primitives");
         for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -152,7 +152,7 @@ private:
         return corners;
     }
 
-    std::size_t triangles_in(const GltfPlace& primitive) {
+    std::size_t triangles_in(const GltfLocation& primitive) {
         const Drawing drawing = drawing_of(primitive);
         if (drawing == Drawing::nothing) return 0;
         const GltfAccessor* const indices = indices_of(primitive);
@@ -164,15 +164,15 @@ private:
         return elements / 3;
     }
 
-    const GltfAccessor& points_of(const GltfPlace& primitive) {
-        const GltfPlace place = primitive.at("attributes").at("POSITION");
-        const std::uint32_t number = place.index_below(accessors_.size(), "accessors");
+    const GltfAccessor& points_of(const GltfLocation& primitive) {
+        const GltfLocation location = primitive.at("attributes").at("POSITION");
+        const std::uint32_t number = location.index_below(accessors_.size(), "accessors");
         const auto found = points_.find(number);
         if (found != points_.end()) return found->second;
         return points_.emplace(number, GltfAccessor::of_points(accessors_[number], buffers_, quantized_)).first->second;
     }
 
-    const GltfAccessor* indices_of(const GltfPlace& primitive) {
+    const GltfAccessor* indices_of(const GltfLocation& primitive) {
         const auto number = primitive.index_below("indices", accessors_.size(), "accessors");
         if (!number) return nullptr;
         const auto found = indices_.find(*number);
@@ -181,11 +181,11 @@ private:
     }
 
     void add(const PlacedGltfMesh& placed) {
-        const GltfPlace mesh = meshes_[placed.mesh];
+        const GltfLocation mesh = meshes_[placed.mesh];
         builder_.begin(placed.world, placed.name, mesh.text("name"));
         const GltfList primitives = mesh.items("primitives");
         for (std::size_t p = 0; p < primitives.size(); ++p) {
-            const GltfPlace primitive = primitives[p];
+            const GltfLocation primitive = primitives[p];
             if (drawing_of(primitive) == Drawing::nothing) {
                 ++left_out_;
                 continue;
@@ -197,7 +197,7 @@ private:
         builder_.end();
     }
 
-    void add_triangles(const GltfPlace& primitive) {
+    void add_triangles(const GltfLocation& primitive) {
         const Drawing drawing = drawing_of(primitive);
         const GltfAccessor& points = points_of(primitive);
         const GltfAccessor* const indices = indices_of(primitive);
@@ -219,7 +219,7 @@ private:
         }
     }
 
-    static std::uint32_t index_in(const GltfPlace& primitive, const GltfAccessor& indices, std::size_t at,
+    static std::uint32_t index_in(const GltfLocation& primitive, const GltfAccessor& indices, std::size_t at,
                                   std::size_t points) {
         const std::uint32_t index = indices.index(at);
         if (index >= points || index == indices.no_index()) {
@@ -250,7 +250,7 @@ private:
     }
 
     const MeshSource& source_;
-    const GltfPlace& document_;
+    const GltfLocation& document_;
     GltfList accessors_;
     GltfList meshes_;
     GltfList materials_;
@@ -273,8 +273,8 @@ ParsedMesh read_gltf(const MeshSource& source, const std::optional<std::filesyst
     static_assert(std::endian::native == std::endian::little, "GLB is copied from little-endian bytes");
     GltfParts parts = parts_of(source);
     const GltfValue root = parse_gltf_json(source, parts.json);
-    const GltfPlace document(source, root, "");
-    const GltfPlace asset = document.at("asset");
+    const GltfLocation document(source, root, "");
+    const GltfLocation asset = document.at("asset");
     const std::string& version = asset.at("version").text();
     if (!version.starts_with("2.")) {
         source.fail(fmt::format("found glTF {}, expected 2.0: export as glTF 2.0", in_quotes(version)));

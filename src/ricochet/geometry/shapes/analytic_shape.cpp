@@ -157,9 +157,9 @@ double AnalyticShape::time_over(ShapePart part, const Path& path, double slack) 
     return part == ShapePart::side ? path.duration : shape_.time_over_cap(frame_.local_path(path), slack);
 }
 
-ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const HeldParts& held) const {
+ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const SupportingParts& supports) const {
     ShapeContacts result;
-    const LocalContacts found = contacts_of(shape_, frame_.local_path(path), radius, held);
+    const LocalContacts found = contacts_of(shape_, frame_.local_path(path), radius, supports);
     for (const LocalContact& contact : found.all()) {
         result.contacts[result.count++] = {contact.time, frame_.world_normal(contact.normal),
                                            frame_.world_point(contact.point), contact.part, contact.on_rim};

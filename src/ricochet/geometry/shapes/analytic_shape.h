@@ -115,7 +115,7 @@ public:
     /// double-double, with an error of about an ulp. Other cases use conservative advancement on the true distance.
     /// Their error is the distance's error over the normal speed, plus an ulp. Only grazing contacts less deep than
     /// these errors can be missed.
-    [[nodiscard]] ShapeContacts contacts(const Path& path, double radius, const HeldParts& held = {}) const;
+    [[nodiscard]] ShapeContacts contacts(const Path& path, double radius, const SupportingParts& supports = {}) const;
     /// Returns the first of these contacts.
     [[nodiscard]] std::optional<ShapeContact> first_contact(const Path& path, double radius) const;
 

@@ -93,15 +93,15 @@ struct LocalContacts {
 };
 
 /// Parts of a shape that are excluded from contacts because they support the particle.
-struct HeldParts {
-    std::array<bool, 3> is_held{};
-    [[nodiscard]] bool any() const { return is_held[0] || is_held[1] || is_held[2]; }
-    [[nodiscard]] bool operator[](ShapePart part) const { return is_held[static_cast<std::size_t>(part)]; }
-    void add(ShapePart part) { is_held[static_cast<std::size_t>(part)] = true; }
+struct SupportingParts {
+    std::array<bool, 3> is_supporting{};
+    [[nodiscard]] bool any() const { return is_supporting[0] || is_supporting[1] || is_supporting[2]; }
+    [[nodiscard]] bool operator[](ShapePart part) const { return is_supporting[static_cast<std::size_t>(part)]; }
+    void add(ShapePart part) { is_supporting[static_cast<std::size_t>(part)] = true; }
 };
 
 /// See AnalyticShape::contacts.
 [[nodiscard]] LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
-                                        const HeldParts& held);
+                                        const SupportingParts& supports);
 
 }  // namespace ricochet

@@ -384,17 +384,18 @@ double LocalShape::time_over_cap(const LocalPath& path, double slack) const {
     return std::min(path.duration, first_time(down_crossings(widened.value_along(path, -1), 0.0, path.duration)));
 }
 
-LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius, const HeldParts& held) {
+LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
+                          const SupportingParts& supports) {
     LocalContacts found;
     const int side = side_of_start(shape, path, radius);
     if (side < 0) {
         for (const ShapePart part : shape.parts()) {
-            if (held[part]) continue;
+            if (supports[part]) continue;
             const double time = radius > 0.0 ? contact_of_ball_inside(shape, path, part, radius)
                                              : first_exit(shape, path, part, 0.0, 0.0);
             if (time != kNever) found.contacts[found.count++] = contact_with_part(shape, path, part, time);
         }
-    } else if (!held.any()) {
+    } else if (!supports.any()) {
         // A point that starts on the surface is reflected from the side that it heads for, as with planes.
         double time = 0.0;
         if (side > 0) time = radius > 0.0 ? contact_of_ball_outside(shape, path, radius) : first_entry(shape, path);

@@ -339,24 +339,24 @@ private:
         if (radius_ == 0.0 || is_over_plane) return true;
         // Around an edge or a corner, the gap dips between samples by less than an eighth of the squared path length
         // over the distance.
-        const double way = way_past(s, t, is_one_feature ? feature : std::nullopt);
-        return way * way <= 8.0 * radius_ * kLeastGap * offset();
+        const double past = distance_past(s, t, is_one_feature ? feature : std::nullopt);
+        return past * past <= 8.0 * radius_ * kLeastGap * offset();
     }
     /// Returns the ball's path length past the triangle in an interval, in m. If an edge is nearest all the time,
     /// motion along it does not count.
-    [[nodiscard]] double way_past(double s, double t, const std::optional<TriangleFeature>& nearest) const {
+    [[nodiscard]] double distance_past(double s, double t, const std::optional<TriangleFeature>& nearest) const {
         const Vec3 moved = position(t) - position(s);
         const auto& corners = triangle_.corners;
         constexpr auto kFirstEdge = static_cast<std::size_t>(TriangleFeature::kEdgeAB);
         const std::size_t edge = nearest ? static_cast<std::size_t>(*nearest) - kFirstEdge : 3;
         Vec3 along;
         if (edge < 3) along = normalized(corners[(edge + 1) % 3].at(s) - corners[edge].at(s));
-        double way = 0.0;
+        double past = 0.0;
         for (const MovingPoint& corner : corners) {
-            const Vec3 past = moved - (corner.at(t) - corner.at(s));
-            way = std::max(way, length(past - dot(past, along) * along));
+            const Vec3 relative = moved - (corner.at(t) - corner.at(s));
+            past = std::max(past, length(relative - dot(relative, along) * along));
         }
-        return way;
+        return past;
     }
     /// Returns the contact offset here, in m.
     [[nodiscard]] double offset() const {

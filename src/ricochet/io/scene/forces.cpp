@@ -37,7 +37,7 @@ Field<Struct> flow_field(Options... options) {
     return {"flow",       ValueType::named_object, "Motion of the fluid: a flow, or the name of one in `flows`.",
             &flow_spec(), NamedIn{"flows"},        options...};
 }
-constexpr Without kAtRest{"at rest"};
+constexpr Without kWorldBody{"at rest"};
 
 // Drag forces.
 
@@ -60,7 +60,7 @@ ForceLaw linear_drag() {
     return force_law<Drag>(
         "drag", "Linear drag F = -c w, with the velocity w relative to the flow.",
         {{"coefficient", &Drag::coefficient, kNotNegative, "kg/s", "Coefficient c.", kRequired},
-         flow_field<Drag>(kAtRest)},
+         flow_field<Drag>(kWorldBody)},
         [](const Drag& d, FlowPointer flow) { return make_linear_drag(d.coefficient, std::move(flow)); });
 }
 
@@ -78,7 +78,7 @@ ForceLaw quadratic_drag() {
                              "Drag coefficient C_d, for particles with a radius."},
                             {"fluid_density", [](Drag& d) -> double& { return d.fluid.density; }, kNotNegative,
                              "kg/m^3", kDensityMeaning, Needs{"drag_coefficient"}},
-                            flow_field<Drag>(kAtRest)},
+                            flow_field<Drag>(kWorldBody)},
                            [](const Drag& d, FlowPointer flow) {
                                return d.coefficient ? make_quadratic_drag(*d.coefficient, std::move(flow))
                                                     : make_sphere_drag(d.drag_coefficient.value_or(0.0),
@@ -90,7 +90,7 @@ ForceLaw quadratic_drag() {
 ForceLaw stokes_drag() {
     return force_law<Fluid>(
         "stokes_drag", "Drag of slow small spheres: F = -6 pi mu r w, with the particle's radius r (none for points).",
-        {viscosity(), flow_field<Fluid>(kAtRest)},
+        {viscosity(), flow_field<Fluid>(kWorldBody)},
         [](const Fluid& fluid, FlowPointer flow) { return make_stokes_drag(fluid.viscosity, std::move(flow)); });
 }
 
@@ -100,7 +100,7 @@ ForceLaw schiller_naumann_drag() {
                             "(1 + 0.15 Re^0.687) below Re = 1000, and 0.44 above.",
                             {{"fluid_density", &Fluid::density, kNotNegative, "kg/m^3", kDensityMeaning},
                              viscosity(),
-                             flow_field<Fluid>(kAtRest)},
+                             flow_field<Fluid>(kWorldBody)},
                             [](const Fluid& fluid, FlowPointer flow) {
                                 return make_schiller_naumann_drag(fluid.density, fluid.viscosity, std::move(flow));
                             });

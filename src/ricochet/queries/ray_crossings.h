@@ -1,0 +1,46 @@
+/// \file
+/// Private: hits of one ray on a mesh.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "ricochet/geometry/sweep/ray_triangle.h"
+
+namespace ricochet {
+
+class MeshIndex;
+
+/// Ray with a limited range.
+struct RayQuestion {
+    Ray ray;
+    double most = 0.0;  ///< range in m, may be infinite
+
+    /// Returns true if the ray reaches that parameter.
+    [[nodiscard]] bool reaches(const DoubleDouble& t) const {
+        return most == std::numeric_limits<double>::infinity() || ray.distance(t) <= most;
+    }
+};
+
+/// Hit of the surface on a ray.
+struct RayCrossing {
+    DoubleDouble t;              ///< parameter of the ray
+    std::uint32_t triangle = 0;  ///< the smallest index of the triangles that are first there
+    std::int8_t crossing = 0;    ///< see AllMeshHits
+    bool is_in_plane = false;    ///< the ray lies in the planes of all triangles there
+};
+
+/// Returns the first hit.
+[[nodiscard]] std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuestion& question);
+/// Returns the sign of the determinant of p and q, both relative to the ray's origin, and its direction. It is +1 if
+/// the edge from p to q turns to the left about the ray. Never 0 for an edge across the ray, because the origin counts
+/// as moved by an infinitesimal amount, as for crossings.
+[[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
+/// Returns true if there is a hit.
+[[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);
+/// Finds all hits in the order along the ray, for MeshQueries::all_hits().
+void all_crossings(const MeshIndex& mesh, const RayQuestion& question, std::vector<RayCrossing>& crossings);
+
+}  // namespace ricochet

@@ -1,0 +1,389 @@
+#include "ricochet/response/contact_solver/contact_island.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/prefetch.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_solver/planned_move.h"
+
+namespace ricochet {
+namespace {
+
+/// Sweeps over the contacts of an island that are made at most, where a small error is left and where a large one is.
+constexpr int kSweeps = 30;
+constexpr int kMostSweeps = 300;
+
+/// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
+constexpr double kSlow = 0.02;
+
+/// The same of what forces give in a step: what lies, and is solved to such a part of that, sleeps. Smaller: networks
+/// that hardly move are swept to the end for nothing.
+constexpr double kLying = 0.05;
+
+/// Contacts may leave errors of the size of their own two speeds, or of so many times what forces give in a step, or of
+/// such a part of the fastest sphere's speed, if that is more. Smaller: what rests beside what moves is stiller, and
+/// takes more sweeps, many times more while all fall.
+constexpr double kRestingKicks = 8.0;
+constexpr double kOthersSpeed = 0.6;
+
+/// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
+constexpr std::size_t kFewContacts = 64;
+
+/// Part of the overlap that many contacts may leave that so few may.
+constexpr double kOfFew = 1.0 / 3.0;
+constexpr double kRounding = 1e-12;
+
+/// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.
+constexpr double kConnecting = 4.0;
+
+/// Parts of the smaller radius: spheres with no more between them touch.
+constexpr double kTouching = 0.01;
+
+/// Part of the speed sqrt(pull times radius) with which what overlaps is parted at most, beside the speed with which it
+/// still approaches, which is what sweeps have left over: spheres keep it, and two hundredths of what a fall of the
+/// smaller radius gives is what that may cost. Piles need less: they are parted by a thousandth of the radius a step.
+constexpr double kPartingFall = 0.2;
+
+/// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
+/// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
+double most_parting(double pull, double radius, double overlap, double approach) {
+    if (!(overlap > 0.0)) return std::max(0.0, approach);
+    const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
+    return std::sqrt(pull * fall) + std::max(0.0, approach);
+}
+
+/// m, for a sphere that goes a way, m.
+double reach_of(double travel, double radius) { return 2.0 * travel + ContactIsland::kReach * radius; }
+
+/// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
+constexpr std::size_t kPrefetchDistance = 8;
+
+/// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
+constexpr double kOutOfReach = 1.0 + 1e-9;
+
+/// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
+constexpr double kClear = 0.9;
+
+}  // namespace
+
+SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
+                                 double duration, const WarmStartMemory& memory, MoveScratch& scratch) {
+    duration_ = duration;
+    contacts_.clear();
+    keys_.clear();
+    before_.clear();
+    ends_.clear();
+    edges_of_sleep_.clear();
+    surfaces_.clear();
+    first_wall_.clear();
+    clear_.clear();
+    add_bodies(members, memory);
+    add_pairs(pairs);
+    add_walls(members, scratch);
+    for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
+    const Pace pace = pace_of(members);
+    const SolverSettings wished = settings(pace);
+    if (contacts_.size() > kFewContacts) set_exactness(pace, wished.enough);
+    return solver_.solve(bodies_, contacts_, wished);
+}
+
+/// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
+void ContactIsland::set_part(bool is_coupled) {
+    part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
+}
+
+void ContactIsland::add_bodies(std::span<const ContactIslandMember> members, const WarmStartMemory& memory) {
+    bodies_.clear();
+    members_.clear();
+    memories_.clear();
+    bool is_coupled = false;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        if (i + kPrefetchDistance < members.size()) prefetch_whole(members[i + kPrefetchDistance].moving->state);
+        const ContactIslandMember& member = members[i];
+        const ForceInput& state = member.moving->state;
+        is_coupled = is_coupled || state.coupling != nullptr;
+        memories_.push_back(memory.of_particle(member.moving->id));
+        MemberState& cached = members_.emplace_back();
+        cached.position = state.position;
+        cached.id = member.moving->id;
+        cached.radius = member.radius;
+        cached.reach = member.reach;
+        cached.material = member.material;
+        cached.stays = member.stays();
+        cached.is_asleep = member.is_asleep;
+        SolverBody& body = bodies_.emplace_back();
+        body.radius = member.radius;
+        if (cached.stays) {
+            body.inverse_mass = 0.0;
+            continue;
+        }
+        cached.velocity = state.velocity;
+        body.velocity = velocity_in_flight(member);
+        const Vec3 gained = body.velocity - state.velocity;
+        if (member.duration > 0.0) cached.pull = length(gained) / member.duration;
+        body.spin = (state.radius / member.radius) * member.moving->spin;
+        body.inverse_mass = 1.0 / state.mass;
+        body.inverse_inertia = 2.5 / (state.mass * member.radius * member.radius);
+    }
+    set_part(is_coupled);
+}
+
+void ContactIsland::add_pairs(std::span<const NeighbourPair> pairs) {
+    for (const auto& [first, second] : pairs) {
+        if (members_[first].stays && members_[second].stays) continue;
+        const bool in_order = members_[first].id < members_[second].id;
+        add_pair(in_order ? first : second, in_order ? second : first);
+    }
+}
+
+void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
+    const MemberState& a = members_[first];
+    const MemberState& b = members_[second];
+    const Vec3 apart = a.position - b.position;
+    const double squared = length_squared(apart);
+    const double farthest = kOutOfReach * (a.radius + b.radius + a.reach + b.reach);
+    if (squared > farthest * farthest) return;
+    const double distance = std::sqrt(squared);
+    if (!(distance > 0.0)) return;  // no direction parts them
+    double gap = parted(distance - a.radius - b.radius);
+    // Between two sleepers there may be no room to part from both.
+    if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
+    if (gap > a.reach + b.reach) return;
+    SolverContact& contact = contacts_.emplace_back();
+    ends_.push_back({first, second});
+    contact.a = first;
+    contact.b = second;
+    contact.gap = gap;
+    contact.normal = apart / distance;
+    const PairMaterial& law = materials_.of(a.material, b.material);
+    contact.friction = law.friction;
+    contact.rolling_friction = law.rolling_friction * a.radius * b.radius / (a.radius + b.radius);
+    const double approach = -dot(a.velocity - b.velocity, contact.normal);
+    contact.restitution = rebound(law.restitution, approach);
+    contact.most_parting = most_parting(std::max(a.pull, b.pull), std::min(a.radius, b.radius), -gap, approach);
+    if (a.is_asleep != b.is_asleep) edges_of_sleep_.push_back(contacts_.size() - 1);
+    add_key(ContactKey::of_pair(a.id, b.id));
+}
+
+void ContactIsland::add_walls(std::span<const ContactIslandMember> members, MoveScratch& scratch) {
+    const SurfaceGeometry geometry(rules_.world, scratch.contacts.plane_cache);
+    surfaces_.resize(contacts_.size());
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+        first_wall_.push_back(contacts_.size());
+        clear_.push_back(0.0);
+        if (members[i].stays()) continue;
+        const ForceInput& state = members[i].moving->state;
+        walls_.clear();
+        const double near = members[i].reach;
+        const TimeOfStep step{state.time, state.time + members[i].duration};
+        const bool is_near = rules_.bodies == nullptr
+                                 ? find_wall_contacts(geometry, state.position, state.radius, near, walls_)
+                                 : find_wall_contacts(*rules_.bodies, step, state.position, state.radius, near, walls_);
+        if (!is_near) clear_.back() = kClear * near;
+        for (const WallContact& wall : walls_) add_wall(i, members[i], wall);
+    }
+    first_wall_.push_back(contacts_.size());
+}
+
+void ContactIsland::add_wall(std::uint32_t index, const ContactIslandMember& member, const WallContact& wall) {
+    const ForceInput& state = member.moving->state;
+    const Material& material = rules_.materials[rules_.world.material_of(wall.surface)];
+    SolverContact& contact = contacts_.emplace_back();
+    contact.a = index;
+    contact.normal = wall.normal;
+    contact.gap = parted(wall.gap);
+    contact.friction = material.friction;
+    contact.rolling_friction = material.rolling_friction * state.radius;
+    contact.wall_velocity = wall.carried;
+    carry(contact, wall, material, state);
+    const double approach = -dot(state.velocity - wall.carried, wall.normal);
+    contact.restitution = rebound(material.restitution_at(approach), approach);
+    contact.most_parting = most_parting(members_[index].pull, member.radius, -contact.gap, approach);
+    add_key(ContactKey::of_wall(member.moving->id, wall.surface));
+    surfaces_.push_back(wall.surface);
+}
+
+/// Adds what the wall's material does, and how it turns.
+void ContactIsland::carry(SolverContact& contact, const WallContact& wall, const Material& material,
+                          const ForceInput& state) const {
+    const BodyId body = rules_.bodies == nullptr ? kWorldBody : rules_.bodies->body_of(wall.surface);
+    if (!material.drives() && body == kWorldBody) return;
+    const Vec3 foot = state.position - (state.radius + wall.gap) * wall.normal;
+    const MovingPose pose = body == kWorldBody ? MovingPose{} : rules_.bodies->pose(body, state.time);
+    contact.wall_turning = pose.angular_velocity;
+    if (!material.drives()) return;
+    const bool is_seen_from_frame = body != kWorldBody && !rules_.bodies->is_deforming(body);
+    const Vec3 seen = is_seen_from_frame ? pose.local_position(foot) : foot;
+    const Vec3 normal = is_seen_from_frame ? pose.local_direction(wall.normal) : wall.normal;
+    contact.wall_velocity += pose.world_from_frame.direction(material.motion.at(seen, normal));
+    contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
+}
+
+/// Has added the last contact; what it begins with is looked up while others are added.
+void ContactIsland::add_key(const ContactKey& key) {
+    keys_.push_back(key);
+    before_.push_back(nullptr);
+    warm_start(keys_.size() - 1);
+}
+
+/// Three stages, each for an earlier contact: what is remembered lies anywhere, and takes time to be fetched.
+void ContactIsland::warm_start(std::size_t at) {
+    const std::size_t count = keys_.size();
+    if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
+    if (const std::size_t k = at - kPrefetchDistance; at >= kPrefetchDistance && k < count) {
+        before_[k] = memories_[contacts_[k].a].find(keys_[k].other);
+        if (before_[k] != nullptr) __builtin_prefetch(&before_[k]->normal), __builtin_prefetch(&before_[k]->moment.z);
+    }
+    const std::size_t k = at - 2 * kPrefetchDistance;
+    if (at < 2 * kPrefetchDistance || before_[k] == nullptr) return;
+    contacts_[k].start = *before_[k];
+    contacts_[k].touched = before_[k]->normal > 0.0;
+}
+
+/// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
+/// of an impact.
+double ContactIsland::rebound(double restitution, double approach) const {
+    return restitution * approach >= rules_.settings.resting_speed ? restitution : 0.0;
+}
+
+/// What moves fast may be less exact; what comes to rest is solved ever more closely.
+SolverSettings ContactIsland::settings(const Pace& pace) const {
+    SolverSettings settings;
+    settings.duration = duration_;
+    const double still = kNetworkStill * pace.smallest / duration_;
+    const bool is_few = contacts_.size() <= kFewContacts;
+    const double overlap = (is_few ? kOfFew : 1.0) * kNetworkOverlap;
+    const double slow = kSlow * std::max(pace.fastest, kLying * pace.force_velocity);
+    settings.enough = std::min(overlap * pace.smallest / duration_, std::max(slow, still));
+    settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * pace.fastest, still));
+    if (is_few) {
+        settings.tolerance = std::min(still, kRounding * pace.fastest);
+    } else {
+        settings.slip = kNetworkResidual * pace.fastest;
+        settings.connecting = kConnecting * settings.enough;
+    }
+    settings.sweeps = kSweeps;
+    settings.most_sweeps = kMostSweeps;
+    return settings;
+}
+
+ContactIsland::Pace ContactIsland::pace_of(std::span<const ContactIslandMember> members) const {
+    Pace pace;
+    for (const ContactIslandMember& member : members) {
+        if (member.is_fixed) continue;
+        pace.fastest = std::max(pace.fastest, length(member.moving->state.velocity));
+        pace.smallest = std::min(pace.smallest, member.radius);
+    }
+    for (const MemberState& member : members_)
+        pace.force_velocity = std::max(pace.force_velocity, duration_ * member.pull);
+    return pace;
+}
+
+/// Errors that something fast may leave would keep all that lies beside it awake.
+void ContactIsland::set_exactness(const Pace& pace, double enough) {
+    const double still = kNetworkStill * pace.smallest / duration_;
+    const auto speed_of = [&](const MemberState& member) {
+        return std::max(length(member.velocity), kRestingKicks * duration_ * member.pull);
+    };
+    for (SolverContact& contact : contacts_) {
+        double speed = std::max(kOthersSpeed * pace.fastest, speed_of(members_[contact.a]));
+        if (contact.b != SolverContact::kWall) speed = std::max(speed, speed_of(members_[contact.b]));
+        contact.exactness = std::max(1.0, enough / std::max(kSlow * speed, still));
+    }
+}
+
+void ContactIsland::move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const {
+    if (member.is_fixed) return;
+    const double core = member.moving->state.radius;  // which turns faster than the whole sphere
+    PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
+                       member.duration, impulses_of(index)};
+    plan.is_clear = member.duration * length(plan.velocity) < clear_[index];
+    member.outcome = move_as_planned(rules_, *member.moving, plan, scratch);
+}
+
+Vec3 ContactIsland::given_by_others(std::size_t index, const ContactIslandMember& member) const {
+    if (member.stays()) return {};
+    Vec3 given = bodies_[index].velocity - velocity_in_flight(member);
+    for (const WallImpulse& impulse : impulses_of(index)) given -= impulse.velocity_change;
+    return given;
+}
+
+std::vector<WallImpulse> ContactIsland::impulses_of(std::size_t index) const {
+    std::vector<WallImpulse> impulses;
+    const SolverBody& body = bodies_[index];
+    for (std::size_t i = first_wall_[index]; i < first_wall_[index + 1]; ++i) {
+        const SolverImpulse& impulse = solver_.impulses()[i];
+        if (impulse.normal == 0.0) continue;
+        const Vec3& normal = contacts_[i].normal;
+        const Vec3 turn = impulse.moment - cross(body.radius * normal, impulse.tangential);
+        impulses.push_back({surfaces_[i], body.inverse_mass * (impulse.normal * normal + impulse.tangential),
+                            body.inverse_inertia * turn});
+    }
+    return impulses;
+}
+
+std::vector<SleeperImpulse> ContactIsland::impulses_on_sleepers() const {
+    std::vector<SleeperImpulse> impulses;
+    for (const std::size_t i : edges_of_sleep_) {
+        const SolverContact& contact = contacts_[i];
+        const SolverImpulse& impulse = solver_.impulses()[i];
+        if (impulse.normal == 0.0) continue;
+        const bool is_first = members_[contact.a].is_asleep;
+        const Vec3 onto_first = impulse.normal * contact.normal + impulse.tangential;
+        impulses.push_back({members_[is_first ? contact.a : contact.b].id, is_first ? onto_first : -onto_first});
+    }
+    return impulses;
+}
+
+std::vector<WarmStartMemory::Entry> ContactIsland::entries() const {
+    std::vector<WarmStartMemory::Entry> entries;
+    entries.reserve(keys_.size());
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        const SolverImpulse& impulse = solver_.impulses()[i];
+        if (impulse.normal > 0.0) entries.push_back({keys_[i], impulse, solver_.rebounds()[i] != 0});
+    }
+    return entries;
+}
+
+std::vector<NeighbourPair> ContactIsland::pressing() const {
+    std::vector<NeighbourPair> pressing;
+    pressing.reserve(ends_.size());
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+        if (solver_.impulses()[i].normal > 0.0) pressing.push_back(ends_[i]);
+    }
+    return pressing;
+}
+
+std::vector<ContactKey> ContactIsland::touching() const {
+    std::vector<ContactKey> touching;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+        if (keys_[i].is_wall()) continue;
+        const double smaller = std::min(bodies_[contacts_[i].a].radius, bodies_[contacts_[i].b].radius);
+        if (contacts_[i].gap <= kTouching * smaller) touching.push_back(keys_[i]);
+    }
+    return touching;
+}
+
+Vec3 ContactIsland::velocity_in_flight(const ContactIslandMember& member) const {
+    const ForceInput& state = member.moving->state;
+    return state.velocity + member.duration * rules_.forces.acceleration(state);
+}
+
+double ContactIsland::first_reach(const ContactIslandMember& member) const {
+    return reach_of(member.stays() ? 0.0 : member.duration * length(velocity_in_flight(member)), member.radius);
+}
+
+std::vector<std::uint32_t> ContactIsland::reach_farther(std::span<ContactIslandMember> members) const {
+    std::vector<std::uint32_t> farther;
+    for (std::uint32_t i = 0; i < members.size(); ++i) {
+        ContactIslandMember& member = members[i];
+        const double travel = member.duration * length(bodies_[i].velocity);
+        if (member.stays() || !(travel > member.reach)) continue;
+        member.reach = reach_of(travel, member.radius);
+        farther.push_back(i);
+    }
+    return farther;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,379 @@
+#include "ricochet/response/contact_solver/direct_contact_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "ricochet/response/contact_solver/block_tools.h"
+
+namespace ricochet {
+namespace {
+
+constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
+
+/// Stiffness of the dampers over the heaviest mass. Reason: a pass leaves a hundredth of what is violated, and rounding
+/// leaves light spheres, of a billionth of the mass, an error of 1e-5 of the speeds. Smaller: more passes.
+constexpr double kStiffness = 100.0;
+
+/// Factor from one stiffness to the next on the way from that of the lightest mass to that of the heaviest, and steps
+/// of Newton's method at each of them, and at the first try.
+constexpr double kStiffer = 100.0;
+constexpr int kFewSteps = 8;
+
+/// Passes after the first, and steps in each, at most: what needs more has no answer, or friction that circles.
+constexpr int kMostPasses = 3;
+constexpr int kMostSteps = 80;
+
+/// Parts of the tolerance: that momentum may lack at the end of a pass, and that a pass may change.
+constexpr double kDefect = 0.25;
+constexpr double kViolated = 0.5;
+
+/// Part of the slope at a step's begin that may be left at its end, and trials of its length at most.
+constexpr double kSlopeLeft = 0.2;
+constexpr int kMostTrials = 40;
+
+/// Operations of all factorizations of a network, at most: a second or so. Reason: those of a network grow with the
+/// third power of the contacts that a cut through it crosses, and a thousand spheres with some that are a thousand
+/// times as heavy took minutes a step.
+constexpr double kMostOperations = 1e9;
+
+/// Part of its stiffness that friction which slips keeps along the slip, so that no matrix is singular.
+constexpr double kSlipStiffness = 1e-9;
+
+/// How much what the cone leaves of a wish changes with the wish, across a normal.
+Block3 kept_change(const Vec3& normal, const Vec3& wish, double most, bool is_smooth) {
+    Block3 result{};
+    const double size = length(wish);
+    const double kept = size <= most ? 1.0 : most / size;
+    add_identity(result, kept);
+    add_square(result, -kept, normal);
+    if (is_smooth && size > most) add_square(result, (kSlipStiffness - 1.0) * kept, wish / size);
+    return result;
+}
+
+Vec3 block_at(std::span<const double> values, std::size_t row) {
+    return {values[3 * row], values[3 * row + 1], values[3 * row + 2]};
+}
+
+void add_to(std::span<double> values, std::size_t row, const Vec3& v) {
+    values[3 * row] += v.x;
+    values[3 * row + 1] += v.y;
+    values[3 * row + 2] += v.z;
+}
+
+}  // namespace
+
+bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
+    parts_ = parts;
+    number_unknowns();
+    if (moving_ == 0) return false;
+    find_places();
+    operations_left_ = kMostOperations;
+    if (cholesky_.operations() > operations_left_) return false;
+    begin_passes(kDefect * tolerance);
+    double violated = update_multipliers();
+    bool is_solved = false;
+    for (int pass = 0; pass < kMostPasses && !is_solved; ++pass) {
+        const bool is_balanced = minimise(kDefect * tolerance, kMostSteps);
+        violated = update_multipliers();
+        is_solved = is_balanced && violated <= kViolated * tolerance;
+    }
+    hand_over();
+    return is_solved;
+}
+
+/// The first pass: at once where the start is near, as it is where things lie still, else by and by from soft dampers
+/// to stiff ones, between which light spheres would be thrown to and fro.
+void DirectContactSolver::begin_passes(double most_defect) {
+    const double stiffest = kStiffness * heaviest_;
+    const std::vector<SolverState> start(parts_.states.begin(), parts_.states.end());
+    stiffness_ = stiffest;
+    if (minimise(most_defect, kFewSteps)) return;
+    std::copy(start.begin(), start.end(), parts_.states.begin());
+    for (stiffness_ = kStiffness * lightest_; stiffness_ < stiffest; stiffness_ *= kStiffer) {
+        static_cast<void>(minimise(most_defect, kFewSteps));
+        static_cast<void>(update_multipliers());
+    }
+    stiffness_ = stiffest;
+    static_cast<void>(minimise(most_defect, kMostSteps));
+}
+
+void DirectContactSolver::number_unknowns() {
+    slots_.assign(parts_.states.size(), kFixed);
+    moving_ = 0;
+    heaviest_ = 0.0;
+    lightest_ = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < parts_.bodies; ++i) {
+        const double inverse_mass = parts_.before[i].inverse_mass;
+        if (!(inverse_mass > 0.0)) continue;
+        slots_[i] = static_cast<std::uint32_t>(moving_++);
+        heaviest_ = std::max(heaviest_, 1.0 / inverse_mass);
+        lightest_ = std::min(lightest_, 1.0 / inverse_mass);
+    }
+}
+
+std::uint32_t DirectContactSolver::pair_of(std::uint32_t first, std::uint32_t second) {
+    pairs_.push_back({first, second});
+    return static_cast<std::uint32_t>(pairs_.size() - 1);
+}
+
+/// Which blocks of the matrix a row has a part in.
+void DirectContactSolver::find_places() {
+    pairs_.clear();
+    places_.clear();
+    const auto turning = static_cast<std::uint32_t>(moving_);
+    for (const ContactConstraint& row : parts_.rows) {
+        const std::uint32_t a = slots_[row.a];
+        const std::uint32_t b = slots_[row.b];
+        const bool both = a != kFixed && b != kFixed;
+        const bool turns = row.friction > 0.0;
+        BlockIndices slots{kFixed, kFixed, kFixed, kFixed, kFixed, kFixed};
+        if (both) slots.velocities = pair_of(a, b);
+        if (turns && a != kFixed) slots.a_turning_a = pair_of(a, turning + a);
+        if (turns && b != kFixed) slots.b_turning_b = pair_of(b, turning + b);
+        if (turns && both) {
+            slots.a_turning_b = pair_of(a, turning + b);
+            slots.b_turning_a = pair_of(b, turning + a);
+        }
+        if (both && (turns || row.rolling != ContactConstraint::kNone))
+            slots.turnings = pair_of(turning + a, turning + b);
+        places_.push_back(slots);
+    }
+    cholesky_ = BlockCholesky(2 * moving_, pairs_);
+}
+
+DirectContactSolver::ImpulseResponse DirectContactSolver::response_to(std::size_t i) const {
+    const ContactConstraint& row = parts_.rows[i];
+    const SolverState& a = parts_.states[row.a];
+    const SolverState& b = parts_.states[row.b];
+    ImpulseResponse response;
+    response.normal = std::max(0.0, row.impulse.normal - stiffness_ * (approach_of(row, a, b) + row.bound));
+    if (row.friction > 0.0) {
+        response.wish = row.impulse.tangential - stiffness_ * slip_of(row, a, b);
+        response.tangential = shortened(response.wish, row.friction * response.normal);
+    }
+    if (row.rolling != ContactConstraint::kNone) {
+        const RollingConstraint& rolling = parts_.rolling[row.rolling];
+        const double radius = radius_of(i);
+        response.wish_moment = rolling.moment - stiffness_ * radius * radius * rolling_of(row, rolling, a, b);
+        response.moment = shortened(response.wish_moment, rolling.friction * response.normal);
+    }
+    return response;
+}
+
+/// m, of the smaller sphere of a row that resists rolling.
+double DirectContactSolver::radius_of(std::size_t i) const {
+    const RollingConstraint& rolling = parts_.rolling[parts_.rows[i].rolling];
+    return 1.0 / std::max(rolling.per_radius_a, rolling.per_radius_b);
+}
+
+/// Impulses, and what momentum lacks of the velocities that there are.
+void DirectContactSolver::evaluate() {
+    gradient_.assign(6 * moving_, 0.0);
+    for (std::size_t i = 0; i < parts_.bodies; ++i) {
+        if (slots_[i] == kFixed) continue;
+        const SolverState& before = parts_.before[i];
+        const SolverState& state = parts_.states[i];
+        add_to(gradient_, slots_[i], (state.velocity - before.velocity) / before.inverse_mass);
+        if (before.inverse_inertia > 0.0)
+            add_to(gradient_, moving_ + slots_[i], (state.turning - before.turning) / before.inverse_inertia);
+    }
+    responses_.resize(parts_.rows.size());
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+        const ContactConstraint& row = parts_.rows[i];
+        const ImpulseResponse& response = responses_[i] = response_to(i);
+        const Vec3 impulse = response.normal * row.normal + response.tangential;
+        const Vec3 turn = -cross(row.normal, response.tangential);
+        const bool rolls = row.rolling != ContactConstraint::kNone;
+        const auto give = [&](std::uint32_t body, double sign) {
+            const std::uint32_t slot = slots_[body];
+            if (slot == kFixed) return;
+            add_to(gradient_, slot, -sign * impulse);
+            if (!(parts_.before[body].inverse_inertia > 0.0)) return;
+            Vec3 turned = turn;
+            if (rolls) {
+                const RollingConstraint& rolling = parts_.rolling[row.rolling];
+                turned += (sign > 0.0 ? rolling.per_radius_a : -rolling.per_radius_b) * response.moment;
+            }
+            add_to(gradient_, moving_ + slot, -turned);
+        };
+        give(row.a, 1.0);
+        give(row.b, -1.0);
+    }
+}
+
+/// m/s, that impulses change velocities by more than these have changed.
+double DirectContactSolver::largest_defect() const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < parts_.bodies; ++i) {
+        if (slots_[i] == kFixed) continue;
+        const SolverState& before = parts_.before[i];
+        largest = std::max(largest, before.inverse_mass * length(block_at(gradient_, slots_[i])));
+        largest = std::max(largest, before.inverse_inertia * length(block_at(gradient_, moving_ + slots_[i])));
+    }
+    return largest;
+}
+
+void DirectContactSolver::assemble() {
+    matrix_.own.assign(2 * moving_, {});
+    matrix_.between.assign(pairs_.size(), {});
+    for (std::size_t i = 0; i < parts_.bodies; ++i) {
+        if (slots_[i] == kFixed) continue;
+        const SolverState& before = parts_.before[i];
+        add_identity(matrix_.own[slots_[i]], 1.0 / before.inverse_mass);
+        const double inverse_inertia = before.inverse_inertia > 0.0 ? before.inverse_inertia : before.inverse_mass;
+        add_identity(matrix_.own[moving_ + slots_[i]], 1.0 / inverse_inertia);
+    }
+    for (std::size_t i = 0; i < parts_.rows.size(); ++i) {
+        add_row(i);
+        if (parts_.rows[i].rolling != ContactConstraint::kNone) add_rolling(i);
+    }
+}
+
+void DirectContactSolver::add_row(std::size_t i) {
+    const ContactConstraint& row = parts_.rows[i];
+    const ImpulseResponse& response = responses_[i];
+    const BlockIndices& slots = places_[i];
+    const std::uint32_t a = slots_[row.a];
+    const std::uint32_t b = slots_[row.b];
+    const double most = row.friction * response.normal;
+    Block3 slipping{};
+    if (most > 0.0) add(slipping, stiffness_, kept_change(row.normal, response.wish, most, is_smooth_));
+    Block3 moving = slipping;
+    if (response.normal > 0.0 || ahead_[i] != 0) add_square(moving, stiffness_, row.normal);
+    if (a != kFixed) add(matrix_.own[a], 1.0, moving);
+    if (b != kFixed) add(matrix_.own[b], 1.0, moving);
+    if (slots.velocities != kFixed) add(matrix_.between[slots.velocities], -1.0, moving);
+    if (!(most > 0.0)) return;
+    // The slip is that of the velocities, and normal x (sum of the turnings).
+    const Block3 turning = product(slipping, cross_matrix(row.normal));
+    const Block3 turns = product(transposed(cross_matrix(row.normal)), turning);
+    const auto add_turning = [&](std::uint32_t slot, double sign) {
+        if (slot != kFixed) add(matrix_.between[slot], sign, turning);
+    };
+    add_turning(slots.a_turning_a, 1.0);
+    add_turning(slots.a_turning_b, 1.0);
+    add_turning(slots.b_turning_a, -1.0);
+    add_turning(slots.b_turning_b, -1.0);
+    if (a != kFixed) add(matrix_.own[moving_ + a], 1.0, turns);
+    if (b != kFixed) add(matrix_.own[moving_ + b], 1.0, turns);
+    if (slots.turnings != kFixed) add(matrix_.between[slots.turnings], 1.0, turns);
+}
+
+void DirectContactSolver::add_rolling(std::size_t i) {
+    const ContactConstraint& row = parts_.rows[i];
+    const RollingConstraint& rolling = parts_.rolling[row.rolling];
+    const double most = rolling.friction * responses_[i].normal;
+    if (!(most > 0.0)) return;
+    const double radius = radius_of(i);
+    const Block3 change = kept_change(row.normal, responses_[i].wish_moment, most, is_smooth_);
+    const double stiffness = stiffness_ * radius * radius;
+    const auto add_own = [&](std::uint32_t slot, double per_radius) {
+        if (slot != kFixed) add(matrix_.own[moving_ + slot], stiffness * per_radius * per_radius, change);
+    };
+    add_own(slots_[row.a], rolling.per_radius_a);
+    add_own(slots_[row.b], rolling.per_radius_b);
+    if (places_[i].turnings != kFixed)
+        add(matrix_.between[places_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b, change);
+}
+
+/// The velocities at which impulses of the dampers and of the multipliers balance.
+bool DirectContactSolver::minimise(double most_defect, int most_steps) {
+    is_smooth_ = true;
+    ahead_.assign(parts_.rows.size(), 0);
+    evaluate();
+    for (int step = 0; step < most_steps && largest_defect() > most_defect; ++step) {
+        operations_left_ -= cholesky_.operations();
+        if (operations_left_ < 0.0) return false;
+        assemble();
+        if (!cholesky_.factorize(matrix_)) return false;
+        std::vector<double> direction = gradient_;
+        for (double& value : direction) value = -value;
+        cholesky_.solve(direction);
+        if (!(slope_along(direction) < 0.0)) break;  // rounding alone is left
+        is_smooth_ = search_along(direction);
+    }
+    return largest_defect() <= most_defect;
+}
+
+void DirectContactSolver::go_along(std::span<const double> direction, double part) {
+    for (std::size_t i = 0; i < parts_.bodies; ++i) {
+        if (slots_[i] == kFixed) continue;
+        parts_.states[i].velocity += part * block_at(direction, slots_[i]);
+        parts_.states[i].turning += part * block_at(direction, moving_ + slots_[i]);
+    }
+    evaluate();
+}
+
+double DirectContactSolver::slope_along(std::span<const double> direction) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < direction.size(); ++i) sum += gradient_[i] * direction[i];
+    return sum;
+}
+
+/// To where the function hardly falls or rises any more: its slope grows along the line. False where that was not the
+/// whole step.
+bool DirectContactSolver::search_along(std::span<const double> direction) {
+    const double first = slope_along(direction);
+    double low = 0.0;
+    double low_slope = first;
+    double high = 1.0;
+    double at = 1.0;
+    go_along(direction, 1.0);
+    double slope = slope_along(direction);
+    if (slope <= kSlopeLeft * std::fabs(first)) {
+        std::fill(ahead_.begin(), ahead_.end(), 0);
+        return true;
+    }
+    for (std::size_t i = 0; i < responses_.size(); ++i) ahead_[i] = responses_[i].normal > 0.0 ? 1 : 0;
+    double high_slope = slope;
+    for (int trial = 0; trial < kMostTrials && std::fabs(slope) > kSlopeLeft * std::fabs(first); ++trial) {
+        // In turns between where the line through both slopes is zero and the middle.
+        const double part = trial % 2 == 0 ? low_slope / (low_slope - high_slope) : 0.5;
+        const double next = low + std::clamp(part, 0.01, 0.99) * (high - low);
+        go_along(direction, next - at);
+        at = next;
+        slope = slope_along(direction);
+        (slope > 0.0 ? high : low) = at;
+        (slope > 0.0 ? high_slope : low_slope) = slope;
+    }
+    if (slope > kSlopeLeft * std::fabs(first)) go_along(direction, low - at);
+    return false;
+}
+
+/// Impulses become multipliers. Returns by how much the conditions were violated, m/s.
+double DirectContactSolver::update_multipliers() {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+        ContactConstraint& row = parts_.rows[i];
+        const ImpulseResponse& response = responses_[i];
+        worst = std::max(worst, std::fabs(response.normal - row.impulse.normal) / stiffness_);
+        if (row.friction > 0.0) {
+            worst = std::max(worst, length(response.tangential - row.impulse.tangential) / stiffness_);
+        }
+        row.impulse.normal = response.normal;
+        row.impulse.tangential = response.tangential;
+        if (row.rolling != ContactConstraint::kNone) {
+            RollingConstraint& rolling = parts_.rolling[row.rolling];
+            const double change = length(response.moment - rolling.moment) / (stiffness_ * radius_of(i));
+            worst = std::max(worst, change);
+            rolling.moment = response.moment;
+        }
+    }
+    return worst;
+}
+
+/// Impulses inside the cone of friction, and the velocities that they give: momentum is kept to rounding.
+void DirectContactSolver::hand_over() {
+    std::copy(parts_.before.begin(), parts_.before.end(), parts_.states.begin());
+    for (ContactConstraint& row : parts_.rows) {
+        row.impulse.tangential = shortened(row.impulse.tangential, row.friction * row.impulse.normal);
+        if (row.impulse.normal > 0.0) apply(row, row.impulse, parts_.states[row.a], parts_.states[row.b]);
+        if (row.rolling == ContactConstraint::kNone) continue;
+        RollingConstraint& rolling = parts_.rolling[row.rolling];
+        rolling.moment = shortened(rolling.moment, rolling.friction * row.impulse.normal);
+        apply_moment(rolling, rolling.moment, parts_.states[row.a], parts_.states[row.b]);
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,278 @@
+#include "ricochet/response/contact_solver/iterative_contact_solver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/prefetch.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
+constexpr std::size_t kBlock = 512;
+
+/// Parts of the smaller radius by which what overlaps is parted in a step at most: four times what spheres that are
+/// poured need. What surfaces press together without leaving it room overlaps deeply, and would be thrown.
+constexpr double kMostParting = 0.01;
+
+/// Ratio of two masses that touch from which on what few sweeps do not solve is solved directly: sweeps need some times
+/// its root. Reason: spheres of half to twice a radius, which sweeps solve faster, stay below.
+constexpr double kUnlikeMasses = 100.0;
+
+/// Part of the error that is enough that what is solved directly may leave: sweeps do the rest.
+constexpr double kDirect = 0.25;
+
+/// Where momentum begins anew again and again, as where friction leads it in a circle, one sweep without it is made for
+/// so many times, each time: large networks that come to an answer begin a few dozen times.
+constexpr int kRestartsAPlainSweep = 64;
+
+/// Ratio from which on more sweeps are not tried first.
+constexpr double kVeryUnlikeMasses = 1e4;
+
+/// tolerance: m/s.
+SolverLimits limits_of(const SolverSettings& settings, double tolerance) {
+    return {tolerance, std::max(tolerance, settings.slip)};
+}
+
+/// Of two masses that touch, the heavier over the lighter; 1 where one of them is that of a wall.
+double ratio_of(const SolverState& a, const SolverState& b) {
+    const auto [low, high] = std::minmax(a.inverse_mass, b.inverse_mass);
+    return low > 0.0 ? high / low : 1.0;
+}
+
+}  // namespace
+
+SolverReport IterativeContactSolver::solve(std::span<SolverBody> bodies, std::span<const SolverContact> contacts,
+                                           const SolverSettings& settings) {
+    SolverReport report;
+    set_up(bodies, contacts, settings.duration);
+    apply_start();
+    gains_.clear();
+    if (may_rebound()) {
+        rebound(contacts, settings, report);
+    } else {
+        iterate(settings, report);
+    }
+    if (gains_.empty()) find_gains();
+    remove_energy_gains(report);
+    hand_over(bodies);
+    return report;
+}
+
+void IterativeContactSolver::set_up(std::span<const SolverBody> bodies, std::span<const SolverContact> contacts,
+                                    double duration) {
+    coloring_.assign(bodies.size(), contacts);
+    bodies_ = bodies.size();
+    before_.clear();
+    for (const SolverBody& body : bodies) {
+        const double inverse_inertia = body.radius * body.radius * body.inverse_inertia;
+        before_.push_back({body.velocity, body.radius * body.spin, body.inverse_mass, inverse_inertia});
+    }
+    before_.push_back({});  // all walls at rest
+    rows_.clear();
+    rolling_.clear();
+    partings_.clear();
+    restitutions_.clear();
+    mass_ratio_ = 1.0;
+    against_start_ = 0.0;
+    const std::span<const std::uint32_t> order = coloring_.order();
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (k + kPrefetchDistance < order.size()) prefetch_whole(contacts[order[k + kPrefetchDistance]]);
+        add_row(contacts[order[k]], bodies, duration);
+    }
+    states_ = before_;
+    last_.resize(bodies_);
+    impulses_.resize(contacts.size());
+    rebounds_.resize(contacts.size());
+}
+
+void IterativeContactSolver::add_row(const SolverContact& contact, std::span<const SolverBody> bodies,
+                                     double duration) {
+    ContactConstraint& row = rows_.emplace_back();
+    partings_.push_back(0.0);
+    set_row(row, contact, bodies, duration);
+    if (contact.rolling_friction > 0.0) add_rolling(contact, bodies);
+    restitutions_.push_back(contact.touched ? 0.0 : contact.restitution);
+    mass_ratio_ = std::max(mass_ratio_, ratio_of(before_[row.a], before_[row.b]));
+    add_gain(row, before_, against_start_);
+}
+
+void IterativeContactSolver::set_row(ContactConstraint& row, const SolverContact& contact,
+                                     std::span<const SolverBody> bodies, double duration) {
+    row.a = contact.a;
+    row.b = contact.b;
+    if (contact.b == SolverContact::kWall) {
+        row.b = static_cast<std::uint32_t>(bodies_);
+        if (contact.wall_velocity != Vec3{}) {
+            row.b = static_cast<std::uint32_t>(before_.size());
+            before_.push_back({contact.wall_velocity, {}, 0.0, 0.0});
+        }
+    }
+    row.normal = contact.normal;
+    row.rolling = ContactConstraint::kNone;
+    row.friction = contact.friction;
+    row.strictness = contact.exactness * contact.exactness;
+    if (contact.gap > 0.0) {
+        row.bound = contact.gap / duration;
+    } else {
+        const bool is_pair = contact.b != SolverContact::kWall;
+        const double radius =
+            is_pair ? std::min(bodies[contact.a].radius, bodies[contact.b].radius) : bodies[contact.a].radius;
+        const double parting = std::clamp(-kOverlapRelease * contact.gap, 0.0, kMostParting * radius) / duration;
+        partings_.back() = std::min(parting, contact.most_parting);
+        row.bound = -partings_.back();
+    }
+    if (inverse_mass_of(before_[row.a], before_[row.b]) == 0.0) {
+        row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
+        return;
+    }
+    row.impulse.normal = std::max(0.0, contact.start.normal);
+    const Vec3& friction = contact.start.tangential;
+    row.impulse.tangential =
+        shortened(friction - dot(friction, row.normal) * row.normal, row.friction * row.impulse.normal);
+}
+
+void IterativeContactSolver::add_rolling(const SolverContact& contact, std::span<const SolverBody> bodies) {
+    ContactConstraint& row = rows_.back();
+    RollingConstraint rolling;
+    rolling.row = static_cast<std::uint32_t>(rows_.size() - 1);
+    rolling.friction = contact.rolling_friction;
+    rolling.wall_turning = contact.wall_turning;
+    const auto per_radius = [&](std::uint32_t body) {
+        return body < bodies.size() && bodies[body].radius > 0.0 ? 1.0 / bodies[body].radius : 0.0;
+    };
+    rolling.per_radius_a = per_radius(row.a);
+    rolling.per_radius_b = per_radius(row.b);
+    const auto looseness = [&](std::uint32_t body, double inverse_radius) {
+        return before_[body].inverse_inertia * inverse_radius * inverse_radius;
+    };
+    const double loose = looseness(row.a, rolling.per_radius_a) + looseness(row.b, rolling.per_radius_b);
+    if (!(loose > 0.0)) return;
+    rolling.inertia = 1.0 / loose;
+    const Vec3& moment = contact.start.moment;
+    rolling.moment = shortened(moment - dot(moment, row.normal) * row.normal, rolling.friction * row.impulse.normal);
+    row.rolling = static_cast<std::uint32_t>(rolling_.size());
+    rolling_.push_back(rolling);
+}
+
+/// All of them or, where they do not act against what happens, as when forces have turned round, none. Most of a
+/// network goes on pressing as it did, and sweeps put right soon what single contacts begin with wrongly: to begin with
+/// a part of all of them would shake all that lies still.
+void IterativeContactSolver::apply_start() {
+    if (against_start_ > 0.0) {
+        for (ContactConstraint& row : rows_) row.impulse = {};
+        for (RollingConstraint& rolling : rolling_) rolling.moment = {};
+        return;
+    }
+    for (const ContactConstraint& row : rows_) {
+        if (row.impulse.normal == 0.0) continue;
+        apply(row, row.impulse, states_[row.a], states_[row.b]);
+        if (row.rolling != ContactConstraint::kNone)
+            apply_moment(rolling_[row.rolling], rolling_[row.rolling].moment, states_[row.a], states_[row.b]);
+    }
+}
+
+/// Adds what a contact's impulses act against, J.
+void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<const SolverState> states,
+                                      double& sum) const {
+    if (row.impulse.normal == 0.0) return;
+    const SolverState& a = states[row.a];
+    const SolverState& b = states[row.b];
+    sum += row.impulse.normal * (approach_of(row, a, b) + row.bound) + dot(row.impulse.tangential, slip_of(row, a, b));
+    if (row.rolling == ContactConstraint::kNone) return;
+    const RollingConstraint& rolling = rolling_[row.rolling];
+    sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
+}
+
+/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few
+/// sweeps do not solve where masses differ much is solved directly, and a few sweeps more say whether it is.
+void IterativeContactSolver::iterate(const SolverSettings& settings, SolverReport& report) {
+    const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
+    const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
+    if (sweep_until(settings, first, report) || !(mass_ratio_ > kUnlikeMasses)) return;
+    const double residual = report.residual;
+    const Impulses swept{rows_, rolling_, states_};
+    const double tolerance = std::max(settings.tolerance, kDirect * settings.enough);
+    static_cast<void>(direct_.improve({before_, states_, bodies_, rows_, rolling_}, tolerance));
+    if (sweep_until(settings, settings.most_sweeps, report) || report.residual <= residual) return;
+    rows_ = swept.rows;
+    rolling_ = swept.rolling;
+    states_ = swept.states;
+    sweep_until(settings, settings.most_sweeps, report);
+}
+
+/// False where `most` sweeps do not come to what is asked for.
+bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int most, SolverReport& report) {
+    const SolverLimits wished = limits_of(settings, settings.tolerance);
+    const SolverLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));
+    double before = 0.0;
+    double factor = 0.0;
+    int momentum = 0;  // sweeps since it last began anew
+    int restarts = 0;
+    int plain = 0;  // sweeps without it to come
+    for (int k = 1;; ++k) {
+        const SweepChange change = sweep(factor);
+        ++report.sweeps;
+        report.residual = change.worst();
+        report.is_converged = change.is_within(enough);
+        if (change.is_within(k < settings.sweeps ? wished : enough)) return true;
+        if (k >= most) return false;
+        if (before > 0.0 && change.squared > before) {
+            plain = ++restarts / kRestartsAPlainSweep;
+            momentum = 0;
+        } else if (plain > 0) {
+            --plain;
+        } else if (before > 0.0) {
+            ++momentum;
+        }
+        factor = static_cast<double>(momentum) / (momentum + 3);
+        before = change.squared;
+    }
+}
+
+/// All contacts once, after they and the bodies have gone on by a factor of what the last sweep and the momentum before
+/// it have changed.
+SweepChange IterativeContactSolver::sweep(double factor) {
+    go_on(factor);
+    SweepChange all;
+    for (std::size_t color = 0; color < coloring_.colors(); ++color) {
+        const std::size_t first = coloring_.begin_of(color);
+        const std::size_t count = coloring_.end_of(color) - first;
+        const bool is_serial = coloring_.is_serial(color);
+        const SweepVariant variant = is_serial ? SweepVariant::one_by_one : sweep_variants().back();
+        if (count <= kBlock || is_serial) {
+            all.add(sweep_rows(factor, first, first + count, variant));
+            continue;
+        }
+        blocks_.assign((count + kBlock - 1) / kBlock, {});
+        parallel_for_blocks(count, kBlock, [&](std::size_t k, std::size_t begin, std::size_t end) {
+            blocks_[k] = sweep_rows(factor, first + begin, first + end, variant);
+        });
+        for (const SweepChange& block : blocks_) all.add(block);
+    }
+    return all;
+}
+
+/// Of the bodies: impulses and what they do to bodies are linear, so that rows need only do the same when it is their
+/// turn.
+void IterativeContactSolver::go_on(double factor) {
+    const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
+        const std::size_t count = end - begin;
+        ricochet::go_on(std::span(states_).subspan(begin, count), std::span(last_).subspan(begin, count), factor,
+                        sweep_variants().back());
+    };
+    if (bodies_ <= kBlock) {
+        go(0, 0, bodies_);
+    } else {
+        parallel_for_blocks(bodies_, kBlock, go);
+    }
+}
+
+SweepChange IterativeContactSolver::sweep_rows(double factor, std::size_t begin, std::size_t end,
+                                               SweepVariant variant) {
+    return ricochet::sweep_rows({std::span(rows_).subspan(begin, end - begin), rolling_, states_}, factor, variant);
+}
+
+}  // namespace ricochet

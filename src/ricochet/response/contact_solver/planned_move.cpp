@@ -1,0 +1,287 @@
+#include "ricochet/response/contact_solver/planned_move.h"
+
+#include <algorithm>
+
+#include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/contact_solver/wall_contacts.h"
+#include "ricochet/response/particle_step.h"
+
+namespace ricochet {
+namespace {
+
+/// Surfaces that a plan may run into in one step; then the particle stays where it has come to.
+constexpr int kMostDiversions = 8;
+
+/// Corrections of where a chord ends.
+constexpr int kCorrections = 3;
+
+/// The same between surfaces that move and others: in a wedge each puts it into the other again, by a part of what it
+/// was. Three fourths a time leave 1e-4 of it.
+constexpr int kCorrectionsInWedge = 32;
+
+/// Parts of a radius by which a line may come nearer to a surface that it goes along than at its ends.
+constexpr double kSagitta = 1e-4;
+
+/// Parts of a radius beside a surface that has been met in which it is still touched: what lines along another one come
+/// off it by rounding, again and again.
+constexpr double kStillTouched = 1e-9;
+
+/// One particle on its way.
+class PlannedMove {
+public:
+    PlannedMove(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan, MoveScratch& scratch)
+        : rules_(rules),
+          particle_(particle),
+          plan_(plan),
+          scratch_(scratch),
+          step_(rules, particle, plan.duration, scratch) {}
+
+    MoveOutcome run();
+
+private:
+    void collect_impulses();
+    void follow();
+    [[nodiscard]] Path next_line() const;
+    void divert(const Contact& contact);
+    [[nodiscard]] bool touches(SurfaceId surface) const;
+    [[nodiscard]] Vec3 along_those_met(const Vec3& velocity) const;
+    [[nodiscard]] const ContactSurface* most_approached(const Vec3& velocity) const;
+    void cut_across();
+    void find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const;
+    [[nodiscard]] bool keep_off_walls(Vec3& end, double time) const;
+    [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
+        return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
+    }
+    [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p, double time) const;
+    [[nodiscard]] Vec3 kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const;
+    [[nodiscard]] std::vector<SurfaceId> passed_by(const Path& line);
+    void come_off(const Contact& contact);
+    void hold(SurfaceId surface);
+
+    const ResponseRules& rules_;
+    MovingParticle& particle_;
+    const PlannedMotion& plan_;
+    MoveScratch& scratch_;
+    mutable ParticleStep step_;
+    std::vector<ContactSurface> met_;  // in the step, and touched still
+    std::vector<SurfaceId> held_;      // ascending: surfaces that move and push, or are in its way
+};
+
+MoveOutcome PlannedMove::run() {
+    particle_.contact = {};
+    particle_.candidates = {};
+    particle_.attachment.reset();
+    collect_impulses();
+    particle_.spin = plan_.spin;
+    particle_.state.velocity = plan_.velocity;
+    if (rules_.bodies == nullptr || step_.catch_up()) follow();
+    if (rules_.bodies != nullptr) step_.store_position();
+    scratch_.driven = true;
+    step_.log().note_impact();
+    scratch_.driven = false;
+    return step_.outcome();
+}
+
+/// In straight lines, each to a place that surfaces which push leave free at the step's end.
+void PlannedMove::follow() {
+    if (plan_.is_clear && held_.empty() && can_be_followed(next_line())) {
+        step_.go_clear(next_line());
+        return;
+    }
+    for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
+        const Vec3 velocity = particle_.state.velocity;
+        const Path path = next_line();
+        const std::vector<SurfaceId> along = passed_by(path);
+        const std::optional<Contact> contact = step_.follow(path, along);
+        particle_.state.velocity = velocity;
+        if (!contact) break;
+        divert(*contact);
+        if (!along.empty()) come_off(*contact);
+        for (const ContactSurface& surface : contact->all()) hold(surface.surface);
+    }
+    if (step_.remaining() > 0.0) cut_across();
+    if (!(step_.remaining() > 0.0)) return;
+    if (step_.is_near_bodies()) {
+        step_.stop();
+    } else {
+        static_cast<void>(step_.wait(step_.remaining()));
+    }
+}
+
+/// With the velocity, or to a place off the surfaces that hold it.
+Path PlannedMove::next_line() const {
+    const ForceInput& state = particle_.state;
+    const double duration = step_.remaining();
+    Path line = line_path(state.position, state.velocity, duration);
+    if (held_.empty()) return line;
+    const Vec3 end = kept_off(state.position + duration * state.velocity, particle_.step_end, held_);
+    line = line_path(state.position, (end - state.position) / duration, duration);
+    line.end = end;
+    return line;
+}
+
+/// Where every line along a surface leads into it at once, as inside a sphere: along a chord, to a place that leaves
+/// the walls there free.
+void PlannedMove::cut_across() {
+    const ForceInput& state = particle_.state;
+    const Vec3 velocity = state.velocity;
+    const double duration = step_.remaining();
+    Vec3 end = state.position + duration * velocity;
+    for (int pass = 0; pass < kCorrections && !keep_off_walls(end, particle_.step_end); ++pass) continue;
+    end = flush_tiny(end);
+    Path path = line_path(state.position, (end - state.position) / duration, duration);
+    path.end = end;
+    const std::optional<Contact> contact = step_.follow(path);
+    particle_.state.velocity = velocity;
+    if (contact) divert(*contact);
+}
+
+/// One correction of a place that walls which it would touch at a time are to leave free. True where none was needed.
+bool PlannedMove::keep_off_walls(Vec3& end, double time) const {
+    std::vector<WallContact> walls;
+    find_walls(end, time, walls);
+    const double offset = 2.0 * contact_offset(end);
+    std::erase_if(walls, [&](const WallContact& wall) { return wall.gap >= offset; });
+    for (const WallContact& wall : walls) end += (2.0 * offset - wall.gap) * wall.normal;
+    return walls.empty();
+}
+
+/// That it would touch at a time.
+void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const {
+    const double radius = particle_.state.radius;
+    const double reach = 4.0 * contact_offset(center);
+    if (rules_.bodies == nullptr) {
+        const SurfaceGeometry geometry(rules_.world, scratch_.contacts.plane_cache);
+        static_cast<void>(find_wall_contacts(geometry, center, radius, reach, found));
+    } else {
+        static_cast<void>(find_wall_contacts(*rules_.bodies, {time, time}, center, radius, reach, found));
+    }
+}
+
+/// At the begin of the step, as the plan has it.
+void PlannedMove::collect_impulses() {
+    for (const WallImpulse& impulse : plan_.impulses) {
+        step_.impact().record_impulse(impulse.surface, impulse.velocity_change, false, impulse.spin_change);
+        hold(impulse.surface);
+    }
+}
+
+/// What is at rest needs no more than the line along it.
+void PlannedMove::hold(SurfaceId surface) {
+    if (rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody) return;
+    const auto at = std::lower_bound(held_.begin(), held_.end(), surface);
+    if (at == held_.end() || *at != surface) held_.insert(at, surface);
+}
+
+/// Of a surface as it stands at a time, s.
+CollisionWorld::Nearest PlannedMove::nearest(SurfaceId surface, const Vec3& p, double time) const {
+    const bool is_at_rest = rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody;
+    if (!is_at_rest) return nearest_at(*rules_.bodies, surface, p, time);
+    return SurfaceGeometry(rules_.world, scratch_.contacts.plane_cache).nearest(surface, p);
+}
+
+/// A position at a time put off the surfaces that it would be too near, and off those into which that has put it.
+Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const {
+    const double radius = particle_.state.radius;
+    bool was_put_off = false;
+    for (int pass = 0; pass < kCorrectionsInWedge; ++pass) {
+        bool is_off = true;
+        for (const SurfaceId surface : surfaces) {
+            const CollisionWorld::Nearest there = nearest(surface, end, time);
+            const double missing = radius + 2.0 * contact_offset(end) - there.distance;
+            if (missing <= 0.0) continue;
+            end += missing * there.normal;
+            is_off = false;
+        }
+        was_put_off = was_put_off || !is_off;
+        if (was_put_off && !keep_off_walls(end, time)) is_off = false;
+        if (is_off) break;
+    }
+    return flush_tiny(end);
+}
+
+/// Those held surfaces that a line goes along: it ends off them, and hardly comes nearer in between.
+std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
+    const double radius = particle_.state.radius;
+    std::vector<SurfaceId> passed;
+    for (const SurfaceId surface : held_) {
+        const double at_end = nearest(surface, line.end, particle_.step_end).distance;
+        if (at_end >= radius) passed.push_back(surface);
+    }
+    std::vector<SurfaceId> met;
+    for (int k = 0; !passed.empty(); ++k) {
+        if (k == kMostDiversions) return {};
+        const std::optional<Contact> contact = step_.first_contact(line, (1.0 - kSagitta) * radius, met);
+        if (!contact) break;
+        for (const ContactSurface& surface : contact->all()) {
+            std::erase(passed, surface.surface);
+            met.push_back(surface.surface);
+        }
+    }
+    return passed;
+}
+
+/// Where something is in the way of a line before its end, the surfaces that it goes along may be a little too near.
+void PlannedMove::come_off(const Contact& contact) {
+    const ForceInput& state = particle_.state;
+    std::vector<SurfaceId> near = held_;
+    for (const ContactSurface& surface : contact.all()) near.push_back(surface.surface);
+    const double least = state.radius - 0.5 * sphere_tolerance(state.radius, max_abs(state.position));
+    const bool is_off = std::all_of(near.begin(), near.end(), [&](SurfaceId surface) {
+        return nearest(surface, state.position, state.time).distance >= least;
+    });
+    if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
+}
+
+/// Takes away what leads into the surfaces of a contact, and of others that have been met and are still touched: a
+/// groove leaves the line along it, a corner nothing.
+void PlannedMove::divert(const Contact& contact) {
+    std::erase_if(met_, [&](const ContactSurface& surface) { return !touches(surface.surface); });
+    for (const ContactSurface& surface : contact.all()) met_.push_back(surface);
+    const Vec3 before = particle_.state.velocity;
+    particle_.state.velocity = along_those_met(before);
+    step_.impact().record_impulse(contact.first().surface, particle_.state.velocity - before, false, Vec3{});
+}
+
+bool PlannedMove::touches(SurfaceId surface) const {
+    const ForceInput& state = particle_.state;
+    const double distance = nearest(surface, state.position, state.time).distance;
+    return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
+}
+
+/// What of a velocity leads into none of the surfaces that have been met; a surface's own where they leave none.
+Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
+    std::vector<Vec3> normals;
+    std::vector<double> missing;
+    Vec3 left = velocity;
+    while (const ContactSurface* const surface = most_approached(left)) {
+        if (normals.size() == kMostSupports) return velocity_of(*surface);
+        normals.push_back(surface->normal);
+        missing.push_back(-dot(velocity - velocity_of(*surface), surface->normal));
+        left = velocity + shift_by(normals, missing);
+    }
+    return left;
+}
+
+/// That of those met into which a velocity leads fastest, beyond rounding; null where it leads into none.
+const ContactSurface* PlannedMove::most_approached(const Vec3& velocity) const {
+    const ContactSurface* most = nullptr;
+    double fastest = 0.0;
+    for (const ContactSurface& surface : met_) {
+        const Vec3 relative = velocity - velocity_of(surface);
+        const double into = dot(relative, surface.normal);
+        if (into >= fastest || into >= -kMinApproach * length(relative)) continue;
+        fastest = into;
+        most = &surface;
+    }
+    return most;
+}
+
+}  // namespace
+
+MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan,
+                            MoveScratch& scratch) {
+    return PlannedMove(rules, particle, plan, scratch).run();
+}
+
+}  // namespace ricochet

@@ -1,0 +1,153 @@
+// What holds for each connected impact as a whole: its restitution, and that it gains no energy.
+#include <algorithm>
+#include <cmath>
+
+#include "ricochet/core/prefetch.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_solver/iterative_contact_solver.h"
+
+namespace ricochet {
+namespace {
+
+/// A contact without rebound that gives a body no more than so many times what the body's own approach takes has no
+/// part in what others do: it holds a sphere that another one hits along the floor.
+constexpr double kHoldsOnly = 1.5;
+
+/// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
+std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
+                                 std::span<const ContactConstraint> rows, std::span<const double> all_own) {
+    std::vector<double> least(impacts.size(), 1.0);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const ContactConstraint& row = rows[i];
+        if (row.impulse.normal == 0.0) continue;
+        const double approach = approach_of(row, before[row.a], before[row.b]);
+        if (!(approach < 0.0)) continue;
+        const double own = all_own[i];
+        if (own == 0.0 && row.impulse.normal * inverse_mass_of(before[row.a], before[row.b]) <= -kHoldsOnly * approach)
+            continue;
+        double& e = least[impacts.of(row)];
+        e = std::min(e, own);
+    }
+    return least;
+}
+
+}  // namespace
+
+bool IterativeContactSolver::may_rebound() const {
+    return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
+}
+
+/// The impact without rebound says what is connected.
+void IterativeContactSolver::rebound(std::span<const SolverContact> contacts, const SolverSettings& settings,
+                                     SolverReport& report) {
+    SolverSettings first = settings;
+    first.tolerance = std::max(settings.tolerance, settings.connecting);
+    iterate(first, report);
+    const bool any = apply_restitution();
+    if (any || first.tolerance > settings.tolerance) iterate(settings, report);
+    if (!any) return;
+    find_gains();
+    bool gained = false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (rows_[i].bound >= -partings_[i] || !gains_[impacts_.of(rows_[i])].is_gain()) continue;
+        rows_[i].bound = std::max(-partings_[i], contacts[coloring_.order()[i]].gap / settings.duration);
+        gained = true;
+    }
+    if (!gained) return;
+    gains_.clear();
+    iterate(settings, report);
+}
+
+/// Sets the speeds with which contacts have to leave; false where none has to.
+bool IterativeContactSolver::apply_restitution() {
+    impacts_.assign(before_, rows_);
+    const std::vector<double> least = restitutions(impacts_, before_, rows_, restitutions_);
+    bool any = false;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        ContactConstraint& row = rows_[i];
+        if (restitutions_[i] == 0.0 || row.impulse.normal == 0.0) continue;
+        const double approach = approach_of(row, before_[row.a], before_[row.b]);
+        const double e = least[impacts_.of(row)];
+        if (!(approach < 0.0) || e == 0.0) continue;
+        row.bound = std::min(row.bound, e * approach);
+        any = true;
+    }
+    return any;
+}
+
+/// By connected impact, which are found anew. The work that parts what overlaps is no gain.
+void IterativeContactSolver::find_gains() {
+    impacts_.assign(before_, rows_);
+    gains_.assign(impacts_.size(), {});
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const ContactConstraint& row = rows_[i];
+        if (row.impulse.normal == 0.0) continue;
+        const auto work_in = [&](const std::vector<SolverState>& states) {
+            const SolverState& a = states[row.a];
+            const SolverState& b = states[row.b];
+            double work = row.impulse.normal * approach_of(row, a, b) + dot(row.impulse.tangential, slip_of(row, a, b));
+            if (row.rolling != ContactConstraint::kNone) {
+                const RollingConstraint& rolling = rolling_[row.rolling];
+                work += dot(rolling.moment, rolling_of(row, rolling, a, b));
+            }
+            return work;
+        };
+        const double before = work_in(before_);
+        const double after = work_in(states_);
+        Gain& gain = gains_[impacts_.of(row)];
+        gain.against += before - row.impulse.normal * partings_[i];
+        gain.curvature += after - before;
+        gain.size += std::fabs(before) + std::fabs(after);
+    }
+}
+
+bool IterativeContactSolver::Gain::is_gain() const { return against + 0.5 * curvature > kNetworkEnergyRounding * size; }
+
+double IterativeContactSolver::Gain::factor() const { return std::clamp(-2.0 * against / curvature, 0.0, 1.0); }
+
+/// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
+/// them does not.
+void IterativeContactSolver::remove_energy_gains(SolverReport& report) {
+    report.energy_change = 0.0;
+    bool any = false;
+    for (const Gain& gain : gains_) {
+        const double factor = gain.is_gain() ? gain.factor() : 1.0;
+        report.energy_change += factor * (gain.against + 0.5 * factor * gain.curvature);
+        any = any || factor < 1.0;
+    }
+    if (!any) return;
+    report.is_converged = false;
+    const auto factor_of = [&](std::uint32_t impact) {
+        return gains_[impact].is_gain() ? gains_[impact].factor() : 1.0;
+    };
+    for (ContactConstraint& row : rows_) {
+        const double factor = factor_of(impacts_.of(row));
+        row.impulse.normal *= factor;
+        row.impulse.tangential *= factor;
+        if (row.rolling != ContactConstraint::kNone) rolling_[row.rolling].moment *= factor;
+    }
+    for (std::uint32_t i = 0; i < bodies_; ++i) {
+        const double factor = factor_of(impacts_.of_body(i));
+        if (factor == 1.0) continue;
+        states_[i].velocity = before_[i].velocity + factor * (states_[i].velocity - before_[i].velocity);
+        states_[i].turning = before_[i].turning + factor * (states_[i].turning - before_[i].turning);
+    }
+}
+
+void IterativeContactSolver::hand_over(std::span<SolverBody> bodies) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+        bodies[i].velocity = states_[i].velocity;
+        if (bodies[i].radius > 0.0) bodies[i].spin = states_[i].turning / bodies[i].radius;
+    }
+    const std::span<const std::uint32_t> order = coloring_.order();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (i + kPrefetchDistance < rows_.size()) prefetch_whole(impulses_[order[i + kPrefetchDistance]]);
+        const ContactConstraint& row = rows_[i];
+        rebounds_[order[i]] = row.bound < -partings_[i] ? 1 : 0;
+        const bool resists_rolling = row.rolling != ContactConstraint::kNone;
+        impulses_[order[i]] = {row.impulse.normal, row.impulse.tangential,
+                               resists_rolling ? rolling_[row.rolling].moment : Vec3{}};
+    }
+}
+
+}  // namespace ricochet

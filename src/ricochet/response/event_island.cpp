@@ -1,0 +1,504 @@
+#include "ricochet/response/event_island.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ricochet/core/box_tools.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/flight.h"
+#include "ricochet/geometry/sweep/pair_sweep.h"
+
+namespace ricochet {
+namespace {
+
+/// Part of the distance of two centres by which an impact may find the spheres apart: far above the rounding of
+/// predicted paths, far below what time that is lost on the way amounts to.
+constexpr double kMetGap = 1e-9;
+
+/// The same as a part of the ways along walls, and of the smaller radius, in the step. Reason: such ways consist of
+/// arcs, which are planned anew up to the time of impact; 3e-7 of the way is usual. Smaller: impacts are planned anew
+/// for nothing. Larger: spheres that do not touch push each other.
+constexpr double kBoundMetGap = 1e-6;
+
+void append_to(std::vector<FlownPiece>& trajectory, const std::vector<FlownPiece>& more) {
+    trajectory.insert(trajectory.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+bool EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit) {
+    members_ = &members;
+    scratch_ = &scratch;
+    impacts_.clear();
+    meetings_.clear();
+    most_of_one_ = 0;
+    if (predictions_.size() < members.size()) predictions_.resize(members.size());
+    boxes_.assign(members.size(), {});
+    partners_.assign(members.size(), 0);
+    times_.reset(members.size());
+    resumed_.resize(std::max(resumed_.size(), members.size()));
+    begin_.clear();
+    for (const IslandMember& member : members) begin_.push_back(member.moving.state.position);
+    scratch.record_flown = true;
+    for (std::size_t m = 0; m < members.size(); ++m) predict(m);
+    neighbours_.begin(boxes_);
+    if (!limit.may_press && presses()) {
+        scratch.record_flown = false;
+        return false;
+    }
+    find_all();
+    while (true) {
+        const double time = times_.earliest();
+        if (!std::isfinite(time) || exceeds(limit)) break;
+        std::vector<PairContact> contacts = contacts_at(time);
+        keep_fastest(contacts, time);
+        resolve(contacts, time);
+    }
+    scratch.record_flown = false;
+    if (exceeds(limit) || (!limit.may_sink && sinks())) return false;
+    for (std::size_t m = 0; m < members.size(); ++m) commit(m);
+    return true;
+}
+
+bool EventIsland::exceeds(const ImpactLimit& limit) const {
+    return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
+}
+
+/// At the ends of the paths of those that are there for all of the step. is: what else holds of the pair.
+template <class Is>
+bool EventIsland::any_sinks(const Is& is) const {
+    const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
+    for (std::size_t m = 0; m < members_->size(); ++m) {
+        const IslandMember& member = (*members_)[m];
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const IslandMember& neighbour = (*members_)[other];
+            const bool is_pair = other > m && is_there(member) && is_there(neighbour) && member.end == neighbour.end;
+            if (!is_pair || predictions_[m].outcome.is_absorbed() || predictions_[other].outcome.is_absorbed())
+                continue;
+            const Vec3 apart = state_of(other, member.end).position - state_of(m, member.end).position;
+            const double smaller = std::min(member.radius(), neighbour.radius());
+            const Vec3 before = begin_[other] - begin_[m];
+            if (has_sunk(member.radius() + neighbour.radius(), smaller, before, apart) && is(m, other)) return true;
+        }
+    }
+    return false;
+}
+
+bool EventIsland::sinks() const {
+    return any_sinks([](std::size_t, std::size_t) { return true; });
+}
+
+/// Before anybody has met: by impacts without rebound two that press on each other never get through the step. What a
+/// wall throws into another one does rebound.
+bool EventIsland::presses() const {
+    const double resting = response_.rules().settings.resting_speed;
+    return any_sinks([&](std::size_t m, std::size_t other) {
+        const IslandMember& a = (*members_)[m];
+        const IslandMember& b = (*members_)[other];
+        const bool is_thrown = predictions_[m].outcome.bounces > 0 || predictions_[other].outcome.bounces > 0;
+        if (is_thrown) return false;
+        const Vec3 apart = begin_[other] - begin_[m];
+        const double distance = length(apart);
+        const double touching = a.radius() + b.radius() + kPressedOverlap * std::min(a.radius(), b.radius());
+        const double approach = -dot(b.moving.state.velocity - a.moving.state.velocity, apart);
+        return distance <= touching && approach <= resting * distance;
+    });
+}
+
+/// The path of a member to the end of its part of the step.
+void EventIsland::predict(std::size_t m) {
+    IslandMember& member = (*members_)[m];
+    Prediction& prediction = predictions_[m];
+    prediction.moved = member.moving;
+    prediction.outcome = {};
+    prediction.lists.clear();
+    prediction.flown.clear();
+    if (member.is_gone()) {
+        boxes_[m] = {};
+        return;
+    }
+    const double duration = member.time_left();
+    if (member.is_fixed || member.is_cut_off || !(duration > 0.0)) {
+        stay(m);
+        return;
+    }
+    if (member.is_free) {
+        prediction.flown.assign(1, free_way(response_.rules(), member.moving.state, member.end));
+        const Path& path = prediction.flown[0].path;
+        boxes_[m] = grown(box_of(path, path.duration), member.radius());
+        return;
+    }
+    scratch_->flown.clear();
+    prediction.moved.step_end = member.end;
+    prediction.outcome = response_.move(prediction.moved, duration, *scratch_);
+    prediction.lists.take(*scratch_);
+    prediction.flown.swap(scratch_->flown);
+    // Where nothing has been flown it stays: what cannot be followed, or has no time left.
+    if (prediction.flown.empty()) {
+        stay(m);
+        return;
+    }
+    // What has spent its bounces on walls waits there, and others may come. Walls that move take it along.
+    if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
+        const FlownPiece& last = prediction.flown.back();
+        const double begin = last.begin + last.duration;
+        const double waits = std::max(0.0, member.end - begin);
+        const Vec3 from = last.path.position(last.duration);
+        const Vec3 carried = prediction.moved.state.position - from;
+        const Path trajectory = line_path(from, waits > 0.0 ? carried / waits : Vec3{}, waits);
+        prediction.flown.push_back({trajectory, begin, trajectory.duration, Vec3{}, Vec3{}, false});
+    }
+    Box3 box;
+    for (const FlownPiece& piece : prediction.flown) box.include(box_of(piece.path, piece.duration));
+    box.include(prediction.moved.state.position);
+    boxes_[m] = grown(box, member.radius());
+}
+
+void EventIsland::stay(std::size_t m) {
+    const IslandMember& member = (*members_)[m];
+    const ForceInput& state = member.moving.state;
+    const double duration = std::max(0.0, member.end - state.time);
+    predictions_[m].flown.assign(
+        1, {line_path(state.position, Vec3{}, duration), state.time, duration, Vec3{}, Vec3{}, false});
+    boxes_[m] = grown({state.position, state.position}, member.radius());
+}
+
+/// Moves a member to a time along the path that is predicted. What bounces off a wall just then, as one that lies on a
+/// floor does when it is hit, has met the other on its way back: so it bounces first.
+void EventIsland::bring(std::size_t m, double time) {
+    const IslandMember& member = (*members_)[m];
+    if (is_still(m)) return;
+    go_to(m, time);
+    const double just_after = std::nextafter(time, std::numeric_limits<double>::infinity());
+    if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
+}
+
+/// True if two do not meet after all: one is gone, or has lost time on the way, or its way along a wall that turns fast
+/// differs from the one that was predicted.
+bool EventIsland::is_missed(const PairContact& contact, double time) const {
+    const IslandMember& a = (*members_)[contact.first];
+    const IslandMember& b = (*members_)[contact.second];
+    if (a.is_gone() || b.is_gone()) return true;
+    const PhaseState first{a.moving.state.position, a.moving.state.velocity};
+    const PhaseState second{b.moving.state.position, b.moving.state.velocity};
+    const double touching = a.radius() + b.radius();
+    const double trajectory = a.contact_path + b.contact_path;
+    const double bound = trajectory > 0.0 ? kBoundMetGap * (std::min(a.radius(), b.radius()) + trajectory) : 0.0;
+    const double rounding = kSameImpactUlps * (ulp(max_abs(first.position)) + ulp(max_abs(second.position)) +
+                                               ulp(time) * (length(first.velocity) + length(second.velocity)));
+    return length(second.position - first.position) > touching + kMetGap * touching + bound + rounding;
+}
+
+bool EventIsland::bounces_at(std::size_t m, double time) const {
+    const Vec3& now = (*members_)[m].moving.state.velocity;
+    const auto is_it = [&](const FlownPiece& piece) {
+        const double most = kPairApproachRounding * (length(now) + length(piece.start_velocity));
+        return std::fabs(piece.begin - time) <= kSameImpactUlps * ulp(time) &&
+               length(piece.start_velocity - now) > most;
+    };
+    const std::vector<FlownPiece>& flown = predictions_[m].flown;
+    return !kicks_first(response_.rules().settings.integrator.kind) && std::any_of(flown.begin(), flown.end(), is_it);
+}
+
+void EventIsland::go_to(std::size_t m, double time) {
+    IslandMember& member = (*members_)[m];
+    MovingParticle& moving = member.moving;
+    const double duration = time == member.end ? member.time_left() : time - moving.state.time;
+    if (!(duration > 0.0)) return;
+    scratch_->flown.clear();
+    if (member.is_free && !scratch_->record_segments) {
+        fly_freely(member, duration);
+    } else {
+        moving.beyond = member.end - time;
+        moving.step_end = time;
+        add(member.outcome, response_.move(moving, duration, *scratch_));
+        moving.beyond = 0.0;
+    }
+    moving.planned = nullptr;
+    member.is_free = false;
+    if (!member.is_gone()) moving.state.time = time;
+    MoveLists lists;
+    lists.take(*scratch_);
+    member.lists.append(lists);
+    append_to(member.trajectory, scratch_->flown);
+    Box3 box;
+    for (const FlownPiece& piece : scratch_->flown) {
+        box.include(box_of(piece.path, piece.duration));
+        if (!piece.is_free) member.contact_path += length(piece.path.position(piece.duration) - piece.path.c[0]);
+    }
+    box.include(moving.state.position);
+    member.swept.include(grown(box, member.radius()));
+}
+
+/// What response_.move() does where it is known to meet no wall, without the certificate.
+void EventIsland::fly_freely(IslandMember& member, double duration) {
+    const ResponseRules& rules = response_.rules();
+    ForceInput& state = member.moving.state;
+    const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, member.end - state.time);
+    const Vec3 separation_speed = state.velocity;
+    const double begin = state.time;
+    state.velocity = velocity_at(rules.settings.integrator, rules.forces, flight, duration);
+    state.position = flight.path.position(duration);
+    scratch_->flown.push_back({flight.path, begin, duration, separation_speed, state.velocity, true});
+}
+
+/// What is predicted has come true.
+void EventIsland::commit(std::size_t m) {
+    IslandMember& member = (*members_)[m];
+    Prediction& prediction = predictions_[m];
+    member.swept.include(boxes_[m]);
+    const bool has_left_bounds = member.impacts > 0;
+    if (has_left_bounds) member.moving.planned = nullptr;
+    if (has_left_bounds || member.moving.state.coupling != nullptr) append_to(member.trajectory, prediction.flown);
+    if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
+    member.moving = prediction.moved;
+    if (has_left_bounds) member.moving.planned = nullptr;
+    add(member.outcome, prediction.outcome);
+    member.lists.append(prediction.lists);
+}
+
+/// m/s: an approach of rounding.
+double EventIsland::slow(std::size_t a, std::size_t b) const {
+    const auto speed = [&](std::size_t m) { return length((*members_)[m].moving.state.velocity); };
+    return kPairApproachRounding * (speed(a) + speed(b));
+}
+
+std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) const {
+    if ((*members_)[a].is_fixed && (*members_)[b].is_fixed) return std::nullopt;
+    // In one order, so that both find the same time.
+    if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
+    const std::vector<FlownPiece>& first = predictions_[a].flown;
+    const std::vector<FlownPiece>& second = predictions_[b].flown;
+    const double distance = (*members_)[a].radius() + (*members_)[b].radius();
+    return first_meeting(std::span(first), std::span(second), distance, slow(a, b));
+}
+
+/// Of the next meeting of a member, if it is that.
+void EventIsland::note(std::size_t m, double time, std::size_t partner) {
+    if (!(time < times_.time_of(m))) return;
+    times_.set(m, time);
+    partners_[m] = partner;
+}
+
+/// Who meets whom next, of all.
+void EventIsland::find_all() {
+    for (std::size_t m = 0; m < members_->size(); ++m) {
+        const std::vector<std::uint32_t>& near = neighbours_.of(m);
+        for (auto other = std::upper_bound(near.begin(), near.end(), m); other != near.end(); ++other) {
+            const auto time = meeting_of(m, *other);
+            if (!time) continue;
+            note(m, *time, *other);
+            note(*other, *time, m);
+        }
+    }
+}
+
+void EventIsland::find_next(std::size_t m) {
+    times_.set(m, std::numeric_limits<double>::infinity());
+    for (const std::uint32_t other : neighbours_.of(m)) {
+        if (const auto time = meeting_of(m, other)) note(m, *time, other);
+    }
+}
+
+/// Of members that have been changed: their paths, and who meets whom next.
+void EventIsland::predict_anew(const std::vector<std::size_t>& changed) {
+    const auto is_changed = [&](std::size_t m) { return std::binary_search(changed.begin(), changed.end(), m); };
+    std::vector<std::size_t> left;  // by their partners
+    for (const std::size_t m : changed) {
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const bool is_left = partners_[other] == m && std::isfinite(times_.time_of(other));
+            if (is_left && !is_changed(other)) left.push_back(other);
+        }
+    }
+    for (const std::size_t m : changed) predict(m);
+    neighbours_.update(changed);
+    for (const std::size_t other : left) find_next(other);
+    for (const std::size_t m : changed) {
+        times_.set(m, std::numeric_limits<double>::infinity());
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const auto time = meeting_of(m, other);
+            if (!time) continue;
+            note(m, *time, other);
+            note(other, *time, m);
+        }
+    }
+}
+
+PhaseState EventIsland::state_of(std::size_t m, double time) const {
+    const std::vector<FlownPiece>& flown = predictions_[m].flown;
+    const auto next = std::upper_bound(flown.begin() + 1, flown.end(), time,
+                                       [](double t, const FlownPiece& piece) { return t < piece.begin; });
+    const FlownPiece& piece = *(next - 1);
+    const double s = std::clamp(time - piece.begin, 0.0, piece.duration);
+    return {piece.path.position(s), piece.path.velocity(s)};
+}
+
+/// All that meet at a time, as members, ascending.
+std::vector<PairContact> EventIsland::contacts_at(double time) const {
+    const double until = time + kSameImpactUlps * ulp(time);
+    std::vector<PairContact> contacts;
+    std::vector<std::size_t> first;
+    times_.collect(until, first);
+    for (const std::size_t m : first) {
+        for (const std::uint32_t other : neighbours_.of(m)) {
+            const bool is_known = other < m && times_.time_of(other) <= until;  // found from there
+            if (is_known) continue;
+            const auto meeting = meeting_of(m, other);
+            if (meeting && *meeting <= until) {
+                contacts.push_back({std::min<std::size_t>(m, other), std::max<std::size_t>(m, other)});
+            }
+        }
+    }
+    return contacts;
+}
+
+/// The fastest first, and with it what is as fast, so that no order of members matters.
+void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) const {
+    if (contacts.size() < 2) return;
+    double fastest = -std::numeric_limits<double>::infinity();
+    for (PairContact& contact : contacts) {
+        const PhaseState a = state_of(contact.first, time);
+        const PhaseState b = state_of(contact.second, time);
+        contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
+        fastest = std::max(fastest, contact.approach);
+    }
+    // By rounding all may part: one is left, so that it counts as an impact, and its members go on.
+    const double least = fastest > 0.0 ? fastest * (1.0 - kSameApproach) : fastest;
+    std::erase_if(contacts, [&](const PairContact& contact) { return contact.approach < least; });
+}
+
+/// Moves those that meet to the time, lets them answer, and moves them on.
+void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
+    std::vector<std::size_t> changed;
+    for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
+    std::sort(changed.begin(), changed.end());
+    changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+    for (const std::size_t m : changed) bring(m, time);
+    // Missed ones count too, so that every step ends.
+    for (const PairContact& contact : contacts) {
+        for (const std::size_t m : {contact.first, contact.second}) {
+            most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
+        }
+    }
+    std::erase_if(contacts, [&](const PairContact& c) { return is_missed(c, time); });
+    std::vector<PairBody> bodies;
+    for (const std::size_t m : changed) bodies.push_back(body_of((*members_)[m]));
+    const std::vector<PairBody> before = bodies;
+    const auto number = [&](std::size_t m) {
+        return static_cast<std::size_t>(std::lower_bound(changed.begin(), changed.end(), m) - changed.begin());
+    };
+    std::vector<std::uint8_t> is_hit(changed.size(), 0);
+    for (PairContact& contact : contacts) {
+        contact.first = number(contact.first), contact.second = number(contact.second);
+        is_hit[contact.first] = is_hit[contact.second] = 1;
+    }
+    // No direction parts those of one centre, as children of one place are.
+    std::erase_if(contacts,
+                  [&](const PairContact& c) { return before[c.first].position == before[c.second].position; });
+    if (!contacts.empty()) {
+        resolve_pair_impacts(materials_, response_.rules().settings.resting_speed, bodies, contacts);
+        for (const PairContact& contact : contacts) record(contact, changed, before, bodies, time);
+        if (scratch_->record_motions) record_meeting(contacts, changed, before, bodies, time);
+    }
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+        const std::size_t m = changed[k];
+        if (is_still(m)) continue;
+        if (is_hit[k] != 0) write_back(m, bodies[k]);
+        go_on(m);
+    }
+    predict_anew(changed);
+}
+
+PairBody EventIsland::body_of(const IslandMember& member) {
+    const MovingParticle& moving = member.moving;
+    const double radius = member.radius();
+    const bool is_fixed = member.is_fixed || member.is_cut_off;
+    // A core turns faster, so that its surface moves as fast.
+    PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
+                              (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
+    body.material = member.material;
+    return body;
+}
+
+/// A member takes the motion after an impact: what touched it is met anew.
+void EventIsland::write_back(std::size_t m, const PairBody& body) {
+    IslandMember& member = (*members_)[m];
+    member.is_free = false;  // also where it is hit at the begin of the step, and has not been brought anywhere
+    MovingParticle& moving = member.moving;
+    const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
+    member.pair_velocity_change += body.velocity - moving.state.velocity;
+    moving.state.velocity = body.velocity;
+    moving.planned = nullptr;
+    if (moving.state.radius > 0.0) moving.spin = (member.radius() / moving.state.radius) * body.spin;
+    moving.contact = {};
+    moving.attachment.reset();
+    moving.candidates = {};
+    if (scratch_->record_motions) {
+        MotionPart part;
+        part.kind = MotionPart::Kind::driven;
+        part.time = moving.state.time;
+        part.radius = moving.state.radius;
+        part.begin = before;
+        part.end = {moving.state.position, moving.state.velocity, moving.spin};
+        member.lists.motions.push_back(part);
+    }
+}
+
+/// A member goes on from where it has been brought, unless it has spent its impacts.
+void EventIsland::go_on(std::size_t m) {
+    IslandMember& member = (*members_)[m];
+    resume(m);
+    if (member.impacts < impact_budget_) return;
+    member.is_cut_off = true;
+    member.outcome.unsimulated_time += member.end - member.moving.state.time;
+    member.moving.step_end = member.end;
+}
+
+/// Where forces act by a kick at the begin they have acted already.
+void EventIsland::resume(std::size_t m) {
+    const ResponseRules& rules = response_.rules();
+    MovingParticle& moving = (*members_)[m].moving;
+    if (!kicks_first(rules.settings.integrator.kind)) return;
+    Flight before;
+    before.kick_duration = rules.settings.time_step;
+    resumed_[m] = resume_flight(rules.settings.integrator, rules.forces, moving.state, before,
+                                (*members_)[m].end - moving.state.time);
+    moving.planned = &resumed_[m];
+}
+
+void EventIsland::record(const PairContact& contact, const std::vector<std::size_t>& changed,
+                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time) {
+    std::size_t first = contact.first;
+    std::size_t second = contact.second;
+    const auto moving_of = [&](std::size_t k) -> const MovingParticle& { return (*members_)[changed[k]].moving; };
+    double sign = 1.0;
+    if (moving_of(first).id > moving_of(second).id) std::swap(first, second), sign = -1.0;
+    impacts_.push_back({time, moving_of(first).id, moving_of(second).id, before[first].position, -sign * contact.normal,
+                        before[first].velocity, after[first].velocity, sign * contact.impulse, contact.approach,
+                        moving_of(first).state.mass, before[first].radius});
+}
+
+void EventIsland::record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
+                                 const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time) {
+    PairMeeting meeting{time, {}, {}};
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+        const MovingParticle& moving = (*members_)[changed[k]].moving;
+        const PairBody& body = before[k];
+        meeting.spheres.push_back({moving.id,
+                                   moving.state.mass,
+                                   body.radius,
+                                   body.inverse_mass == 0.0,
+                                   {body.position, body.velocity, body.spin},
+                                   {after[k].position, after[k].velocity, after[k].spin},
+                                   body.material,
+                                   (*members_)[changed[k]].contact_path});
+    }
+    for (const PairContact& contact : contacts) {
+        meeting.contacts.push_back({contact.first, contact.second, contact.impulse});
+    }
+    meetings_.push_back(std::move(meeting));
+}
+
+}  // namespace ricochet

@@ -1,0 +1,155 @@
+#include "ricochet/response/manifold_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "ricochet/core/tolerances.h"
+#include "ricochet/response/normal_rate.h"
+
+namespace ricochet {
+
+namespace {
+
+/// Seams in one step before what continues a surface is an impact like any other.
+constexpr int kMostSeams = 64;
+
+}  // namespace
+
+ManifoldSurfaces::ManifoldSurfaces(ParticleStep& step, ContactManifold& manifold)
+    : step_(step), geometry_(step.geometry()), state_(step.state()), manifold_(manifold) {}
+
+void ManifoldSurfaces::find() {
+    surfaces_.clear();
+    beside_.clear();
+    if (manifold_.is_curved() || std::exchange(crosses_seam_, false)) find_beside();
+    for (std::size_t k = 0; k < manifold_.size(); ++k) surfaces_.push_back(manifold_[k].surface);
+    for (const Beside& other : beside_) surfaces_.push_back(other.surface);
+}
+
+void ManifoldSurfaces::find_beside() {
+    if (state_.radius == 0.0) return;
+    const double reach = state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position);
+    step_.visit_near([&](SurfaceId surface) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+        const auto point = manifold_.point_of(nearest.normal);
+        if (nearest.distance > reach || !point || manifold_[*point].surface == surface) return;
+        beside_.push_back({surface, *point});
+    });
+}
+
+bool ManifoldSurfaces::touches_next_substep(const Vec3& position) const {
+    const double reach = kTouchingOffsets * geometry_.contact_offset(state_.position);
+    std::array<CollisionWorld::Nearest, kMostSupports> points;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        const SurfaceId surface = manifold_[k].surface;
+        points[k] = geometry_.nearest(surface, position);
+        const bool is_next = manifold_[k].flat ? is_beyond_rim(surface, position)
+                                               : touched_feature(geometry_, surface, position) !=
+                                                     touched_feature(geometry_, surface, state_.position);
+        if (is_next) return true;
+    }
+    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, position);
+        const CollisionWorld::Nearest& point = points[other.point];
+        return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
+    });
+}
+
+bool ManifoldSurfaces::overlaps(const Vec3& position) const {
+    return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
+        return geometry_.nearest(other.surface, position).distance < state_.radius;
+    });
+}
+
+bool ManifoldSurfaces::has_left_face(const Vec3& position) const {
+    for (std::size_t k = 0; k < manifold_.size(); ++k) {
+        if (manifold_[k].flat && is_beyond_rim(manifold_[k].surface, position)) return true;
+    }
+    return false;
+}
+
+/// True where the foot of a position on a face's plane is so far beyond the face that it holds the particle no more.
+bool ManifoldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
+    const Vec3 height = geometry_.signed_distance_from(surface, position) * geometry_.unit_normal_of(surface, position);
+    return geometry_.nearest(surface, position - height).distance > kEdgeOffsets * geometry_.contact_offset(position);
+}
+
+void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path) {
+    for (std::size_t k = 0; k < manifold.size(); ++k) {
+        const ContactSurface surface = manifold[k];
+        if (surface.flat) continue;
+        // Round an edge or a rim a sphere is no way above the surface's own continuation.
+        const bool is_round =
+            geometry.world().is_shape(surface.surface) && !geometry.nearest(surface.surface, path.c[0]).rim;
+        if (radius > 0.0 && !is_round) continue;
+        const auto normal_at = [&](const Vec3& p) { return geometry.unit_normal_of(surface.surface, p); };
+        const double height = radius > 0.0 ? geometry.signed_distance_from(surface.surface, path.c[0])
+                                           : dot(normal_at(path.c[0]), surface.normal);
+        const double side = height < 0.0 ? -1.0 : 1.0;
+        double behind = 0.0;
+        for (const double part : {0.25, 0.5, 0.75}) {
+            const Vec3 p = path.position(part * path.duration);
+            const double distance = side * geometry.signed_distance_from(surface.surface, p);
+            behind = std::max(behind, radius + geometry.contact_offset(p) - distance);
+        }
+        if (behind <= 0.5 * radius) continue;
+        const Vec3 middle = path.position(0.5 * path.duration);
+        const Vec3 lift = (4.0 * (behind + geometry.contact_offset(middle)) * side / path.duration) * normal_at(middle);
+        path.c[1] += lift;
+        path.c[2] -= lift / path.duration;
+        path.degree = std::max(path.degree, 2);
+    }
+}
+
+void ManifoldSurfaces::meet(std::optional<Contact>& contact) {
+    if (contact && goes_on_along(*contact)) contact.reset();
+    if (contact) join_impact(*contact);
+}
+
+/// True for a surface of the manifold, and for what continues one: the next triangle of a plane, a seam, or a plane
+/// that another collider has there too.
+bool ManifoldSurfaces::goes_on(const ContactSurface& surface) const {
+    return geometry_.world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
+}
+
+bool ManifoldSurfaces::goes_on_along(const Contact& contact) {
+    const bool all = std::all_of(contact.all().begin(), contact.all().end(),
+                                 [&](const ContactSurface& surface) { return goes_on(surface); });
+    if (!all || ++seams_ > kMostSeams) return false;
+    for (const ContactSurface& surface : contact.all()) manifold_.add(surface);
+    crosses_seam_ = true;
+    return true;
+}
+
+void ManifoldSurfaces::join_impact(Contact& contact) const {
+    for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
+        surface.is_support = surface.is_support || goes_on(surface);
+    }
+    for (std::size_t k = 0; k < manifold_.size() && contact.count < Contact::kMostSurfaces; ++k) {
+        const SurfaceId surface = manifold_[k].surface;
+        const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
+                                          [&](const ContactSurface& other) { return other.surface == surface; });
+        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position))
+            continue;
+        // A point next to a rim: the direction from the rim is rounding.
+        const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
+        contact.surfaces[static_cast<std::size_t>(contact.count++)] =
+            is_beside_rim ? ContactSurface{surface, manifold_[k].normal, manifold_[k].flat, true}
+                          : ContactSurface{surface, nearest.normal, nearest.flat, true};
+    }
+}
+
+void ManifoldSurfaces::touch_again(const Vec3& turning_point) {
+    const TouchRule rule = TouchRule::at(geometry_, state_.position);
+    manifold_.touch_again(rule);
+    for (const SurfaceId surface : surfaces_) manifold_.touch(surface, rule);
+    for (const Beside& other : beside_) {
+        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, turning_point);
+        if (nearest.flat) manifold_.add({other.surface, nearest.normal, true});
+    }
+}
+
+}  // namespace ricochet

@@ -1,0 +1,147 @@
+#include "ricochet/response/two_body_impact.h"
+
+#include "ricochet/core/bisection.h"
+#include "ricochet/core/symmetric_matrix.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings in search of the friction that lets no energy in: to the last bit.
+constexpr int kHalvings = 53;
+
+/// How both yield at the contact to an impulse on the particle, N s, and its opposite on the body.
+class Contact {
+public:
+    Contact(const ForceInput& state, const DynamicSurface& surface)
+        : state_(state), surface_(surface), where_(state.position - state.radius * surface.normal) {}
+
+    /// The change of the velocity between them, m/s.
+    [[nodiscard]] Vec3 change(const Vec3& impulse) const {
+        const Vec3 of_particle = impulse / state_.mass;
+        Vec3 along;
+        if (state_.radius > 0.0) along = 2.5 * (of_particle - dot(of_particle, surface_.normal) * surface_.normal);
+        return of_particle + along + surface_.body.change_at(where_, impulse);
+    }
+    /// The impulse that makes a change.
+    [[nodiscard]] Vec3 impulse_for(const Vec3& wanted) const {
+        const Vec3 x = change({1, 0, 0});
+        const Vec3 y = change({0, 1, 0});
+        const Vec3 z = change({0, 0, 1});
+        return SymmetricMatrix{x.x, y.y, z.z, y.x, z.x, z.y}.inverse() * wanted;
+    }
+
+private:
+    const ForceInput& state_;
+    const DynamicSurface& surface_;
+    Vec3 where_;
+};
+
+/// Part of the speeds by which a slip is rounded: a few units in the last place. Larger: light bodies between heavy
+/// particles never come to an end of their impacts.
+constexpr double kSlipRounding = 0x1p-50;
+
+/// One impact, seen from the body: the impulse on the particle.
+class Impact {
+public:
+    Impact(const Motion& before, const ForceInput& state, const DynamicSurface& surface)
+        : contact_(state, surface), normal_(surface.normal), friction_(surface.friction) {
+        const Vec3 relative = before.velocity - surface.velocity;
+        approach_ = -dot(relative, normal_);
+        wanted_ = (1.0 + surface.restitution) * approach_;
+        // Friction depends on the slip of the sphere's surface.
+        slip_ = slip_velocity({relative, before.spin}, state.radius, normal_);
+        const double speeds = length(before.velocity) + length(surface.velocity) + state.radius * length(before.spin);
+        if (length(slip_) <= kSlipRounding * speeds) slip_ = {};  // rounding has no direction
+    }
+
+    [[nodiscard]] double approach() const { return approach_; }
+
+    /// Impulse on the particle, N s. Friction opposes the slip before the impact for as long as there is any. It sticks
+    /// from then on, or opposes the slip that the rest of the impulse would leave without it. Source: E. J. Routh, "The
+    /// Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on impulses.
+    [[nodiscard]] Vec3 impulse() const {
+        if (friction_ == 0.0) return impulse_with({}, {});
+        const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
+        if (is_in_cone(stop) && !gains(stop)) return stop;
+        const double speed = length(slip_);
+        if (!(speed > 0.0)) return impulse_after({}, stop);
+        const Vec3 against = (-1.0 / speed) * slip_;
+        const Vec3 sliding = impulse_with({}, friction_ * against);
+        const bool turns_slip = dot(slip_ + contact_.change(sliding), against) > 0.0;
+        if (!turns_slip && dot(sliding, normal_) > 0.0 && !gains(sliding)) return sliding;
+        if (!turns_slip) return most_of({}, against, friction_, [](const Vec3& /*impulse*/) { return true; });
+        const Vec3 direction = normal_ + friction_ * against;
+        return impulse_after((speed / dot(against, contact_.change(direction))) * direction, stop);
+    }
+
+private:
+    /// The whole impulse, of which a part was given until the slip before the impact had stopped. stop: the one that
+    /// leaves no slip.
+    [[nodiscard]] Vec3 impulse_after(const Vec3& given, const Vec3& stop) const {
+        if (is_in_cone(stop - given)) {
+            if (!gains(stop)) return stop;
+            // The nearer to that the smaller the slip is.
+            const double pressing = dot(stop - given, normal_);
+            const Vec3 supports = (stop - given) / pressing - normal_;
+            return most_of(given, supports, 1.0, [](const Vec3& /*impulse*/) { return true; });
+        }
+        const Vec3 smooth = impulse_with(given, {});
+        const Vec3 left = slip_ + contact_.change(smooth);
+        const Vec3 along = left - dot(left, normal_) * normal_;
+        const double speed = length(along);
+        if (!(speed > 0.0)) return smooth;
+        const Vec3 against = (-1.0 / speed) * along;
+        return most_of(given, against, friction_, [&](const Vec3& impulse) {
+            return dot(slip_ + contact_.change(impulse), against) <= 0.0;  // it does not turn the slip around
+        });
+    }
+
+    [[nodiscard]] bool is_in_cone(const Vec3& impulse) const {
+        const double pressing = dot(impulse, normal_);
+        return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
+    }
+
+    /// The impulse that turns the approach around: the part that is given, and a rest with friction as a part of its
+    /// normal component.
+    [[nodiscard]] Vec3 impulse_with(const Vec3& given, const Vec3& friction) const {
+        const Vec3 direction = normal_ + friction;
+        const double left = wanted_ - dot(normal_, contact_.change(given));
+        return given + (left / dot(normal_, contact_.change(direction))) * direction;
+    }
+
+    /// With as much friction along a vector as lets no energy in, up to a part of the normal impulse.
+    template <class Is>
+    [[nodiscard]] Vec3 most_of(const Vec3& given, const Vec3& along, double most, const Is& is_allowed) const {
+        const auto is_sound = [&](double friction) {
+            const Vec3 by = impulse_with(given, friction * along);
+            return dot(by, normal_) > 0.0 && !gains(by) && is_allowed(by);
+        };
+        const double friction = is_sound(most) ? most : bisect(0.0, most, kHalvings, is_sound).low;
+        return impulse_with(given, friction * along);
+    }
+
+    /// True if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.
+    [[nodiscard]] bool gains(const Vec3& by) const {
+        const double taken = 0.5 * dot(by, contact_.change(by));
+        return dot(by, slip_ - approach_ * normal_) + taken > kEnergyRounding * taken;
+    }
+
+    Contact contact_;
+    Vec3 normal_;
+    double friction_;
+    double approach_ = 0.0;  // m/s
+    double wanted_ = 0.0;    // m/s, the change along the normal
+    Vec3 slip_;              // m/s
+};
+
+}  // namespace
+
+Motion bounce(const Motion& before, const ForceInput& state, const DynamicSurface& surface) {
+    const Impact impact(before, state, surface);
+    if (!(impact.approach() > 0.0)) return before;
+    const Vec3 change = impact.impulse() / state.mass;
+    return {before.velocity + change, before.spin + spin_change_by(change, surface.normal, state.radius)};
+}
+
+}  // namespace ricochet

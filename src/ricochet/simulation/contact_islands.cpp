@@ -1,0 +1,190 @@
+#include "ricochet/simulation/contact_islands.h"
+
+#include <algorithm>
+
+#include "ricochet/core/box_tools.h"
+#include "ricochet/core/parallel.h"
+
+namespace ricochet {
+namespace {
+
+/// Impacts per sphere and step beyond which an island is dense: where impacts lose energy, and where none does, so that
+/// a plan would lose what they keep.
+constexpr std::size_t kMostImpacts = 4;
+constexpr std::size_t kMostElasticImpacts = 64;
+
+/// The same of one sphere, where impacts lose energy: what rattles so between others is pressed by them, and the
+/// island's other members, however many, need not rattle as well to be planned with it.
+constexpr std::size_t kMostImpactsOfOne = 100;
+
+/// Plans of an island in a step, each with contacts looked for farther than in the one before.
+constexpr int kMostPlans = 8;
+
+/// Part of what another sphere may go that one near it is expected to be pushed.
+constexpr double kPushed = 0.5;
+
+/// Times the radius of another one that a large sphere has.
+constexpr double kLarge = 3.0;
+
+Box3 box_within_reach(const ContactIslandMember& member) {
+    return ball_box(member.moving->state.position, member.radius + member.reach);
+}
+
+/// Where a member has gone; what has no time left stays where it is to the end.
+void keep_path(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
+    member.trajectory = flown;
+    member.swept = ball_box(from.position, member.radius());
+    for (const FlownPiece& piece : flown) {
+        const Box3 ball = ball_box(piece.path.end, member.radius());
+        member.swept.include(ball.lower);
+        member.swept.include(ball.upper);
+    }
+    const double begin = flown.empty() ? from.time : flown.back().begin + flown.back().duration;
+    if (member.is_gone() || !(begin < member.end)) return;
+    const Vec3& end_position = flown.empty() ? from.position : flown.back().path.end;
+    member.trajectory.push_back(
+        {line_path(end_position, Vec3{}, member.end - begin), begin, member.end - begin, Vec3{}, Vec3{}, false});
+}
+
+}  // namespace
+
+bool ContactIslands::begins_as_contact_island(const std::vector<IslandMember>& members) const {
+    if (!parts_.may_be_contact_island() || members.size() < 2) return false;
+    return contacts_.memory().has_pair_of(members.begin(), members.end(),
+                                          [](const IslandMember& member) { return member.moving.id; });
+}
+
+/// A plan has one restitution for all that is connected, so that what loses nothing is planned by no method before it
+/// crowds.
+ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& members) const {
+    ImpactLimit limit;
+    if (!parts_.may_be_contact_island()) return limit;
+    limit.in_all = (parts_.materials.loses_energy() ? kMostImpacts : kMostElasticImpacts) * members.size();
+    limit.may_sink = false;
+    if (!parts_.materials.loses_energy()) return limit;
+    limit.may_press = false;
+    limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfOne;
+    return limit;
+}
+
+/// Islands in parallel have one each.
+std::unique_ptr<ContactIslands::Work> ContactIslands::acquire_work() {
+    const std::lock_guard lock(spare_mutex_);
+    if (spare_.empty()) return std::make_unique<Work>(parts_.response.rules(), parts_.materials);
+    std::unique_ptr<Work> work = std::move(spare_.back());
+    spare_.pop_back();
+    return work;
+}
+
+void ContactIslands::collect_members(std::vector<IslandMember>& members, Work& work) const {
+    work.members.clear();
+    for (IslandMember& member : members) {
+        const double duration = std::max(0.0, member.end - member.moving.state.time);
+        member.moving.step_end = member.end;
+        const bool is_pinched = parts_.response.rules().bodies != nullptr && !member.is_fixed &&
+                                member.moving.stored_time < member.moving.state.time;
+        const bool sleeps = contacts_.sleeps(member.particle);
+        work.members.push_back({&member.moving, member.radius(), member.is_fixed, duration, is_pinched, sleeps});
+        work.members.back().material = member.material;
+        work.members.back().reach = work.island.first_reach(work.members.back());
+    }
+}
+
+void ContactIslands::find_pairs(std::span<const IslandMember> members, Work& work) {
+    work.boxes.clear();
+    for (const ContactIslandMember& member : work.members) work.boxes.push_back(box_within_reach(member));
+    work.near.find(members, work.boxes);
+}
+
+/// Again, where some reach farther; by their numbers, ascending.
+void ContactIslands::find_pairs(Work& work, std::span<const std::uint32_t> changed) {
+    for (const std::uint32_t i : changed) work.boxes[i] = box_within_reach(work.members[i]);
+    work.near.update(work.boxes, changed);
+}
+
+/// What is near something that goes far may be pushed by it: then the first plan is the last one. Those that reach
+/// farther by that, ascending.
+std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
+    struct Sphere {
+        double radius;
+        double reach;
+        double loaded;
+    };
+    std::vector<Sphere> spheres;
+    spheres.reserve(work.members.size());
+    for (const ContactIslandMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
+    const auto collect = [&](Sphere& sphere, const Sphere& by) {
+        // A large sphere looks farther about it than it goes, which is no push for small ones.
+        const bool is_large = by.radius > kLarge * sphere.radius;
+        const double beside = is_large ? ContactIsland::kReach * (by.radius - sphere.radius) : 0.0;
+        sphere.loaded = std::max(sphere.loaded, kPushed * (by.reach - beside));
+    };
+    work.near.for_each([&](std::uint32_t a, std::uint32_t b) {
+        collect(spheres[a], spheres[b]);
+        collect(spheres[b], spheres[a]);
+    });
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+        if (!(spheres[i].loaded > spheres[i].reach) || work.members[i].stays()) continue;
+        work.members[i].reach = spheres[i].loaded;
+        changed.push_back(i);
+    }
+    return changed;
+}
+
+/// Again where a sphere is pushed farther than its contacts have been looked for.
+SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
+    MoveScratch scratch;
+    find_pairs(members, work);
+    find_pairs(work, expect_reactions(work));
+    SolverReport report;
+    for (int k = 0; k < kMostPlans; ++k) {
+        report = work.island.plan(work.members, work.near.sorted(), duration, contacts_.memory(), scratch);
+        const std::vector<std::uint32_t> changed = work.island.reach_farther(work.members);
+        if (changed.empty()) break;
+        find_pairs(work, changed);
+    }
+    return report;
+}
+
+void ContactIslands::move(std::vector<IslandMember>& members, Work& work, const ContactIslandTrace& trace) const {
+    const std::vector<std::uint64_t>& falling = trace.falling_asleep;
+    parallel_for_blocks(members.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        MoveScratch own;
+        parts_.mover.prepare(own);
+        own.record_flown = true;
+        for (std::size_t i = begin; i < end; ++i) {
+            IslandMember& member = members[i];
+            own.flown.clear();
+            const ForceInput from = member.moving.state;
+            if (from.coupling != nullptr) member.pair_velocity_change = work.island.given_by_others(i, work.members[i]);
+            member.moving.planned = nullptr;
+            member.is_planned = true;
+            work.island.move(i, work.members[i], own);
+            member.outcome = work.members[i].outcome;
+            const bool falls_asleep = std::binary_search(falling.begin(), falling.end(), member.moving.id);
+            if (falls_asleep) member.outcome.end = MoveEnd::held;
+            member.is_free = false;
+            member.lists.take(own);
+            keep_path(member, from, own.flown);
+        }
+    });
+}
+
+ContactIslandTrace ContactIslands::run(std::vector<IslandMember>& members, const TimeSpan& step) {
+    std::unique_ptr<Work> work = acquire_work();
+    collect_members(members, *work);
+    const SolverReport report = plan(members, *work, step.end - step.begin);
+    ContactIslandTrace trace;
+    trace.is_unsolved = !report.is_converged;
+    trace.pressed = work->island.entries();
+    trace.onto_sleepers = work->island.impulses_on_sleepers();
+    if (report.is_converged) contacts_.plan_sleep(work->members, work->island, step, trace);
+    if (!trace.falling_asleep.empty()) trace.touching = work->island.touching();
+    move(members, *work, trace);
+    const std::lock_guard lock(spare_mutex_);
+    spare_.push_back(std::move(work));
+    return trace;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,58 @@
+/// \file
+/// Private to the simulation: islands of spheres in which contacts last, or in which impact would follow impact. They
+/// are planned together, by the problem of all their contacts (ContactIsland), and moved each for itself.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "ricochet/response/contact_solver/contact_island.h"
+#include "ricochet/response/event_island.h"
+#include "ricochet/simulation/lasting_contacts.h"
+#include "ricochet/simulation/member_pairs.h"
+#include "ricochet/simulation/pair_parts.h"
+
+namespace ricochet {
+
+class ContactIslands {
+public:
+    /// contacts must outlive it.
+    ContactIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
+
+    /// An island that is dense before anything has been tried: where spheres pressed on each other in the last step
+    /// they still do.
+    [[nodiscard]] bool begins_as_contact_island(const std::vector<IslandMember>& members) const;
+    /// Beyond these an island that does not begin so is dense: spheres that meet alone in a step do so at their exact
+    /// time with every method.
+    [[nodiscard]] ImpactLimit impacts_before(const std::vector<IslandMember>& members) const;
+    /// Moves the members of an island to the step's end. Several threads may run different ones.
+    [[nodiscard]] ContactIslandTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
+
+private:
+    /// What planning an island takes, kept for the next one.
+    struct Work {
+        Work(const ResponseRules& rules, const PairMaterials& materials) : island(rules, materials) {}
+        ContactIsland island;
+        MemberPairs near;
+        std::vector<Box3> boxes;
+        std::vector<ContactIslandMember> members;
+    };
+    [[nodiscard]] std::unique_ptr<Work> acquire_work();
+    void collect_members(std::vector<IslandMember>& members, Work& work) const;
+    static void find_pairs(std::span<const IslandMember> members, Work& work);
+    static void find_pairs(Work& work, std::span<const std::uint32_t> changed);
+    [[nodiscard]] static std::vector<std::uint32_t> expect_reactions(Work& work);
+    [[nodiscard]] SolverReport plan(std::span<const IslandMember> members, Work& work, double duration) const;
+    void move(std::vector<IslandMember>& members, Work& work, const ContactIslandTrace& trace) const;
+
+    PairParts parts_;
+    const LastingContacts& contacts_;
+    std::mutex spare_mutex_;
+    std::vector<std::unique_ptr<Work>> spare_;
+};
+
+}  // namespace ricochet

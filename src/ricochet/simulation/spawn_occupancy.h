@@ -1,0 +1,62 @@
+/// \file
+/// Private to the simulation: where among spheres that meet each other there is room for one more.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+#include "ricochet/core/box3.h"
+#include "ricochet/core/vec3.h"
+
+namespace ricochet {
+
+/// A sphere as it moves until it meets another: from a time on along a parabola.
+struct FlyingBall {
+    double time = 0.0;  ///< s
+    double radius = 0.0;
+    Vec3 position;      ///< m, at that time
+    Vec3 velocity;      ///< m/s, at that time
+    Vec3 acceleration;  ///< m/s^2
+
+    [[nodiscard]] Vec3 at(double t) const;
+};
+
+/// The spheres of a step, in cells as large as they are: their sizes may differ by any factor.
+class SpawnOccupancy {
+public:
+    /// end: s, of the step.
+    explicit SpawnOccupancy(double end) : end_(end) {}
+
+    void add(const FlyingBall& ball);
+    /// True when a ball overlaps none of them at the time of its birth, nor at the births of those that are born later.
+    [[nodiscard]] bool has_room(const FlyingBall& ball) const;
+
+private:
+    struct Cell {
+        double x;
+        double y;
+        double z;
+        friend bool operator==(const Cell&, const Cell&) = default;
+    };
+    struct CellHash {
+        [[nodiscard]] std::size_t operator()(const Cell& cell) const;
+    };
+    /// Balls of about one size, each in the cell of the lower corner of its box.
+    struct Level {
+        std::unordered_map<Cell, std::vector<std::uint32_t>, CellHash> cells;
+        std::vector<std::uint32_t> all;
+    };
+
+    [[nodiscard]] Box3 box_of(const FlyingBall& ball) const;
+    [[nodiscard]] bool has_room_in(const Level& level, double cell, const FlyingBall& ball, const Box3& box) const;
+    [[nodiscard]] bool overlaps(const std::vector<std::uint32_t>& balls, const FlyingBall& ball) const;
+
+    double end_;
+    std::vector<FlyingBall> balls_;
+    std::map<int, Level> levels_;  // by the exponent of the size of the cells
+};
+
+}  // namespace ricochet

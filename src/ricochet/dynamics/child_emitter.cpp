@@ -13,6 +13,7 @@ namespace {
 constexpr std::uint32_t kCountPurpose = 0x08;
 constexpr std::uint32_t kLifeRatePurpose = 0x09;
 constexpr std::uint32_t kChildStream = 0x0A000000;
+/// Local: a limit per event.
 constexpr double kMostChildren = 1e9;  // limit per event; it keeps whole numbers exact
 
 // Returns the key of the random numbers of a parent's draws and of its children.

@@ -45,9 +45,6 @@ struct SleeperPush {
 /// to the next.
 class NetworkIsland {
 public:
-    /// Part of a radius beside it in which contacts are looked for even where nothing moves.
-    static constexpr double kReach = 0.05;
-
     /// Both must outlive it.
     NetworkIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 

@@ -27,7 +27,7 @@ bool is_at_rest(const NetworkMember& member, const NetworkBody& planned, double 
 
 std::uint32_t steps_to_sleep(const NetworkMember& member, double pull) {
     const double time = pull > 0.0 ? kRestingTime * std::sqrt(member.radius / pull) : 0.0;
-    const double steps = std::min(std::ceil(time / member.duration), 1e9);
+    const double steps = std::min(std::ceil(time / member.duration), 1e9);  // fits into 32 bits
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
 }
 

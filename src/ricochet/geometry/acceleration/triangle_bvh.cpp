@@ -34,8 +34,7 @@ struct FloatFrame {
 /// because such a segment must also point at the collider. Local, because only the cost depends on it.
 constexpr double kFarAway = 0x1p20;
 
-/// Length below which rays have no direction in single precision. Local: a guard against the end of the range of
-/// doubles.
+/// Length below which rays have no direction in single precision. Local: a guard against underflow.
 constexpr double kShortestRay = 0x1p-120;
 
 float round_down(double value) {

@@ -43,7 +43,7 @@ private:
 namespace {
 
 /// Relative excess of a ray's segment over the distance to the farthest surface, so that rounding does not cut off a
-/// surface.
+/// surface. Local, because the exact test of a segment decides.
 constexpr double kBeyond = 0x1p-20;
 
 void require_position(const Vec3& p, const char* what) {

@@ -9,7 +9,8 @@ namespace ricochet {
 namespace {
 
 /// Largest number of times that a path is halved to find pieces flat enough for the boxes. Only pieces near the
-/// triangles are halved. A path that is still too curved then is tested against every triangle.
+/// triangles are halved. A path that is still too curved then is tested against every triangle. Local, because only the
+/// cost depends on it.
 constexpr int kPieceDepth = 40;
 
 // Returns true if a piece of the path may come near the triangles. The margin for curvature also keeps chords that

@@ -10,17 +10,20 @@
 namespace ricochet {
 namespace {
 
-/// Largest number of surfaces considered, the nearest first. The cost of the search grows with its third power.
+/// Largest number of surfaces considered, the nearest first. The cost of the search grows with its third power. Local,
+/// because every displacement is certified before use.
 constexpr std::size_t kMostSurfaces = 24;
 
-/// Largest number of rounds. A displacement can bring other surfaces near, which the next round includes.
+/// Largest number of rounds. A displacement can bring other surfaces near, which the next round includes. Local: a
+/// limit of this search, whose result is checked.
 constexpr int kMostRounds = 8;
 
-/// Part of the clearance that a displacement may miss through rounding.
+/// Part of the clearance that a displacement may miss through rounding. Local, because the displacement is certified
+/// before use.
 constexpr double kClearEnough = 0x1p-20;
 
 /// Smallest determinant of three normals, or squared sine of the angle between two, for which they count as
-/// independent.
+/// independent. Local, because other triples of normals give the displacement then.
 constexpr double kDependent = 1e-24;
 
 /// A surface near the ball. The displacement d has to satisfy dot(d, normal) >= missing.

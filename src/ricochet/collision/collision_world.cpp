@@ -314,7 +314,8 @@ double CollisionWorld::signed_distance_from(SurfaceId surface, const Vec3& p) co
 }
 
 double CollisionWorld::size_of(SurfaceId surface) const {
-    // The diagonal of a ball's box is 3.5 of its radii. A long cylinder has the same curvature as a short one.
+    // The diagonal of a ball's box is 3.5 of its radii. A long cylinder has the same curvature as a short one. Local: a
+    // scale, not a tolerance.
     constexpr double kMostRadii = 4.0;
     const Range& range = ranges_[collider_of(surface)];
     if (range.kind != Kind::shape) return bounds_.diagonal();

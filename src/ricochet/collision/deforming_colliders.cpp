@@ -19,17 +19,9 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 14;
 
-/// Relative to the coordinates: more than the rounding of a vertex between two keys.
+/// Margin of boxes, relative to the coordinates: more than the rounding of a vertex between two keys. Local: it only
+/// has to be large enough.
 constexpr double kBoxRounding = 0x1p-48;
-
-/// A key that is as near as this, in units in the last place of the time, has come.
-constexpr double kKeyUlps = 16.0;
-
-/// Part of its distance by which a sphere that touches may come nearer on a link: rounding.
-constexpr double kNearerStill = 1.0 - 0x1p-49;
-
-/// The same of one in overlap, as a part of sphere_tolerance(): the rounding of coordinates that are large beside it.
-constexpr double kOverlapRounding = 0x1p-9;
 
 Box3 box_of(const MovingTriangle& triangle) {
     Box3 box;
@@ -284,7 +276,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
         // Its ends keep off by more than the certificate asks for: what one link after the other gives away adds up.
         const double distance = nearest(surface, from.position, from.time).distance;
         const double least = distance >= radius - tolerance
-                                 ? std::min(radius - 0.5 * tolerance, kNearerStill * distance)
+                                 ? std::min(radius - kUsedSphereTolerance * tolerance, kNearerStill * distance)
                                  : distance - kOverlapRounding * tolerance;
         if (nearest(surface, to.position, to.time).distance < least) return false;
         return is_free(surface, from, to, std::max(0.0, std::min(radius - tolerance, distance - 0.25 * tolerance)));
@@ -308,7 +300,8 @@ bool DeformingColliders::is_late_segment_free(const Mesh& mesh, const StoredPosi
         if (radius == 0.0) return true;
         const SurfaceId surface = mesh.first_surface + t;
         const double distance = nearest(surface, to.position, to.time).distance;
-        return distance >= radius - 0.5 * tolerance || distance >= nearest(surface, from.position, from.time).distance;
+        return distance >= radius - kUsedSphereTolerance * tolerance ||
+               distance >= nearest(surface, from.position, from.time).distance;
     });
 }
 

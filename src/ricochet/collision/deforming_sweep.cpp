@@ -10,15 +10,6 @@
 namespace ricochet {
 namespace {
 
-/// Below this part of the relative speed, a point moves along the triangle and not towards it.
-constexpr double kGraze = 1e-12;
-
-/// Of the time of a path, in which what leaves a triangle does not come back to it.
-constexpr double kShortLeave = 0x1p-20;
-
-/// Of a distance that a sphere has already, what counts as nearer still.
-constexpr double kNearerLink = 1.0 - 0x1p-40;
-
 std::array<Vec3, 3> corners_of(const MovingTriangle& triangle, double part) {
     const auto& [a, b, c] = triangle.corners;
     return {a.at(part), b.at(part), c.at(part)};
@@ -85,7 +76,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
     }
     if (is_degenerate) return std::nullopt;
     const Vec3 normal = static_cast<double>(meeting.side) * unit_normal(a, b, c);
-    if (!(dot(normal, relative) < -kGraze * length(relative))) return std::nullopt;
+    if (!(dot(normal, relative) < -kDeformingGraze * length(relative))) return std::nullopt;
     return Hit{time, {surface, normal, true}};
 }
 

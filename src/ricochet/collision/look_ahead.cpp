@@ -13,11 +13,12 @@ namespace ricochet {
 
 namespace {
 
-/// Bound of the relative rounding error of times. Distance margins are far larger.
+/// Bound of the relative rounding error of times. Distance margins are far larger. Local: an error bound of this
+/// arithmetic.
 constexpr double kTimeRounding = 0x1p-40;
 
 /// Largest number of sphere tracing steps in one call. A field of a thousand cells is crossed in fewer steps, except
-/// along walls.
+/// along walls. Local, because only the cost depends on it.
 constexpr int kMostTracingSteps = 64;
 
 }  // namespace
@@ -36,7 +37,8 @@ double time_free_of_plane(const Path& path, const Plane& plane, double margin) {
     const double height = dot(plane.normal, start);
     const double side = height < 0.0 ? -1.0 : 1.0;
     // The margin covers rounding of the path only. The height also has an error proportional to the distance along the
-    // plane. It is computed by a difference, a product and two sums: less than five roundings of each component.
+    // plane. It is computed by a difference, a product and two sums: less than five roundings of each component. Local:
+    // an error bound of this arithmetic.
     constexpr double kHeightError = 16.0 * 0x1p-53;
     const double g0 = side * height - margin - kHeightError * dot(abs(plane.normal), abs(start));
     const double g1 = side * dot(plane.normal, path.c[1]);
@@ -102,10 +104,11 @@ double time_of_leaving(const Path& path, const Box3& box) {
 namespace {
 
 /// Steps of conservative advancement of a sphere towards a triangle. Fewer: more time steps query the sphere for
-/// nothing. More: each costs some hundred operations.
+/// nothing. More: each costs some hundred operations. Local, because only the cost depends on it.
 constexpr int kAdvancementSteps = 4;
 
-/// Advancement stops when the last step has gained less than this part of a time step.
+/// Advancement stops when the last step has gained less than this part of a time step. Local, because only the cost
+/// depends on it.
 constexpr double kLittleOfAStep = 0x1p-5;
 
 /// The state of one look-ahead.

@@ -10,20 +10,23 @@
 namespace ricochet {
 namespace {
 
-/// Of a path's duration: as near to its ends as a key of a mesh that deforms may cut it.
+/// Smallest distance of a cut at a key from the ends of a path, as a fraction of its duration. Local: a guard against
+/// pieces without duration.
 constexpr double kLeastPart = 0x1p-45;
 
 /// A cubic that has the values and velocities of a function at both ends of a time h is within h^4 / kHermiteError
-/// times the fourth derivative of it.
+/// times the fourth derivative of it. A mathematical constant.
 constexpr double kHermiteError = 384.0;
 
-/// What is left of a path may be so much longer than a fine piece, by rounding, and still be one.
+/// Ratio up to which the remainder of a path still counts as one fine piece. Local: it covers rounding, and only the
+/// cost depends on it.
 constexpr double kAlmostOne = 1.0 + 1e-9;
 
-/// Most fine pieces that a piece which meets nothing is as long as: its cubic may err by the fourth power of that more.
+/// Largest length, in fine pieces, of a piece that meets nothing. Its cubic has an error larger by the fourth power.
+/// Local, because boxes are enlarged by that error, so only the cost depends on it.
 constexpr double kLongestPiece = 16.0;
 
-/// Most fine pieces in a row before a longer one is tried again.
+/// Most fine pieces in a row before a longer piece is tried again. Local, because only the cost depends on it.
 constexpr int kMostFinePieces = 64;
 
 }  // namespace

@@ -14,7 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Newton steps in search of the true time of an impact; each leaves the square of what was wrong.
+/// Newton steps in search of the exact time of an impact. Each squares the relative error. Local: it ends below the
+/// rounding of the result.
 constexpr int kNewtonSteps = 4;
 
 /// The piece of a path between two times, from a start that may differ by rounding.

@@ -8,14 +8,6 @@
 namespace ricochet {
 namespace {
 
-/// Smallest ratio of distances that does not count as coming nearer, for a sphere in overlap. A smaller decrease is
-/// rounding. A larger tolerance would add up over many steps.
-constexpr double kNearerStill = 1.0 - 0x1p-49;
-
-/// Part of sphere_tolerance() that is used. A slow sphere stops right at this limit, and its later rounding errors must
-/// stay within the whole tolerance.
-constexpr double kPartOfTolerance = 0.5;
-
 bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 2.0 * kSeamTurn; }
 
 }  // namespace
@@ -23,7 +15,7 @@ bool same_normal(const Vec3& a, const Vec3& b) { return length_squared(a - b) < 
 bool Obstacles::blocks(SurfaceId surface, const Vec3& to) const {
     if (world_.segment_intersects(surface, from_, to)) return true;
     if (radius_ == 0.0) return false;
-    const double tolerance = kPartOfTolerance * sphere_tolerance(radius_, std::max(max_abs(from_), max_abs(to)));
+    const double tolerance = kUsedSphereTolerance * sphere_tolerance(radius_, std::max(max_abs(from_), max_abs(to)));
     const double distance = world_.nearest(surface, to).distance;
     if (distance >= radius_ - tolerance) return false;
     return distance < kNearerStill * world_.nearest(surface, from_).distance;

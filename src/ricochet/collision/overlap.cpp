@@ -9,10 +9,6 @@
 namespace ricochet {
 namespace {
 
-/// Distance within which surfaces count as touched, in parts of the largest coordinate. It is generous: positions
-/// change by less if several bodies push a particle off.
-constexpr double kBirthReach = 0x1p-30;
-
 /// Calls within = consider(surface, distance) for all planes and shapes, and for the triangles within that distance.
 template <class Consider>
 void visit_distances(const CollisionWorld& world, const Vec3& center, double within, const Consider& consider) {
@@ -82,7 +78,6 @@ std::optional<Overlap> deepest_overlap(const CollisionWorld& at_rest, const Movi
 }
 
 std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center, double time) {
-    constexpr double kOffsets = 4.0;
     std::optional<Vec3> off;
     for (const BodyId body : bodies_near(bodies, center, 0.0, time)) {
         const MovingPose pose = bodies.pose(body, time);
@@ -100,7 +95,7 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
         Vec3 normal;
         for (const SurfaceId surface : under) normal += world.unit_normal_of(surface, local_position);
         if (normal == Vec3{}) continue;
-        off = flush_tiny(pose.point(local_position + kOffsets * offset * normalized(normal)));
+        off = flush_tiny(pose.point(local_position + kBirthOffsets * offset * normalized(normal)));
     }
     Vec3 normal;
     double offset = 0.0;
@@ -111,7 +106,7 @@ std::optional<Vec3> off_bodies(const MovingColliders& bodies, const Vec3& center
         normal += bodies.deforming().unit_normal_of(surface, time);
         offset = std::max(offset, bodies.deforming().offset_of(surface));
     }
-    if (normal != Vec3{}) off = flush_tiny(position + kOffsets * offset * normalized(normal));
+    if (normal != Vec3{}) off = flush_tiny(position + kBirthOffsets * offset * normalized(normal));
     return off;
 }
 

@@ -49,7 +49,7 @@ struct Normals {
 
     bool add(const Vec3& normal) {
         for (int k = 0; k < count; ++k) {
-            if (dot(n[static_cast<std::size_t>(k)], normal) > 1.0 - 1e-9) return false;
+            if (dot(n[static_cast<std::size_t>(k)], normal) > 1.0 - kSameSafeNormal) return false;
         }
         if (count == 3) return false;
         n[static_cast<std::size_t>(count++)] = normal;

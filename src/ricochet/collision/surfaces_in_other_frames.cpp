@@ -5,15 +5,9 @@
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
-namespace {
-
-/// Times that a position is carried before it has come to a surface.
-constexpr double kCarries = 8.0;
-
-}  // namespace
 
 double offset_for_carrying(const MovingPose& pose, const Vec3& local_position) {
-    return kCarries * max_abs(pose.local_position(pose.point(local_position)) - local_position);
+    return kCarryingOffsets * max_abs(pose.local_position(pose.point(local_position)) - local_position);
 }
 
 /// By coordinates of the link, not of the path: where that leads far away, a sphere must not sink in here by its

@@ -56,6 +56,7 @@ struct DoubleDouble {
 
 /// Returns a as the sum of two numbers of at most 26 significant bits each (Veltkamp). |a| must be below 2^996.
 [[nodiscard]] constexpr DoubleDouble split(double a) {
+    // A mathematical constant.
     constexpr double kSplitter = 0x1p27 + 1.0;
     const double shifted = kSplitter * a;
     const double high = shifted - (shifted - a);

@@ -26,6 +26,7 @@ void shift(MovingPose& pose, const Vec3& offset, const Vec3& rate, const Vec3& s
 }
 
 void turn(MovingPose& pose, const Vec3& axis, double degrees, double rate, double second) {
+    // A mathematical constant.
     constexpr double kRadians = std::numbers::pi / 180.0;
     AffineMap& map = pose.world_from_frame;
     const Vec3 about = map.direction(axis);

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// Largest fraction of zeros in a front. Consecutive columns are eliminated together up to this limit: larger dense
-/// matrices are faster and outweigh the work on some zeros.
+/// matrices are faster and outweigh the work on some zeros. Local, because only the cost depends on it, and rounding.
 constexpr double kMostZeros = 0.2;
 
 using Pair = BlockCholesky::Pair;

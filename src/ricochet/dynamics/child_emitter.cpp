@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t kCountPurpose = 0x08;
 constexpr std::uint32_t kLifeRatePurpose = 0x09;
 constexpr std::uint32_t kChildStream = 0x0A000000;
-constexpr double kMostChildren = 1e9;  // limit per event; it keeps whole numbers exact
+/// Most children per event. Local: a limit that keeps whole numbers exact.
+constexpr double kMostChildren = 1e9;
 
 // Returns the key of the random numbers of a parent's draws and of its children.
 std::uint64_t mixed_key(std::uint64_t lineage, std::uint32_t stream, std::uint32_t ordinal) {

@@ -9,6 +9,7 @@
 namespace ricochet {
 namespace {
 
+/// A mathematical constant.
 constexpr double kTwoPi = 6.28318530717958647692;
 
 /// Coefficients of a damped oscillator: d(t) = c d0 + s (v0 + g d0) and d'(t) = c v0 - s (g v0 + pull d0), with g half
@@ -22,6 +23,7 @@ struct Decay {
 double near_zero(double square) { return 1.0 + square / 6.0 * (1.0 + square / 20.0); }
 
 Decay decay_of(const CloudRule& rule, double t) {
+    // Local: the series is exact to rounding below it.
     constexpr double kSmallSquare = 1e-6;
     const double half = 0.5 * rule.damping;
     const double square = half * half - rule.pull;  // square of the rate if the oscillator is overdamped

@@ -16,7 +16,8 @@ namespace ricochet {
 inline constexpr std::size_t kDormandPrinceStages = 7;
 
 /// Error, relative to the tolerance, below which a step of twice the length is expected to pass. Doubling the step
-/// makes the error of the fifth order 32 times as large, and that of the path (fourth order) 16 times.
+/// makes the error of the fifth order 32 times as large, and that of the path (fourth order) 16 times. Local, because
+/// only the cost depends on it.
 inline constexpr double kErrorToDouble = 1.0 / 64.0;
 
 /// Return the published tableau: the weight of stage j's derivative in stage i, and the stage times as fractions of the

@@ -14,6 +14,7 @@
 namespace ricochet {
 namespace {
 
+/// A mathematical constant.
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Returns true if all principal minors are at least `least` times the trace's power (Sylvester).
@@ -28,6 +29,7 @@ bool is_definite(const SymmetricMatrix& a, double least) {
 /// Returns true for the inertia of a distribution of mass. The moments are above 0. Half the trace minus the tensor,
 /// which is the sum of m x x^T, has no negative eigenvalue; flat bodies have a zero one.
 bool is_inertia(const SymmetricMatrix& a) {
+    // Local: rounding of an input value.
     constexpr double kRounding = 1e-12;
     const SymmetricMatrix spread = diagonal_matrix(0.5 * a.trace()) + (-1.0) * a;
     return std::isfinite(a.determinant()) && std::isnormal(a.determinant()) && is_definite(a, 0.0) &&
@@ -45,6 +47,7 @@ struct JointState {
 /// a power series in time, in intervals short enough for fast convergence.
 JointState oscillated(const JointState& start, double stiffness, double damping, const std::array<double, 2>& n,
                       double h) {
+    // Local: the series ends below rounding. At most 10 000 intervals limit the cost.
     constexpr int kMostTerms = 40;
     const int parts = 1 + static_cast<int>(std::min(1e4, h * (std::sqrt(stiffness) + damping)));
     const double s = h / parts;

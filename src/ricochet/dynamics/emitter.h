@@ -154,7 +154,7 @@ public:
     [[nodiscard]] LaunchPoint draw(double radius, RandomSequence& random) const;
 
     /// Smallest fraction of its box that a mesh's volume must fill, because the inside test is by rejection and must
-    /// end.
+    /// end. Local: a limit of input values.
     static constexpr double kSmallestFill = 1e-4;
 
 private:
@@ -272,7 +272,8 @@ struct DueBirth {
 class Emitter {
 public:
     /// Number of new positions tried for a birth that the test rejects, before the birth is skipped. Fewer tries skip
-    /// births in narrow spaces that have a free position. More tries cost more in spaces without one.
+    /// births in narrow spaces that have a free position. More tries cost more in spaces without one. Local, because
+    /// public headers cannot include the tolerances.
     static constexpr int kMostRedraws = 64;
 
     /// seed: the scene's seed; number: this emitter's number in the scene, below 2^24 - 1. Throws InputError, naming

@@ -81,6 +81,7 @@ public:
 private:
     // Returns (1 - exp(-q)) / q. Near the axis it uses the series, because the difference would cancel.
     static double turned(double q) {
+        // Local: the series is exact to rounding below it.
         constexpr double kNearAxis = 1e-2;  // the first omitted term is q^6 / 5040
         if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
         return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));

@@ -292,6 +292,7 @@ namespace {
 using detail::require_not_negative;
 using detail::require_positive;
 
+/// Physical constants of the drag of spheres.
 constexpr double kNewtonReynolds = 1000.0;  // the coefficient is constant from here on
 constexpr double kNewtonCoefficient = 0.44;
 

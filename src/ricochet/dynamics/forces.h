@@ -192,7 +192,7 @@ struct RadialForceSettings {
 };
 [[nodiscard]] std::unique_ptr<Force> make_radial_force(const RadialForceSettings& settings);
 
-/// Largest magnitude of RadialForceSettings::exponent.
+/// Largest magnitude of RadialForceSettings::exponent. Local: a limit of input values.
 inline constexpr double kLargestRadialExponent = 12.0;
 
 // Springs from particles to fixed points.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "ricochet/core/portable_math.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
@@ -14,13 +15,10 @@ constexpr double kStefanBoltzmann = 5.670374419e-8;
 
 /// Start temperatures above ambient are clamped to this multiple of (3 b t)^(-1/3). Even the hottest body is less than
 /// (3 b t)^(-1/3) above the ambient temperature after a time t, so the clamp does not change the result in any digit.
+/// Local: far beyond the last digit.
 constexpr double kForgotten = 1e6;
 
-/// Largest error of a step of the logarithm of T - Ta. A larger one would show in the sum over the steps of a run. A
-/// smaller one would come near to rounding, which halving does not reduce.
-constexpr double kCoolingError = 1e-11;
-
-/// e^-x is 0 beyond this value.
+/// e^-x is 0 beyond this value. Local: a guard against the end of the range of doubles.
 constexpr double kGone = 750.0;
 
 /// Decay of d = T - Ta: d' = -g d with g = a + b (T^2 + Ta^2) (T + Ta). The logarithm w = log(d(0) / d) grows by g,

@@ -10,7 +10,8 @@ namespace ricochet {
 namespace {
 
 /// Steps of finite differences, relative to the speed and to the coordinates per step. The first is the square root of
-/// a double's rounding. The second keeps a step visible next to large coordinates.
+/// a double's rounding. The second keeps a step visible next to large coordinates. Local: steps of numerical
+/// derivatives, which change only the convergence.
 constexpr double kSpeedStep = 0x1p-26;
 constexpr double kPlaceStep = 0x1p-38;
 

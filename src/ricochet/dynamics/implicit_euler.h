@@ -12,9 +12,6 @@ namespace ricochet {
 /// Three columns of a 3 x 3 matrix.
 using Columns3 = std::array<Vec3, 3>;
 
-/// Largest number of Newton iterations. The last iterate is then used as it is.
-inline constexpr int kMostNewtonSteps = 20;
-
 /// Returns the velocity v1 with v1 = v0 + h a(x0 + h v1, v1, t + h), by Newton's method from v0 on.
 [[nodiscard]] Vec3 implicit_euler_velocity(const ForceField& forces, const ForceInput& state, double h);
 

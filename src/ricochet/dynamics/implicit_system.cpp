@@ -18,35 +18,36 @@ using Vector = Eigen::VectorXd;
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Largest number of halvings of a step whose equations are not solved. After that the last iterate of the whole step
-/// is used and counted.
-constexpr int kMostHalvedSteps = 10;
-
-/// Largest number of halvings of a correction that is too long.
+/// Largest number of halvings of a correction that is too long. Local: a limit of this search, whose result is checked.
 constexpr int kMostCuts = 12;
 
-/// Largest number of Newton steps before the last iterate is used.
+/// Largest number of Newton steps before the last iterate is used. Local: a limit of this search, whose result is
+/// checked.
 constexpr int kMostSteps = 80;
 
-/// Smallest fraction of the pressure in springs that is tried before 0.
+/// Smallest fraction of the pressure in springs that is tried before 0. Local: a step of this search.
 constexpr double kLeastPressure = 0.2;
 
-/// Correction, relative to the largest speed, below which Newton's method on the equations converges.
+/// Correction, relative to the largest speed, below which Newton's method on the equations converges. Local, because
+/// kNewtonTolerance decides when the equations are solved.
 constexpr double kNear = 1e-4;
 
-/// Smallest energy decrease of a correction, as a fraction of that predicted by the slope (L. Armijo, 1966).
+/// Smallest energy decrease of a correction, as a fraction of that predicted by the slope (L. Armijo, 1966). Local: a
+/// rule of this search, see kNewtonTolerance.
 constexpr double kLeastDescent = 1e-4;
 
-/// Rounding of a sum of energies, relative to the sum.
+/// Rounding of a sum of energies, relative to the sum. Local: an error bound of this arithmetic.
 constexpr double kEnergyRounding = 1e-13;
 
 /// Iterative refinement of a symmetric matrix's correction towards the exact one, with one factorization: the largest
 /// number of solutions, the final residual relative to the first, and the reduction that each solution must achieve.
+/// Local, because kNewtonTolerance decides when the equations are solved.
 constexpr int kMostRefinements = 20;
 constexpr double kRefined = 1e-3;
 constexpr double kRefinesBy = 0.7;
 
-/// Rounding of a stretch, relative to the coordinates of its ends, including that of a few sums.
+/// Rounding of a stretch, relative to the coordinates of its ends, including that of a few sums. Local: an error bound
+/// of this arithmetic.
 constexpr double kPositionRounding = 0x1p-49;
 
 /// The equations m (v1 - v0) - h F(x0 + h v1, v1, t + h) = 0 of all members, and their solution. Dampers resist the

@@ -35,7 +35,8 @@ struct NeighbourPair {
 /// Finds pairs and reuses its memory in the next search. The pairs do not depend on the number of threads.
 class NeighbourGrid {
 public:
-    /// Largest memory of a search, in bytes per box, in addition to kBytesPerPair for each pair found.
+    /// Largest memory of a search, in bytes per box, in addition to kBytesPerPair for each pair found. Local: a bound
+    /// that a test confirms.
     static constexpr double kBytesPerBox = 108.0;
     static constexpr double kBytesPerPair = 24.0;
 

@@ -9,7 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// Everything is searched again if more than 1 / kFew of the boxes have changed.
+/// Everything is searched again if more than 1 / kFew of the boxes have changed. Local, because only the cost depends
+/// on it.
 constexpr std::size_t kFew = 8;
 
 /// Limit, as 1 / kFewLeft, for boxes that have left their kept boxes. The search for one box costs as much as for
@@ -18,7 +19,7 @@ constexpr std::size_t kFewLeft = 32;
 
 /// Enlargement of a kept box on each side, relative to its size. In a settling pile whose spheres move by 1e-3 of their
 /// size per step, a twentieth of the spheres leave their kept boxes in ten steps. Twice the enlargement adds a tenth to
-/// the pairs to test.
+/// the pairs to test. Local, because only the cost depends on it.
 constexpr double kLarger = 0.02;
 
 /// Smallest number of boxes for which the cache pays off.

@@ -28,7 +28,7 @@ concept PairLawLike = requires(const Law& law, const PairState& pair) {
 /// Returns cubes that overlap if two particles may be nearer than the cutoff. Particles that are not finite get empty
 /// cubes.
 std::vector<Box3> boxes_around(const ParticlesView& particles, double cutoff, bool between_surfaces) {
-    // Half of the cutoff for each, plus a margin for rounding.
+    // Half of the cutoff for each, plus a margin for rounding. Local, because the exact distance decides.
     constexpr double kRounding = 1.0 + 0x1p-40;
     std::vector<Box3> boxes(particles.size());
     parallel_for_blocks(boxes.size(), kPairForcesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {

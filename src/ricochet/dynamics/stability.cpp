@@ -13,13 +13,13 @@ namespace {
 constexpr double kAnyStep = std::numeric_limits<double>::infinity();
 
 /// Radii of discs around 0 whose left halves lie in the regions of stability. Close to the imaginary axis this holds
-/// only approximately.
+/// only approximately. Mathematical constants of the methods.
 constexpr double kReachOfMidpoint = 1.0;
 constexpr double kReachOfRk4 = 2.6;
 
 /// Step of the velocity differences, relative to the speed or to kSlow. The step is wide, so that the jump of 0.4 % in
 /// Schiller and Naumann's coefficient does not give a steep slope. The differences of linear and quadratic drags are
-/// exact.
+/// exact. Local: steps of numerical derivatives for warnings.
 constexpr double kDifference = 1e-2;
 constexpr double kSlow = 1e-3;  ///< in m/s
 

@@ -51,7 +51,7 @@ struct EnergyLaw {
 [[nodiscard]] std::optional<EnergyLaw> energy_law_of_law(const Force& force);
 
 /// Largest positions, in m, and velocities, in m/s, at which forces and flows must be finite. Methods may try states
-/// beyond it, where powers overflow even in valid forces.
+/// beyond it, where powers overflow even in valid forces. Local: a limit of input values.
 inline constexpr double kLargestJudged = 1e25;
 
 /// Largest stiffness of a force of pairs along the line of the particles, within its attractive range, and its largest

@@ -20,7 +20,7 @@ constexpr std::uint32_t kGradientStream = 0xF1040001U;
 constexpr std::uint32_t kOrderStream = 0xF1040002U;
 constexpr std::uint32_t kOffsetStream = 0xF1040003U;
 // Mean square of the curl of three noises with unit gradients, the fade below and lattice spacing 1. It is twice the
-// mean square of one noise's gradient, whose integrals over a cell are rational.
+// mean square of one noise's gradient, whose integrals over a cell are rational. A mathematical constant.
 constexpr double kMeanSquareCurl = 238536280.0 / 160243083.0;
 
 // Fade with zero first and second derivatives at both ends (Perlin 2002), and its derivative.

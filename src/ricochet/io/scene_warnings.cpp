@@ -25,17 +25,21 @@ namespace {
 /// Largest number of explicit particles that are tested.
 constexpr std::size_t kMostExplicit = 2000;
 
-/// Largest product of triangles and starts for winding numbers, whose cost is proportional to it.
+/// Largest product of triangles and starts for winding numbers, whose cost is proportional to it. Local: a limit of the
+/// cost of a warning.
 constexpr double kMostSolidAngles = 2e7;
 
 /// Size of an opening, relative to the mesh, above which it is an intended mouth. Smaller openings make the mesh leak.
+/// Local, because it decides only about a warning.
 constexpr double kMouth = 0.25;
 
-/// Width of an opening, relative to the mesh, up to which it is a seam between parts that passes no particles.
+/// Width of an opening, relative to the mesh, up to which it is a seam between parts that passes no particles. Local,
+/// because it decides only about a warning.
 constexpr double kCrack = 1e-3;
 
 /// Largest product of kCandidateSlack and the largest coordinate, relative to the mean edge length. Beyond it, a
-/// contact tests more triangles than it can hit. A tenth costs 1.6 times as much, a fifth 2.8 times.
+/// contact tests more triangles than it can hit. A tenth costs 1.6 times as much, a fifth 2.8 times. Local, because it
+/// decides only about a warning.
 constexpr double kMostSlack = 0.1;
 
 /// Sample of the particles of one emitter, or of the explicit particles.

@@ -18,10 +18,11 @@ namespace ricochet {
 namespace {
 
 /// Smallest plausible radius, in units in the last place of the coordinates; contacts keep a gap of 16 such units.
+/// Local, because it decides only about a warning.
 constexpr double kLeastRadiusUlps = 1e3;
 
 /// Largest plausible distance between starts and colliders, in diagonals of the colliders' box. Rain on a single house
-/// of a landscape stays far below this limit.
+/// of a landscape stays far below this limit. Local, because it decides only about a warning.
 constexpr double kFarStarts = 100.0;
 
 /// Axis and distance, in m, of a point outside a box.

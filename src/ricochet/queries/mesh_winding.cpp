@@ -23,11 +23,12 @@ constexpr std::array<Vec3, 3> kDirections{
     {{0.4375, 0.6171875, 1.0}, {-0.8046875, 1.0, 0.3671875}, {1.0, -0.5703125, -0.7421875}}};
 
 /// Rounding of a determinant of two differences of points and a direction, relative to the product of their lengths:
-/// some 2^-50, with a margin.
+/// some 2^-50, with a margin. Local: an error bound of this arithmetic.
 constexpr double kDeterminantRounding = 0x1p-47;
 
 /// Sine and cosine of a half angle, times a length of some 1, below which rounding would lose more than some 2^-30 of
-/// the angle. This happens if the ray passes very near to a vertex of the boundary.
+/// the angle. This happens if the ray passes very near to a vertex of the boundary. Local: an error bound of this
+/// arithmetic.
 constexpr double kSmallestSine = 0x1p-20;
 
 /// Returns all directed edges, sorted by their ends, with the smaller number in the upper half of the key. index: 1 if

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Largest relative deviation of a similarity's columns from its scale, see PlacedMesh.
+/// Largest relative deviation of a similarity's columns from its scale, see PlacedMesh. Local: a limit of input values.
 constexpr double kSimilarity = 1e-9;
 
 /// Returns the scale of a similarity, or 0 for any other map.

@@ -13,13 +13,13 @@ namespace ricochet {
 namespace {
 
 /// Relative excess of the segment for the broad phase over the ray inside the mesh's box, so that rounding cuts nothing
-/// off.
+/// off. Local, because the exact test decides.
 constexpr double kBeyond = 0x1p-20;
 
-/// Rounding of the segment's ends, relative to their coordinates.
+/// Rounding of the segment's ends, relative to their coordinates. Local: an error bound of this arithmetic.
 constexpr double kEndRounding = 0x1p-48;
 
-/// Rounding of a fraction of the segment, with a margin.
+/// Rounding of a fraction of the segment, with a margin. Local: an error bound of this arithmetic.
 constexpr double kFractionRounding = 0x1p-40;
 
 struct Candidate {

@@ -12,14 +12,9 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of a path that dips into a surface that the flow leaves.
+/// Most halvings of a path that dips into a surface that the flow leaves. Local: a limit of this search, whose result
+/// is checked.
 constexpr int kMostHalvings = 40;
-
-/// Part of the step between impacts in a row after which the particle is passed between surfaces, and how many of them
-/// widen its reach: for a budget of 1000.
-constexpr double kQuickContact = 0x1p-11;
-constexpr std::uint32_t kContactsToWiden = 8;
-constexpr double kMostWidening = 4096.0;  // the faces of blunter valleys count as one plane, see kSameNormal
 
 /// One particle that a flow carries through one step.
 class Advector {

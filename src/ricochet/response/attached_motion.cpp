@@ -14,16 +14,7 @@
 #include "ricochet/response/particle_step.h"
 
 namespace ricochet {
-namespace {
-
-/// Halvings of the way with a body until each link is free in the frames of all others.
-constexpr int kCarryDepth = 16;
-
-/// Clearances from the surfaces of a frame that a particle is given before it is carried along, in roundings of its
-/// stored position there: each is tried after the one before.
-constexpr std::array<double, 4> kClearances{8.0, 64.0, 512.0, 4096.0};
-
-}  // namespace
+namespace {}  // namespace
 
 PathClock ParticleStep::clock_of(const Path& path) const {
     const double now = particle_.state.time;
@@ -310,7 +301,7 @@ bool ParticleStep::step_aside(BodyId frame, double clearance) {
 /// between surfaces that are nearer to each other than that, carried positions may lie behind them. Moves the particle
 /// to where it has more room in the frame, and waits then.
 bool ParticleStep::wait_with_clearance(double until) {
-    for (const double roundings : kClearances) {
+    for (const double roundings : kCarryingClearances) {
         const auto waits_in = [&](BodyId frame) {
             if (stored_.time < until && step_aside(frame, roundings * rounding_in(frame, until))) {
                 static_cast<void>(carry_on(frame, until));

@@ -18,11 +18,8 @@
 namespace ricochet {
 namespace {
 
-/// Part of a flow's speed that counts as its speed along a round surface at least: next to where it stops there, it is
-/// soon faster.
-constexpr double kSlowFlow = 0.1;
-
-/// Halvings in search of the time at which the flow turns away from a wall: to the last bit of the time.
+/// Halvings in search of the time at which the flow turns away from a wall, down to the last bit of the time. Local: it
+/// ends below the rounding of the result.
 constexpr int kReleaseHalvings = 60;
 
 /// The normal of a round shape at a position, on the side that one of its normals says.
@@ -88,9 +85,7 @@ private:
 /// Of the next chord along a curved surface, rad, after so many in the step. Spheres that roll round many edges in one
 /// step would spend their budget with the finest ones: 500 of 0.01 rad are 5 rad, and these 50.
 double chord_angle(int chords) {
-    constexpr int kChordsToDouble = 64;
-    constexpr int kMostDoublings = 4;
-    return kMaxChordAngle * static_cast<double>(1 << std::min(chords / kChordsToDouble, kMostDoublings));
+    return kMaxChordAngle * static_cast<double>(1 << std::min(chords / kChordsToDouble, kMostChordDoublings));
 }
 
 Vec3 displacement(const Path& path, double s) {

@@ -13,15 +13,12 @@ namespace ricochet {
 
 namespace {
 
-/// Estimates of where an arc comes to the next part of a surface; each leaves the square of what was wrong, once it is
-/// little: three left 1e-11 of the radius where a sphere had gathered speed on a long arc.
+/// Estimates of the time at which an arc reaches the next part of a surface. Each squares a small error. Three left
+/// 1e-11 of the radius for a fast sphere on a long arc. Local: it ends below the rounding of the result.
 constexpr int kMostTurningPoints = 8;
 
-/// By which an interval may last longer or shorter than the one whose middle it was planned with: forces there differ
-/// by what is of second order in its duration, as the midpoint rule's own error.
-constexpr double kSameMiddle = 1.25;
-
-/// Times that an interval is shortened until it has the middle that it was planned with; each by a fifth at least.
+/// Most times that an interval is shortened until its middle is the planned one, each by at least a fifth. Local,
+/// because kSameMiddle decides.
 constexpr int kMostCuts = 16;
 
 /// Methods of second order and more; the others hold forces over a step.
@@ -87,10 +84,9 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
 /// One interval after the other takes less time than the clock can tell, and what it does in them is nothing beside
 /// what its forces would do: next to a vertex at the origin, where coordinates have no end, from one face to the next.
 bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
-    constexpr int kMostTimeless = 24;
     timeless_ = state_.time > clock_ ? 0 : timeless_ + 1;
     clock_ = state_.time;
-    if (timeless_ < kMostTimeless) return false;
+    if (timeless_ < kMostTimelessIntervals) return false;
     const double speed = length(state_.velocity) + state_.radius * length(particle_.spin);
     return speed <= kNegligibleSpeed * length(pull.forces) * duration;
 }
@@ -274,6 +270,7 @@ void ContactFollower::lead_until(double time, const CurvedContact& arc, CurvedPa
 
 /// The time on the path, s, from which another part of a surface is touched, if only for a while.
 double ContactFollower::time_on_pieces(const Path& path) const {
+    // Local: samples and halvings of a search that only shortens the path.
     constexpr int kLooks = 4;
     constexpr int kHalvings = 32;
     const auto is_on_part = [&](double time) { return !held_.touches_next_substep(path.position(time)); };

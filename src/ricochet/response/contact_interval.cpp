@@ -10,17 +10,15 @@
 namespace ricochet {
 namespace {
 
-/// Stages of the Runge-Kutta method damp what decays up to 2.78 times as fast as a step.
+/// Rate of decay, per step, up to which the Runge-Kutta method is used. Local: a bound of stability of its stages,
+/// which is 2.78.
 constexpr double kStageLimit = 2.5;
 
-/// What friction changes a sphere's slip by, over what it accelerates it with.
+/// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
 constexpr double kSlipAcceleration = 3.5;
 
-/// The part of friction with which what slides has to have an answer; it jams where there is one with less only. With
-/// hardly less there is one where rounding, or a short search, has missed that.
-constexpr double kJammingFriction = 0.95;
-
-/// Plans that end at once, one after the other, before the last counts.
+/// Most plans in a row that end at once before the last one counts. Local, because the next interval starts from its
+/// end.
 constexpr int kMostPlans = 4;
 
 /// Something that resists, and how it is going.

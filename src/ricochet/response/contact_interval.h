@@ -34,9 +34,6 @@ struct FrictionLimits {
     double negligible_path = 0.0;  ///< m; motion that friction ends within this distance is rest already
 };
 
-/// Intervals of a step that are not cut further because friction turns: the usual 1 / Grip::shortest.
-inline constexpr double kShortestIntervals = 32.0;
-
 /// True when a velocity leaves a surface of unit normal n, by more than rounding: it does not hold then.
 [[nodiscard]] bool leaves(const Vec3& velocity, const Vec3& n);
 

@@ -19,7 +19,7 @@ bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale)
 }
 
 /// Solid sphere: the tangential impulse that stops the slip is 2/7 of the slip momentum; spin changes by 5/2 of the
-/// velocity change over the radius.
+/// velocity change over the radius. Mathematical constants.
 constexpr double kSphereStick = 2.0 / 7.0;
 constexpr double kSphereSpinUp = 5.0 / 2.0;
 

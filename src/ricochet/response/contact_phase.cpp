@@ -17,9 +17,6 @@ namespace ricochet {
 
 namespace {
 
-/// Contact intervals after one impact before the particle is set free again; only curved sliding needs more than a few.
-constexpr int kMostIntervals = 64;
-
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
 /// Returns the part of a velocity along a plane. Projects twice: once leaves the rounding of the part that was removed,
@@ -227,7 +224,7 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
     const auto passes = [&](double time) {
         return state_.time + time > state_.time && step_.remaining() - time < step_.remaining();
     };
-    for (int part = 0; part < kMostIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
+    for (int part = 0; part < kMostContactIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
         const Vec3 forces = rules_.forces.acceleration(state_);
         const double before = step_.remaining();
         const Stop stop = follower_.advance({forces, true, pressure}, std::min(left, before));
@@ -246,7 +243,7 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
 
 /// Slides, rolls or rests. A kicked particle has had its force already.
 std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
-    for (int count = 0; count < kMostIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
+    for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
         if (!support_.is_pressed(forces)) return std::nullopt;
         const Stop stop = follower_.advance({forces, !kicked, 1.0}, step_.remaining());
@@ -317,6 +314,7 @@ void ContactPhase::lift() {
 
 /// How long a body that moves holds it, s: its forces change meanwhile. At most what is left of the step.
 double ContactPhase::time_at_rest() {
+    // Local: samples and halvings of a search for a time, to its last bit.
     constexpr int kLooks = 8;
     constexpr int kHalvings = 52;
     const double left = step_.remaining();

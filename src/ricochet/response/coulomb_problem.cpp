@@ -10,38 +10,31 @@
 namespace ricochet {
 namespace {
 
-/// Newton's method needs four or five steps as a rule; where it circles, more do not help.
+/// Most steps of Newton's method, and halvings of a step. Four or five steps suffice as a rule, and more do not help an
+/// iteration that circles. Local: a limit of this search, whose result is checked.
 constexpr int kNewtonSteps = 14;
 constexpr int kHalvings = 4;
-/// Gauss-Seidel sweeps before Newton's method is tried again, and whether they begin without forces.
+/// Gauss-Seidel sweeps before Newton's method is tried again, and whether they begin without forces. Local: starts of
+/// this search.
 struct Start {
     bool anew;
     int sweeps;
 };
 constexpr std::array<Start, 5> kStarts{{{false, 20}, {true, 30}, {false, 300}, {true, 1000}, {true, 6000}}};
-/// The long ones begin anew: what they do not find at one compliance they do not find at the next. They are tried once
-/// for a problem, with all of its friction.
+/// Number of short starts. The long ones begin without forces, and a failure at one compliance repeats at the next.
+/// They are tried once for a problem, with its full friction. Local: a limit of this search, whose result is checked.
 constexpr std::size_t kShortStarts = 3;
-/// Where another answer is looked for when forces run away, with all of the friction: compliances, and sweeps that
-/// begin without forces at each. Of 1200 random problems whose forces run away one in a hundred has one.
+/// Compliances, and sweeps without initial forces at each, at which another solution with full friction is searched for
+/// if forces diverge. One in a hundred of 1200 random problems with diverging forces has one. Local: starts of this
+/// search.
 constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
 constexpr std::array kSweepsToOther{30, 300};
-/// Sweeps after which what a sweep changes is looked at first, then after twice as many; and by which part it may
-/// differ from the change then, so that forces run away: they would not settle in ten thousand.
+/// Local: sweeps before the first comparison of changes, see kSteadyChange; the fastest stiffening of a short search;
+/// parts of the friction, and sweeps for each. kCoulombResidual decides when the problem is solved.
 constexpr int kFirstLook = 32;
-constexpr double kSteadyChange = 1e-3;
 constexpr double kSomeStiffening = 0.2;
 constexpr int kFrictionParts = 16;
 constexpr int kSweepsOfPart = 100;
-/// Defects of the equations on the way, where the largest rate is 1, that are small enough to go on from.
-constexpr double kEnoughOnTheWay = 1e-10;
-constexpr double kHopeless = 1e6;
-/// Forces, where the largest rate is 1, from which on they may run away, and whose rounding exceeds what is enough on
-/// the way; and those that may do so already where no answer is found. By which part of what they gave way before
-/// contacts give way, as stiffer ones, when forces run away.
-constexpr double kRunawayForce = 1e6;
-constexpr double kLostForce = 1e5;
-constexpr double kSteadyGiving = 0.5;
 
 }  // namespace
 
@@ -66,12 +59,11 @@ bool CoulombProblem::solve(Effort effort, double friction) {
 }
 
 double CoulombProblem::solve_with_most(Effort effort, double friction) {
-    constexpr std::array kParts{1.0, 0.999, 0.99, 0.9, 0.5, 0.0};
-    for (const double part : kParts) {
+    for (const double part : kTriedFriction) {
         if (solve(effort, part * friction) || residual_ <= kNearlySolved) return part;
         effort = std::min(effort, Effort::most);
     }
-    return kParts.back();
+    return kTriedFriction.back();
 }
 
 std::array<double, 2> CoulombProblem::force_of(std::size_t resistance) const {
@@ -128,7 +120,7 @@ void CoulombProblem::solve_apart() {
 /// A single contact shares its load with none, and friction cannot wedge it: it is solved as a rigid one at once. False
 /// where Newton's method does not find the answer from none.
 bool CoulombProblem::solve_single() {
-    if (newton({}, kEnoughOnTheWay)) {
+    if (newton({}, kCoulombStage)) {
         make_rigid();
         residual_ = find_defects({});
         if (residual_ <= kCoulombResidual) return true;
@@ -142,7 +134,7 @@ void CoulombProblem::follow(const Reached& reached, Effort effort) {
     const bool is_stiff = make_stiff(reached, effort);
     if (is_stiff) make_rigid();
     residual_ = find_defects({});
-    if (!is_stiff || !(residual_ < kHopeless)) residual_ = kHopeless;
+    if (!is_stiff || !(residual_ < kHopelessResidual)) residual_ = kHopelessResidual;
 }
 
 /// From soft contacts, which have one answer, to stiff ones; by shorter ways where a long one loses it.
@@ -154,7 +146,7 @@ bool CoulombProblem::make_stiff(Reached reached, Effort effort) {
     Compliance compliance{reached.force > 0.0 ? factor * reached.compliance : 1.0, {}};
     while (true) {
         compliance.value = std::max(kStiffCompliance, compliance.value);
-        bool is_found = newton(compliance, kEnoughOnTheWay);
+        bool is_found = newton(compliance, kCoulombStage);
         runs_away_ = runs_away(reached, compliance.value, is_found);
         if (runs_away_ && !is_found) return false;
         if (is_found || solve_at(compliance, kept, effort)) {
@@ -199,10 +191,11 @@ bool CoulombProblem::runs_away(const Reached& reached, double compliance, bool i
 /// Contacts that have given way already, by as much as their forces make them, give way no more: proximal points. Weak
 /// ones need little compliance for that, nearly redundant ones much. Each is kept while it gains a digit at a time.
 void CoulombProblem::make_rigid() {
+    // Local: steps of this search. find_defects() decides.
     constexpr std::array kCompliances{1e-8, 1e-10, 1e-12, 1e-14, 1e-6, 1e-4};
     double residual = find_defects({});
     for (const double compliance : kCompliances) {
-        for (double before = kHopeless; residual < 0.1 * before;) {
+        for (double before = kHopelessResidual; residual < 0.1 * before;) {
             double enough = 1.0;
             for (std::size_t i = 0; i < unknowns_; ++i) enough = std::max(enough, std::fabs(force_[i]));
             enough *= kCoulombRounding;
@@ -237,7 +230,7 @@ bool CoulombProblem::solve_at(const Compliance& compliance, const Unknowns& give
     for (const Start& start : std::span(kStarts).first(starts)) {
         force_ = start.anew ? Unknowns{} : given;
         const bool diverges = relax(compliance, start.sweeps);
-        if (newton(compliance, kEnoughOnTheWay)) return true;
+        if (newton(compliance, kCoulombStage)) return true;
         if (diverges && start.anew) break;  // more sweeps from there lead on
     }
     return effort != Effort::some && grow_friction(compliance);
@@ -249,7 +242,7 @@ bool CoulombProblem::find_other(const Compliance& compliance) {
     for (const int sweeps : kSweepsToOther) {
         force_ = {};
         static_cast<void>(relax(compliance, sweeps));
-        if (is_other(newton(compliance, kEnoughOnTheWay))) return true;
+        if (is_other(newton(compliance, kCoulombStage))) return true;
     }
     return is_other(grow_friction(compliance));
 }
@@ -260,10 +253,10 @@ bool CoulombProblem::grow_friction(const Compliance& compliance) {
     force_ = {};
     for (int part = 0; part < kFrictionParts; ++part) {
         friction_ = whole * part / kFrictionParts;
-        if (!newton(compliance, kEnoughOnTheWay)) static_cast<void>(relax(compliance, kSweepsOfPart));
+        if (!newton(compliance, kCoulombStage)) static_cast<void>(relax(compliance, kSweepsOfPart));
     }
     friction_ = whole;
-    return newton(compliance, kEnoughOnTheWay);
+    return newton(compliance, kCoulombStage);
 }
 
 /// Newton's method with a step that is halved while the largest defect does not shrink.
@@ -281,7 +274,7 @@ bool CoulombProblem::newton(const Compliance& compliance, double enough) {
             found = find_defects(compliance);
             if (found <= enough || found < (1.0 - 0.1 * part) * defect) break;
         }
-        if (!(found < kHopeless)) return false;
+        if (!(found < kHopelessResidual)) return false;
         defect = found;
     }
     return defect <= enough;
@@ -318,7 +311,7 @@ bool CoulombProblem::relax(const Compliance& compliance, int sweeps) {
         }
         if (sweep != look) continue;
         const double now = largest_change_from(before);
-        runs_away = now > kEnoughOnTheWay && std::fabs(now - change_at_look) <= kSteadyChange * now;
+        runs_away = now > kCoulombStage && std::fabs(now - change_at_look) <= kSteadyChange * now;
         change_at_look = now;
         look *= 2;
     }

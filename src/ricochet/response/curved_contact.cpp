@@ -11,12 +11,9 @@
 namespace ricochet {
 namespace {
 
-/// Corrections of the position and of the energy; each leaves the square of what was wrong.
+/// Corrections of the position and of the energy. Each squares the relative error. Local: it ends below the rounding of
+/// the result.
 constexpr int kCorrections = 3;
-
-/// Phase, rad, of a swing about a place of rest in one arc. Reason: with 0.45 the axial speed of what swings across a
-/// cylinder is wrong by 1e-3, which the correction of the energy takes it from; with this by 1e-5.
-constexpr double kMaxArcPhase = 2.0 * kMaxArcAngle;
 
 }  // namespace
 
@@ -69,6 +66,7 @@ CurvedContact::State CurvedContact::at(double t) const {
 /// The implicit midpoint rule for what friction and resistance do, with the surfaces as they are in the middle: slip
 /// that soon ends, or has just begun, turns faster than the stages of an explicit method follow.
 CurvedContact::State CurvedContact::by_midpoint_rule(double t) const {
+    // Local: a jammed particle, which stops in every part, stays for the rest.
     constexpr int kMostParts = 8;
     State state = start();
     double elapsed = 0.0;
@@ -170,6 +168,7 @@ double CurvedContact::error_of(double t) const {
 /// control of steps (E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer
 /// 1993, section II.4) the next one is tried a little shorter than that says.
 double CurvedContact::longest_within_tolerance(double duration) const {
+    // Local: a rule of this step control. error_of() decides.
     constexpr double kSafety = 0.9;
     constexpr double kLeast = 0.01;
     constexpr double kMost = 0.5;

@@ -13,19 +13,7 @@
 namespace ricochet {
 namespace {
 
-/// Of the contact offset: as far further beyond a rim, by rounding, a point goes along it still.
-constexpr double kOverRim = 0.125;
-
-/// Slip, as a part of the resting speed, with which a point stands still on a rim: less is the rounding of an impact.
-constexpr double kStandingSlip = 1e-10;
-
-/// Contact offsets along its way, in which a point on a rim shows where it goes.
-constexpr double kLookOffsets = 1024.0;
-
-/// Of a path's duration, as far as it goes on after it has left a triangle, so that it has for certain.
-constexpr double kPastRim = 1e-9;
-
-/// Halvings of the time in the search for the rim.
+/// Halvings of the time in the search for the rim. Local: it ends below the rounding of the result.
 constexpr int kRimHalvings = 48;
 
 /// A triangle within reach.
@@ -56,7 +44,7 @@ bool is_point_over(const DeformingColliders& deforming, const ForceInput& partic
     const Vec3 slip = velocity - dot(velocity, normal) * normal;
     const double speed = length(slip);
     if (speed <= kStandingSlip * separation_speed) return true;
-    const Vec3 next = p + (kLookOffsets * offset / speed) * slip;
+    const Vec3 next = p + (kRimLookOffsets * offset / speed) * slip;
     return beyond_rim(deforming, surface, next, particle.time) <= beyond + kOverRim * offset;
 }
 

@@ -13,15 +13,6 @@
 namespace ricochet {
 namespace {
 
-/// Part of the distance of two centres by which an impact may find the spheres apart: far above the rounding of
-/// predicted paths, far below what time that is lost on the way amounts to.
-constexpr double kMetGap = 1e-9;
-
-/// The same as a part of the ways along walls, and of the smaller radius, in the step. Reason: such ways consist of
-/// arcs, which are planned anew up to the time of impact; 3e-7 of the way is usual. Smaller: impacts are planned anew
-/// for nothing. Larger: spheres that do not touch push each other.
-constexpr double kBoundMetGap = 1e-6;
-
 void append_to(std::vector<FlownPiece>& trajectory, const std::vector<FlownPiece>& more) {
     trajectory.insert(trajectory.end(), more.begin(), more.end());
 }

@@ -13,15 +13,7 @@
 namespace ricochet {
 namespace {
 
-/// Passes over the surfaces of a corner until none is approached; sharper corners take the velocity into the corner
-/// away.
-constexpr int kCornerPasses = 16;
-
-/// Part of the speeds of what takes part by which surfaces that move may still be approached after an impact that has
-/// an answer.
-constexpr double kAnswered = 1e-6;
-
-/// Boltzmann's constant, J/K (exact by the SI of 2019).
+/// Boltzmann constant, in J/K (exact by the SI of 2019).
 constexpr double kBoltzmann = 1.380649e-23;
 
 }  // namespace
@@ -196,7 +188,7 @@ bool ImpactResolver::close_on_it(std::span<const ContactSurface> surfaces, const
     const auto advances = [&](const ContactSurface& surface) { return surface_normal_speed(surface) > 0.0; };
     if (std::none_of(surfaces.begin(), surfaces.end(), advances)) return false;
     return std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& surface) {
-        return surface_normal_speed(surface) - dot(velocity, surface.normal) > kAnswered * speed;
+        return surface_normal_speed(surface) - dot(velocity, surface.normal) > kImpactResidual * speed;
     });
 }
 

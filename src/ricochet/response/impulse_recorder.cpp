@@ -6,12 +6,6 @@
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
-namespace {
-
-/// Units in the last place of the time: what is as near to a key is at it, also to DeformingColliders::motion_at().
-constexpr double kKeyRounding = 16.0;
-
-}  // namespace
 
 void ImpulseRecorder::add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change) {
     const Vec3 spin = spin_change ? spin_ + *spin_change : motion_in_world().spin;
@@ -109,7 +103,7 @@ Vec3 ImpulseRecorder::normal_at(SurfaceId surface, BodyId body, const Vec3& seen
 /// be a key, after which the body moves otherwise.
 double ImpulseRecorder::time_of_push(BodyId body, double time, bool impact) const {
     if (impact || body == kWorldBody || rules_.bodies->is_dynamic(body)) return time;
-    const double rounding = kKeyRounding * ulp(time);
+    const double rounding = kKeyUlps * ulp(time);
     const double key = rules_.bodies->next_key(body, time - rounding);
     if (!(key <= time + rounding)) return time;
     return rules_.bodies->is_deforming(body) ? key - 2.0 * rounding : std::nextafter(key, key - 1.0);

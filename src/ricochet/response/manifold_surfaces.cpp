@@ -10,13 +10,6 @@
 
 namespace ricochet {
 
-namespace {
-
-/// Seams in one step before what continues a surface is an impact like any other.
-constexpr int kMostSeams = 64;
-
-}  // namespace
-
 ManifoldSurfaces::ManifoldSurfaces(ParticleStep& step, ContactManifold& manifold)
     : step_(step), geometry_(step.geometry()), state_(step.state()), manifold_(manifold) {}
 

@@ -11,14 +11,6 @@
 namespace ricochet {
 namespace {
 
-/// Contacts with surfaces of several frames at once in one step, each of up to 64 intervals, before the particle counts
-/// as jammed: more than any that comes out needs.
-constexpr int kMostShared = 64;
-
-/// Part of the world's speeds by which a velocity in a body's frame is rounded: the difference of two of them, turned.
-/// Smaller: a particle that is carried lands on its body again, or never rests there. Larger: slow creep stops.
-constexpr double kFrameRounding = 0x1p-47;
-
 /// Corrects the recorded impulses of contact in moving frames. They are exact to the order of the method, and are
 /// recorded where each interval ends. Under uniform forces the momentum and the angular momentum that surfaces have
 /// given are known, so the difference is recorded, too.
@@ -75,7 +67,7 @@ bool ParticleMover::follows_receding_body(std::optional<Contact>& contact) {
     if (!is_dynamic || step_.impact().approach(touched) > slowest_rebound(rules_, *frame_rules_, particle_, *contact))
         return false;
     const double before = step_.remaining();
-    step_.begin_substep(particle_.state.time + 2.0 * kLeastWayOut * step_.duration());
+    step_.begin_substep(particle_.state.time + 2.0 * kPinchedProgress * step_.duration());
     contact = follow_receding_body(Contact(*contact));
     return step_.remaining() < before;
 }
@@ -210,7 +202,7 @@ std::optional<Contact> ParticleMover::begin_contact(const Flight& flight, const 
 
 /// What jams there again and again has no way on: it stays for the rest of the step.
 std::optional<Contact> ParticleMover::follow_shared() {
-    if (++shared_count_ > kMostShared) {
+    if (++shared_count_ > kMostSharedContacts) {
         particle_.contact = {};
         step_.stop();
         return std::nullopt;
@@ -245,7 +237,6 @@ std::optional<Contact> ParticleMover::begin_attached(BodyId body, const Contact&
 /// True if it comes back to a body whose jump has let it go, and hardly faster than it has left. The end of a step has
 /// only cut the contact in two.
 bool ParticleMover::lands_again(const Contact& contact, double slow) {
-    constexpr double kLandsAgain = 2.0;
     if (!let_go_speed_ || step_.impact().approach(contact.all()) > kLandsAgain * std::max(*let_go_speed_, slow))
         return false;
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "ricochet/core/tolerances.h"
+
 namespace ricochet {
 namespace {
-
-/// Sweeps of Gauss-Seidel, at most, and the change of velocity, relative to the fastest approach, that ends them.
-constexpr int kMostSweeps = 20000;
-constexpr double kSolved = 0x1p-54;
 
 double effective_inverse_mass(const PairBody& a, const PairBody& b) { return a.inverse_mass + b.inverse_mass; }
 
@@ -158,7 +156,7 @@ private:
     void iterate() {
         double fastest = 0.0;
         for (const PairContact& contact : contacts_) fastest = std::max(fastest, std::fabs(contact.approach));
-        for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        for (int sweep = 0; sweep < kMostImpactSweeps; ++sweep) {
             double change = 0.0;
             for (std::size_t k = 0; k < contacts_.size(); ++k) {
                 PairContact& contact = contacts_[k];
@@ -168,7 +166,7 @@ private:
                 apply_impulse(first(contact), second(contact), contact.normal, more * contact.normal);
                 change = std::max(change, std::fabs(more) * effective_inverse_mass(first(contact), second(contact)));
             }
-            if (change <= kSolved * fastest) break;
+            if (change <= kImpactSolved * fastest) break;
         }
     }
 

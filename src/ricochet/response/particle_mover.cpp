@@ -9,11 +9,12 @@
 namespace ricochet {
 namespace {
 
-/// Bounces in one step after which a particle does not look ahead: it is in a narrow gap, and what it would find out
-/// is that something is near. Looking ahead all the same cost the narrow cavity of `ricochet bench --suite pinball` 6
-/// to 9 % (docs/decisions/2026-11-23-what-pays.md).
+/// Bounces in one step after which a particle does not look ahead. It is in a narrow gap, where a look-ahead always
+/// finds a surface. Without the limit the narrow cavity of `ricochet bench --suite pinball` took 6 to 9 % longer
+/// (docs/decisions/2026-11-23-what-pays.md). Local, because only the cost depends on it.
 constexpr std::uint32_t kBouncesInNarrowGap = 2;
-/// Parts of the run's time step that a step may last by the rounding of the clock.
+/// Largest duration of a step, in time steps of the run, by the rounding of the clock. Local, because only look-ahead
+/// depends on it.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
 /// Lets a flight end after a duration, s, on its own path.
@@ -67,10 +68,10 @@ std::optional<Contact> ParticleMover::resolve_without_impulse(const Flight& flig
 
 /// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
 bool ParticleMover::has_room() {
-    if (!has_met_moving_ || step_.outcome().meetings() < bounces_at_look_ + kBouncesToClose) return true;
+    if (!has_met_moving_ || step_.outcome().meetings() < bounces_at_look_ + kBouncesUntilPinched) return true;
     bounces_at_look_ = step_.outcome().meetings();
     const double before = std::exchange(remaining_at_look_, step_.remaining());
-    return before - step_.remaining() > kLeastWayOut * step_.duration();
+    return before - step_.remaining() > kPinchedProgress * step_.duration();
 }
 
 /// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several, and of meshes

@@ -142,10 +142,6 @@ public:
     [[nodiscard]] const Vec3& start() const { return start_; }
 
 private:
-    /// Intervals of contact in one step that cost nothing, and those that cost as much as a bounce from there on.
-    static constexpr std::uint32_t kFreeIntervals = 64;
-    static constexpr std::uint32_t kIntervalsOfBounce = 4;
-
     /// How far a particle has come along a path among bodies.
     struct Travel {
         std::optional<Contact> contact{};  ///< what it has come to

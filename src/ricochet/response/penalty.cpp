@@ -14,16 +14,17 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of the bracket of a damping ratio: below the rounding of a double.
+/// Halvings of the bracket of a damping ratio. Local: it ends below the rounding of the result.
 constexpr int kHalvings = 64;
 
-/// A damping ratio beyond that of every restitution that is asked for.
+/// Damping ratio above that of every restitution in use. Local: the upper end of a bracket.
 constexpr double kLargestRatio = 16.0;
 
-/// Mass that a slip at a sphere's contact feels: 1 / (1 + 5 / 2) of its own, since the slip is half spin.
+/// Effective mass of slip at a sphere's contact, over its mass: 1 / (1 + 5 / 2), because half of the slip is spin. A
+/// mathematical constant.
 constexpr double kSlipShare = 2.0 / 7.0;
 
-/// Moment of inertia of a solid sphere over m r^2.
+/// Moment of inertia of a solid sphere over m r^2. A mathematical constant.
 constexpr double kSphereInertia = 0.4;
 
 /// The brake on a motion v: `most` against it, growing linearly up to the speed, and never more than `stopping` times

@@ -76,7 +76,7 @@ struct ContactState {
     std::uint8_t count = 0;               ///< 0: it flies
     double cascade_left = 0.0;            ///< s of a bounce cascade that the end of the step has cut in two
 
-    /// Of a particle that was placed where it touches these, and perhaps more.
+    /// Of a particle that was placed where it touches these, and perhaps more. Local: a mark, not a distance.
     static constexpr double kPlaced = -1.0;
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
@@ -90,6 +90,7 @@ struct ContactState {
     friend bool operator==(const ContactState&, const ContactState&) = default;
 
 private:
+    // Local: a mark, not a distance.
     static constexpr double kLetGo = -2.0;
 };
 

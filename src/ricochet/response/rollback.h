@@ -72,9 +72,6 @@ struct CollisionBracket {
 /// faster than the resting speed. kick: m/s, at which what rests may have come down.
 [[nodiscard]] TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, double force_velocity);
 
-/// Pieces of contact shorter than this part of the step are no progress; kMaxSlowContacts of them in a row are rest.
-inline constexpr double kLeastProgress = 0x1p-20;
-
 /// See above. It goes in pieces, each a flight or a contact interval.
 class RollbackMover {
 public:

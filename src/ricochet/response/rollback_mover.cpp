@@ -46,7 +46,7 @@ TouchRule rollback_touch(const ResponseRules& rules, const ForceInput& state, do
     const double resting_speed = rules.settings.resting_speed;
     const double speed = std::max({length(state.velocity), resting_speed, force_velocity});
     const double reach = kTouchingOffsets * contact_offset(state.position) +
-                         kTouchBrackets * rules.settings.rollback.time_tolerance * speed;
+                         kRollbackTouchPaths * rules.settings.rollback.time_tolerance * speed;
     return {reach, std::numeric_limits<double>::infinity(), reach, resting_speed};
 }
 

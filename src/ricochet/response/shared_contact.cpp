@@ -11,10 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Intervals of a step before the particle is set free again.
-constexpr int kMostIntervals = 64;
-
-/// Corrections of an interval's end; each leaves the square of what was wrong.
+/// Corrections of the end of an interval. Each squares the relative error. Local: it ends below the rounding of the
+/// result.
 constexpr int kCorrections = 3;
 
 }  // namespace
@@ -292,7 +290,7 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
 std::optional<Contact> SharedContact::follow() {
     particle_.contact = {};
     bool has_jumped = false;
-    for (int count = 0; count < kMostIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
+    for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         step_.note_interval();
         step_.impact().note_driven();
         gather();

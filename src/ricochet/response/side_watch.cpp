@@ -6,7 +6,7 @@
 namespace ricochet {
 namespace {
 
-/// Relative rounding of a distance, by far.
+/// Relative margin for the rounding of distances. Local: it is far larger than needed, and the distances found decide.
 constexpr double kDistanceRounding = 1e-9;
 
 }  // namespace

@@ -9,7 +9,8 @@
 
 namespace ricochet {
 
-/// sqrt(5/2): radius times angular velocity is so many times the turning part of a MotionVector.
+/// sqrt(5/2): radius times angular velocity is so many times the turning part of a MotionVector. A mathematical
+/// constant.
 inline constexpr double kTurning = 1.5811388300841898;
 
 /// turning: sqrt(2/5) times the radius times the angular velocity.

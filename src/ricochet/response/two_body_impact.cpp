@@ -7,7 +7,8 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in search of the friction that lets no energy in: to the last bit.
+/// Halvings in search of the friction that adds no energy, down to the last bit. Local: it ends below the rounding of
+/// the result.
 constexpr int kHalvings = 53;
 
 /// How both yield at the contact to an impulse on the particle, N s, and its opposite on the body.
@@ -36,10 +37,6 @@ private:
     const DynamicSurface& surface_;
     Vec3 where_;
 };
-
-/// Part of the speeds by which a slip is rounded: a few units in the last place. Larger: light bodies between heavy
-/// particles never come to an end of their impacts.
-constexpr double kSlipRounding = 0x1p-50;
 
 /// One impact, seen from the body: the impulse on the particle.
 class Impact {

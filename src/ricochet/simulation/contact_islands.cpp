@@ -4,27 +4,10 @@
 
 #include "ricochet/core/box_tools.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 namespace {
-
-/// Impacts per sphere and step beyond which an island is dense: where impacts lose energy, and where none does, so that
-/// a plan would lose what they keep.
-constexpr std::size_t kMostImpacts = 4;
-constexpr std::size_t kMostElasticImpacts = 64;
-
-/// The same of one sphere, where impacts lose energy: what rattles so between others is pressed by them, and the
-/// island's other members, however many, need not rattle as well to be planned with it.
-constexpr std::size_t kMostImpactsOfOne = 100;
-
-/// Plans of an island in a step, each with contacts looked for farther than in the one before.
-constexpr int kMostPlans = 8;
-
-/// Part of what another sphere may go that one near it is expected to be pushed.
-constexpr double kPushed = 0.5;
-
-/// Times the radius of another one that a large sphere has.
-constexpr double kLarge = 3.0;
 
 Box3 box_within_reach(const ContactIslandMember& member) {
     return ball_box(member.moving->state.position, member.radius + member.reach);
@@ -59,11 +42,12 @@ bool ContactIslands::begins_as_contact_island(const std::vector<IslandMember>& m
 ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& members) const {
     ImpactLimit limit;
     if (!parts_.may_be_contact_island()) return limit;
-    limit.in_all = (parts_.materials.loses_energy() ? kMostImpacts : kMostElasticImpacts) * members.size();
+    limit.in_all =
+        (parts_.materials.loses_energy() ? kMostImpactsPerSphere : kMostElasticImpactsPerSphere) * members.size();
     limit.may_sink = false;
     if (!parts_.materials.loses_energy()) return limit;
     limit.may_press = false;
-    limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfOne;
+    limit.of_each = parts_.settings.method == PairMethod::contacts ? 1 : kMostImpactsOfSphere;
     return limit;
 }
 
@@ -115,9 +99,9 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     for (const ContactIslandMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
     const auto collect = [&](Sphere& sphere, const Sphere& by) {
         // A large sphere looks farther about it than it goes, which is no push for small ones.
-        const bool is_large = by.radius > kLarge * sphere.radius;
-        const double beside = is_large ? ContactIsland::kReach * (by.radius - sphere.radius) : 0.0;
-        sphere.loaded = std::max(sphere.loaded, kPushed * (by.reach - beside));
+        const bool is_large = by.radius > kLargeSphere * sphere.radius;
+        const double beside = is_large ? kNetworkReach * (by.radius - sphere.radius) : 0.0;
+        sphere.loaded = std::max(sphere.loaded, kExpectedPush * (by.reach - beside));
     };
     work.near.for_each([&](std::uint32_t a, std::uint32_t b) {
         collect(spheres[a], spheres[b]);
@@ -138,7 +122,7 @@ SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& w
     find_pairs(members, work);
     find_pairs(work, expect_reactions(work));
     SolverReport report;
-    for (int k = 0; k < kMostPlans; ++k) {
+    for (int k = 0; k < kMostNetworkPlans; ++k) {
         report = work.island.plan(work.members, work.near.sorted(), duration, contacts_.memory(), scratch);
         const std::vector<std::uint32_t> changed = work.island.reach_farther(work.members);
         if (changed.empty()) break;

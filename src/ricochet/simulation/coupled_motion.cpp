@@ -26,27 +26,17 @@ double negligible_energy(const SpringNetwork& island) {
     return sum;
 }
 
-/// Solutions of a step among surfaces before half of it is tried.
+/// Most predictions of a step among surfaces before half of it is tried. Local, because kPredictionEnergy decides.
 constexpr int kMostForesights = 16;
 
-/// Solutions, one after the other, none of which is better than the best before them; then no more are tried.
+/// Predictions in a row without improvement after which the iteration stops. Local, because the best one is used.
 constexpr int kMostWorse = 3;
 
-/// The least part of a step that is taken where it does not settle what surfaces hold.
-constexpr double kLeastPart = 0x1p-6;
-
-/// A part of a step is taken for this much less energy that springs get by what was not foreseen.
+/// Ratio of errors below which half of a step counts as better. Local: a rule of the search for the best prediction.
 constexpr double kWorthCutting = 0.5;
 
-/// Halvings, one after the other, that are not worth it; then no more are tried.
+/// Halvings in a row without improvement after which no more are tried. Local, because the best prediction is used.
 constexpr int kMostVainCuts = 2;
-
-/// Energy that springs may get in a step where members end elsewhere than foreseen, over the kinetic energy that these
-/// would have without springs.
-constexpr double kForesight = 1e-5;
-
-/// The same where surfaces bend, over the energy that the step takes away.
-constexpr double kSpared = 0.1;
 
 /// How closely a step is solved.
 struct Closeness {
@@ -54,9 +44,9 @@ struct Closeness {
     double smallest_inverse_mass;  ///< of friction, see PlannedContacts::find()
 };
 /// Before it is known what surfaces hold: friction that yields more is found in fewer iterations.
-constexpr Closeness kRough{1e-5, 1e-3};
+constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
 /// After it. What yields ten times as much was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
-constexpr Closeness kClose{kNewtonTolerance, 1e-4};
+constexpr Closeness kClose{kNewtonTolerance, kFrictionYield};
 
 double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities) {
     return ordered_sum(system.size(), kBlock, [&](std::size_t begin, std::size_t end) {
@@ -229,13 +219,13 @@ SystemStep CoupledMotion::stepped(double duration) {
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
-    const double first_try = std::max(first_try_, kLeastPart * terms_.time_step);
+    const double first_try = std::max(first_try_, kLeastCoupledPart * terms_.time_step);
     const bool is_part = first_try_ > 0.0 && first_try < 0.75 * duration;
     SupportPrediction prediction = predict(is_part ? first_try : duration, spins, contacts);
     bool is_cut = false;
     int vain = 0;
     double h = prediction.step.duration;
-    while (!prediction.has_settled && 0.5 * h >= kLeastPart * terms_.time_step && vain < kMostVainCuts) {
+    while (!prediction.has_settled && 0.5 * h >= kLeastCoupledPart * terms_.time_step && vain < kMostVainCuts) {
         SupportPrediction half = predict(0.5 * h, spins, contacts);
         h = half.step.duration;
         const bool is_better = half.has_settled || half.residual < kWorthCutting * prediction.residual;
@@ -265,7 +255,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
         const Vec3& v = system_.velocities()[k];
         step.velocities[k] += duration * system_.own_acceleration(k, system_.time(), system_.positions()[k], v);
     }
-    const double negligible = kForesight * kinetic_energy(system_, step.velocities) + least_energy_;
+    const double negligible = kPredictionEnergy * kinetic_energy(system_, step.velocities) + least_energy_;
     bool is_close = false;
     std::vector<SupportConstraints> held =
         contacts.find(system_, step.velocities, spins, duration, kRough.smallest_inverse_mass);
@@ -288,7 +278,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
         ++worse;
         if (has_settled || best.held.empty() || residual < best.residual) {
             const double lost = lost_in(step);  // where surfaces throw members back it can be below 0
-            const bool is_true = has_settled && lost >= -negligible && residual <= negligible + kSpared * lost;
+            const bool is_true = has_settled && lost >= -negligible && residual <= negligible + kPredictionLoss * lost;
             best = {step, held, residual, is_true, is_close};
             worse = 0;
         }

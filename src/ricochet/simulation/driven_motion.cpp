@@ -14,15 +14,6 @@
 namespace ricochet {
 namespace {
 
-/// Parts of a step after which the next ones last a ten-thousandth of it at least, whatever they take off. Smaller:
-/// bodies among hundreds of particles as heavy as they are followed less well. Larger: such steps take longer.
-constexpr int kManyParts = 1000;
-
-/// Of the shortest part: a time in which an impulse is no load that will last. Smaller: what a body takes in a part
-/// that impacts have cut short becomes a load beyond all that there is. Larger: loads that last are planned too small
-/// there.
-constexpr double kShortestLoad = 0.01;
-
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
 /// True where the way goes on with another velocity than that with which it came.
@@ -87,7 +78,8 @@ double DrivenMotion::became_dynamic(const ColliderLoad& load) const {
 }
 
 double DrivenMotion::next_substep_end(double begin, double end) const {
-    constexpr double kAboutAll = 1.1;  // no part is left that is much shorter
+    // Local: it prevents a much shorter last substep.
+    constexpr double kAboutAll = 1.1;
     return end - begin > kAboutAll * longest_part_ ? begin + longest_part_ : end;
 }
 
@@ -217,9 +209,8 @@ RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const Coll
 /// before.
 double DrivenMotion::substep_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
                                        double duration) const {
-    constexpr double kLeast = 0.1;
     const double part = (loads_on_bodies().left_at(body, preview) - begin) / duration;
-    return part > kLeast && part < 1.0 - kLeast ? part : 1.0;
+    return part > kLoadEndMargin && part < 1.0 - kLoadEndMargin ? part : 1.0;
 }
 
 /// m/s, that a wrench (N, N m) changes a body's velocity by in a time, s; of one that turns, at its radius of gyration.
@@ -264,7 +255,7 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& rest
     const Wrench varies = relaxations_[body].variation(planned, back, resting_load.heaviness);
     const double change = change_by(body, varies, duration);
     const double lacking = change_by(body, lacks, duration);
-    return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadFits * most, lacking <= most};
+    return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadResidual * most, lacking <= most};
 }
 
 /// True where much lies on a body, and is entered after a time, s, before which the part has to end: how much of it
@@ -346,7 +337,6 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
 
 /// True where a planned load, with what came back from it, would give a body more than particles lose to it.
 bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
-    constexpr double kMuch = 0.1;
     const Wrench& planned_load = planned_loads_[body];
     if (planned_load.impulse == Vec3{} && planned_load.moment == Vec3{}) return false;
     BodyPath path = planned(body);
@@ -367,7 +357,7 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     DrivenBody comes = bodies_[body];
     comes.follow(path, planned_load, taken);
     const double gained = comes.kinetic_energy() - as_planned.kinetic_energy() + by_load - given;
-    return gained > kMuch * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
+    return gained > kMostLoadGain * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
 }
 
 /// The plan stands, up to a time, s.
@@ -393,6 +383,7 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
 /// What lies on a body shows by its mean alone how it changes in a part: that may be little, over a part in which it
 /// comes and goes. So parts grow by and by.
 void DrivenMotion::limit_next_substep(double duration) {
+    // Local: a rule of this step control, whose substeps are checked.
     constexpr double kGrowth = 2.0;
     if (was_shortened_) {
         longest_part_ = kGrowth * duration;

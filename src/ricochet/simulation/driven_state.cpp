@@ -8,8 +8,9 @@
 namespace ricochet {
 namespace {
 
-/// Largest entry of the product of a rotation and its transpose, less the unit matrix. A step adds a few roundings of
-/// 1e-16: a run of 1e9 steps stays below. Larger: shapes that are stretched by as much would be taken.
+/// Largest entry of the product of a rotation and its transpose, minus the unit matrix. A step adds a few roundings of
+/// 1e-16, so a run of 1e9 steps stays below. Larger: stretched shapes would be accepted. Local: a limit of input
+/// values.
 constexpr double kMostSkew = 1e-6;
 
 bool is_finite(const Wrench& wrench) {

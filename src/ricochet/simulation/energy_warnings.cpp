@@ -26,10 +26,11 @@ constexpr double kExplodes = std::numeric_limits<double>::infinity();
 /// Steps of a trial. A growth by a hundredth in a long run is far above rounding after so many.
 constexpr std::size_t kMostTrialSteps = 4096;
 
-/// Growth of the energy over the largest kinetic energy that is warned of.
+/// Growth of the energy over the largest kinetic energy that is warned of. Local, because it decides only about a
+/// warning.
 constexpr double kLargestGain = 0.01;
 
-/// Rounding of energies, over the largest potential energy.
+/// Rounding of energies, over the largest potential energy. Local, because it decides only about a warning.
 constexpr double kEnergyNoise = 1e-11;
 
 /// Particles that are looked at, and those of them that are tried: where forces vary most.
@@ -89,6 +90,7 @@ struct Subject {
 
 /// Returns the rate of change of accelerations with position, or the square of that with velocity.
 double rate_at(const ForceField& field, const ForceInput& state) {
+    // Local: a step of a numerical derivative for warnings.
     constexpr double kDifference = 1e-6;
     const Vec3 here = field.acceleration(state);
     const double apart = kDifference * (1.0 + max_abs(state.position));
@@ -241,6 +243,7 @@ private:
         return course;
     }
 
+    // Local, because it decides only about a warning.
     static constexpr double kTrialTolerance = 1e-8;
     static constexpr std::size_t kSubstepsOfTrial = 16;  // for each step
 

@@ -73,7 +73,8 @@ public:
 
 private:
     // A step by nothing or by 2^-230 m and more along each axis never ends at a position that flush_tiny() changes:
-    // where the position nearly cancels the displacement, both are multiples of 2^-283 m.
+    // where the position nearly cancels the displacement, both are multiples of 2^-283 m. Local: bounds that this proof
+    // needs.
     static constexpr double kShortestStraight = 0x1p-100;  ///< s
     static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
 

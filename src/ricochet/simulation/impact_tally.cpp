@@ -12,8 +12,7 @@ namespace {
 /// A time after one by a part of the time to another, or by more than rounding where that is no more; not after the
 /// other.
 double soon_after(double time, double next, double part) {
-    constexpr double kRounding = 16.0;  // units in the last place
-    return std::min(next, time + std::max(part * (next - time), kRounding * ulp(time)));
+    return std::min(next, time + std::max(part * (next - time), kSoonUlps * ulp(time)));
 }
 
 }  // namespace
@@ -73,13 +72,12 @@ double ImpactTally::share(double time) const {
 
 bool changes_velocity(const ColliderLoad& impact, const Wrench& before, const ImpactTally& tally,
                       const BodyContacts& contacts) {
-    constexpr double kLandsAgain = 2.0;
     const double change = tally.speed_by(before, impact);
     if (!(change > kMostBodyChange * length(impact.impulse) / impact.mass)) return false;
     if (!contacts.has(impact.particle)) return true;
     Wrench since = contacts.taken;
     since += before;
-    return impact.approach > kLandsAgain * tally.speed_by(since, impact);
+    return impact.approach > kFollowingApproach * tally.speed_by(since, impact);
 }
 
 void BodyContacts::add(const std::vector<std::uint64_t>& ids) {
@@ -98,14 +96,12 @@ double soon_after_impact(double time, double next) {
 }
 
 double end_after(std::span<const ImpactTally> taken, double time, double next, double begin, double shortest) {
-    constexpr int kMostPowers = 3;
-    constexpr double kShorter = 0.1;
     double end = next;
     double part = 1.0;
-    for (int power = 1; power <= kMostPowers; ++power) {
+    for (int power = 1; power <= kMostPartPowers; ++power) {
         part *= kPartAfterImpact;
         end = std::max(soon_after(time, next, part), begin + shortest);
-        shortest *= kShorter;
+        shortest *= kShorterPart;
         const auto is_late = [&](const ImpactTally& tally) { return tally.changes_energy(end, part); };
         if (std::none_of(taken.begin(), taken.end(), is_late)) break;
     }

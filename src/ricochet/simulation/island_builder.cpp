@@ -16,9 +16,9 @@ constexpr std::size_t kBlock = 16;
 /// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
 constexpr std::size_t kPrefetchDistance = 6;
 
-/// Rounds in which only those are joined that have met. Beyond them what touches those that are joined is joined as
-/// well: of a pile whose lowest layer has just come to lie, or that begins so, each round finds one layer more else,
-/// and costs all that lies below it again.
+/// Rounds that join only spheres that have met. Later rounds also join spheres that touch the joined ones. Otherwise
+/// each round would find one more layer of a pile, and solve all layers below it again. Local, because only the cost
+/// depends on it.
 constexpr std::size_t kRoundsAlone = 2;
 
 bool contains(const Box3& outer, const Box3& inner) {

@@ -8,40 +8,6 @@
 #include "ricochet/simulation/sleep_rules.h"
 
 namespace ricochet {
-namespace {
-
-/// What falls from so many parts of a radius, or is faster, wakes those that it hits.
-constexpr double kWakingFall = 0.01;
-
-/// A contact of a sleeper wakes it where it presses by so much more than the one that pressed it most when it fell
-/// asleep, and than so many of the sphere's weights: forces in a pile go now this way and now that, and a sleeper that
-/// carries much holds much. Where it does not press any more it may only have changed which of several contacts carries
-/// what: then it wakes the sleeper once the other sphere has gone.
-constexpr double kMorePressed = 4.0;
-constexpr double kWeights = 2.0;
-
-/// Weights of the same of what pushes it aside, not onto what holds it.
-constexpr double kWeightsAside = 0.5;
-
-/// Times that a step wakes only what touches those that are hit or pushed; beyond them it wakes twice as far each time,
-/// as each time costs all that is awake again.
-constexpr int kWakingsAlone = 3;
-constexpr int kFarthest = 16;          // 2^16 contacts: all of a pile
-constexpr double kMostContacts = 1e4;  // at once
-
-/// A sphere that stands in a sleeper by such a part of the smaller radius wakes it: between a sleeper and a wall it may
-/// have no room to part, and all that pushes it would drive it in ever deeper. Smaller: hard impacts wake more than
-/// they move. Larger: as much overlap lasts.
-constexpr double kSunk = 0.002;
-
-/// Cosine of the angle against the pull of forces beyond which what a smooth surface gives holds: a wall beside a
-/// sphere does not.
-constexpr double kHolding = 0.01;
-
-/// Cosine of the angle to the pull of forces within which a push goes onto what holds a sleeper.
-constexpr double kAlongPull = 0.5;
-
-}  // namespace
 
 bool LastingContacts::is_sound(std::uint64_t next_id) const {
     const std::size_t surfaces = parts_.response.rules().world.surface_count();
@@ -76,7 +42,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);
-    wake_alone(sleeping_islands_.around(particles, contacts << std::min(farther, kFarthest)), time);
+    wake_alone(sleeping_islands_.around(particles, contacts << std::min(farther, kMostWakingDoublings)), time);
     std::vector<std::uint64_t> held;
     for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);
@@ -170,7 +136,7 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
 /// Whether a push in a direction moves it where nothing but friction holds it.
 bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
     const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(sleeping, time));
-    return pull == Vec3{} || dot(direction, pull) < kAlongPull * length(direction) * length(pull);
+    return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
 }
 
 bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step) {
@@ -188,7 +154,7 @@ bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& 
         largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
     // A large one pushes as many small ones as it covers, at once: each time that more wake costs all again.
-    wake(hit, step.begin, static_cast<int>(std::min(largest, kMostContacts)));
+    wake(hit, step.begin, static_cast<int>(std::min(largest, kMostWokenContacts)));
     return !hit.empty();
 }
 
@@ -230,7 +196,7 @@ bool LastingContacts::is_supported_by_surfaces(const ContactIslandMember& member
 bool LastingContacts::holds(SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) const {
     const ResponseRules& rules = parts_.response.rules();
     const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
-    return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kHolding * length(wall_impulse) * length(pull);
+    return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kSupportingCosine * length(wall_impulse) * length(pull);
 }
 
 /// It lives through the whole step, and nothing that moves is near.
@@ -385,7 +351,8 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     const double pull = length(parts_.response.rules().forces.acceleration(state));
     const std::vector<Vec3>& position = parts_.store.particles().position;
     const bool goes_aside = is_aside(*i, position[*i] - position[*other], step.begin);
-    const double weights = (goes_aside ? kWeightsAside : kWeights) * state.mass * pull * (step.end - step.begin);
+    const double weights =
+        (goes_aside ? kWakingWeightsAside : kWakingWeights) * state.mass * pull * (step.end - step.begin);
     return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
 }
 
@@ -407,7 +374,8 @@ void LastingContacts::wake_unsupported(const TimeSpan& step) {
         if (relative_gap(entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
     }
     for (const WarmStartMemory::Entry& entry : memory_.entries()) {
-        if (is_at_edge_of_sleep(entry.key) && relative_gap(entry.key) < -kSunk) left.push_back(sleeper_of(entry.key));
+        if (is_at_edge_of_sleep(entry.key) && relative_gap(entry.key) < -kWakingOverlap)
+            left.push_back(sleeper_of(entry.key));
     }
     wake(left, step.end);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impact_tally.h"
 
 namespace ricochet {
@@ -43,12 +44,11 @@ RestingLoad LoadsOnBodies::resting_load_on(std::size_t body, std::span<const Col
 }
 
 double LoadsOnBodies::left_at(std::size_t body, std::span<const ColliderLoad> loads) const {
-    constexpr double kNothing = 1e-3;  // of all of it
     double all = 0.0;
     for (const ColliderLoad& load : loads) all += lies_on(body, load) ? length(load.impulse) : 0.0;
     double last = all > 0.0 ? 0.0 : std::numeric_limits<double>::infinity();
     for (const ColliderLoad& load : loads) {
-        if (lies_on(body, load) && length(load.impulse) > kNothing * all) last = std::max(last, load.time);
+        if (lies_on(body, load) && length(load.impulse) > kNegligibleLoad * all) last = std::max(last, load.time);
     }
     return last;
 }

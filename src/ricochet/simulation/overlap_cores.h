@@ -51,6 +51,7 @@ public:
     }
 
 private:
+    // Local: a mark, not a radius.
     static constexpr double kNone = -1.0;
 
     std::vector<double> cores_;  // m

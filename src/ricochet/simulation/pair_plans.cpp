@@ -13,14 +13,8 @@
 namespace ricochet {
 namespace {
 
-/// Parts of the radius beside what lies held by walls in which a collider that moves may disturb it.
-constexpr double kDisturbed = 0.01;
-
-/// Parts of the smaller radius: spheres with no more between them touch.
-constexpr double kTouching = 0.01;
-
-/// Spheres one behind the other that are expected to be deflected by one that lies; what comes behind these, and meets
-/// them, is found when they have been moved, and costs that again.
+/// Most spheres in a row that are expected to be deflected by one at rest. Spheres behind these are found after the
+/// move, which is then repeated. Local, because only the cost depends on it.
 constexpr int kDeflections = 2;
 
 }  // namespace
@@ -116,7 +110,7 @@ bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     const Vec3 apart = particles.position[first_ + above] - center;
     const double touching = particles.radius[first_ + above] + particles.radius[first_ + below];
     const double smaller = std::min(particles.radius[first_ + above], particles.radius[first_ + below]);
-    if (length(apart) > touching + kTouching * smaller) return false;
+    if (length(apart) > touching + kTouchingGap * smaller) return false;
     return has_sunk(touching, smaller, apart, free_path(above).path.end - center);
 }
 

@@ -13,10 +13,11 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kPlannedContactsBlock = 64;
 
-/// Of a solid sphere: the part of a slip that friction has to take for it to roll, 1 / (1 + 5/2).
+/// Part of the slip of a solid sphere that friction must remove for rolling: 1 / (1 + 5/2). A mathematical constant.
 constexpr double kRollingShare = 2.0 / 7.0;
 
-/// Of a step: what a force that grows evenly from 0 leads to, over its end and the step's length.
+/// Displacement by a force that grows evenly from 0, over its final acceleration and the square of the step. A
+/// mathematical constant.
 constexpr double kLedBy = 1.0 / 6.0;
 
 }  // namespace
@@ -97,7 +98,7 @@ SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& cont
         if (held.count == held.directions.size()) break;
         const double approach = -dot(v, surface.normal);
         const Vec3 across = held.across(surface.normal);
-        if (!(approach > 0.0) || !(length(across) > 1e-6)) continue;
+        if (!(approach > 0.0) || !(length(across) > kIndependentSupport)) continue;
         const Material& material = materials_[world_.material_of(surface.surface)];
         // What the step's own kick has put into the velocity is not the speed of an impact.
         const double arriving = std::max(0.0, std::min(approach, -dot(flown.before, surface.normal)));

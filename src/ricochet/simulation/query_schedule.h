@@ -11,6 +11,7 @@
 
 #include "ricochet/collision/contact.h"
 #include "ricochet/core/algorithms.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 
@@ -51,9 +52,6 @@ public:
     }
 
 private:
-    /// A remainder below this fraction of a step is added to the last one: duration / time_step is meant to be whole.
-    static constexpr double kStepRounding = 1e-6;
-
     double time_step_;
     double duration_;
     std::uint64_t steps_;

@@ -17,7 +17,8 @@ constexpr std::uint64_t kContactWork = 150;
 constexpr std::uint64_t kFlyingWork = 6;
 constexpr std::uint64_t kIdleWork = 1;
 
-/// Multiples of it, less their whole parts, fill the unit interval evenly, however many there are.
+/// Multiples of it, less their whole parts, fill the unit interval evenly, however many there are. A mathematical
+/// constant.
 constexpr double kGoldenPart = 0.6180339887498949;
 
 double most_of(const std::vector<std::uint64_t>& work) {

@@ -37,12 +37,14 @@ public:
     static constexpr std::uint64_t kSteps = 4;
     /// Looks after which what ranks have done is forgotten.
     static constexpr std::uint64_t kLooks = 4;
-    /// Work of the busiest rank over the mean from which on particles change ranks.
+    /// Work of the busiest rank over the mean from which on particles change ranks. Local, because only the cost
+    /// depends on it.
     static constexpr double kMostBusy = 1.1;
-    /// Work above the mean that is not worth the talk: a tenth of a millisecond.
+    /// Work above the mean that is not worth the talk: a tenth of a millisecond. Local, because only the cost depends
+    /// on it.
     static constexpr double kLeastGift = 1e4;
     /// What it costs to make room among the particles of a rank, each: less work above the mean can wait for more
-    /// looks.
+    /// looks. Local, because only the cost depends on it.
     static constexpr double kMoveWork = 30.0;
 
     void note(const WorkCounts& counts) { work_ += counts.work(); }

@@ -46,6 +46,7 @@ private:
 
     /// Bytes of a state that is kept: some hundred thousand particles. More would count in estimates of memory.
     static constexpr std::size_t kMostBytes = std::size_t{1} << 24U;
+    // Local, because only the cost depends on it.
     static constexpr double kShortestInterval = 0.25;  // s between two states
     static constexpr double kCostInterval = 50.0;      // times that it takes to keep one
     static constexpr double kLongestReplay = 0.5;      // s

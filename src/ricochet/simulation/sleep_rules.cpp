@@ -4,22 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/core/tolerances.h"
+
 namespace ricochet {
 namespace {
-
-/// Steps that a sphere, and all that press on it, lie still before it sleeps: what begins to move on a slope has gone
-/// farther by then.
-constexpr std::uint32_t kStepsToSleep = 50;
-
-/// Parts of the radius that what lies still may move in a step; and in islands beside colliders that move, which may
-/// carry it slowly.
-constexpr double kStillWay = 4e-5;
-constexpr double kStillWayBesideMovers = 1e-5;
-
-/// It is no faster than such a part of what a fall of its radius makes, for such a part of the time that this fall
-/// takes: what begins to move with a hundredth of the pull is faster by then, however short steps are.
-constexpr double kStillSpeed = 1e-3;
-constexpr double kStillTime = 0.1;
 
 /// m/s, of its surface where it is fastest.
 double speed_of(const ContactIslandMember& member, const SolverBody& planned) {
@@ -29,17 +17,17 @@ double speed_of(const ContactIslandMember& member, const SolverBody& planned) {
 }  // namespace
 
 bool is_slow(const ContactIslandMember& member, const SolverBody& planned, bool beside_movers) {
-    const double distance = beside_movers ? kStillWayBesideMovers : kStillWay;
+    const double distance = beside_movers ? kRestingPathBesideMovers : kRestingPath;
     return member.duration * speed_of(member, planned) < distance * member.radius;
 }
 
 bool is_at_rest(const ContactIslandMember& member, const SolverBody& planned, double pull) {
-    return !(pull > 0.0) || speed_of(member, planned) <= kStillSpeed * std::sqrt(pull * member.radius);
+    return !(pull > 0.0) || speed_of(member, planned) <= kRestingSpeed * std::sqrt(pull * member.radius);
 }
 
 std::uint32_t steps_to_sleep(const ContactIslandMember& member, double pull) {
-    const double time = pull > 0.0 ? kStillTime * std::sqrt(member.radius / pull) : 0.0;
-    const double steps = std::min(std::ceil(time / member.duration), 1e9);
+    const double time = pull > 0.0 ? kRestingTime * std::sqrt(member.radius / pull) : 0.0;
+    const double steps = std::min(std::ceil(time / member.duration), 1e9);  // fits into 32 bits
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
 }
 

@@ -23,7 +23,7 @@ namespace ricochet {
 namespace {
 
 /// What twelve neighbours in the closest packing of equal spheres hold a sphere with, over what one does: the sum of
-/// the squared cosines between their lines and any other.
+/// the squared cosines between their lines and any other. A mathematical constant.
 constexpr double kClosestPacking = 4.0;
 
 /// Digits after which doubles differ, if they do.
@@ -101,7 +101,7 @@ std::string undamped(const SimulationSetup& setup, const std::string& forces, co
         name_of(setup.options.integrator.kind), forces, whose, others);
 }
 
-/// Growth of an energy in a run that is warned of.
+/// Growth of an energy in a run that is warned of. Local, because it decides only about a warning.
 constexpr double kLargestGain = 0.01;
 
 /// Steps that are short enough for the fastest oscillation may feed it all the same: midpoint's do, unless dampers take
@@ -131,7 +131,7 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
 
 /// Particles that begin in each other, or nearer than at rest, need a shorter step until they have parted.
 std::optional<std::string> start_warning(const SimulationSetup& setup, std::size_t number, double bound_later) {
-    // Packings differ from the closest one by rounding.
+    // Packings differ from the closest one by rounding. Local, because it decides only about a warning.
     constexpr double kRounding = 1.0 - 1e-6;
     const OscillationRates rates = rates_at_start(setup, setup.particles_forces[number]);
     const double bound = longest_stable_step(setup.options.integrator.kind, rates);
@@ -199,6 +199,7 @@ std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, 
 /// How the particle moves at the end of a long time under the drags and what pulls all alike, m/s: as far as it gets
 /// there within many steps, since where it takes longer drags are weak.
 Vec3 falling_velocity(const std::vector<const Force*>& drags, const Vec3& pull, const ForceInput& state, double step) {
+    // Local, because it decides only about a warning.
     constexpr double kManySteps = 1000.0;
     const auto sum = [&](const ForceInput& input) {
         ForceInput here = state;

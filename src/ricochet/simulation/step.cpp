@@ -14,10 +14,6 @@
 namespace ricochet {
 namespace {
 
-/// Parts of the coordinates within which a collider that moves wakes a particle: more than those (kCandidateSlack) in
-/// which the particle would look for it.
-constexpr double kWakingReach = 0x1p-36;
-
 /// True while it lives.
 class ScopedFlag {
 public:

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::string_view kFraction = "a number from 0 to 1";
 
-/// Hotter than the inside of any star; fourth powers of it are far from the end of the arithmetic.
+/// Hotter than the inside of any star; fourth powers of it are far from the end of the arithmetic. Local: a limit of
+/// input values.
 constexpr double kHottest = 1e12;  // K
 
 void require_temperature(const Subject& subject, double value, std::string_view what) {

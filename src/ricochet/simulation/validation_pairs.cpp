@@ -17,7 +17,8 @@ namespace {
 /// Names of their own, so that scenes stay readable in a table.
 constexpr std::size_t kMostMaterials = 1000;
 
-/// kg: beyond them products of masses and their inverses leave the range of the arithmetic.
+/// kg: beyond them products of masses and their inverses leave the range of the arithmetic. Local: a limit of input
+/// values.
 constexpr double kLeastMass = 1e-100;
 constexpr double kLargestMass = 1e100;
 

@@ -14,14 +14,15 @@ namespace {
 using Digits = boost::multiprecision::cpp_bin_float_50;
 
 /// Relative difference of half axes up to which they count as equal. A rotation rounds the columns of a uniform scale
-/// by about 2^-52.
+/// by about 2^-52. Local: rounding of an input value.
 constexpr double kEqualAxes = 0x1p-49;
 
 /// Relative error of doubles: of a local coordinate, relative to the distance from the centre, and of a sum, relative
-/// to its terms. It covers some 6 roundings of 2^-53.
+/// to its terms. It covers some 6 roundings of 2^-53. Local: an error bound of this arithmetic.
 constexpr double kRoughError = 0x1p-49;
 
-/// Margin for rounding around the box of a shape, relative to its size and position.
+/// Margin for rounding around the box of a shape, relative to its size and position. Local: an error bound of this
+/// arithmetic.
 constexpr double kBoxSlack = 1e-12;
 
 /// Bisection steps for the multiplier. More steps would not change a double.

@@ -79,6 +79,7 @@ private:
         const Long distance = size(between(contact));
         if (!(distance > 0) || !std::isfinite(static_cast<double>(distance))) return true;
         if (!books_.has_exact_paths) return false;
+        // Local: a tolerance of the audit, which does not affect the run.
         constexpr double kUlps = 64.0;
         const double tick = kUlps * std::numeric_limits<double>::epsilon();
         const double smaller = std::min(a.radius, b.radius);

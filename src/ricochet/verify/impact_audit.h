@@ -17,6 +17,7 @@ namespace ricochet::verify {
 /// Relative tolerances of the audit of an impact, for momentum and energy, and for angular momentum. They are relative
 /// to the sum of the magnitudes of all terms. Reason: rounding of impulses and, if many spheres touch at once, the
 /// finite number of sweeps over the contacts. Smaller: rounding is reported. Larger: wrong impulses are not found.
+/// Local: a tolerance of the audit, which does not affect the run.
 inline constexpr double kPairBooks = 1e-12;
 inline constexpr double kPairAngularBooks = 1e-10;
 
@@ -25,6 +26,7 @@ inline constexpr double kPairAngularBooks = 1e-10;
 /// kMaxArcAngle, so both plans differ by up to its fourth power over 120, which is 8e-7 of the path. The largest error
 /// seen is 3e-7. On turning surfaces they differ by up to 2.5e-7 radii (at 3 rad/s and half a metre from the axis, in
 /// steps of 2 ms). Smaller: the error of arcs is reported. Larger: impacts of spheres that do not touch are not found.
+/// Local: a tolerance of the audit, which does not affect the run.
 inline constexpr double kBoundGap = 1e-6;
 
 /// Contact law between spheres.

@@ -10,14 +10,15 @@ namespace {
 
 /// Relative error of the normal velocities after an impact. Reason: the equations of an impact are solved to 1e-12, and
 /// contact leaves 1e-9 along its surfaces. Smaller: rounding is reported. Larger: wrong restitutions of slow impacts
-/// are not found.
+/// are not found. Local: a tolerance of the audit, which does not affect the run.
 constexpr double kReboundRounding = 1e-9;
 
 /// Relative error if friction of several surfaces decides. Impacts in wedges may have no exact solution and are solved
-/// approximately.
+/// approximately. Local: a tolerance of the audit, which does not affect the run.
 constexpr double kReboundInWedge = 1e-3;
 
 /// Largest normal speed, relative to all speeds, at which a supporting surface counts as neither approached nor left.
+/// Local: a tolerance of the audit, which does not affect the run.
 constexpr double kHeldSpeed = 1e-6;
 
 double restitution_of(const RecordedImpact::Surface& surface, double approach) {

@@ -14,11 +14,13 @@ namespace ricochet {
 
 /// Largest tolerated overlap of two spheres, over the smaller radius, if spheres may be time-stepped together. Reason:
 /// the sweeps over contacts stop before full precision. The residual may grow to half of this while a heap is filled.
-/// Smaller: heaps are reported. Larger: errors of the contact problem are not found.
+/// Smaller: heaps are reported. Larger: errors of the contact problem are not found. Local: a tolerance of the audit,
+/// which does not affect the run.
 inline constexpr double kMostPlannedOverlap = 0.01;
 
 /// Largest tolerated overlap if all impacts are resolved sequentially. Reason: rounding of times of impact, and of
-/// coordinates of a million radii. Smaller: rounding is reported. Larger: missed grazing impacts are not found.
+/// coordinates of a million radii. Smaller: rounding is reported. Larger: missed grazing impacts are not found. Local:
+/// a tolerance of the audit, which does not affect the run.
 inline constexpr double kMostMetOverlap = 1e-9;
 
 /// State of a sphere that collides with other spheres.

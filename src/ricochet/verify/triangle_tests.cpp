@@ -18,7 +18,8 @@ namespace {
 template <class Real>
 constexpr Real kFilter = 8 * std::numeric_limits<Real>::epsilon();
 
-/// Smallest error bound at which the filter decides. Below it, products may have been rounded to zero.
+/// Smallest error bound at which the filter decides. Below it, products may have been rounded to zero. Local: a guard
+/// against the end of the range of doubles.
 constexpr double kSmallestBound = 0x1p-950;
 
 /// Returns +1 or -1 if the value certainly has that sign, otherwise 0. Also returns 0 after an overflow.
@@ -217,7 +218,8 @@ Vec3 crossing_point(const Vec3& p, const Vec3& q, const Corners& t) {
 
 namespace {
 
-/// Error of a scalar product of rounded differences, relative to the lengths of both: some 5 roundings of 2^-53.
+/// Error of a scalar product of rounded differences, relative to the lengths of both: some 5 roundings of 2^-53. Local:
+/// an error bound of this arithmetic.
 constexpr double kProductError = 0x1p-49;
 
 template <class Real>

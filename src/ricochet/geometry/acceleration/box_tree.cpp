@@ -12,7 +12,8 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-/// Relative error bound. It covers the rounding to single precision and the rounding of the margin itself.
+/// Relative error bound. It covers the rounding to single precision and the rounding of the margin itself. Local: an
+/// error bound of this arithmetic.
 constexpr float kOutward = 0x1p-22F;
 
 /// A number in single precision with a bound on its error.

@@ -151,7 +151,8 @@ private:
 
     /// Boxes or nodes per unit of parallel work.
     static constexpr std::size_t kBlock = 1 << 13;
-    /// Growth of the total size of the branches at which a new hierarchy is built.
+    /// Growth of the total size of the branches at which a new hierarchy is built. Local, because only the cost depends
+    /// on it.
     static constexpr double kPoor = 2.0;
     /// Capacity of the stack of open nodes. Dividing 2^31 boxes by four leaves at most 17 levels, and at most three
     /// children wait on each but the last.

@@ -14,7 +14,8 @@ namespace {
 constexpr std::size_t kBlock = 1 << 12;
 
 /// Cost of a cluster in memory and time besides its box's surface, in units of the mean triangle's box surface.
-/// Neighbours along the curve need not be neighbours in space, so full clusters are not the best ones.
+/// Neighbours along the curve need not be neighbours in space, so full clusters are not the best ones. Local, because
+/// only the cost depends on it.
 constexpr double kCostOfCluster = 2.0;
 
 Box3 box_of(std::span<const Vec3> vertices, const Triangle& triangle) {

@@ -14,12 +14,14 @@ constexpr std::size_t kTrianglesPerBlock = 1 << 12;
 constexpr std::size_t kMinCells = 1 << 15;
 constexpr std::size_t kCellsPerTriangle = 2;
 
-/// Maximum number of cells along the longest axis. Distances that exceed a byte are clamped.
+/// Maximum number of cells along the longest axis. Distances that exceed a byte are clamped. Local, because only the
+/// cost depends on it.
 constexpr double kMaxAlongAxis = 1024.0;
 
 constexpr std::uint8_t kFar = 255;
 
-/// Budget of marks per triangle. Every grid gets the budget of a million further triangles.
+/// Budget of marks per triangle. Every grid gets the budget of a million further triangles. Local, because only the
+/// cost depends on it.
 constexpr double kMaxMarks = 16.0;
 
 double cells_along(double extent, double cell) { return std::floor(extent / cell) + 1.0; }

@@ -31,10 +31,10 @@ struct FloatFrame {
 
 /// Distance beyond which segments are not clipped, in units of the float frame (about the scene's half extent). The
 /// clipped point's own rounding could exceed the boxes' padding. Every triangle is a candidate instead. This is rare,
-/// because such a segment must also point at the collider.
+/// because such a segment must also point at the collider. Local, because only the cost depends on it.
 constexpr double kFarAway = 0x1p20;
 
-/// Length below which rays have no direction in single precision.
+/// Length below which rays have no direction in single precision. Local: a guard against underflow.
 constexpr double kShortestRay = 0x1p-120;
 
 float round_down(double value) {
@@ -126,6 +126,7 @@ struct PointQuery {
 /// infinite radius would also include the empty boxes that Embree keeps. If the point is not far away, everything is
 /// within the largest radius.
 float PointQuery::radius() const {
+    // Local: a distance beyond every triangle.
     constexpr double kEverything = 4.0 * kFarAway;
     return round_up(std::min(scale * within * (1.0 + 0x1p-20), kEverything));
 }

@@ -14,24 +14,26 @@ namespace {
 constexpr float kExtent = TriangleCluster::kExtent;
 
 /// Bound on the difference between a corner and its quantised position, in units. It is half a unit along each axis,
-/// and one at the largest number, which is not a power of two.
+/// and one at the largest number, which is not a power of two. Local: an error bound of this arithmetic.
 constexpr double kCornerRounding = 2.0;
 
 /// Rounding of the height above a triangle's plane, times the length of its normal, in single precision. There are
-/// about sixty roundings of 2^-24, and edges are at most two extents long.
+/// about sixty roundings of 2^-24, and edges are at most two extents long. Local: an error bound of this arithmetic.
 constexpr float kHeightRounding = 0x1p-17F * (2.0F * kExtent) * (2.0F * kExtent);
 
-/// Rounding of twice a projected area, in squares of the largest coordinate: about thirty roundings of 2^-24.
+/// Rounding of twice a projected area, in squares of the largest coordinate: about thirty roundings of 2^-24. Local: an
+/// error bound of this arithmetic.
 constexpr float kAreaRounding = 0x1p-18F;
 
-/// Length below which directions count as zero, because their reciprocal would leave the range of doubles.
+/// Length below which directions count as zero, because their reciprocal would leave the range of doubles. Local: a
+/// guard against the end of the range of doubles.
 constexpr double kShortestDirection = 1e-290;
 
-/// Rounding of a fraction, which is a quotient of such numbers.
+/// Rounding of a fraction, which is a quotient of such numbers. Local: an error bound of this arithmetic.
 constexpr float kFractionRounding = 0x1p-20F;
 
 /// Largest reciprocal length, in 1/m, of a segment that is cut. The squared length of a shorter segment would leave the
-/// range of doubles.
+/// range of doubles. Local: a guard against the end of the range of doubles.
 constexpr double kMaxPerLength = 1e140;
 
 // Four numbers at once (GCC's and Clang's vector extensions). They fill one register of every 64-bit processor.
@@ -84,7 +86,8 @@ struct LocalSegment {
     float size;  ///< upper bound on all numbers here and on differences to the corners
 };
 
-/// Factor for the remaining rounding of the margin, which is far below the rounding of the bounds.
+/// Factor for the remaining rounding of the margin, which is far below the rounding of the bounds. Local: an error
+/// bound of this arithmetic.
 constexpr double kMarginRounding = 1.0 + 0x1p-20;
 
 /// Returns the part of a path that can be within the margin of a triangle. It lies within twice the extent plus the

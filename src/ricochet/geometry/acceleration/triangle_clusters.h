@@ -70,7 +70,7 @@ struct TubeIntervals {
 /// the rounding, because clusters only propose candidates. Occupies two cache lines.
 struct alignas(64) TriangleCluster {
     using Lanes = std::array<std::int16_t, 4>;
-    /// Upper bound on half the largest extent of a cluster, in its units.
+    /// Upper bound on half the largest extent of a cluster, in its units. Local: a unit of this format.
     static constexpr float kExtent = 0x1p15F;
 
     std::array<Lanes, 3> x;  ///< of the corners, in units from the centre, rounded to the nearest

@@ -215,7 +215,8 @@ GltfLocation GltfList::operator[](std::size_t i) const {
 }
 
 std::uint64_t GltfLocation::whole_number() const {
-    // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in range.
+    // Larger offsets and counts exceed any file. Sums of two numbers below this limit stay in range. Local: a limit of
+    // input values.
     constexpr double kLargest = 9007199254740992.0;
     if (const auto* whole = std::get_if<std::uint64_t>(&value_->value)) {
         if (*whole <= static_cast<std::uint64_t>(kLargest)) return *whole;

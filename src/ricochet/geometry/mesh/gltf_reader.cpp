@@ -137,6 +137,7 @@ private:
                                 std::min(most, kLargestIndexCount), bytes));
             }
         }
+        // Local: an estimate of memory.
         constexpr double kBytesPerCorner = 24.0;  // including its share of faces and vertices
         require_memory(kBytesPerCorner * static_cast<double>(corners), source_.name);
         builder_.reserve(corners);

@@ -11,6 +11,7 @@
 namespace ricochet {
 namespace {
 
+/// Local, because only the cost depends on it.
 constexpr double kMaxCells = 1024.0;  // along either axis; a million columns suffice for any mesh
 
 /// Entries in the column lists: per triangle, and for every mesh. With fewer entries, the columns of ordinary meshes

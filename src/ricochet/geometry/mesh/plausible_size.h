@@ -11,14 +11,16 @@
 namespace ricochet {
 
 /// Extent, in m, above which a mesh is probably in another unit. Terrain measures about 100 m. Machine parts in
-/// millimetres measure 50 and more. Larger parts are therefore detected, and small ones are not.
+/// millimetres measure 50 and more. Larger parts are therefore detected, and small ones are not. Local, because it
+/// decides only about a warning.
 inline constexpr double kLargestPlausibleExtent = 200.0;
 
-/// The same limit for STL, in m. STL files name no unit and are usually in millimetres.
+/// The same limit for STL, in m. STL files name no unit and are usually in millimetres. Local, because it decides only
+/// about a warning.
 inline constexpr double kLargestPlausibleStlExtent = 20.0;
 
 /// Extent, in m, below which a mesh is implausible. Below a millimetre, air and adhesion dominate instead of impacts.
-/// Most meshes of this size were converted twice.
+/// Most meshes of this size were converted twice. Local, because it decides only about a warning.
 inline constexpr double kSmallestPlausibleExtent = 1e-3;
 
 /// Origin of a mesh's unit.

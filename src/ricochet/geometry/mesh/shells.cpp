@@ -85,6 +85,7 @@ bool cross_properly(const TriangleMesh& mesh, std::uint32_t first, std::uint32_t
 /// Points halfway from there to a corner are tested on both sides of the triangle. A shell that only touches does not
 /// contain both.
 bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32_t first, std::uint32_t second) {
+    // Local: a test position, not a tolerance.
     constexpr double kBeside = 1e-6;  // fraction of the edge's length
     const auto& [a, b, c] = mesh.triangles[second];
     const Vec3& origin = mesh.vertices[a];
@@ -115,6 +116,7 @@ struct ShellVolume {
 
     /// Returns 1 if the shell is wound outward, -1 if inward, and 0 if rounding decides, as for a flat shell.
     [[nodiscard]] int orientation() const {
+        // Local: an error bound of this arithmetic.
         constexpr double kRounding = 1e-12;  // far above the sum's rounding error
         if (!(std::fabs(sum) > kRounding * magnitude)) return 0;
         return sum > 0.0 ? 1 : -1;

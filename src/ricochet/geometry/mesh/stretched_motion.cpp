@@ -17,7 +17,7 @@ namespace ricochet {
 namespace {
 
 /// Distance from two keys at which bounds are taken, as a fraction of the time between them. The bounds then exclude
-/// the neighbouring intervals.
+/// the neighbouring intervals. Local: the bounds of one interval hold at both positions.
 constexpr double kInside = 1e-9;
 
 [[noreturn]] void refuse(const std::string& what) { throw InputError("scale that changes in time: " + what); }

@@ -13,7 +13,8 @@ namespace ricochet {
 
 /// Largest distance of a vertex from its exact position between two keys of stretched_motion(), as a fraction of the
 /// mesh's diagonal. A smaller value needs more keys, which take memory and cut paths. A larger value moves surfaces
-/// that rotate while they scale further from their exact position. It never causes leaks.
+/// that rotate while they scale further from their exact position. It never causes leaks. Local, because public headers
+/// cannot include the tolerances.
 inline constexpr double kStretchDeviation = 1e-4;
 
 /// Returns the motion of a mesh whose vertices (m) are attached to a frame. The frame and its ancestors may be scaled

@@ -12,6 +12,7 @@
 namespace ricochet {
 namespace {
 
+/// A mathematical constant.
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::uint32_t kSides = 96;  // around the axis
 constexpr std::uint32_t kBelts = 48;  // from pole to pole of a ball

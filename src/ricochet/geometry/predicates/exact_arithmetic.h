@@ -136,6 +136,7 @@ struct BoundedValue {
 /// The cross product u x v in double-double. Each component of `magnitude` is the sum of the magnitudes of that
 /// component's two terms.
 struct BoundedCross {
+    // Local: half a unit in the last place of 1.
     static constexpr double kRoundoff = 0x1p-53;
 
     DoubleDouble x;

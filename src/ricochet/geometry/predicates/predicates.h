@@ -22,10 +22,10 @@ struct Point2 {
     friend constexpr bool operator==(const Point2&, const Point2&) = default;
 };
 
-/// Largest coordinate magnitude for which the predicates are exact.
+/// Largest coordinate magnitude for which the predicates are exact. Local: a bound that the proof of exactness needs.
 inline constexpr double kLargestExactCoordinate = 0x1p300;
 /// Smallest coordinate magnitude. Smaller coordinates are replaced by zero, which keeps every product inside the range
-/// of doubles.
+/// of doubles. Local: a bound that the proof of exactness needs.
 inline constexpr double kSmallestExactCoordinate = 0x1p-287;
 
 /// Replaces components smaller than kSmallestExactCoordinate by zero and returns other components unchanged.
@@ -80,7 +80,8 @@ struct FilteredCross {
 
 /// Error of filtered_sign's determinant relative to its magnitude. Each of the six terms has at most 8 roundings u =
 /// 2^-53 (3 differences, 2 products, 1 subtraction, 2 additions). The bound is slightly above 8 u, so 8.5 u is used.
-/// Underflow is harmless, because terms are multiples of 2^-1020, so sums below 2^-967 are exact.
+/// Underflow is harmless, because terms are multiples of 2^-1020, so sums below 2^-967 are exact. Local: an error bound
+/// of this arithmetic.
 inline constexpr double kDeterminantFilter = 0x1.1p-50;
 
 /// Returns the sign of (u x v) . w if the error bound decides it, else 0. u, v and w are rounded differences of points.
@@ -121,7 +122,7 @@ inline bool segment_intersects_triangle(const Vec3& p, const Vec3& q, const Vec3
 /// Returns +1 if a, b and c turn counter-clockwise, -1 if clockwise and 0 if they are collinear. Exact.
 [[nodiscard]] inline int orient2d(const Point2& a, const Point2& b, const Point2& c) {
     // Each term has 4 roundings of u = 2^-53: two differences, a product and the subtraction. The bound is slightly
-    // above 4 u.
+    // above 4 u. Local: an error bound of this arithmetic.
     constexpr double kFilter = 4.5 * 0x1p-53;
     const double left = (b.u - a.u) * (c.v - a.v);
     const double right = (b.v - a.v) * (c.u - a.u);

@@ -55,7 +55,7 @@ DoubleDouble TrianglePlane::volume(const Vec3& p, double relative_error) const {
 
 double TrianglePlane::crossing_fraction(const Vec3& p, const Vec3& q) const {
     // The two volumes differ in sign, so their difference does not cancel. The quotient has an error of about 2^-58
-    // before it is rounded once.
+    // before it is rounded once. Local: an error bound of this arithmetic.
     constexpr double kAccuracy = 0x1p-60;
     const DoubleDouble from_p = volume(p, kAccuracy);
     if (from_p.hi == 0.0) return 0.0;
@@ -67,7 +67,7 @@ const Vec3& TrianglePlane::unit_normal() const {
     const Precise& known = precise();
     const BoundedCross& normal = known.normal;
     // Each component has the error of a product and a subtraction, 10 u^2 of its terms' magnitude. 16 u^2 covers the
-    // rest.
+    // rest. Local: an error bound of this arithmetic.
     constexpr double kError = 16.0 * 0x1p-53 * 0x1p-53;
     const double error = kError * max_abs(normal.magnitude);
     if (error <= 0x1p-60 * max_abs({normal.x.hi, normal.y.hi, normal.z.hi})) {

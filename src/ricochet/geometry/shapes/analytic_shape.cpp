@@ -10,11 +10,11 @@ namespace ricochet {
 namespace {
 
 /// Relative errors of a sum of squares, a scalar product and a local coordinate, in doubles and in double-doubles.
-/// There are about 6 roundings, and at least 8 are allowed for.
+/// There are about 6 roundings, and at least 8 are allowed for. Local: an error bound of this arithmetic.
 constexpr double kDoubleError = 0x1p-50;
 constexpr double kDoubleDoubleError = 0x1p-98;
 
-/// Addition to the margin in can_cull(), relative to all lengths involved.
+/// Addition to the margin in can_cull(), relative to all lengths involved. Local: an error bound of this arithmetic.
 constexpr double kCullSlack = 0x1p-44;
 
 bool is_apart(const ControlPoints& hull, const Box3& box, double margin) {

@@ -9,11 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// Separation below which the ball is in contact, as a fraction of the bound on a distance's error. It is the largest
-/// error observed.
-constexpr double kTouching = 0.25;
-
-/// Number of samples of a path that starts in overlap.
+/// Number of samples of a path that starts in overlap. Local: a limit of this search, whose result is checked.
 constexpr int kOverlapSamples = 32;
 
 /// Number of Newton steps before halving takes over. At most seven were needed in tests.
@@ -22,7 +18,7 @@ constexpr int kMaxNewtonSteps = 16;
 /// Number of halvings that reach the last place of a time.
 constexpr int kMaxHalvings = 60;
 
-/// Fraction of the interval that counts as a long step.
+/// Fraction of the interval that counts as a long step. Local, because only the cost depends on it.
 constexpr double kLongStep = 0.8;
 
 double middle_of(double low, double high) { return low + 0.5 * (high - low); }
@@ -93,7 +89,7 @@ ConservativeAdvancement::ConservativeAdvancement(const LocalShape& shape, const 
       radius_(radius),
       part_(from_inside),
       side_(from_inside ? -1 : 1),
-      tolerance_(kTouching * shape.ellipsoid().distance_error(radius, Vec3{})) {}
+      tolerance_(kShapeContact * shape.ellipsoid().distance_error(radius, Vec3{})) {}
 
 ConservativeAdvancement::Separation ConservativeAdvancement::separation_at(double s) const {
     const PreciseVec3 position = path_.position(s);
@@ -231,7 +227,7 @@ ConservativeAdvancement::Overlap ConservativeAdvancement::follow_overlap() const
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Tolerance for a point on a cap or under it at the rounded time of a crossing: a few ulp. It is a fraction of the
-/// distance travelled and of the shape's size.
+/// distance travelled and of the shape's size. Local: an error bound of this arithmetic.
 constexpr double kPositionError = 0x1p-50;
 
 double first_time(const Times& times) { return times.count > 0 ? times[0] : kNever; }

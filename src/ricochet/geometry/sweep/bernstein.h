@@ -12,14 +12,14 @@
 namespace ricochet::bernstein {
 
 /// Relative error bound of a coefficient, with a safety factor. It covers some hundred roundings, each of 2^-53
-/// (double) or 7 x 2^-106 (double-double).
+/// (double) or 7 x 2^-106 (double-double). Local: an error bound of this arithmetic.
 template <class Real>
 constexpr double kError = 0x1p-44;
 template <>
 constexpr double kError<DoubleDouble> = 0x1p-92;
 
 /// Smallest certain magnitude of a coefficient. Below it, products may have been rounded to zero, so no sign is
-/// certain.
+/// certain. Local: a guard against the end of the range of doubles.
 inline constexpr double kSmallestCoefficient = 0x1p-900;
 
 inline double high(double x) { return x; }

@@ -11,18 +11,19 @@
 namespace ricochet {
 namespace {
 
-/// Relative size below which a cross product has lost too many digits in plain doubles.
+/// Relative size below which a cross product has lost too many digits in plain doubles. Local: it selects the
+/// precision.
 constexpr double kSlenderNormal = 0x1p-4;
 
 /// Error of a side in plain doubles, relative to the lengths it is computed from: 2^-48 of the normal and some
-/// roundings.
+/// roundings. Local: an error bound of this arithmetic.
 constexpr double kSideError = 0x1p-47;
 
 /// Slenderness below which barycentric coordinates lose digits in plain doubles. It is twice the triangle's area over
-/// the square of the longest edge, within a factor of 4.
+/// the square of the longest edge, within a factor of 4. Local: it selects the precision.
 constexpr double kSlenderFace = 0x1p-10;
 
-/// Sine of a triangle's angle below which the triangle has no face.
+/// Sine of a triangle's angle below which the triangle has no face. Local: an error bound of this arithmetic.
 constexpr double kThinnestFace = 0x1p-80;
 
 /// Returns the unit normal within about 2^-48, or nullopt for a degenerate triangle.
@@ -105,13 +106,14 @@ Vec3 face_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 /// Rounding of a projection, relative to the projected vector. Three products, two sums, the coordinate differences,
-/// the direction's length and a division give about ten times 2^-53.
+/// the direction's length and a division give about ten times 2^-53. Local: an error bound of this arithmetic.
 constexpr double kProjectionError = 0x1p-49;
 
-/// Length below which a direction loses digits when it is squared, in m.
+/// Length below which a direction loses digits when it is squared, in m. Local: a guard against the end of the range of
+/// doubles.
 constexpr double kShortest = 0x1p-400;
 
-/// Error of a product that leaves the range of doubles, in m.
+/// Error of a product that leaves the range of doubles, in m. Local: a guard against the end of the range of doubles.
 constexpr double kUnderflow = 0x1p-600;
 
 }  // namespace

@@ -17,22 +17,22 @@ namespace {
 using namespace bernstein;
 
 /// Number of intervals of one pair that are tested before its separation counts as not proved. Each contact takes about
-/// 2 for every halving of the gap that a single polynomial does not resolve.
+/// 2 for every halving of the gap that a single polynomial does not resolve. Local, because only the cost depends on
+/// it.
 constexpr int kMostSeparationPieces = 512;
 
-/// Maximum number of halvings of the time, down to rounding: for a certificate and for a search.
+/// Maximum number of halvings of the time, down to rounding: for a certificate and for a search. Local: it ends below
+/// the rounding of the result.
 constexpr int kDeepestProof = 40;
 constexpr int kDeepestSearch = 50;
 
-/// Number of halvings after which a change of sign is taken for the first one.
+/// Number of halvings after which a change of sign is taken for the first one. Local, because the certificate decides.
 constexpr int kShallowRoot = 3;
 
 /// Number of halvings after which the search samples the gap. An interval with a gap at both ends and in the middle
-/// then counts as free, if these samples suffice. Certificates find any curved motion in between.
+/// then counts as free, if these samples suffice. Certificates find any curved motion in between. Local, because the
+/// certificate decides.
 constexpr int kSampledSearch = 6;
-
-/// Smallest gap that is no contact, as a fraction of the contact offset.
-constexpr double kLeastGap = 0.25;
 
 /// Returns the offset of two points that both move along lines, over an interval [s, t] of the time.
 template <class Real>

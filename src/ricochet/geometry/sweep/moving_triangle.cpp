@@ -15,10 +15,12 @@ namespace {
 constexpr int kDeepest = 52;
 
 /// Number of intervals that are tested before the search is given up. Many intervals are needed near a rotating
-/// triangle. The nearer it is, the shorter are the intervals that a single direction can separate.
+/// triangle. The nearer it is, the shorter are the intervals that a single direction can separate. Local, because only
+/// the cost depends on it.
 constexpr int kMostPieces = 1 << 15;
 
-/// Relative error of a length and of the sum of three products of rounded factors, with a safety factor.
+/// Relative error of a length and of the sum of three products of rounded factors, with a safety factor. Local: an
+/// error bound of this arithmetic.
 constexpr double kLengthError = 0x1p-49;
 constexpr double kDotError = 0x1p-48;
 

@@ -21,7 +21,8 @@ DoubleDouble clearance(const Vec3& d, double distance) {
 
 /// Relative size of the discriminant below which a meeting counts as grazing. The discriminant is a difference, and
 /// doubles leave it an error of about 2^-48 of the terms. With a smaller value, rounding would decide whether
-/// separating spheres meet again. With a larger value, double-doubles would be used although doubles suffice.
+/// separating spheres meet again. With a larger value, double-doubles would be used although doubles suffice. Local: it
+/// selects the precision.
 constexpr double kGraze = 0x1p-40;
 
 /// Limits for two centres that move relative to each other.

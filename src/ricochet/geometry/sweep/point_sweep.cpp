@@ -11,6 +11,7 @@
 namespace ricochet {
 namespace {
 
+/// Local: half a unit in the last place of 1.
 constexpr double kUnitRoundoff = 0x1p-53;
 
 /// A triangle as a surface. Sides and intersections are exact, and the normal is rounded.

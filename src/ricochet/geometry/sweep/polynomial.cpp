@@ -10,11 +10,12 @@ namespace {
 using std::size_t;
 
 /// Maximum number of evaluations per root. Newton needs about five. Every third step at least halves the bracket, and
-/// 60 halvings reach the last place of the duration.
+/// 60 halvings reach the last place of the duration. Local: it ends below the rounding of the result.
 constexpr int kMaxRootSteps = 200;
 
 /// Rounding of Bernstein coefficients and of Horner's rule in doubles, relative to the sum of the terms' magnitudes. At
-/// most 7 additions and 9 products act on a term, which gives 16 u. Twice that is used.
+/// most 7 additions and 9 products act on a term, which gives 16 u. Twice that is used. Local: an error bound of this
+/// arithmetic.
 constexpr double kDoubleError = 0x1p-48;
 
 const DoubleDouble& coefficient(const Polynomial& p, int k) { return p.coefficients[static_cast<size_t>(k)]; }
@@ -230,7 +231,7 @@ Pieces pieces_between(double from, const Times& cuts, double to) {
 }
 
 /// Allowed error of a cut, relative to the duration. p is flat at a cut, so its value changes by the square of the
-/// error.
+/// error. Local: an error bound of this arithmetic.
 constexpr double kCutError = 0x1p-45;
 
 Times sign_changes_within(const Polynomial& p, double enough);

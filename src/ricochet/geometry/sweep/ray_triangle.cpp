@@ -12,8 +12,10 @@ namespace {
 using Corners = std::array<Vec3, 3>;
 
 /// Relative error up to which a determinant in double-double is accurate enough for the position of an intersection.
+/// Local: an error bound of this arithmetic.
 constexpr double kAccuracy = 0x1p-60;
-/// Relative difference above which two quotients of such numbers are certainly in order.
+/// Relative difference above which two quotients of such numbers are certainly in order. Local: an error bound of this
+/// arithmetic.
 constexpr double kSeparated = 0x1p-48;
 
 const Vec3& corner(const Corners& triangle, std::size_t k) { return triangle[k % 3]; }

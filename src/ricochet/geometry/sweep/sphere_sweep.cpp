@@ -19,7 +19,8 @@ double squared_gap(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     return length_squared(max(Vec3{}, max(lower - p, p - upper)));
 }
 
-/// Ratio of the whole path's slack to that of its remaining part above which culling by the latter pays off.
+/// Ratio of the whole path's slack to that of its remaining part above which culling by the latter pays off. Local,
+/// because only the cost depends on it.
 constexpr double kWideSlack = 0x1p10;
 
 /// Returns the sign of a height just after the start: that of its first nonzero coefficient.

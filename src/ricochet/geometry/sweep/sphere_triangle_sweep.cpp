@@ -8,7 +8,7 @@ namespace {
 using std::size_t;
 
 /// Rounding of a clearance in plain doubles and of its Bernstein coefficients, relative to the squares it is computed
-/// from. A term has about 20 roundings, and 64 u is used.
+/// from. A term has about 20 roundings, and 64 u is used. Local: an error bound of this arithmetic.
 constexpr double kClearanceError = 0x1p-47;
 
 TriangleFeature edge_feature(int i) {

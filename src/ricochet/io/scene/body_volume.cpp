@@ -19,12 +19,13 @@
 namespace ricochet::detail {
 namespace {
 
-/// Largest product of triangles and test points.
+/// Largest product of triangles and test points. Local: a limit of the cost of a warning.
 constexpr double kMostSolidAngles = 1e7;
 constexpr double kMostPoints = 4096;
 constexpr double kLeastPoints = 64;
 
-/// Share of the points inside above which points inside more than once are reported.
+/// Share of the points inside above which points inside more than once are reported. Local, because it decides only
+/// about a warning.
 constexpr double kNegligibleShare = 0.01;
 
 /// One closed collider in the coordinates of its frame.

@@ -17,7 +17,7 @@
 namespace ricochet::detail {
 namespace {
 
-// A direction must survive normalization: its square must neither vanish nor overflow.
+// A direction must survive normalization: its square must neither vanish nor overflow. Local: a limit of input values.
 constexpr double kShortestDirection = 1e-75;
 
 using Problem = std::optional<std::string>;

@@ -16,6 +16,7 @@
 namespace ricochet::detail {
 namespace {
 
+/// Local: a limit of input values.
 constexpr double kMostBirths = 4294967295.0;  // indices of particles are 32-bit numbers
 
 // Keys of an emitter on a mesh. The mesh itself comes from a file or a collider.

@@ -16,6 +16,7 @@
 namespace ricochet::detail {
 namespace {
 
+/// Local: a limit of input values.
 constexpr double kSmallestSine = 1e-6;  // sine of the smallest angle between the view and up
 
 // Returns true if a body moves the frame or one of its parents. The position of such a frame is unknown before the run.
@@ -67,6 +68,7 @@ CameraDescription camera_of(const SceneContext& context, const ObjectView& view,
     if (view.has("focal_length") && view.has("field_of_view")) {
         context.error(view, "focal_length", "\"field_of_view\" says the same, expected one of the two");
     }
+    // A constant of photography.
     constexpr double kFilmHeight = 24.0;  // mm
     if (camera.focal_length) {
         camera.field_of_view_degrees = std::atan(0.5 * kFilmHeight / *camera.focal_length) * 360.0 / std::numbers::pi;

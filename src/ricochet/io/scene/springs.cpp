@@ -18,6 +18,7 @@
 namespace ricochet::detail {
 namespace {
 
+/// Local: a limit of input values.
 constexpr double kMostVertices = 1e8;  // of a sheet
 
 enum class PinnedEnds { none, from, to, both };

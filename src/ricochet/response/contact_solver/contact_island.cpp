@@ -10,41 +10,6 @@
 namespace ricochet {
 namespace {
 
-/// Sweeps over the contacts of an island that are made at most, where a small error is left and where a large one is.
-constexpr int kSweeps = 30;
-constexpr int kMostSweeps = 300;
-
-/// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
-constexpr double kSlow = 0.02;
-
-/// The same of what forces give in a step: what lies, and is solved to such a part of that, sleeps. Smaller: networks
-/// that hardly move are swept to the end for nothing.
-constexpr double kLying = 0.05;
-
-/// Contacts may leave errors of the size of their own two speeds, or of so many times what forces give in a step, or of
-/// such a part of the fastest sphere's speed, if that is more. Smaller: what rests beside what moves is stiller, and
-/// takes more sweeps, many times more while all fall.
-constexpr double kRestingKicks = 8.0;
-constexpr double kOthersSpeed = 0.6;
-
-/// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
-constexpr std::size_t kFewContacts = 64;
-
-/// Part of the overlap that many contacts may leave that so few may.
-constexpr double kOfFew = 1.0 / 3.0;
-constexpr double kRounding = 1e-12;
-
-/// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.
-constexpr double kConnecting = 4.0;
-
-/// Parts of the smaller radius: spheres with no more between them touch.
-constexpr double kTouching = 0.01;
-
-/// Part of the speed sqrt(pull times radius) with which what overlaps is parted at most, beside the speed with which it
-/// still approaches, which is what sweeps have left over: spheres keep it, and two hundredths of what a fall of the
-/// smaller radius gives is what that may cost. Piles need less: they are parted by a thousandth of the radius a step.
-constexpr double kPartingFall = 0.2;
-
 /// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
 /// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
 double most_parting(double pull, double radius, double overlap, double approach) {
@@ -54,15 +19,17 @@ double most_parting(double pull, double radius, double overlap, double approach)
 }
 
 /// m, for a sphere that goes a way, m.
-double reach_of(double travel, double radius) { return 2.0 * travel + ContactIsland::kReach * radius; }
+double reach_of(double travel, double radius) { return 2.0 * travel + kNetworkReach * radius; }
 
 /// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
+/// Factor of the reach of a pair beyond which it is certainly no contact. Local: it covers rounding, and the exact
+/// reach decides.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
-/// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
+/// Part of the distance searched for walls that counts as clear. Local: it covers rounding, and only the cost depends
+/// on it.
 constexpr double kClear = 0.9;
 
 }  // namespace
@@ -84,7 +51,7 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     for (std::size_t k = 0; k < 2 * kPrefetchDistance; ++k) warm_start(keys_.size() + k);
     const Pace pace = pace_of(members);
     const SolverSettings wished = settings(pace);
-    if (contacts_.size() > kFewContacts) set_exactness(pace, wished.enough);
+    if (contacts_.size() > kFewNetworkContacts) set_exactness(pace, wished.enough);
     return solver_.solve(bodies_, contacts_, wished);
 }
 
@@ -252,19 +219,19 @@ SolverSettings ContactIsland::settings(const Pace& pace) const {
     SolverSettings settings;
     settings.duration = duration_;
     const double still = kNetworkStill * pace.smallest / duration_;
-    const bool is_few = contacts_.size() <= kFewContacts;
-    const double overlap = (is_few ? kOfFew : 1.0) * kNetworkOverlap;
-    const double slow = kSlow * std::max(pace.fastest, kLying * pace.force_velocity);
+    const bool is_few = contacts_.size() <= kFewNetworkContacts;
+    const double overlap = (is_few ? kFewContactsOverlap : 1.0) * kNetworkOverlap;
+    const double slow = kNetworkSpeedError * std::max(pace.fastest, kNetworkRestingSpeed * pace.force_velocity);
     settings.enough = std::min(overlap * pace.smallest / duration_, std::max(slow, still));
     settings.tolerance = std::min(settings.enough, std::max(kNetworkResidual * pace.fastest, still));
     if (is_few) {
-        settings.tolerance = std::min(still, kRounding * pace.fastest);
+        settings.tolerance = std::min(still, kFewContactsRounding * pace.fastest);
     } else {
         settings.slip = kNetworkResidual * pace.fastest;
-        settings.connecting = kConnecting * settings.enough;
+        settings.connecting = kNetworkConnecting * settings.enough;
     }
-    settings.sweeps = kSweeps;
-    settings.most_sweeps = kMostSweeps;
+    settings.sweeps = kNetworkSweeps;
+    settings.most_sweeps = kMostNetworkSweeps;
     return settings;
 }
 
@@ -284,12 +251,12 @@ ContactIsland::Pace ContactIsland::pace_of(std::span<const ContactIslandMember> 
 void ContactIsland::set_exactness(const Pace& pace, double enough) {
     const double still = kNetworkStill * pace.smallest / duration_;
     const auto speed_of = [&](const MemberState& member) {
-        return std::max(length(member.velocity), kRestingKicks * duration_ * member.pull);
+        return std::max(length(member.velocity), kNetworkForceSpeed * duration_ * member.pull);
     };
     for (SolverContact& contact : contacts_) {
-        double speed = std::max(kOthersSpeed * pace.fastest, speed_of(members_[contact.a]));
+        double speed = std::max(kNetworkFastestShare * pace.fastest, speed_of(members_[contact.a]));
         if (contact.b != SolverContact::kWall) speed = std::max(speed, speed_of(members_[contact.b]));
-        contact.exactness = std::max(1.0, enough / std::max(kSlow * speed, still));
+        contact.exactness = std::max(1.0, enough / std::max(kNetworkSpeedError * speed, still));
     }
 }
 
@@ -360,7 +327,7 @@ std::vector<ContactKey> ContactIsland::touching() const {
     for (std::size_t i = 0; i < keys_.size(); ++i) {
         if (keys_[i].is_wall()) continue;
         const double smaller = std::min(bodies_[contacts_[i].a].radius, bodies_[contacts_[i].b].radius);
-        if (contacts_[i].gap <= kTouching * smaller) touching.push_back(keys_[i]);
+        if (contacts_[i].gap <= kTouchingGap * smaller) touching.push_back(keys_[i]);
     }
     return touching;
 }

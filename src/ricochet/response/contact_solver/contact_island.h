@@ -45,9 +45,6 @@ struct SleeperImpulse {
 /// to the next.
 class ContactIsland {
 public:
-    /// Part of a radius beside it in which contacts are looked for even where nothing moves.
-    static constexpr double kReach = 0.05;
-
     /// Both must outlive it.
     ContactIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 

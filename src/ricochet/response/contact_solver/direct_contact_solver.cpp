@@ -11,33 +11,37 @@ namespace {
 
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
-/// Stiffness of the dampers over the heaviest mass. Reason: a pass leaves a hundredth of what is violated, and rounding
-/// leaves light spheres, of a billionth of the mass, an error of 1e-5 of the speeds. Smaller: more passes.
+/// Stiffness of the dampers over the heaviest mass. Reason: a pass leaves a hundredth of the violation. Rounding leaves
+/// light spheres, of a billionth of the mass, an error of 1e-5 of the speeds. Smaller: more passes. Local, because
+/// SolverSettings has the tolerance.
 constexpr double kStiffness = 100.0;
 
-/// Factor from one stiffness to the next on the way from that of the lightest mass to that of the heaviest, and steps
-/// of Newton's method at each of them, and at the first try.
+/// Factor between two stiffnesses, from that of the lightest mass to that of the heaviest; and Newton steps for each of
+/// them and for the first attempt. Local: steps of this search.
 constexpr double kStiffer = 100.0;
 constexpr int kFewSteps = 8;
 
-/// Passes after the first, and steps in each, at most: what needs more has no answer, or friction that circles.
+/// Most passes after the first, and most steps in each. A problem that needs more has no solution, or friction that
+/// circles. Local: a limit of this search, whose result is checked.
 constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
-/// Parts of the tolerance: that momentum may lack at the end of a pass, and that a pass may change.
+/// Parts of the tolerance: largest lack of momentum at the end of a pass, and largest violation that a pass may find.
+/// Local: shares of the tolerance in SolverSettings.
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
-/// Part of the slope at a step's begin that may be left at its end, and trials of its length at most.
+/// Part of the slope at the start of a step that may be left at its end, and most trials of its length. Local: a rule
+/// of this line search.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
-/// Operations of all factorizations of a network, at most: a second or so. Reason: those of a network grow with the
-/// third power of the contacts that a cut through it crosses, and a thousand spheres with some that are a thousand
-/// times as heavy took minutes a step.
+/// Most operations of all factorizations of a network: about a second. Reason: they grow with the third power of the
+/// contacts in a cut through the network. A thousand spheres, some a thousand times as heavy, took minutes per step.
+/// Local: a limit of the work, after which sweeps continue.
 constexpr double kMostOperations = 1e9;
 
-/// Part of its stiffness that friction which slips keeps along the slip, so that no matrix is singular.
+/// Part of its stiffness that slipping friction keeps along the slip. Local: it only keeps the matrix regular.
 constexpr double kSlipStiffness = 1e-9;
 
 /// How much what the cone leaves of a wish changes with the wish, across a normal.

@@ -13,23 +13,10 @@ namespace {
 /// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
 constexpr std::size_t kBlock = 512;
 
-/// Parts of the smaller radius by which what overlaps is parted in a step at most: four times what spheres that are
-/// poured need. What surfaces press together without leaving it room overlaps deeply, and would be thrown.
-constexpr double kMostParting = 0.01;
-
-/// Ratio of two masses that touch from which on what few sweeps do not solve is solved directly: sweeps need some times
-/// its root. Reason: spheres of half to twice a radius, which sweeps solve faster, stay below.
-constexpr double kUnlikeMasses = 100.0;
-
-/// Part of the error that is enough that what is solved directly may leave: sweeps do the rest.
-constexpr double kDirect = 0.25;
-
-/// Where momentum begins anew again and again, as where friction leads it in a circle, one sweep without it is made for
-/// so many times, each time: large networks that come to an answer begin a few dozen times.
+/// Number of restarts of the momentum after which each restart is followed by one more sweep without momentum. Friction
+/// can make the iteration circle. Large networks that converge restart a few dozen times. Local: the residual decides
+/// when the iteration ends.
 constexpr int kRestartsAPlainSweep = 64;
-
-/// Ratio from which on more sweeps are not tried first.
-constexpr double kVeryUnlikeMasses = 1e4;
 
 /// tolerance: m/s.
 SolverLimits limits_of(const SolverSettings& settings, double tolerance) {
@@ -194,7 +181,7 @@ void IterativeContactSolver::iterate(const SolverSettings& settings, SolverRepor
     if (sweep_until(settings, first, report) || !(mass_ratio_ > kUnlikeMasses)) return;
     const double residual = report.residual;
     const Impulses swept{rows_, rolling_, states_};
-    const double tolerance = std::max(settings.tolerance, kDirect * settings.enough);
+    const double tolerance = std::max(settings.tolerance, kDirectShare * settings.enough);
     static_cast<void>(direct_.improve({before_, states_, bodies_, rows_, rolling_}, tolerance));
     if (sweep_until(settings, settings.most_sweeps, report) || report.residual <= residual) return;
     rows_ = swept.rows;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "ricochet/core/tolerances.h"
 #include "ricochet/response/along_surfaces.h"
 #include "ricochet/response/contact_solver/wall_contacts.h"
 #include "ricochet/response/particle_step.h"
@@ -9,22 +10,12 @@
 namespace ricochet {
 namespace {
 
-/// Surfaces that a plan may run into in one step; then the particle stays where it has come to.
-constexpr int kMostDiversions = 8;
-
-/// Corrections of where a chord ends.
+/// Corrections of the end of a chord. Local, because the segment is certified before use.
 constexpr int kCorrections = 3;
 
-/// The same between surfaces that move and others: in a wedge each puts it into the other again, by a part of what it
-/// was. Three fourths a time leave 1e-4 of it.
+/// The same between moving surfaces and others. In a wedge each correction undoes a part of the one before. Three
+/// quarters per pass leave 1e-4. Local, because the segment is certified before use.
 constexpr int kCorrectionsInWedge = 32;
-
-/// Parts of a radius by which a line may come nearer to a surface that it goes along than at its ends.
-constexpr double kSagitta = 1e-4;
-
-/// Parts of a radius beside a surface that has been met in which it is still touched: what lines along another one come
-/// off it by rounding, again and again.
-constexpr double kStillTouched = 1e-9;
 
 /// One particle on its way.
 class PlannedMove {
@@ -211,7 +202,7 @@ std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     std::vector<SurfaceId> met;
     for (int k = 0; !passed.empty(); ++k) {
         if (k == kMostDiversions) return {};
-        const std::optional<Contact> contact = step_.first_contact(line, (1.0 - kSagitta) * radius, met);
+        const std::optional<Contact> contact = step_.first_contact(line, (1.0 - kChordSagitta) * radius, met);
         if (!contact) break;
         for (const ContactSurface& surface : contact->all()) {
             std::erase(passed, surface.surface);

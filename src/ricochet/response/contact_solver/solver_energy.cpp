@@ -9,10 +9,6 @@
 namespace ricochet {
 namespace {
 
-/// A contact without rebound that gives a body no more than so many times what the body's own approach takes has no
-/// part in what others do: it holds a sphere that another one hits along the floor.
-constexpr double kHoldsOnly = 1.5;
-
 /// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
                                  std::span<const ContactConstraint> rows, std::span<const double> all_own) {

@@ -11,36 +11,39 @@ namespace {
 
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
-/// Stiffness of the dampers over the heaviest mass. Reason: a pass leaves a hundredth of what is violated, and rounding
-/// leaves light spheres, of a billionth of the mass, an error of 1e-5 of the speeds. Smaller: more passes.
+/// Stiffness of the dampers, relative to the heaviest mass. Reason: a pass leaves a hundredth of the violation.
+/// Rounding causes an error of 1e-5 of the speeds for spheres of a billionth of that mass. Smaller: more passes.
 constexpr double kStiffness = 100.0;
 
-/// Factor from one stiffness to the next on the way from that of the lightest mass to that of the heaviest, and steps
-/// of Newton's method at each of them, and at the first try.
+/// Factor between successive stiffnesses, from that of the lightest mass to that of the heaviest. The second constant
+/// is the number of Newton steps at each of them, and in the first attempt.
 constexpr double kStiffer = 100.0;
 constexpr int kFewSteps = 8;
 
-/// Passes after the first, and steps in each, at most: what needs more has no answer, or friction that circles.
+/// Largest number of passes after the first, and of Newton steps in each. Networks that need more have no solution, or
+/// their friction cycles.
 constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
-/// Parts of the tolerance: that momentum may lack at the end of a pass, and that a pass may change.
+/// Largest momentum residual at the end of a pass, and largest violation of the conditions after the last pass,
+/// relative to the tolerance.
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
-/// Part of the slope at a step's begin that may be left at its end, and trials of its length at most.
+/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
-/// Operations of all factorizations of a network, at most: a second or so. Reason: those of a network grow with the
-/// third power of the contacts that a cut through it crosses, and a thousand spheres with some that are a thousand
-/// times as heavy took minutes a step.
+/// Largest number of operations of all factorizations of a network, about a second of work. Reason: the operations grow
+/// with the third power of the number of contacts that a cut through the network crosses. A thousand spheres, some of
+/// them a thousand times as heavy, took minutes per step.
 constexpr double kMostOperations = 1e9;
 
-/// Part of its stiffness that friction which slips keeps along the slip, so that no matrix is singular.
+/// Stiffness of sliding friction along the slip, relative to its stiffness across the slip. It is above 0 so that no
+/// matrix is singular.
 constexpr double kSlipStiffness = 1e-9;
 
-/// How much what the cone leaves of a wish changes with the wish, across a normal.
+/// Returns the derivative of a tangential vector, limited to the length `most`, with respect to the vector `wish`.
 Block3 kept_change(const Vec3& normal, const Vec3& wish, double most, bool is_smooth) {
     Block3 result{};
     const double size = length(wish);
@@ -82,8 +85,9 @@ bool DirectNetwork::improve(const NetworkParts& parts, double tolerance) {
     return is_solved;
 }
 
-/// The first pass: at once where the start is near, as it is where things lie still, else by and by from soft dampers
-/// to stiff ones, between which light spheres would be thrown to and fro.
+/// Makes the first pass. It tries the full stiffness first, which succeeds if the start is near the solution, as for
+/// spheres at rest. Otherwise the stiffness grows in stages, because stiff dampers would throw light spheres to and
+/// fro.
 void DirectNetwork::begin_passes(double most_defect) {
     const double stiffest = kStiffness * heaviest_;
     const std::vector<NetworkState> start(parts_.states.begin(), parts_.states.end());
@@ -117,7 +121,7 @@ std::uint32_t DirectNetwork::pair_of(std::uint32_t first, std::uint32_t second) 
     return static_cast<std::uint32_t>(pairs_.size() - 1);
 }
 
-/// Which blocks of the matrix a row has a part in.
+/// Finds the matrix blocks of each row.
 void DirectNetwork::find_places() {
     pairs_.clear();
     places_.clear();
@@ -160,13 +164,13 @@ DirectNetwork::Answer DirectNetwork::answer_of(std::size_t i) const {
     return answer;
 }
 
-/// m, of the smaller sphere of a row that resists rolling.
+/// Returns the radius, in m, of the smaller sphere of a row with rolling resistance.
 double DirectNetwork::radius_of(std::size_t i) const {
     const RollingRow& rolling = parts_.rolling[parts_.rows[i].rolling];
     return 1.0 / std::max(rolling.per_radius_a, rolling.per_radius_b);
 }
 
-/// Impulses, and what momentum lacks of the velocities that there are.
+/// Computes the impulses and the momentum residual at the current velocities.
 void DirectNetwork::evaluate() {
     gradient_.assign(6 * moving_, 0.0);
     for (std::size_t i = 0; i < parts_.bodies; ++i) {
@@ -201,7 +205,7 @@ void DirectNetwork::evaluate() {
     }
 }
 
-/// m/s, that impulses change velocities by more than these have changed.
+/// Returns the largest velocity error, in m/s, from the momentum residual.
 double DirectNetwork::largest_defect() const {
     double largest = 0.0;
     for (std::size_t i = 0; i < parts_.bodies; ++i) {
@@ -244,7 +248,7 @@ void DirectNetwork::add_row(std::size_t i) {
     if (b != kFixed) add(matrix_.own[b], 1.0, moving);
     if (places.velocities != kFixed) add(matrix_.between[places.velocities], -1.0, moving);
     if (!(most > 0.0)) return;
-    // The slip is that of the velocities, and normal x (sum of the turnings).
+    // The slip is the tangential part of the relative velocity plus normal x (sum of the turnings).
     const Block3 turning = product(slipping, cross_matrix(row.normal));
     const Block3 turns = product(transposed(cross_matrix(row.normal)), turning);
     const auto add_turning = [&](std::uint32_t place, double sign) {
@@ -276,7 +280,8 @@ void DirectNetwork::add_rolling(std::size_t i) {
         add(matrix_.between[places_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b, change);
 }
 
-/// The velocities at which impulses of the dampers and of the multipliers balance.
+/// Finds the velocities at which the impulses of dampers and multipliers balance the momentum. Returns false if the
+/// residual, in m/s, remains above `most_defect`.
 bool DirectNetwork::minimise(double most_defect, int most_steps) {
     is_smooth_ = true;
     ahead_.assign(parts_.rows.size(), 0);
@@ -289,7 +294,7 @@ bool DirectNetwork::minimise(double most_defect, int most_steps) {
         std::vector<double> direction = gradient_;
         for (double& value : direction) value = -value;
         cholesky_.solve(direction);
-        if (!(slope_along(direction) < 0.0)) break;  // rounding alone is left
+        if (!(slope_along(direction) < 0.0)) break;  // only rounding remains
         is_smooth_ = search_along(direction);
     }
     return largest_defect() <= most_defect;
@@ -310,8 +315,8 @@ double DirectNetwork::slope_along(std::span<const double> direction) const {
     return sum;
 }
 
-/// To where the function hardly falls or rises any more: its slope grows along the line. False where that was not the
-/// whole step.
+/// Moves along a direction until the slope of the function, which increases along the line, is nearly 0. Returns false
+/// if the step was shortened.
 bool DirectNetwork::search_along(std::span<const double> direction) {
     const double first = slope_along(direction);
     double low = 0.0;
@@ -327,7 +332,7 @@ bool DirectNetwork::search_along(std::span<const double> direction) {
     for (std::size_t i = 0; i < answers_.size(); ++i) ahead_[i] = answers_[i].normal > 0.0 ? 1 : 0;
     double high_slope = slope;
     for (int trial = 0; trial < kMostTrials && std::fabs(slope) > kSlopeLeft * std::fabs(first); ++trial) {
-        // In turns between where the line through both slopes is zero and the middle.
+        // Alternates between the zero of the line through both slopes and the midpoint.
         const double part = trial % 2 == 0 ? low_slope / (low_slope - high_slope) : 0.5;
         const double next = low + std::clamp(part, 0.01, 0.99) * (high - low);
         go_along(direction, next - at);
@@ -340,7 +345,7 @@ bool DirectNetwork::search_along(std::span<const double> direction) {
     return false;
 }
 
-/// Impulses become multipliers. Returns by how much the conditions were violated, m/s.
+/// Makes the impulses the new multipliers. Returns the largest violation of the conditions, in m/s.
 double DirectNetwork::take_multipliers() {
     double worst = 0.0;
     for (std::size_t i = 0; i < answers_.size(); ++i) {
@@ -362,7 +367,8 @@ double DirectNetwork::take_multipliers() {
     return worst;
 }
 
-/// Impulses inside the cone of friction, and the velocities that they give: momentum is kept to rounding.
+/// Limits the impulses to the friction cone and computes the velocities from them, so that momentum is conserved to
+/// rounding.
 void DirectNetwork::hand_over() {
     std::copy(parts_.before.begin(), parts_.before.end(), parts_.states.begin());
     for (NetworkRow& row : parts_.rows) {

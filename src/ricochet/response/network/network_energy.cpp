@@ -1,4 +1,4 @@
-// What holds for each connected impact as a whole: its restitution, and that it gains no energy.
+// Restitution and energy balance of connected impacts.
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +9,13 @@
 namespace ricochet {
 namespace {
 
-/// A contact without rebound that gives a body no more than so many times what the body's own approach takes has no
-/// part in what others do: it holds a sphere that another one hits along the floor.
+/// Largest impulse of a contact that only supports a sphere, relative to the impulse that stops its own approach. Such
+/// a contact, if it has no restitution, does not lower the restitution of its connected impact. Example: the floor
+/// under a sphere that another sphere hits from the side.
 constexpr double kHoldsOnly = 1.5;
 
-/// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
+/// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1
+/// without any. `all_own` holds the restitution of each row.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const NetworkState> before,
                                  std::span<const NetworkRow> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
@@ -37,7 +39,8 @@ bool NetworkSolver::may_rebound() const {
     return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
 }
 
-/// The impact without rebound says what is connected.
+/// Solves the network with rebounds. The solution without rebound determines the connected impacts. Impacts that gain
+/// energy are solved again without their rebounds.
 void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const NetworkSettings& settings,
                             NetworkReport& report) {
     NetworkSettings first = settings;
@@ -58,7 +61,7 @@ void NetworkSolver::rebound(std::span<const NetworkContact> contacts, const Netw
     iterate(settings, report);
 }
 
-/// Sets the speeds with which contacts have to leave; false where none has to.
+/// Sets the separation speeds of contacts that rebound. Returns false if none rebounds.
 bool NetworkSolver::let_rebound() {
     impacts_.assign(before_, rows_);
     const std::vector<double> least = restitutions(impacts_, before_, rows_, restitutions_);
@@ -75,7 +78,8 @@ bool NetworkSolver::let_rebound() {
     return any;
 }
 
-/// By connected impact, which are found anew. The work that parts what overlaps is no gain.
+/// Finds the connected impacts again and computes the energy change of each. The work that separates overlaps is no
+/// gain.
 void NetworkSolver::find_gains() {
     impacts_.assign(before_, rows_);
     gains_.assign(impacts_.size(), {});
@@ -105,8 +109,8 @@ bool NetworkSolver::Gain::is_gain() const { return against + 0.5 * curvature > k
 
 double NetworkSolver::Gain::factor() const { return std::clamp(-2.0 * against / curvature, 0.0, 1.0); }
 
-/// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
-/// them does not.
+/// Reduces the impulses of connected impacts that gain energy until they gain none. Such gains occur if the sweeps end
+/// before convergence.
 void NetworkSolver::take_back_gains(NetworkReport& report) {
     report.energy_change = 0.0;
     bool any = false;

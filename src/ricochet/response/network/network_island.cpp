@@ -10,59 +10,63 @@
 namespace ricochet {
 namespace {
 
-/// Sweeps over the contacts of an island that are made at most, where a small error is left and where a large one is.
+/// Number of sweeps after which a larger error (`enough`) is accepted, and largest number of sweeps.
 constexpr int kSweeps = 30;
 constexpr int kMostSweeps = 300;
 
-/// What is slower is not left with errors of its own speed's size, from which it would never come to rest.
+/// Largest velocity error of a contact, relative to the speed of its spheres. Reason: with larger errors spheres would
+/// never come to rest.
 constexpr double kSlow = 0.02;
 
-/// The same of what forces give in a step: what lies, and is solved to such a part of that, sleeps. Smaller: networks
-/// that hardly move are swept to the end for nothing.
+/// Least speed that counts for the largest error, relative to the velocity change by forces in a step. Reason: spheres
+/// at rest, solved to this error, fall asleep. Smaller: networks that hardly move take all sweeps without benefit.
 constexpr double kLying = 0.05;
 
-/// Contacts may leave errors of the size of their own two speeds, or of so many times what forces give in a step, or of
-/// such a part of the fastest sphere's speed, if that is more. Smaller: what rests beside what moves is stiller, and
-/// takes more sweeps, many times more while all fall.
+/// Least speeds that count for the error of a single contact, besides the speeds of its spheres. The first is relative
+/// to the velocity change by forces in a step, the second to the speed of the fastest sphere. Smaller: spheres at rest
+/// beside moving ones are stiller, but need more sweeps, and many times more while all spheres fall.
 constexpr double kRestingKicks = 8.0;
 constexpr double kOthersSpeed = 0.6;
 
-/// So few contacts are solved nearly to rounding, in parts of the fastest speed, while that takes no more than kSweeps.
+/// Largest number of contacts that are solved nearly to rounding, if that takes at most kSweeps.
 constexpr std::size_t kFewContacts = 64;
 
-/// Part of the overlap that many contacts may leave that so few may.
+/// Overlap that so few contacts may leave, relative to kNetworkOverlap, and their tolerance, relative to the fastest
+/// speed.
 constexpr double kOfFew = 1.0 / 3.0;
 constexpr double kRounding = 1e-12;
 
-/// Times the error that is enough for the last sweeps with which those may end that say what is connected to what.
+/// Tolerance of the solution without rebound, relative to `enough`. That solution only determines which contacts are
+/// connected.
 constexpr double kConnecting = 4.0;
 
-/// Parts of the smaller radius: spheres with no more between them touch.
+/// Largest gap of spheres that touch, relative to the smaller radius.
 constexpr double kTouching = 0.01;
 
-/// Part of the speed sqrt(pull times radius) with which what overlaps is parted at most, beside the speed with which it
-/// still approaches, which is what sweeps have left over: spheres keep it, and two hundredths of what a fall of the
-/// smaller radius gives is what that may cost. Piles need less: they are parted by a thousandth of the radius a step.
+/// Largest speed that separates an overlap, relative to sqrt(acceleration times radius). The remaining approach speed,
+/// an error of the sweeps, is added to it. Reason: spheres keep this speed. Its energy is 2 % of the energy of a fall
+/// through the smaller radius. Piles need less: they separate by a thousandth of the radius per step.
 constexpr double kPartingFall = 0.2;
 
-/// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
-/// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
+/// Returns the largest speed, in m/s, that separates an overlap, in m. It is at most the speed of a free fall through
+/// the overlap, because sinking gave no more. Otherwise a small overlap would throw heavy spheres, and shorter steps
+/// would throw them farther. `pull` is in m/s^2, `approach` in m/s.
 double most_parting(double pull, double radius, double overlap, double approach) {
     if (!(overlap > 0.0)) return std::max(0.0, approach);
     const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
     return std::sqrt(pull * fall) + std::max(0.0, approach);
 }
 
-/// m, for a sphere that goes a way, m.
+/// Returns the search distance for contacts, in m, of a sphere whose path is `way` long, in m.
 double reach_of(double way, double radius) { return 2.0 * way + NetworkIsland::kReach * radius; }
 
-/// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
+/// Number of members or contacts between the prefetch of their data and its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Times the reach of a pair beyond which it is certainly no contact, whatever rounding does.
+/// Factor on the reach of a pair that covers rounding. Beyond it there is certainly no contact.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
-/// Part of the distance in which no wall was found that counts as clear, whatever rounding does.
+/// Fraction of a search distance without walls that counts as clear. The rest covers rounding.
 constexpr double kClear = 0.9;
 
 }  // namespace
@@ -88,7 +92,8 @@ NetworkReport NetworkIsland::plan(std::span<const NetworkMember> members, std::s
     return solver_.solve(bodies_, contacts_, wished);
 }
 
-/// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
+/// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A substep removes
+/// correspondingly less, because otherwise the spheres would be thrown.
 void NetworkIsland::set_part(bool is_coupled) {
     part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
@@ -145,9 +150,9 @@ void NetworkIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     const double farthest = kOutOfReach * (a.radius + b.radius + a.reach + b.reach);
     if (squared > farthest * farthest) return;
     const double distance = std::sqrt(squared);
-    if (!(distance > 0.0)) return;  // no direction parts them
+    if (!(distance > 0.0)) return;  // no direction separates them
     double gap = parted(distance - a.radius - b.radius);
-    // Between two sleepers there may be no room to part from both.
+    // Overlaps with sleeping spheres are ignored, because a sphere between two of them may have no room to separate.
     if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
     if (gap > a.reach + b.reach) return;
     NetworkContact& contact = contacts_.emplace_back();
@@ -204,7 +209,7 @@ void NetworkIsland::add_wall(std::uint32_t index, const NetworkMember& member, c
     surfaces_.push_back(wall.surface);
 }
 
-/// Adds what the wall's material does, and how it turns.
+/// Adds the surface velocity of the wall's material, and sets the wall's angular velocity.
 void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, const Material& material,
                           const ForceInput& state) const {
     const BodyId body = rules_.bodies == nullptr ? kAtRest : rules_.bodies->body_of(wall.surface);
@@ -220,14 +225,15 @@ void NetworkIsland::carry(NetworkContact& contact, const WallContact& wall, cons
     contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
-/// Has added the last contact; what it begins with is looked up while others are added.
+/// Sets the key of the last contact. Its start impulse is looked up while later contacts are added.
 void NetworkIsland::add_key(const NetworkKey& key) {
     keys_.push_back(key);
     before_.push_back(nullptr);
     warm_start(keys_.size() - 1);
 }
 
-/// Three stages, each for an earlier contact: what is remembered lies anywhere, and takes time to be fetched.
+/// Looks up start impulses in three stages, each for an earlier contact. Reason: remembered impulses are scattered in
+/// memory, so each stage prefetches the data of the next one.
 void NetworkIsland::warm_start(std::size_t at) {
     const std::size_t count = keys_.size();
     if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
@@ -241,13 +247,13 @@ void NetworkIsland::warm_start(std::size_t at) {
     contacts_[k].touched = before_[k]->normal > 0.0;
 }
 
-/// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
-/// of an impact.
+/// Returns the restitution, or 0 if the rebound would be slower than the resting speed. `approach` is the speed at the
+/// start of the step, in m/s. Forces change it within the step, but that change is no impact speed.
 double NetworkIsland::rebound(double restitution, double approach) const {
     return restitution * approach >= rules_.settings.resting_speed ? restitution : 0.0;
 }
 
-/// What moves fast may be less exact; what comes to rest is solved ever more closely.
+/// Returns tolerances that decrease with the speeds, so that networks are solved more exactly as they come to rest.
 NetworkSettings NetworkIsland::settings(const Pace& pace) const {
     NetworkSettings settings;
     settings.duration = duration_;
@@ -279,7 +285,8 @@ NetworkIsland::Pace NetworkIsland::pace_of(std::span<const NetworkMember> member
     return pace;
 }
 
-/// Errors that something fast may leave would keep all that lies beside it awake.
+/// Sets stricter tolerances for contacts of slow spheres, because the errors of a fast sphere would keep its neighbours
+/// awake.
 void NetworkIsland::set_exactness(const Pace& pace, double enough) {
     const double still = kNetworkStill * pace.smallest / duration_;
     const auto speed_of = [&](const Place& place) {
@@ -294,7 +301,7 @@ void NetworkIsland::set_exactness(const Pace& pace, double enough) {
 
 void NetworkIsland::move(std::size_t index, NetworkMember& member, MoveScratch& scratch) const {
     if (member.is_fixed) return;
-    const double core = member.moving->state.radius;  // which turns faster than the whole sphere
+    const double core = member.moving->state.radius;  // it spins faster than the whole sphere
     PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
                        member.duration, pushes_of(index)};
     plan.is_clear = member.duration * length(plan.velocity) < clear_[index];

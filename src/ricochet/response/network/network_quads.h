@@ -1,5 +1,5 @@
 /// \file
-/// Private to the solver of contact networks: four rows, or four bodies, at once, see network_rows.h.
+/// Private to the iterative contact solver: the functions of network_rows.h for four rows or four bodies at once.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@ namespace ricochet {
 
 inline constexpr std::size_t kQuad = 4;
 
-/// Four of something, wherever they are.
+/// Pointers to four objects anywhere in memory.
 template <class T>
 using FourOf = std::array<T*, kQuad>;
 
-/// Four NetworkState, and what is to be added to them.
+/// Four NetworkState, and the changes to add to them.
 struct QuadState {
     QuadVec3 velocity;
     QuadVec3 turning;
@@ -47,7 +47,7 @@ RICOCHET_INLINE void apply(const QuadVec3& impulse, const QuadVec3& turn, QuadSt
     body.turning_change = body.turnability * turn;
 }
 
-/// The part of four vectors' lengths that is left where they may be no longer than `most`.
+/// Returns the factors, at most 1, that limit the lengths of four vectors to `most`.
 [[nodiscard]] RICOCHET_INLINE Quad length_kept(const QuadVec3& v, const Quad& most) {
     const Quad squared = length_squared(v);
     return select(squared > most * most, most / root(squared), quad_of(1.0));
@@ -63,13 +63,13 @@ static_assert(sizeof(NetworkRow) == 16 * sizeof(double) && offsetof(NetworkRow, 
               offsetof(NetworkRow, push) == 8 * sizeof(double) &&
               offsetof(NetworkRow, direction) == 12 * sizeof(double));
 
-/// Doubles number part * 4 and the three after it of one of the four.
+/// Returns the address of the four doubles of an object that begin at number 4 * part.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE double* part_of(T* one, std::size_t part) {
     return reinterpret_cast<double*>(one) + part * kQuad;
 }
 
-/// The first of these doubles of all four, the second of all, ...
+/// Loads such a part of four objects and transposes it: result k holds double k of all four.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE std::array<Quad, kQuad> load_part(const FourOf<T>& from, std::size_t part) {
     std::array<Quad, kQuad> rows{load_quad(part_of(from[0], part)), load_quad(part_of(from[1], part)),
@@ -89,7 +89,8 @@ template <class T>
     return states;
 }
 
-/// Adds the changes to those that something moves: threads share the others.
+/// Adds the changes to the states of bodies that are not fixed. Fixed bodies are not written to, because several
+/// threads can use them.
 RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<NetworkState>& to) {
     const Quad none{};
     const QuadVec3& v = states.velocity_change;
@@ -126,7 +127,7 @@ RICOCHET_INLINE void store_push(const QuadPush& push, const FourOf<NetworkRow>& 
     for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], part_of(to[k], part));
 }
 
-/// What relax() changes.
+/// Stores the members that relax() changes.
 RICOCHET_INLINE void store_pushes(const QuadRow& rows, const FourOf<NetworkRow>& to) {
     store_push(rows.push, to, 2);
     store_push(rows.direction, to, 3);

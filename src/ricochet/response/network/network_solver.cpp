@@ -10,33 +10,34 @@
 namespace ricochet {
 namespace {
 
-/// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
+/// Contacts per block of parallel work. Sums are computed by these blocks for any number of threads.
 constexpr std::size_t kBlock = 512;
 
-/// Parts of the smaller radius by which what overlaps is parted in a step at most: four times what spheres that are
-/// poured need. What surfaces press together without leaving it room overlaps deeply, and would be thrown.
+/// Largest distance that a step separates an overlap by, relative to the smaller radius. Reason: it is four times the
+/// need of poured spheres. Spheres that surfaces press together without room overlap deeply, and would be thrown.
 constexpr double kMostParting = 0.01;
 
-/// Ratio of two masses that touch from which on what few sweeps do not solve is solved directly: sweeps need some times
-/// its root. Reason: spheres of half to twice a radius, which sweeps solve faster, stay below.
+/// Ratio of two masses in contact above which the direct contact solver is used if the sweeps do not converge. The
+/// number of sweeps grows with the root of the ratio. Reason: sweeps are faster if radii differ by a factor of up to
+/// four, a mass ratio of 64.
 constexpr double kUnlikeMasses = 100.0;
 
-/// Part of the error that is enough that what is solved directly may leave: sweeps do the rest.
+/// Tolerance of the direct contact solver, relative to `enough`. Sweeps do the rest.
 constexpr double kDirect = 0.25;
 
-/// Where momentum begins anew again and again, as where friction leads it in a circle, one sweep without it is made for
-/// so many times, each time: large networks that come to an answer begin a few dozen times.
+/// Number of restarts of the momentum that adds one plain sweep (without momentum) after each further restart. Reason:
+/// friction can make the momentum cycle. Large networks that converge restart a few dozen times.
 constexpr int kRestartsAPlainSweep = 64;
 
-/// Ratio from which on more sweeps are not tried first.
+/// Ratio above which the direct contact solver is used already after NetworkSettings::sweeps.
 constexpr double kVeryUnlikeMasses = 1e4;
 
-/// tolerance: m/s.
+/// Returns the limits for a tolerance in m/s.
 NetworkLimits limits_of(const NetworkSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
 }
 
-/// Of two masses that touch, the heavier over the lighter; 1 where one of them is that of a wall.
+/// Returns the heavier over the lighter mass of two bodies, or 1 if one of them is a wall.
 double ratio_of(const NetworkState& a, const NetworkState& b) {
     const auto [low, high] = std::minmax(a.mobility, b.mobility);
     return low > 0.0 ? high / low : 1.0;
@@ -124,7 +125,7 @@ void NetworkSolver::set_row(NetworkRow& row, const NetworkContact& contact, std:
         row.bound = -partings_.back();
     }
     if (mobility_of(before_[row.a], before_[row.b]) == 0.0) {
-        row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
+        row.bound = INFINITY;  // both are fixed; sweeps, which divide by the mobility, skip them
         return;
     }
     row.push.normal = std::max(0.0, contact.start.normal);
@@ -155,9 +156,9 @@ void NetworkSolver::add_rolling(const NetworkContact& contact, std::span<const N
     rolling_.push_back(rolling);
 }
 
-/// All of them or, where they do not act against what happens, as when forces have turned round, none. Most of a
-/// network goes on pressing as it did, and sweeps put right soon what single contacts begin with wrongly: to begin with
-/// a part of all of them would shake all that lies still.
+/// Applies all start impulses, or none if they would not oppose the motion, for example after a reversal of forces.
+/// Most contacts keep their impulses from step to step, and sweeps soon correct the others. A fraction of all start
+/// impulses would disturb all spheres at rest.
 void NetworkSolver::apply_start() {
     if (against_start_ > 0.0) {
         for (NetworkRow& row : rows_) row.push = {};
@@ -172,7 +173,7 @@ void NetworkSolver::apply_start() {
     }
 }
 
-/// Adds what a contact's impulses act against, J.
+/// Adds the work of a contact's impulses at the given velocities to a sum, in J.
 void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState> states, double& sum) const {
     if (row.push.normal == 0.0) return;
     const NetworkState& a = states[row.a];
@@ -183,8 +184,9 @@ void NetworkSolver::add_gain(const NetworkRow& row, std::span<const NetworkState
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
-/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few
-/// sweeps do not solve where masses differ much is solved directly, and a few sweeps more say whether it is.
+/// Sweeps with Nesterov's momentum, which restarts whenever a sweep changes more than the one before. If masses differ
+/// much and the sweeps do not converge, the direct contact solver is used. More sweeps then check its result, and the
+/// state before it is restored if the residual has grown.
 void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& report) {
     const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
@@ -200,15 +202,15 @@ void NetworkSolver::iterate(const NetworkSettings& settings, NetworkReport& repo
     sweep_until(settings, settings.most_sweeps, report);
 }
 
-/// False where `most` sweeps do not come to what is asked for.
+/// Returns false if `most` sweeps do not meet the settings.
 bool NetworkSolver::sweep_until(const NetworkSettings& settings, int most, NetworkReport& report) {
     const NetworkLimits wished = limits_of(settings, settings.tolerance);
     const NetworkLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));
     double before = 0.0;
     double factor = 0.0;
-    int momentum = 0;  // sweeps since it last began anew
+    int momentum = 0;  // sweeps with momentum since its last restart
     int restarts = 0;
-    int plain = 0;  // sweeps without it to come
+    int plain = 0;  // remaining sweeps without momentum
     for (int k = 1;; ++k) {
         const SweepChange change = sweep(factor);
         ++report.sweeps;
@@ -229,8 +231,7 @@ bool NetworkSolver::sweep_until(const NetworkSettings& settings, int most, Netwo
     }
 }
 
-/// All contacts once, after they and the bodies have gone on by a factor of what the last sweep and the momentum before
-/// it have changed.
+/// Solves every contact once, after a momentum step of contacts and bodies: `factor` times their last change.
 SweepChange NetworkSolver::sweep(double factor) {
     go_on(factor);
     SweepChange all;
@@ -252,8 +253,8 @@ SweepChange NetworkSolver::sweep(double factor) {
     return all;
 }
 
-/// Of the bodies: impulses and what they do to bodies are linear, so that rows need only do the same when it is their
-/// turn.
+/// Applies the momentum step to all bodies. Velocities are linear in the impulses, so each row can apply the same step
+/// to its impulse later, when it is solved.
 void NetworkSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;

@@ -19,16 +19,18 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 14;
 
-/// Relative to the coordinates: more than the rounding of a vertex between two keys.
+/// Growth of boxes, relative to the coordinates. Reason: it exceeds the rounding of a vertex between two keys.
 constexpr double kBoxRounding = 0x1p-48;
 
-/// A key that is as near as this, in units in the last place of the time, has come.
+/// Distance from a key, in units in the last place of the time, below which the key counts as reached.
 constexpr double kKeyUlps = 16.0;
 
-/// Part of its distance by which a sphere that touches may come nearer on a link: rounding.
+/// Smallest ratio of the distances at the end and the start of a segment for a sphere that touches. A smaller decrease
+/// is rounding.
 constexpr double kNearerStill = 1.0 - 0x1p-49;
 
-/// The same of one in overlap, as a part of sphere_tolerance(): the rounding of coordinates that are large beside it.
+/// Decrease of the distance on a segment that is allowed for a sphere in overlap, as a fraction of sphere_tolerance().
+/// It covers the rounding of coordinates much larger than the sphere.
 constexpr double kOverlapRounding = 0x1p-9;
 
 Box3 box_of(const MovingTriangle& triangle) {
@@ -40,7 +42,7 @@ Box3 box_of(const MovingTriangle& triangle) {
     return box;
 }
 
-/// Of a link, with all that a sphere on it may touch.
+/// Returns the box of a segment, grown by the radius of the sphere that moves along it.
 Box3 box_of(const StoredPosition& from, const StoredPosition& to, double radius) {
     Box3 box;
     box.include(from.position);
@@ -114,7 +116,8 @@ void DeformingColliders::begin_step(double begin, double end) {
     for (Mesh& mesh : meshes_) sweep(mesh);
 }
 
-/// Between keys vertices move along lines, so that their places at both ends and at keys hold all.
+/// Computes the boxes of a mesh for the step. Between keys vertices move on straight lines, so their positions at both
+/// ends and at keys bound the motion.
 void DeformingColliders::sweep(Mesh& mesh) {
     std::vector<MeshMoment> moments{mesh.motion->at(begin_)};
     for (double key = mesh.motion->next_key(begin_); key < end_; key = mesh.motion->next_key(key)) {
@@ -273,7 +276,7 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
     std::vector<SurfaceId> all;
     if (begin_ <= from.time && to.time <= end_) {
         near(box, all);
-    } else {  // it goes on from where its clock has stood still
+    } else {  // a stalled particle continues, and its start is outside the step
         for (const Mesh& mesh : meshes_) {
             for (const std::uint32_t t : mesh.solid) all.push_back(mesh.first_surface + t);
         }
@@ -281,7 +284,7 @@ bool DeformingColliders::is_link_free(const StoredPosition& from, const StoredPo
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
     return std::all_of(all.begin(), all.end(), [&](SurfaceId surface) {
         if (radius == 0.0) return is_free(surface, from, to, 0.0);
-        // Its ends keep off by more than the certificate asks for: what one link after the other gives away adds up.
+        // The ends keep a larger distance than the certificate requires, because losses of successive segments add up.
         const double distance = nearest(surface, from.position, from.time).distance;
         const double least = distance >= radius - tolerance
                                  ? std::min(radius - 0.5 * tolerance, kNearerStill * distance)

@@ -7,7 +7,8 @@
 namespace ricochet {
 namespace {
 
-/// Times that a position is carried before it has come to a surface.
+/// Factor on the rounding error of one conversion between frames. Reason: a position may be converted repeatedly before
+/// it reaches a surface.
 constexpr double kCarries = 8.0;
 
 }  // namespace
@@ -16,8 +17,8 @@ double offset_for_carrying(const MovingPose& pose, const Vec3& image) {
     return kCarries * max_abs(pose.image(pose.point(image)) - image);
 }
 
-/// By coordinates of the link, not of the path: where that leads far away, a sphere must not sink in here by its
-/// rounding there.
+/// Computes the tolerance from the coordinates of the segment, not of the path. The path may end far away, and its
+/// rounding there must not let a sphere sink in here.
 bool ForeignSurfaces::is_free(const Deforming& triangle, const WayPoint& p, const WayPoint& q) const {
     const double tolerance = sphere_tolerance(triangle.radius, std::max(max_abs(p.world), max_abs(q.world)));
     const double radius = std::max(0.0, triangle.radius - tolerance);

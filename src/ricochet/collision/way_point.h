@@ -35,7 +35,8 @@ struct PathClock {
     }
 };
 
-/// Bodies as seen from a reference frame: that of a body, or the world (kAtRest). A path is given in that frame.
+/// Conversions between the frame of a path and the frames of bodies. The path's frame is that of a body, or the world
+/// (kAtRest).
 class MovingView {
 public:
     MovingView(const MovingColliders& bodies, BodyId home, const PathClock& clock)

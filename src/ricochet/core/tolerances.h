@@ -32,8 +32,8 @@ inline constexpr double kContactOffsetWidening = 4.0;
 /// position. Smaller: sharp wedges, whose bisector leaves both walls slowly, have fewer safe positions.
 inline constexpr double kLargestContactOffsetUlps = 4096.0;
 
-/// Fraction of the radius by which a sphere's distance at a contact may fall short of the radius and still be corrected
-/// by safe_position. Beyond it the sphere started in overlap and keeps its position. Smaller: grazing contacts are not
+/// Largest shortfall of a sphere's distance at a contact, as a fraction of the radius, that safe_position() corrects.
+/// With a larger one the sphere has started in overlap and keeps its position. Smaller: grazing contacts are not
 /// corrected. Larger: a sphere born in a slight overlap is pushed out.
 inline constexpr double kContactMismatch = 1e-9;
 
@@ -75,28 +75,28 @@ inline constexpr int kMaxProjections = 16;
 /// follow. Smaller: the stability bound of dead surfaces shrinks with its root. Larger: dead surfaces bounce more.
 inline constexpr double kMinPenaltyRestitution = 0.01;
 
-/// Distance, in paths of one time tolerance, within which a particle that was rolled back to a collision touches the
-/// surface. Reason: bisection leaves it up to one such path away. Smaller than 1: a resting particle falls and lands in
-/// every step. Larger: particles rest on air that much further away.
+/// Distance within which a particle that was rolled back to a collision touches the surface, relative to its path in
+/// one time tolerance. Reason: bisection leaves it up to one such path away. Smaller than 1: a resting particle falls
+/// and lands in every step. Larger: particles rest on air that much further away.
 inline constexpr double kTouchBrackets = 2.0;
 
-/// Number of consecutive contacts after which a particle comes to rest for the step. All must be loaded, and slower
-/// than the resting speed or without time between them. Reason: in a pit of four or more faces a sliding particle
-/// circles into the apex in infinitely many ever shorter segments. Smaller: slow sliding over many tiny triangles is
-/// cut short. Larger: circling costs more contacts per step.
+/// Number of consecutive contacts after which a particle comes to rest for the step. In each of them the particle must
+/// be under load. It must also be slower than the resting speed, or no time must pass between the contacts. Reason: in
+/// a pit of four or more faces a sliding particle circles into the apex in infinitely many ever shorter segments.
+/// Smaller: slow sliding over many tiny triangles is cut short. Larger: circling costs more contacts per step.
 inline constexpr int kMaxSlowContacts = 32;
 
 /// One minus the cosine of the angle between normals below which two surfaces touched together count as one plane.
 /// Smaller: coplanar triangles use up the three contact points of a manifold. Larger: a blunt corner counts as flat.
 inline constexpr double kSameNormal = 1e-12;
 
-/// Speed at which a velocity that was projected onto a plane may still approach it, relative to its length: a few
-/// roundings. Smaller: a projection counts as infeasible and the next best, slower one is used. Larger: a particle
-/// creeps into a wall's contact offset.
+/// Approach speed towards a plane that a velocity may have after projection onto the plane, relative to the velocity's
+/// length. Reason: a few roundings. Smaller: a projection counts as infeasible and the next best, slower one is used.
+/// Larger: a particle creeps into a wall's contact offset.
 inline constexpr double kProjectionRounding = 0x1p-48;
 
-/// Speed after braking to a stop that still counts as a stop, relative to the speed before: rounding across the
-/// heading. Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: sideways motion is
+/// Speed after braking that counts as a stop, relative to the speed before. It covers rounding perpendicular to the
+/// motion. Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: sideways motion is
 /// lost.
 inline constexpr double kStopRounding = 0x1p-40;
 
@@ -105,12 +105,12 @@ inline constexpr double kStopRounding = 0x1p-40;
 /// depends on the time step by the angle's square.
 inline constexpr double kMaxHeadingTurn = 0.05;
 
-/// The same limit for a slip whose direction turns within a small part of the step, because there is hardly any slip.
-/// Smaller: more segments for each reversal of a slip. Larger: the start of a slip depends on the time step.
+/// The same limit for a slip that is so slow that its direction turns within a small part of the step. Smaller: more
+/// segments for each reversal of a slip. Larger: the start of a slip depends on the time step.
 inline constexpr double kMostHeadingTurn = 0.5;
 
-/// Largest relative change, in one arc, of a slip that turns. Reason: as kMaxArcAngle. Smaller: more arcs at the end of
-/// every slip. Larger: the end of a slide depends on the time step.
+/// Largest relative change of the slip velocity in one arc, if its direction turns. Reason: as for kMaxArcAngle.
+/// Smaller: more arcs at the end of every slip. Larger: the end of a slide depends on the time step.
 inline constexpr double kMaxSlipChange = 0.1;
 
 /// Largest turn of friction, in rad, in an interval of constant acceleration. Beyond it, and up to kMaxHeadingTurn, the
@@ -133,8 +133,8 @@ inline constexpr double kMaxChordAngle = 0.01;
 inline constexpr double kShortestRelease = 1.0 / 64.0;
 
 /// Part of a step below which a path along a wall is skipped if it moves the particle only by rounding. Smaller: the
-/// rest before a rim or a release is divided by times so short that velocities overflow. Larger: a particle leaves a
-/// wall earlier, by a path of less than a quarter of a contact offset.
+/// remaining path before a rim or a release is divided by so short a time that velocities overflow. Larger: a particle
+/// leaves a wall earlier, by a path of less than a quarter of a contact offset.
 inline constexpr double kNoProgress = 0x1p-20;
 
 // Broad phase and look-ahead
@@ -146,7 +146,8 @@ inline constexpr double kNoProgress = 0x1p-20;
 inline constexpr double kLookAheadSlack = 0x1p-36;
 
 /// Most steps of free flight without a new query, on straight paths and on parabolas. Larger: kLookAheadSlack must grow
-/// with the first. With the second it would apply to a longer path than the boxes' margin lets one query cover.
+/// with the first constant. With a larger second one a parabola would be longer than one query can cover with the
+/// boxes' margin.
 inline constexpr int kMaxLookAheadSteps = 4096;
 inline constexpr int kMaxLookAheadStepsCurved = 256;
 
@@ -199,13 +200,13 @@ inline constexpr double kBoxSlack = 0x1p-20;
 /// Largest deviation of a path in the frame of a moving body, as a fraction of a length. The length is the larger of
 /// the radius and the distance from the frame's origin. The path consists of cubics that are short enough for it.
 /// Reason: one cubic for a turn of about one degree. Times of impact are found again on the true path and do not depend
-/// on it. Smaller: more cubics. Larger: a near miss within this distance is taken for a graze sooner, and safe
-/// positions are searched from further away.
+/// on it. Smaller: more cubics. Larger: more near misses count as grazing contacts, and the search for safe positions
+/// starts farther from the surface.
 inline constexpr double kMovingPathTolerance = 1e-9;
 
-/// Most such cubics for one path between two keys. Reason: kMovingPathTolerance needs some 250 per turn, and no step
-/// can follow more than 16 turns. Smaller: paths relative to fast bodies are less exact than that tolerance. Larger: a
-/// step beside a body that turns still faster takes longer.
+/// Largest number of these cubics for one path between two keys. Reason: kMovingPathTolerance needs some 250 per turn,
+/// and no step can follow more than 16 turns. Smaller: paths relative to fast bodies are less exact than that
+/// tolerance. Larger: a step beside a body that turns still faster takes longer.
 inline constexpr double kMostMovingPieces = 4096.0;
 
 /// Most keys of a body's curves that one step handles individually: paths are split there, and boxes of the motion are
@@ -336,19 +337,20 @@ inline constexpr double kMostBodyChange = 0.1;
 /// step to step.
 inline constexpr double kHeavyLoad = 0.5;
 
-/// Difference of planned and actual load on a body, as a fraction of the velocity change that a substep may have from
-/// the load. Larger: energy is gained or lost. Smaller: the substep is planned more often.
+/// Difference of planned and actual load on a body. It is measured as a velocity change, relative to the largest
+/// velocity change by the load in a substep. Larger: energy is gained or lost. Smaller: the substep is planned more
+/// often.
 inline constexpr double kLoadFits = 1e-3;
 
-/// Most plans of a substep for one length of it. Smaller: substeps get shorter if loads begin and end within them.
-/// Larger: such substeps cost more before they get shorter.
+/// Largest number of plans of a substep of the same duration. Smaller: substeps get shorter if loads begin and end
+/// within them. Larger: such substeps cost more before they get shorter.
 inline constexpr int kMostLoadRounds = 8;
-/// Most plans of a substep that cannot be shorter.
+/// Largest number of plans of a substep that cannot be shortened.
 inline constexpr int kFewLoadRounds = 3;
 
 /// Fraction of the time to the next impact, or to the step's end, after which a substep ends and bodies receive their
-/// impulses. Its square or cube applies if impacts dissipate little energy. Larger: bodies move on longer without the
-/// impulses. Much smaller: grains that settle on a body cause many substeps.
+/// impulses. If impacts dissipate little energy, the square or cube of this fraction applies. Larger: bodies move on
+/// longer without the impulses. Much smaller: grains that settle on a body cause many substeps.
 inline constexpr double kPartAfterImpact = 1e-3;
 
 /// Least duration of a substep, as a fraction of the time step. Smaller: bodies between many impacts take longer.
@@ -363,7 +365,7 @@ inline constexpr double kImpactEnergyRounding = 1e-14;
 /// depend on the order. The largest total is 2^27 N s = 1.3e8 N s (beyond it the total wraps).
 inline constexpr double kImpulseUnit = 0x1p-100;
 
-/// Returns the distance from x, which is finite, to the next larger double magnitude.
+/// Returns the difference between |x| and the next larger double. x must be finite.
 [[nodiscard]] inline double ulp(double x) {
     const double magnitude = std::fabs(x);
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(magnitude) + 1) - magnitude;
@@ -398,8 +400,8 @@ inline constexpr double kShortestSubstep = 0x1p-48;
 inline constexpr std::uint32_t kMostSubsteps = 100000;
 
 /// Error of an adaptive substep that counts as zero, relative to the largest component of the state: a quarter of its
-/// rounding. Smaller: substeps shorten without end if the tolerance is below the precision of doubles. Larger:
-/// tolerances that are possible are missed.
+/// rounding. Smaller: substeps shorten without end if the tolerance is below the precision of doubles. Larger: the
+/// integrator does not meet tolerances that it could meet.
 inline constexpr double kStateRounding = 0x1p-54;
 
 /// Largest residual of solved equations of contact with friction, as a fraction of the largest rate (forces per mass
@@ -409,8 +411,8 @@ inline constexpr double kCoulombResidual = 0x1p-40;
 
 /// Residual up to which a solution is accepted before less friction is tried. Reason: if surfaces press against each
 /// other with undetermined forces, rounding leaves 1e-7 and more. The next smaller friction would be wrong by 1e-3.
-/// Smaller: a sphere that rolls between two surfaces slips for a moment. Larger: worse solutions, whose energy is
-/// limited.
+/// Smaller: a sphere that rolls between two surfaces slips for a moment. Larger: less exact solutions are accepted.
+/// Their energy is still limited.
 inline constexpr double kNearlySolved = 1e-4;
 
 /// Residual at which the iteration stops. Reason: rounding of six products. Smaller: iterations without improvement.
@@ -432,9 +434,9 @@ inline constexpr double kShortestStiffening = 0.9;
 /// of sums over a thousand contacts. Smaller: elastic impacts lose their rebound. Larger: energy may grow by as much.
 inline constexpr double kNetworkEnergyRounding = 1e-12;
 
-/// Fraction of an overlap of spheres in dense contact that one step removes. Reason: the remainder of the sweeps must
-/// not add up from step to step. Half of it settles in a few steps without a jerk. Smaller: overlaps last. Larger: deep
-/// overlaps, from hard impacts, eject spheres.
+/// Fraction of an overlap of spheres in dense contact that one step removes. Reason: remaining errors of the sweeps
+/// must not add up from step to step. With one half an overlap vanishes in a few steps without a jerk. Smaller:
+/// overlaps last. Larger: deep overlaps, from hard impacts, eject spheres.
 inline constexpr double kNetworkPushOut = 0.5;
 
 /// Over-relaxation factor of normal impulses in sweeps over contact networks. Reason: with 1.2 boxes of 2000 spheres
@@ -452,14 +454,14 @@ inline constexpr double kNetworkOverlap = 2.5e-3;
 /// motion. Larger: piles creep.
 inline constexpr double kNetworkResidual = 1e-2;
 
-/// The same speed in smallest radii per step, as a lower limit. Reason: far below the largest allowed drift of a pile.
+/// Lower limit of that speed, in smallest radii per step. Reason: far below the largest allowed drift of a pile.
 /// Smaller: sweeps without effect. Larger: piles creep.
 inline constexpr double kNetworkStill = 1e-7;
 
 /// Largest turn, in rad, of surfaces of different frames, or of curved surfaces, under a particle that they support
-/// together, in one interval of contact. Reason: within an interval they are the planes at its start, and the error is
-/// the square of the turn. Smaller: more intervals (each costs a query), and a step's limit of intervals is reached
-/// sooner. Larger: contact with several frames at once is less exact.
+/// together, in one interval of contact. Reason: within an interval the surfaces are replaced by their planes at its
+/// start, and the error is the square of the turn. Smaller: more intervals (each costs a query), and a step's limit of
+/// intervals is reached sooner. Larger: contact with several frames at once is less exact.
 inline constexpr double kMostSharedTurn = 0.02;
 
 /// Number of bounces among moving colliders after which the progress of a particle is checked. The second constant is
@@ -508,9 +510,8 @@ inline constexpr double kDependentDirection = 0x1p-36;
 /// roundings. Smaller: rounding removes particles from their supports. Larger: slow separations are suppressed.
 inline constexpr double kLeavingRounding = 0x1p-46;
 
-/// The same fraction beyond the end of a face, if its edge turns away from the motion as far as the particle is beyond
-/// it. Smaller: rolling over an edge
-/// begins with a fall and a landing. Larger: slow separations are suppressed.
+/// The same fraction for a particle beyond the end of a face, where the surface turns away from the motion. Smaller:
+/// rolling over an edge begins with a fall and a landing. Larger: slow separations are suppressed.
 inline constexpr double kTurningAway = 0x1p-24;
 
 /// Angle, in rad, by which a particle turns around an edge or along a curved surface in one arc. Reason: the error of
@@ -528,18 +529,18 @@ inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
 /// jam. Larger: small jumps are missed.
 inline constexpr double kJump = 1e-3;
 
-/// Largest relative correction of an arc's end for the sake of its energy. Reason: the method's own error is far below
-/// it; more would hide another mistake. Smaller: slow turning points are left uncorrected. Larger: such mistakes are
-/// hidden.
+/// Largest relative correction of an arc's end that conserves its energy. Reason: the error of the method is far
+/// smaller, and a larger correction would hide other mistakes. Smaller: slow turning points are left uncorrected.
+/// Larger: such mistakes are hidden.
 inline constexpr double kMostEnergyCorrection = 1e-2;
 
-/// Speed in contact that counts as zero if it does not lead on. It is a fraction of the velocity change by the forces
-/// in the remaining time. Reason: it covers a ten-billionth of the path due to the forces. Smaller: beside a vertex at
-/// the origin steps are spent on moves below the resolution of the clock. Larger: particles that begin to slide there
-/// are stopped.
+/// Speed in contact that counts as zero if the particle makes no progress. It is a fraction of the velocity change by
+/// the forces in the remaining time. Reason: a particle of this speed covers only a ten-billionth of the path due to
+/// the forces. Smaller: beside a vertex at the origin steps are spent on moves below the resolution of the clock.
+/// Larger: particles that begin to slide there are stopped.
 inline constexpr double kNegligibleSpeed = 1e-10;
 
-/// Rebound, as a fraction of the resting speed, below which the bounce cascade takes negligible time. Reason: falling
+/// Rebound, as a fraction of the resting speed, below which the bounce cascade takes negligible time. Reason: a fall
 /// through the contact offset ends at some 1e-7 m/s. Smaller: particles rattle between surfaces by their offsets.
 /// Larger: cascades end too early.
 inline constexpr double kNegligibleRebound = 1e-3;
@@ -558,12 +559,13 @@ inline constexpr double kSlowSlip = 0x1p-24;
 inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 
 /// Approach of two touching spheres that counts as zero, relative to their speeds. Reason: some roundings of an impact
-/// that has stopped them. Smaller: such pairs collide repeatedly at one time. Larger: they sink in by it.
+/// that has stopped them. Smaller: such pairs collide repeatedly at one time. Larger: spheres overlap more.
 inline constexpr double kPairApproachRounding = 0x1p-48;
 
 /// Overlap of two spheres, relative to the smaller radius, from which they press on each other. The overlap must have
 /// grown in a step without a common plan. A force then drives them together that no impact resolves. Reason: far above
-/// the rounding of impacts, far below visible overlap. Smaller: rounding causes plans. Larger: spheres sink in by it.
+/// the rounding of impacts, far below visible overlap. Smaller: rounding causes plans. Larger: spheres overlap by as
+/// much.
 inline constexpr double kPressedOverlap = 1e-7;
 
 /// Difference of impact times, in ulp, up to which impacts are simultaneous. Reason: roundings of the times of

@@ -58,7 +58,7 @@ bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
     return order != 0 ? order < 0 : x.triangle < y.triangle;
 }
 
-// All places: triangles that share the feature that the ray passes through are joined.
+// All hits of a ray. Triangles that share the feature through which the ray passes give one hit.
 
 /// Feature of a triangle that the ray passes through, and the candidate that it belongs to.
 struct Passed {

@@ -66,9 +66,9 @@ inline constexpr double kTouchingOffsets = 8.0;
 /// budget is spent. Larger: they slide on air beyond convex edges by that distance (some 1e-12 of the coordinates).
 inline constexpr double kEdgeOffsets = 256.0;
 
-/// Most projections of a particle out of the surfaces that it is behind, in one step. After that it returns to its
-/// position before the move. Reason: in a corner of several colliders one projection leads behind the next. Smaller:
-/// corners stop particles more often. Larger: sharp wedges cost more queries.
+/// Largest number of projections of a particle out of the surfaces that it is behind, in one step. After that it
+/// returns to its position before the move. Reason: in a corner of several colliders one projection leads behind the
+/// next. Smaller: corners stop particles more often. Larger: sharp wedges cost more queries.
 inline constexpr int kMaxProjections = 16;
 
 /// Smallest restitution of a spring and damper. Reason: a smaller one would need unbounded damping, which no step can
@@ -145,9 +145,9 @@ inline constexpr double kNoProgress = 0x1p-20;
 /// query would have found. Larger: particles near surfaces need more queries.
 inline constexpr double kLookAheadSlack = 0x1p-36;
 
-/// Most steps of free flight without a new query, on straight paths and on parabolas. Larger: kLookAheadSlack must grow
-/// with the first constant. With a larger second one a parabola would be longer than one query can cover with the
-/// boxes' margin.
+/// Largest number of steps of free flight without a new query, on straight paths and on parabolas. Larger:
+/// kLookAheadSlack must grow with the first constant. With a larger second one a parabola would be longer than one
+/// query can cover with the boxes' margin.
 inline constexpr int kMaxLookAheadSteps = 4096;
 inline constexpr int kMaxLookAheadStepsCurved = 256;
 
@@ -209,10 +209,10 @@ inline constexpr double kMovingPathTolerance = 1e-9;
 /// tolerance. Larger: a step beside a body that turns still faster takes longer.
 inline constexpr double kMostMovingPieces = 4096.0;
 
-/// Most keys of a body's curves that one step handles individually: paths are split there, and boxes of the motion are
-/// united. Later keys, as in a curve that repeats much faster than the step, form one interval. Smaller: an impact
-/// beside a later key is found on a cubic across the jump, and boxes are wider. Larger: steps of such bodies take
-/// longer.
+/// Largest number of keys of a body's curves that one step handles individually: paths are split there, and boxes of
+/// the motion are united. Later keys, as in a curve that repeats much faster than the step, form one interval. Smaller:
+/// an impact beside a later key is found on a cubic across the jump, and boxes are wider. Larger: steps of such bodies
+/// take longer.
 inline constexpr int kMostKeysInStep = 256;
 
 /// Growth of a body's box over a step for the rounding of poses and sums, as a fraction of its largest coordinate.
@@ -394,9 +394,10 @@ inline constexpr double kSmallestTolerance = 1e-30;
 /// accuracy earlier.
 inline constexpr double kShortestSubstep = 0x1p-48;
 
-/// Most substeps of an adaptive method in one step of a particle. The rest of the step is not simulated, and is counted
-/// (budget_exhausted). Reason: some tenths of a second of work. Smaller: particles bound close to a point mass, which
-/// need some 50 substeps per orbit, stop for a part of each step. Larger: a step takes longer before it ends.
+/// Largest number of substeps of an adaptive method in one step of a particle. The rest of the step is not simulated,
+/// and is counted (budget_exhausted). Reason: some tenths of a second of work. Smaller: particles bound close to a
+/// point mass, which need some 50 substeps per orbit, stop for a part of each step. Larger: a step takes longer before
+/// it ends.
 inline constexpr std::uint32_t kMostSubsteps = 100000;
 
 /// Error of an adaptive substep that counts as zero, relative to the largest component of the state: a quarter of its

@@ -137,8 +137,8 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
 }  // namespace
 
 int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
-    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the sign of its change with o,
-    // -(q - p) x d.
+    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the result is the sign of its
+    // change with o, which is -(q - p) x d.
     const ExactDifference u(p, ray.origin);
     const ExactDifference v(q, ray.origin);
     const ExactDifference d(ray.direction, Vec3{});

@@ -108,8 +108,8 @@ void Simulation::Impl::refuse_after_error() {
         "the last step or restore() of this simulation has ended with an error; make it anew or restore a saved state");
 }
 
-// Refuses to step after an error inside a step, because particles in free flight may then be a step ahead of the
-// others.
+// Begins a step. Throws after an error inside an earlier step, because particles in free flight may then be a step
+// ahead of the others.
 TimeSpan Simulation::Impl::begin_step() {
     if (is_reporting) throw RunError("a contact callback must not step its simulation");
     if (inside_step) refuse_after_error();

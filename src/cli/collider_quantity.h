@@ -14,7 +14,7 @@
 
 namespace ricochet::cli {
 
-/// A quantity of triangles, plain, per area, per time, or both.
+/// A quantity of triangles: as recorded, or divided by area, by time, or by both.
 struct ColliderQuantity {
     enum class Kind { hits, impulse, energy } kind = Kind::hits;
     bool per_area = false;

@@ -69,7 +69,8 @@ std::vector<RunPictures::Group> RunPictures::groups_of(const VtkPolyData& frame,
     return groups;
 }
 
-/// Adds threads and cloth. Returns which particles they show: the ends of springs that are not thicker.
+/// Adds threads and cloth. Marks the particles that they replace: corners of cloth, and ends of threads that have no
+/// size or are hardly thicker than the thread.
 std::vector<bool> RunPictures::add_springs(const VtkPolyData& frame, const std::vector<double>& radii,
                                            PreviewMoving& moving) const {
     const std::vector<double> own_radii = radii_of(frame);

@@ -146,7 +146,7 @@ TEST(TheCountsOfAParticleThatSlides, IncludeOneImpactAtAWallAtAnyTimeStep) {
     for (const double radius : {0.0, 0.05}) {
         for (const double part : {1.0, 0.5, 0.25}) {
             const Counts counts = counts_of([&] { return slide_setup(radius); }, part * kStep);
-            EXPECT_EQ(counts.contacts, 2U) << radius << ' ' << part;  // its landing, and the wall
+            EXPECT_EQ(counts.contacts, 2U) << radius << ' ' << part;  // the landing and the impact at the wall
             EXPECT_EQ(counts.rows, 2U) << radius << ' ' << part;
         }
     }

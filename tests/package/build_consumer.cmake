@@ -26,7 +26,7 @@ else()
 endif()
 execute_process(COMMAND ${CMAKE_COMMAND} --install ${library_build} --prefix ${prefix} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
 
-# Check that only public headers are installed, and that documents, the schema and scenes are.
+# Check that only public headers are installed, and that documents, the schema and scenes are installed too.
 file(GLOB_RECURSE header_files RELATIVE "${prefix}/include/ricochet" "${prefix}/include/*.h")
 file(STRINGS ${source_dir}/src/ricochet/public_headers.txt public_headers REGEX "^[^#]")
 list(SORT header_files)

@@ -197,7 +197,7 @@ TEST(RunCheck, ViolationsOfAParticleAreReported) {
     EXPECT_EQ(violations[0].particle, 8U);
     EXPECT_EQ(violations[0].collider, 0U);
     EXPECT_EQ(move(2, {20, 0, 1.5}), 0U);
-    EXPECT_EQ(move(2, {20, 0, -2.5}), 5U);  // not from its last position, through plane and ball
+    EXPECT_EQ(move(2, {20, 0, -2.5}), 5U);  // begins elsewhere; crosses plane and ball
     EXPECT_EQ(violations[0].kind, ViolationKind::gap);
     EXPECT_EQ(violations[1].collider, 1U);
     EXPECT_EQ(violations[2].collider, 2U);

@@ -70,8 +70,8 @@ TEST(SleepingIslands, SphereThatFallsAsleepAgainForgetsItsFormerLoads) {
     EXPECT_EQ(piles.not_joined_to({10}), (Ids{13, 14}));
 }
 
-// The neighbour did not press it when it fell asleep again, so it does not support it. It must still be woken when it
-// moves.
+// The neighbour did not press the sphere when that fell asleep again, so it does not support the sphere. The sphere
+// must still wake when the neighbour moves.
 TEST(SleepingIslands, FormerNeighbourOfASleeperStaysANeighbour) {
     SleepingIslands piles = row();
     static_cast<void>(piles.wake({12}));

@@ -58,8 +58,8 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 
-// Edge lengths from which build_near starts, in m. They are coarse for every ground; the terrain needs an even coarser
-// one.
+// Edge lengths from which build_near starts, in m. The first one is coarse enough for every ground except the terrain,
+// which needs a still coarser mesh.
 constexpr double kCoarseEdge = 0.25;
 constexpr double kCoarseTerrainEdge = 15.0;
 

@@ -82,7 +82,7 @@ struct ClearQuery {
     const CollisionWorld& world;
     const QueryMargins& margins;
     const Path& path;
-    double until;  ///< time of interest, in s; the result after the query
+    double until;  ///< in s: before the query the end of the search, after it the result
 
     void test_piece(double from, double to, int depth) {
         if (from >= until) return;

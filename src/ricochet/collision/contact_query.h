@@ -61,8 +61,8 @@ public:
     [[nodiscard]] bool covers_chord(const Path& path, double from, double to) const;
     /// Returns the surfaces on which the point lies exactly.
     [[nodiscard]] std::vector<SurfaceId> surfaces_at(const Vec3& p) const;
-    /// Returns true if the particle starts in overlap. A sphere overlaps a surface by more than the tolerance; a point
-    /// lies on one.
+    /// Returns true if the particle starts in overlap: a sphere that overlaps a surface by more than the tolerance, or
+    /// a point on a surface.
     [[nodiscard]] bool starts_in_overlap() const;
 
     [[nodiscard]] const SurfaceGeometry& geometry() const { return geometry_; }

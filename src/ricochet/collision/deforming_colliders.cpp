@@ -32,7 +32,7 @@ Box3 box_of(const MovingTriangle& triangle) {
     return box;
 }
 
-/// Of a link, with all that a sphere on it may touch.
+/// Returns the box of a segment, grown by the radius of the sphere that moves along it.
 Box3 box_of(const StoredPosition& from, const StoredPosition& to, double radius) {
     Box3 box;
     box.include(from.position);
@@ -106,7 +106,8 @@ void DeformingColliders::begin_step(double begin, double end) {
     for (Mesh& mesh : meshes_) sweep(mesh);
 }
 
-/// Between keys vertices move along lines, so that their places at both ends and at keys hold all.
+/// Computes the boxes of a mesh for the step. Between keys vertices move on straight lines, so their positions at both
+/// ends and at keys bound the motion.
 void DeformingColliders::sweep(Mesh& mesh) {
     std::vector<MeshMoment> moments{mesh.motion->at(begin_)};
     for (double key = mesh.motion->next_key(begin_); key < end_; key = mesh.motion->next_key(key)) {
@@ -265,7 +266,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
     std::vector<SurfaceId> all;
     if (begin_ <= from.time && to.time <= end_) {
         near(box, all);
-    } else {  // it goes on from where its clock has stood still
+    } else {  // a stalled particle continues, and its start is outside the step
         for (const Mesh& mesh : meshes_) {
             for (const std::uint32_t t : mesh.solid) all.push_back(mesh.first_surface + t);
         }
@@ -273,7 +274,7 @@ bool DeformingColliders::is_segment_free(const StoredPosition& from, const Store
     const double tolerance = sphere_tolerance(radius, std::max(max_abs(from.position), max_abs(to.position)));
     return std::all_of(all.begin(), all.end(), [&](SurfaceId surface) {
         if (radius == 0.0) return is_free(surface, from, to, 0.0);
-        // Its ends keep off by more than the certificate asks for: what one link after the other gives away adds up.
+        // The ends keep a larger distance than the certificate requires, because losses of successive segments add up.
         const double distance = nearest(surface, from.position, from.time).distance;
         const double least = distance >= radius - tolerance
                                  ? std::min(radius - kUsedSphereTolerance * tolerance, kNearerStill * distance)

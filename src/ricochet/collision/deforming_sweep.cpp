@@ -47,14 +47,15 @@ bool DeformingSweep::comes_near(const MovingTriangle& triangle) const {
     return BoxTree::meet(box, box_);
 }
 
-/// What is overlapped from the start, or held, blocks only what intersects it.
+/// Returns the radius with which segments are certified. Supporting surfaces, and surfaces overlapped from the start,
+/// block only segments that intersect them.
 double DeformingSweep::certified_radius(SurfaceId surface, const MovingTriangle& triangle) const {
     if (radius_ == 0.0 || is_supported(surface)) return 0.0;
     const double distance = distance_at_start(path_, triangle);
     return distance < radius_ - tolerance_ ? 0.0 : std::min(radius_, distance);
 }
 
-/// A contact, where the particle comes nearer to the triangle there.
+/// Returns the contact of a meeting, or nothing if the particle does not approach the triangle there.
 std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, const MovingTriangle& triangle,
                                                           const Meeting& meeting) const {
     const double time = meeting.part * path_.duration;
@@ -62,7 +63,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::hit_at(SurfaceId surface, con
     const Vec3 p = path_.position(time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(p, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
-    // Of the keys: what a short piece of the path says is rounding.
+    // The corner velocities come from the keys, because differences over a short piece of the path are mostly rounding.
     const auto [u, v, w] = deforming_.corner_velocities(surface, 0.5 * times_.begin + 0.5 * times_.end);
     const Vec3 relative = path_.velocity(time) - (weights.x * u + weights.y * v + weights.z * w);
     const bool is_degenerate = are_collinear(a, b, c);
@@ -86,7 +87,8 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     double from = 0.0;
     const double distance = distance_at_start(path_, triangle);
     if (radius == 0.0) {
-        // What leaves it is not hit by it at once; what the short time in between hides, the certificate sees.
+        // A point that leaves the triangle is not hit again at once. The certificate finds hits that this short time
+        // hides.
         const auto [a, b, c] = corners_of(triangle, 0.0);
         const bool touches = distance <= kTouchingOffsets * deforming_.offset_of(surface);
         if (touches && !hit_at(surface, triangle, {0.0, orient3d(a, b, c, path_.c[0])})) from = kShortLeave;
@@ -102,7 +104,7 @@ std::optional<DeformingSweep::Hit> DeformingSweep::meet(SurfaceId surface, const
     return hit;
 }
 
-/// Of several at one time all; an edge beside a face, and what has one normal, once.
+/// Returns all hits at the earliest time. Hits with equal normals count once, also an edge beside its face.
 std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
     if (hits.empty()) return std::nullopt;
     const auto earlier = [](const Hit& a, const Hit& b) {
@@ -112,7 +114,7 @@ std::optional<Contact> DeformingSweep::first_of(std::vector<Hit> hits) const {
     std::sort(hits.begin(), hits.end(), earlier);
     Contact contact;
     contact.time = hits.front().time;
-    // Faces before edges, so that a seam is not felt beside the face that it belongs to.
+    // Faces come before edges, so that a seam beside its own face is ignored.
     for (const bool flat : {true, false}) {
         for (const Hit& hit : hits) {
             if (hit.time > contact.time + kSimultaneousUlps * ulp(contact.time)) break;

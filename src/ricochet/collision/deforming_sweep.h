@@ -1,5 +1,5 @@
 /// \file
-/// The first contact of a path in the world with meshes that deform, between two of their keys.
+/// First contact of a path in the world with deforming meshes, between two of their keys.
 #pragma once
 
 #include <optional>
@@ -14,21 +14,21 @@
 
 namespace ricochet {
 
-/// The simulation times of a path's ends, s.
+/// Simulation times of a path's ends, in s.
 struct PathTimes {
     double begin = 0.0;
     double end = 0.0;
 };
 
-/// One path. What it is given must outlive it.
+/// Sweep of one path. All arguments must outlive the object.
 class DeformingSweep {
 public:
-    /// held: as ContactQuery::held. beside: m, as far beside the path positions may be asked about.
+    /// `held` and `beside` have the meaning of the members of ContactQuery with these names.
     DeformingSweep(const DeformingColliders& deforming, const Path& path, const PathTimes& times, double radius,
                    std::span<const SurfaceId> supports, double beside);
 
-    /// The first contact with any of the triangles, in times of the path. Calls near(triangle) for each that comes near
-    /// the path, in their order.
+    /// Returns the first contact with any of the triangles, in times of the path. Calls near(triangle) for each
+    /// triangle near the path, in their order.
     template <class Near>
     [[nodiscard]] std::optional<Contact> first_contact(std::span<const SurfaceId> triangles, const Near& near) const {
         std::vector<Hit> hits;
@@ -44,7 +44,7 @@ public:
 
 private:
     struct Hit {
-        double time = 0.0;  ///< s along the path
+        double time = 0.0;  ///< in s along the path
         ContactSurface surface;
     };
 
@@ -60,9 +60,9 @@ private:
     const Path& path_;
     PathTimes times_;
     double radius_;
-    double tolerance_;  ///< m, sphere_tolerance() of the path
+    double tolerance_;  ///< sphere_tolerance() of the path, in m
     std::span<const SurfaceId> supports_;
-    Box3 box_;  ///< of the path, with all that may be asked about
+    Box3 box_;  ///< box of the path, grown by the radius and by `beside`
 };
 
 }  // namespace ricochet

@@ -210,7 +210,7 @@ bool LookAheadQuery::query_parabola() {
     const double end = end_of_query();
     if (!boxes_hold(end)) return false;
     const double margin = margin_until(end);
-    // The sagitta over t is |c2| t^2 / 4; twice that must fit.
+    // A chord over a time t has a sagitta of |c2| t^2 / 4. Twice that must fit into the remaining margin for curvature.
     const double piece = std::sqrt(2.0 * std::max(0.0, margins_.curvature - ahead_.margin) / length(ahead_.path.c[2]));
     if (!(piece >= ahead_.least)) {
         candidates_ = test_triangles_near(world_, margins_, path_, narrow_phase_);
@@ -270,12 +270,14 @@ void LookAheadQuery::add_approach(std::uint32_t triangle, double enter, double l
     scratch_.approaches.push_back({triangle, begin});
 }
 
-// For a sphere, the boxes only bound when it passes the triangle's plane. Beside the triangle that time is too early.
-// If the triangle is behind along a direction, the distance shrinks no faster than the sphere moves against that
-// direction (conservative advancement: B. Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems", PhD
-// thesis, Berkeley 1996, section 2.3). The speed along a direction is linear in time, so it is largest at an end.
 /// Returns a time before which the sphere certainly does not come near the triangle. It is later than `last` if the
 /// sphere does not come near until then.
+///
+/// The boxes only bound the time at which the sphere reaches the triangle's plane. If the sphere passes beside the
+/// triangle, that time is too early. Conservative advancement improves it: along a direction that separates sphere and
+/// triangle, the distance shrinks no faster than the sphere moves against the direction (B. Mirtich, "Impulse-based
+/// Dynamic Simulation of Rigid Body Systems", PhD thesis, Berkeley 1996, section 2.3). The speed along a direction is
+/// linear in time, so it is largest at an end.
 double LookAheadQuery::time_of_approach(std::uint32_t triangle, double enter, double last) const {
     const Path& path = ahead_.path;
     const auto [a, b, c] = world_.corners_of_triangle(triangle);
@@ -307,9 +309,11 @@ void LookAheadQuery::keep_candidates(double until) {
     }
 }
 
-// The following steps are rounded. Each must lead away from the triangle by more than the rounding error, or rounding
-// could lead it back through the triangle. A safe position elsewhere on the path must not be moved through it either.
 /// Returns true if a triangle can be dropped because a sphere leaves it behind at the given speed, in m/s.
+///
+/// Reason: the following steps are rounded. Each must lead away from the triangle by more than the rounding error, or
+/// rounding could lead the sphere back through the triangle. A safe position elsewhere on the path must not lie beyond
+/// the triangle either.
 bool LookAheadQuery::is_left_behind(double separating_speed) const {
     if (separating_speed == 0.0 || ahead_.path.degree > 1 || !(margins_.radius > ahead_.margin)) return false;
     return separating_speed * ahead_.least > kPathRounding * largest_coordinate(ahead_.path);

@@ -54,7 +54,7 @@ struct LookAheadResult {
     /// behind for good are excepted. At most the query's duration if looking ahead is not worth the work.
     double free_until = 0.0;
     /// Triangles, other than those left behind, that come near between the end of the query's path and
-    /// candidates_until. That time is at most `beyond` after free_until.
+    /// candidates_until. The time candidates_until is at most `beyond` later than free_until.
     ContactCandidates candidates = {};
     double candidates_until = 0.0;
 };

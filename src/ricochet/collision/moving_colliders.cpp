@@ -23,12 +23,12 @@ bool meet(const Box3& a, const Box3& b) {
            a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
 
-/// Bodies of which the motion over a step is bounded by one thread.
+/// Number of bodies per block of parallel work that bounds motions.
 constexpr std::size_t kBodiesInBlock = 32;
 
-/// A pose that this thread has asked for; the same few are asked again and again.
+/// Cached pose of one thread. Queries repeatedly need the same few poses.
 struct RememberedPose {
-    std::uint64_t step = 0;  ///< of all steps of all scenes; 0: none
+    std::uint64_t step = 0;  ///< number among all steps of all scenes, or 0 if the entry is empty
     BodyId body = kWorldBody;
     double time = 0.0;
     MovingPose pose;
@@ -73,13 +73,13 @@ Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, doub
     Box3 all;
     int count = 0;
     for (double from = begin; from < end || from == begin; ++count) {
-        // Over many keys at once the bounds hold as well.
+        // The bounds are valid over many keys too.
         const double to = count < kMostKeysInStep ? std::min(end, frames.next_key(frame, from)) : end;
         const MotionBounds bounds = frames.bounds(frame, from, to);
         Box3 part = placed(frames.at(frame, from), box);
         part.include(placed(frames.at(frame, to), box));
-        // A point that is accelerated by at most a lies within a h^2 / 8 of the chord of its way, and within half the
-        // way that its speed allows of one of its ends.
+        // A point with an acceleration of at most a deviates from the chord of its path by at most a h^2 / 8. Its
+        // distance from the nearer end is at most half the path length that its speed allows.
         const double h = to - from;
         const double by_acceleration = (bounds.origin[2] + reach * bounds.rotation[2]) * h * h / 8.0;
         const double by_speed = (bounds.origin[1] + reach * bounds.rotation[1]) * h / 2.0;
@@ -128,13 +128,13 @@ void MovingColliders::set_culling(bool culls) {
     for (Body& body : bodies_) body.world->set_culling(culls);
 }
 
-/// Of a body with a frame. Valid until this thread asks again.
+/// Returns the pose of a body with a frame. The reference is valid until this thread's next call.
 const MovingPose& MovingColliders::pose_of(BodyId body, double time) const {
     const Body& moving = bodies_[body];
     if (time == begin_ && begin_ < end_) return moving.at_begin;
     if (time == end_ && begin_ < end_) return moving.at_end;
     RememberedPose& slot = slot_of(body, time);
-    // The path of a driven one changes.
+    // The path of a dynamic body changes, so its pose is never taken from the cache.
     if (moving.is_driven || slot.step != step_ || slot.body != body || slot.time != time) {
         slot = {step_, body, time, frames_->at(moving.frame, time)};
     }

@@ -1,9 +1,9 @@
 /// \file
-/// The colliders of a scene that move: each frame's colliders as they stand in its coordinates, and how it moves.
+/// Moving colliders of a scene: the colliders of each frame in its coordinates, and the motion of the frame.
 ///
-/// In its own coordinates a collider never moves, so every predicate and hierarchy works there; what changes is the way
-/// of a particle, y(t) = M(t)^-1 x(t). Where a stored position x at a time t is in a frame is MovingPose::image() by
-/// definition: no crossing is lost between two coordinates.
+/// In its own frame a collider never moves, so every predicate and hierarchy works there. Only the path of a particle
+/// changes: y(t) = M(t)^-1 x(t). MovingPose::image() defines the local position of a stored position x at a time t. No
+/// crossing is lost between the two coordinates, because all tests use this definition.
 #pragma once
 
 #include <cstdint>
@@ -21,97 +21,97 @@
 
 namespace ricochet {
 
-/// Number of a body: the colliders that stand in one moving frame, or a mesh that deforms.
+/// Number of a body: the colliders of one moving frame, or a deforming mesh.
 using BodyId = std::uint32_t;
-/// The colliders that stand in the world.
+/// The world body: all colliders at rest.
 inline constexpr BodyId kWorldBody = 0xFFFFFFFFU;
 
-/// All bodies of a scene. Queries are safe from any number of threads, but not beside begin_step() and
+/// All bodies of a scene. Queries are safe from any number of threads, but not during begin_step() and
 /// prepare_radius().
 class MovingColliders {
 public:
-    /// `at_rest`: the world of the same list. frames: has all frames that the list names; both must outlive it.
-    /// Throws InputError as CollisionWorld does, and for a frame that does not exist.
+    /// `at_rest` is the world body of the same list. `frames` must contain all frames that the list names. Both must
+    /// outlive the object. Throws InputError like CollisionWorld, and for a frame that does not exist.
     MovingColliders(const CollisionWorld& at_rest, const std::shared_ptr<ColliderList>& colliders,
                     std::shared_ptr<const FrameTree> frames, double chord_margin);
 
     [[nodiscard]] const std::shared_ptr<const FrameTree>& frames() const { return frames_; }
-    /// Of bodies with a frame; they have the numbers below, and those that deform the ones from there on.
+    /// Returns the number of bodies with a frame. They are numbered first, and deforming meshes follow.
     [[nodiscard]] std::size_t size() const { return bodies_.size(); }
     [[nodiscard]] bool empty() const { return bodies_.empty() && deforming_.empty(); }
-    /// The meshes that deform. They stand in the world: their pose() is that of what is at rest.
+    /// Returns the deforming meshes. They have world coordinates, so their pose() is the pose at rest.
     [[nodiscard]] const DeformingColliders& deforming() const { return deforming_; }
     [[nodiscard]] bool is_deforming(BodyId body) const { return body != kWorldBody && body >= bodies_.size(); }
-    /// The colliders of a body with a frame in its coordinates, or those at rest.
+    /// Returns the colliders of a body with a frame, in its coordinates, or the colliders at rest.
     [[nodiscard]] const CollisionWorld& world(BodyId body) const {
         return body == kWorldBody ? at_rest_ : *bodies_[body].world;
     }
-    /// The body that a surface belongs to.
+    /// Returns the body of a surface.
     [[nodiscard]] BodyId body_of(SurfaceId surface) const {
         return body_of_collider_[colliders_->collider_of(surface)];
     }
     [[nodiscard]] BodyId body_of_collider(std::size_t collider) const { return body_of_collider_[collider]; }
-    /// The frame that a body stands in.
+    /// Returns the frame of a body.
     [[nodiscard]] std::size_t frame_of(BodyId body) const { return bodies_[body].frame; }
-    /// Where a body is at a time, s, and how it moves.
+    /// Returns the pose of a body at a time, in s, and its motion at that time.
     [[nodiscard]] MovingPose pose(BodyId body, double time) const {
         return body == kWorldBody || is_deforming(body) ? MovingPose{} : pose_of(body, time);
     }
-    /// Where a position of the world, m, is in a body's coordinates at a time, s.
+    /// Converts a position of the world to a body's coordinates at a time, in s.
     [[nodiscard]] Vec3 local_position(BodyId body, const Vec3& world, double time) const {
         return body == kWorldBody || is_deforming(body) ? world : pose_of(body, time).local_position(world);
     }
-    /// As CollisionWorld::prepare_radius().
+    /// See CollisionWorld::prepare_radius().
     void prepare_radius(double radius);
     void set_culling(bool culls);
 
-    /// What follows is asked within [begin, end], s.
+    /// Begins a step over [begin, end], in s. "The step" below is this one.
     void begin_step(double begin, double end);
-    /// Appends the bodies that come into the box during the step, kWorldBody first where its colliders do, in their
-    /// order; without `except`.
+    /// Appends the bodies that come into the box during the step, except `except`, in ascending order. kWorldBody is
+    /// the first if its colliders are in the box.
     void near(const Box3& box, BodyId except, std::vector<BodyId>& out) const;
-    /// Appends the bodies with a frame that may be in the box at a time, s, in their order: all of them where the time
-    /// is not in the step.
+    /// Appends the bodies with a frame that may be in the box at a time, in s, in ascending order. If the time is
+    /// outside the step, it appends all bodies with a frame.
     void near_at(const Box3& box, double time, std::vector<BodyId>& out) const;
-    /// True where all bodies certainly stay out of the box during the step.
+    /// Returns true if all bodies certainly stay out of the box during the step.
     [[nodiscard]] bool all_stay_out(const Box3& box) const;
-    /// True where a body certainly stays out of the box during the step.
+    /// Returns true if a body certainly stays out of the box during the step.
     [[nodiscard]] bool stays_out(BodyId body, const Box3& box) const;
-    /// Bounds of a body's motion during the step.
+    /// Returns bounds of a body's motion during the step.
     [[nodiscard]] const MotionBounds& bounds(BodyId body) const;
-    /// As FrameTree::next_key(); infinite for kWorldBody.
+    /// Returns FrameTree::next_key() of the body's frame, or infinity for kWorldBody.
     [[nodiscard]] double next_key(BodyId body, double time) const;
-    /// The first key after `from` and not after `until`, s, at which the body's velocity jumps.
+    /// Returns the first key in (from, until], in s, at which the body's velocity jumps.
     [[nodiscard]] std::optional<double> next_jump(BodyId body, double from, double until) const;
 
-    // Bodies that impulses move.
+    // Dynamic bodies.
 
-    /// How a body of a driven frame yields, in the frame's coordinates.
+    /// Sets the mobility of a dynamic body, in its frame's coordinates.
     void set_mobility(BodyId body, const Mobility& mobility) { bodies_[body].mobility = mobility; }
-    /// For what begins next: whether impulses have just changed its velocity; and its angular momentum, kg m^2/s, where
-    /// it is free.
+    /// Sets the state at the start of the next substep: a flag for a velocity jump by impulses, and the angular
+    /// momentum of a free body, in kg m^2/s.
     void set_motion(BodyId body, bool has_jumped, const std::optional<Vec3>& angular_momentum) {
         bodies_[body].has_jumped = has_jumped;
         bodies_[body].angular_momentum = angular_momentum;
     }
-    /// rad/s, by which the angular velocity of a free body differs at a time, s, from that of its path, which keeps the
-    /// one of the path's middle: an impact would not keep the energy with that.
+    /// Returns the difference of the angular velocity of a free body at a time, in s, from that of its path, in rad/s.
+    /// The path has the angular velocity of its middle throughout. Impacts with that value would not conserve energy.
     [[nodiscard]] Vec3 turning_beside_path(BodyId body, double time) const;
     [[nodiscard]] bool is_dynamic(BodyId body) const {
         return body < bodies_.size() && bodies_[body].mobility.has_value();
     }
-    /// How it yields at a time, s, in the world; only of one that does.
+    /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires yields().
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
         return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);
     }
-    /// True when impulses have changed its velocity where this step, or this part of it, begins.
+    /// Returns true if impulses have changed the body's velocity at the start of this step or substep.
     [[nodiscard]] bool has_jumped(BodyId body) const { return body < bodies_.size() && bodies_[body].has_jumped; }
 
 private:
     struct Body {
         std::unique_ptr<CollisionWorld> world;
         std::size_t frame = 0;
-        Box3 swept;  ///< where it comes in the step; everywhere for planes
+        Box3 swept;  ///< box of its colliders during the step; infinite for planes
         MotionBounds bounds;
         MovingPose at_begin;
         MovingPose at_end;
@@ -130,16 +130,17 @@ private:
     std::vector<Body> bodies_;
     std::vector<BodyId> body_of_collider_;
     DeformingColliders deforming_;
-    BoxTree swept_;                  ///< of the bodies in bounded_, in this step
-    std::vector<BodyId> bounded_;    ///< what does not reach everywhere
-    std::vector<BodyId> unbounded_;  ///< the others, looked at one by one
-    std::uint64_t step_ = 0;  ///< a number that no other step has, of no other scene: of poses that are remembered
+    BoxTree swept_;                  ///< boxes of the bodies in bounded_ during the step
+    std::vector<BodyId> bounded_;    ///< bodies with finite boxes
+    std::vector<BodyId> unbounded_;  ///< other bodies, tested one by one
+    std::uint64_t step_ = 0;         ///< key of cached poses, unique among all steps of all scenes
     double begin_ = 0.0;
     double end_ = 0.0;
 };
 
-/// The box that holds a body's box, in its own coordinates, wherever it is within [begin, end], s, rounded outward:
-/// about straight ways between its places there and at keys, by as much as its motion can lie beside them.
+/// Returns a box in the world that contains a body's box, given in its own coordinates, at all times in [begin, end],
+/// in s. It encloses straight paths between the positions at both ends and at keys, grown by a bound on the deviation
+/// from them.
 [[nodiscard]] Box3 swept_box(const FrameTree& frames, std::size_t frame, const Box3& box, double begin, double end);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// How the path of a MovingSweep is cut into pieces.
+// Division of a MovingSweep's path into pieces.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,28 +10,27 @@
 namespace ricochet {
 namespace {
 
-/// Smallest distance of a cut at a key from the ends of a path, as a fraction of its duration. Local: a guard against
-/// pieces without duration.
+/// Least distance of a cut at a deforming mesh's key from the ends of a path, as a fraction of the path's duration.
 constexpr double kLeastPart = 0x1p-45;
 
-/// A cubic that has the values and velocities of a function at both ends of a time h is within h^4 / kHermiteError
-/// times the fourth derivative of it. A mathematical constant.
+/// Divisor in the error bound of a cubic Hermite path: over a time h it deviates from the function by at most h^4 /
+/// kHermiteError times the largest fourth derivative.
 constexpr double kHermiteError = 384.0;
 
-/// Ratio up to which the remainder of a path still counts as one fine piece. Local: it covers rounding, and only the
-/// cost depends on it.
+/// Largest length, relative to a fine piece, of the rest of a path that is still taken as one fine piece. It covers
+/// rounding.
 constexpr double kAlmostOne = 1.0 + 1e-9;
 
-/// Largest length, in fine pieces, of a piece that meets nothing. Its cubic has an error larger by the fourth power.
-/// Local, because boxes are enlarged by that error, so only the cost depends on it.
+/// Largest length of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power of
+/// this number.
 constexpr double kLongestPiece = 16.0;
 
-/// Most fine pieces in a row before a longer piece is tried again. Local, because only the cost depends on it.
+/// Largest number of fine pieces in sequence before a longer one is tried again.
 constexpr int kMostFinePieces = 64;
 
 }  // namespace
 
-/// At the keys of all bodies that are near, and evenly between them.
+/// Cuts the path at the keys of all bodies nearby, and evenly between the keys.
 void MovingSweep::cut() {
     const double duration = query_.path.duration;
     const PathClock& clock = view_.clock();
@@ -96,7 +95,8 @@ void MovingSweep::cut_finely() {
     }
 }
 
-/// s along the path: the next cut, or before that as far as a fine piece goes, or one that meets nothing.
+/// Returns the end of the next piece, in s along the path: the next cut, or before it the end of a fine piece or of a
+/// longer piece without contacts.
 double MovingSweep::end_of_piece(const PathPoint& start) {
     is_clear_ = false;
     const double cut = lists_.cuts[next_];
@@ -115,8 +115,9 @@ double MovingSweep::end_of_piece(const PathPoint& start) {
     return begin_ + fine;
 }
 
-/// s along the path until which nothing of other frames comes near it; where it begins when that is less than a fine
-/// piece. Looks as far as cubics are within what the boxes of all bodies leave for that.
+/// Returns the time, in s along the path, until which no surface of other frames comes near it. If that is within less
+/// than a fine piece, returns the start of the piece. The search extends as far as the errors of the cubics are within
+/// the margins of all bodies' boxes.
 double MovingSweep::clear_until(const PathPoint& start, double fine) {
     double longest = kLongestPiece * fine;
     std::vector<double>& besides = lists_.besides;
@@ -128,7 +129,7 @@ double MovingSweep::clear_until(const PathPoint& start, double fine) {
             error = std::min(error, (world.bvh_for(query_.radius).margin() - query_.radius) / 32.0);
         }
         longest = std::min(longest, std::sqrt(std::sqrt(kHermiteError * error / lists_.fourth[k])));
-        // The pieces that are made of it lie as far beside the true way on its other side.
+        // The pieces cut from it can deviate as much from the true path, on its other side.
         besides.push_back(beside_in_bodies() + 2.0 * error);
     }
     if (!(longest >= 2.0 * fine)) return begin_;
@@ -145,7 +146,7 @@ double MovingSweep::clear_until(const PathPoint& start, double fine) {
     return clear < piece_.duration ? begin_ + clear : begin_ + piece_.duration;
 }
 
-/// s, all keys of meshes that deform within the path's time, where some are near.
+/// Returns all keys of deforming meshes within the path's time, in s, if such a mesh is near.
 std::vector<double> MovingSweep::deforming_keys() const {
     std::vector<double> keys;
     if (deforming_.empty()) return keys;
@@ -157,14 +158,14 @@ std::vector<double> MovingSweep::deforming_keys() const {
     return keys;
 }
 
-/// Of a key within the path's time: inside the path, also where rounding has it at its ends.
+/// Returns the time along the path of a key. It is inside the path even if rounding would put it at an end.
 double MovingSweep::path_time_of(double key) const {
     const PathClock& clock = view_.clock();
     const double least = kLeastPart * query_.path.duration;
     return std::clamp(key - clock.base - clock.offset, least, query_.path.duration - least);
 }
 
-/// Pieces that end at a key end at its very time.
+/// Sets the simulation times of the cuts. A piece that ends at a key ends exactly at the key's time.
 void MovingSweep::set_times() {
     const PathClock& clock = view_.clock();
     const std::vector<double> keys = deforming_keys();

@@ -14,11 +14,10 @@
 namespace ricochet {
 namespace {
 
-/// Newton steps in search of the exact time of an impact. Each squares the relative error. Local: it ends below the
-/// rounding of the result.
+/// Number of Newton steps in the search for the true time of an impact. Each squares the error.
 constexpr int kNewtonSteps = 4;
 
-/// The piece of a path between two times, from a start that may differ by rounding.
+/// Returns the piece of a path between two times, with a given start, which may differ by rounding.
 Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     Path piece = path;
     piece.c[0] = start;
@@ -29,7 +28,7 @@ Path piece_of(const Path& path, double from, double to, const Vec3& start) {
     return piece;
 }
 
-/// The straight path between two positions.
+/// Returns the straight path between two positions.
 Path straight_path(const Vec3& from, const Vec3& to, double duration) {
     const Vec3 velocity = (to - from) / duration;
     Path path = line_path(from, is_finite(velocity) ? velocity : Vec3{}, duration);
@@ -37,7 +36,7 @@ Path straight_path(const Vec3& from, const Vec3& to, double duration) {
     return path;
 }
 
-/// Bounds of the derivatives of a path.
+/// Returns bounds of the derivatives of a path.
 DerivativeBounds bounds_of(const Path& path) {
     const double t = path.duration;
     const double second = length(path.c[2]);
@@ -70,7 +69,8 @@ MovingSweep::MovingSweep(const MovingView& view, const SurfaceGeometry& geometry
     cut();
 }
 
-/// By the box of the path in the world; seen from a body everything may be near.
+/// Finds the bodies near the path, by the path's box in the world. A path in the frame of a body has a box of all
+/// positions that it can reach.
 void MovingSweep::find_near() {
     const MovingColliders& bodies = view_.bodies();
     Box3 box = reach_of(query_.path, query_.radius);
@@ -93,7 +93,7 @@ void MovingSweep::find_near() {
     if (!bodies.deforming().empty()) find_deforming(box);
 }
 
-/// With those within reach of all positions that are tried beside the path.
+/// Finds the deforming triangles near the path, and near all positions beside the path that can be tried.
 void MovingSweep::find_deforming(const Box3& box) {
     const DeformingColliders& deforming = view_.bodies().deforming();
     deforming_offset_ = deforming.offset_in(box);
@@ -111,7 +111,7 @@ DerivativeBounds MovingSweep::world_bounds() const {
     return bounds;
 }
 
-/// A bound of that of the path in the coordinates of a body, m/s^4.
+/// Returns a bound of the path's fourth derivative in the coordinates of a body, in m/s^4.
 double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world) const {
     const MotionBounds& frame = view_.bodies().bounds(body);
     DerivativeBounds relative = world;
@@ -121,7 +121,7 @@ double MovingSweep::fourth_derivative(BodyId body, const DerivativeBounds& world
     return product(frame.rotation, relative)[4];
 }
 
-/// m, by which a body may see a piece of the path beside where it is.
+/// Returns the largest allowed deviation, in m, of a piece from the true path in the coordinates of a body.
 double MovingSweep::tolerance_in(BodyId body) const {
     const CollisionWorld& world = view_.bodies().world(body);
     const Vec3 at = view_.local_position(body, start_.world, 0.0);
@@ -134,15 +134,15 @@ double MovingSweep::tolerance_in(BodyId body) const {
     return std::max(tolerance, kSmallestContactOffset);
 }
 
-/// The same, known already of one that is near.
+/// Returns tolerance_in(body), which is already known for bodies near the path.
 double MovingSweep::tolerance_of(BodyId body) const {
     const auto found = std::find(lists_.near.begin(), lists_.near.end(), body);
     if (found == lists_.near.end()) return tolerance_in(body);
     return lists_.tolerances[static_cast<std::size_t>(found - lists_.near.begin())];
 }
 
-/// m, by which the images of stored positions may lie beside the path in a frame, and safe positions further: by the
-/// rounding of the world's coordinates and of the frames' origins.
+/// Returns the deviation of local positions from the path in a frame, and of safe positions from the path, in m. It
+/// comes from rounding of the world's coordinates and of the frames' origins.
 double MovingSweep::rounding() const {
     Vec3 largest = abs(start_.world) + abs(query_.path.end - query_.path.c[0]);
     const auto include = [&](BodyId body) {
@@ -157,21 +157,21 @@ double MovingSweep::rounding() const {
     return kLargestContactOffsetUlps / kContactOffsetUlps * std::max(contact_offset(largest), deforming_offset_);
 }
 
-/// The piece as a body sees it.
+/// Returns the piece in the coordinates of a body.
 Path MovingSweep::path_in(BodyId body, const MovingView& view, const PathPoint& start) const {
     const PathPoint end = view.point_at(piece_.end, piece_.duration);
     const Vec3 from = view.local_position(body, start.world, 0.0);
     const Vec3 to = view.local_position(body, end.world, piece_.duration);
     const Vec3 leaving = view.velocity_in(body, {start.position, 0.0, start.world}, piece_.velocity(0.0));
     if (!(piece_.duration > 0.0)) return line_path(from, leaving, 0.0);
-    // In less time than the clock tells apart a body jumps from its place at one time to that at the next: a cubic that
-    // arrives there with the velocities at both ends would bend beyond all bounds.
+    // If the piece is shorter than the resolution of the clock, the body jumps from one pose to the next. A cubic with
+    // the velocities at both ends would then bend without limit.
     if (piece_.duration <= ulp(clock_.end)) return straight_path(from, to, piece_.duration);
     const Vec3 arriving = view.velocity_in(body, end, piece_.velocity(piece_.duration), MovingView::Limit::before);
     return hermite_path(from, leaving, to, arriving, piece_.duration);
 }
 
-/// Makes a contact with a body, whose path it was found on, the first one where it is, or a part of it.
+/// Makes a contact found in the frame of a body the first contact if it is earlier, or merges it if it is simultaneous.
 void MovingSweep::take(const Contact& found, BodyId body, const SurfaceGeometry& geometry, const MovingView& view,
                        std::optional<Contact>& first) const {
     Contact contact = found;
@@ -200,8 +200,8 @@ void MovingSweep::merge(Contact contact, std::optional<Contact>& first) const {
     std::sort(surfaces.begin(), surfaces.end(), [](const auto& a, const auto& b) { return a.surface < b.surface; });
 }
 
-/// By Newton's method on the distance along the true way, from the time on the cubic, until that is less than its
-/// coordinates tell.
+/// Finds the time of a contact on the true path by Newton's method on the distance. It starts from the time on the
+/// cubic and ends when the distance is below the rounding of the coordinates.
 void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeometry& geometry,
                                  const MovingView& view) const {
     const SurfaceId surface = contact.first().surface;
@@ -240,7 +240,8 @@ void MovingSweep::find_true_time(Contact& contact, BodyId body, const SurfaceGeo
     }
 }
 
-/// m, by which what is asked about lies beside the path here: what a body sees beside its cubic.
+/// Returns the distance from the path, in m, at which positions are queried. It covers the error of the cubics and
+/// rounding.
 double MovingSweep::beside_path() const {
     double tolerance = 0.0;
     for (const double one : lists_.tolerances) tolerance = std::max(tolerance, one);
@@ -298,7 +299,7 @@ void MovingSweep::meet_bodies(const MovingView& view, const PathPoint& start, st
     }
 }
 
-/// beside: m, as far beside the path positions may be asked about.
+/// Tests deforming meshes. `beside` has the meaning of ContactQuery::beside.
 void MovingSweep::meet_deforming(const MovingView& view, const PathPoint& start, double beside,
                                  std::optional<Contact>& first) {
     const DeformingColliders& deforming = view.bodies().deforming();

@@ -1,17 +1,17 @@
 /// \file
-/// The first contact of a path among colliders that move: piece by piece, in the frame of each body that comes near.
+/// First contact of a path among moving colliders: piece by piece, in the frame of each body near the path.
 ///
-/// In the coordinates of a body that turns the path is no polynomial. It is cut into pieces on which the cubic through
-/// both ends, with the velocities there, is within kMovingPathTolerance of it (h^4 / 384 times a bound of the fourth
-/// derivative; E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6). Those
-/// are swept as all paths are; the time of an impact is then found again on the true way. What is left of the
-/// approximation moves a graze; it lets nothing through, since every link is certified for stored positions.
+/// In the coordinates of a turning body the path is no polynomial. It is cut into pieces on which the cubic Hermite
+/// path is within kMovingPathTolerance of the true path. The bound is h^4 / 384 times a bound of the fourth derivative
+/// (E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", section II.6). The cubics are
+/// swept like all paths, and the time of an impact is then found again on the true path. The remaining error can only
+/// move a grazing contact. Nothing passes through a surface, because every segment is certified for stored positions.
 ///
-/// Where that takes many pieces, a longer cubic is looked at first, with as much more room about it as it may lie
-/// beside the true way. Until something comes near that, the path is one piece, which meets nothing of other frames.
+/// If this takes many pieces, a longer cubic is tested first, with a margin for its larger error. The path is one piece
+/// until a surface of another frame comes near this cubic.
 ///
-/// Meshes that deform are met in the world, where path and vertices are polynomials. Pieces end at their keys, whose
-/// times are those that positions are stored with: no link leads over one.
+/// Deforming meshes are tested in the world, where path and vertices follow polynomials. Pieces end exactly at the keys
+/// of these meshes, and positions there are stored with the key's time. No segment therefore contains a key.
 #pragma once
 
 #include <cstddef>
@@ -27,31 +27,32 @@
 
 namespace ricochet {
 
-/// Where bodies may touch what moves along a path in the world.
+/// Returns the box in which bodies may touch a sphere that moves along a path in the world.
 [[nodiscard]] Box3 reach_of(const Path& path, double radius);
 
-/// The pieces of one path. What it is given must outlive it; scratch memory of one thread.
+/// Sweep of one path, piece by piece. All arguments must outlive the object, and `scratch` must belong to its thread.
 class MovingSweep {
 public:
-    /// query: of a path in the frame of view.home(); geometry: of the colliders there. start: of the path, stored.
+    /// `query` is for a path in the frame of view.home(), and `geometry` for the colliders of that frame. `start` is
+    /// the stored start of the path.
     MovingSweep(const MovingView& view, const SurfaceGeometry& geometry, const ContactQuery& query,
                 const PathPoint& start, ContactScratch& scratch);
     ~MovingSweep() { scratch_.sweep = std::move(lists_); }
     MovingSweep(const MovingSweep&) = delete;
     MovingSweep& operator=(const MovingSweep&) = delete;
 
-    /// True when all of the path has been swept.
+    /// Returns true if the whole path has been swept.
     [[nodiscard]] bool is_done() const { return next_ >= lists_.cuts.size(); }
-    /// When the next piece begins, s along the path; its duration when all is done.
+    /// Returns the start of the next piece, in s along the path. If is_done(), it is the path's duration.
     [[nodiscard]] double begin() const { return begin_; }
 
-    /// Sweeps the next piece, unless all is done. start: where it begins, stored. The result is in times of the piece,
-    /// and is valid until the next call; path() is then the piece in the frame of the query.
+    /// Sweeps the next piece, from its stored start. Requires !is_done(). The result is in times of the piece and valid
+    /// until the next call. Afterwards path() is the piece in the frame of the query.
     [[nodiscard]] ContactQueryResult sweep(const PathPoint& start);
     [[nodiscard]] const Path& path() const { return piece_; }
     [[nodiscard]] const PathClock& clock() const { return clock_; }
 
-    /// The first contact of the whole path, in its times, of one that goes on as it is.
+    /// Returns the first contact of the whole path, in its times, for a particle that never leaves the path.
     [[nodiscard]] std::optional<Contact> first_contact();
 
 private:
@@ -88,16 +89,16 @@ private:
     PathPoint start_;
     ContactScratch& scratch_;
     ContactScratch::Sweep lists_;
-    std::vector<SurfaceId> deforming_;  // triangles of meshes that deform, near the whole path
-    std::vector<double> times_;         // s, simulation times of the cuts; only where something that deforms is near
-    double rate_ = 0.0;                 // pieces a second
-    double beside_path_ = 0.0;          // m, of beside_path()
-    double deforming_offset_ = 0.0;     // m, the largest contact offset of meshes that deform and may be near
-    std::size_t next_ = 1;              // the cut at which the next piece ends, or after it
-    double begin_ = 0.0;                // s, of the next piece
-    bool is_clear_ = false;             // nothing of other frames comes near the piece
-    int fine_left_ = 0;                 // pieces until a longer one is tried again
-    int fine_after_next_ = 1;           // that many after the next one that is of no use
+    std::vector<SurfaceId> deforming_;  // triangles of deforming meshes near the whole path
+    std::vector<double> times_;         // simulation times of the cuts, in s; empty without deforming meshes nearby
+    double rate_ = 0.0;                 // pieces per second
+    double beside_path_ = 0.0;          // result of beside_path(), in m
+    double deforming_offset_ = 0.0;     // largest contact offset of deforming meshes that may be near, in m
+    std::size_t next_ = 1;              // index of the first cut at or after the end of the next piece
+    double begin_ = 0.0;                // start of the next piece, in s
+    bool is_clear_ = false;             // true if no surface of other frames comes near the piece
+    int fine_left_ = 0;                 // number of fine pieces before a longer one is tried again
+    int fine_after_next_ = 1;           // the same number after the next failure of a longer piece
     std::optional<SurfacesInOtherFrames> other_frames_;
     Path piece_;
     PathClock clock_;

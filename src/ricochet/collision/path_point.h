@@ -35,7 +35,8 @@ struct PathClock {
     }
 };
 
-/// Bodies as seen from a reference frame: that of a body, or the world (kWorldBody). A path is given in that frame.
+/// Conversions between the frame of a path and the frames of bodies. The path's frame is that of a body, or the world
+/// (kWorldBody).
 class MovingView {
 public:
     MovingView(const MovingColliders& bodies, BodyId reference, const PathClock& clock)

@@ -10,8 +10,8 @@ double offset_for_carrying(const MovingPose& pose, const Vec3& local_position) {
     return kCarryingOffsets * max_abs(pose.local_position(pose.point(local_position)) - local_position);
 }
 
-/// By coordinates of the link, not of the path: where that leads far away, a sphere must not sink in here by its
-/// rounding there.
+/// Computes the tolerance from the coordinates of the segment, not of the path. The path may end far away, and its
+/// rounding there must not let a sphere sink in here.
 bool SurfacesInOtherFrames::is_free(const Deforming& triangle, const PathPoint& p, const PathPoint& q) const {
     const double tolerance = sphere_tolerance(triangle.radius, std::max(max_abs(p.world), max_abs(q.world)));
     const double radius = std::max(0.0, triangle.radius - tolerance);

@@ -1,6 +1,6 @@
 /// \file
-/// Surfaces near a path that stand in other frames than it is given in, and meshes that deform: the certificate of
-/// links in their frames, and in space and time, and what is asked of them.
+/// Surfaces near a path in other frames than the path's own, and deforming meshes: certificates of space-time segments,
+/// distances and normals.
 #pragma once
 
 #include <optional>
@@ -14,32 +14,32 @@
 
 namespace ricochet {
 
-/// m, by which a position in a frame has to keep off surfaces so that being carried along does not lead it into them:
-/// the rotation of a body that is pushed about has the roundings of all its turns so far, and there and back leads
-/// elsewhere. 0 where that is within what contact_offset() is for.
+/// Returns the distance, in m, that a particle attached to a frame must keep from surfaces. Reason: the rotation of a
+/// dynamic body has accumulated the rounding errors of all its turns. Conversion to the world and back therefore gives
+/// another position. The result is 0 if that error is within contact_offset().
 [[nodiscard]] double offset_for_carrying(const MovingPose& pose, const Vec3& local_position);
 
-/// What queries in the frames of other bodies have found near one path, or near a piece of it. Each body sees the path
-/// as a cubic of its own; stored positions are what MovingPose::image() says.
+/// Results of queries in the frames of other bodies near one path, or near a piece of it. In each frame the path is a
+/// cubic of its own. Stored positions are converted by MovingPose::image().
 class SurfacesInOtherFrames {
 public:
-    /// A body that is near.
+    /// A body near the path.
     struct Body {
         BodyId id = kWorldBody;
-        Path path;  ///< in its coordinates
+        Path path;  ///< in the body's coordinates
         NearSurfaces near;
     };
-    /// A triangle of a mesh that deforms.
+    /// A triangle of a deforming mesh.
     struct Deforming {
         SurfaceId surface = 0;
-        double radius = 0.0;  ///< m, of the ball that links keep off it, but for the sphere_tolerance() of each
+        double radius = 0.0;  ///< distance that segments keep, up to sphere_tolerance() of each segment, in m
     };
 
-    /// start: of the path, stored. Bodies are added in ascending order of their queries, triangles in that of their
-    /// numbers.
+    /// `start` is the stored start of the path. Bodies are added in ascending order of their queries, triangles in
+    /// ascending order of their numbers.
     SurfacesInOtherFrames(const MovingView& view, const PathPoint& start) : view_(view), start_(start) {}
 
-    /// The same for another path; without bodies.
+    /// Removes all surfaces and begins with another path.
     void restart(const MovingView& view, const PathPoint& start) {
         view_ = view;
         start_ = start;
@@ -53,12 +53,12 @@ public:
     [[nodiscard]] const MovingView& view() const { return view_; }
     [[nodiscard]] const PathPoint& start() const { return start_; }
 
-    /// As NearSurfaces says it of links.
+    /// Like is_segment_free(), segment_blocker() and covers_chord() of NearSurfaces, for the surfaces of other frames.
     [[nodiscard]] bool are_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> blocker(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] bool cover_chord(double from, double to) const;
 
-    // Of surfaces of other frames, as they are seen from the path's own.
+    // Functions for surfaces of other frames, with results in the path's own frame.
     [[nodiscard]] bool is_flat(SurfaceId surface) const;
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
     [[nodiscard]] double signed_distance_from(SurfaceId surface, const PathPoint& p) const;

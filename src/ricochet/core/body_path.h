@@ -15,12 +15,12 @@ namespace ricochet {
 struct BodyPath {
     double begin = 0.0;
     double end = 0.0;
-    AffineMap at_begin;                 ///< position of the origin at the begin, in m, and the rotation at angle 0
+    AffineMap at_begin;                 ///< position of the origin at the start, in m, and the rotation at angle 0
     Vec3 carrier;                       ///< the point that follows the cubic, in m, in the frame's coordinates
     std::array<Vec3, 3> center_path{};  ///< its path in the world: coefficients of t, t^2 and t^3, in m/s^n
     Vec3 axis{0, 0, 1};                 ///< unit vector; the same in the frame's axes and in world axes
     std::array<double, 3> turns{};      ///< the angle in degrees: coefficients of t, t^2 and t^3
-    double degrees = 0.0;               ///< angle at the begin
+    double degrees = 0.0;               ///< angle at the start
 
     /// Returns the pose at a time, in s, with its velocities and accelerations.
     [[nodiscard]] MovingPose at(double time) const;

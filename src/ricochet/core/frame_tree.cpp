@@ -17,8 +17,8 @@
 namespace ricochet {
 namespace {
 
-/// Most entries of a chain. Longer chains of frames continue the chain of another frame, so that deep trees take memory
-/// in proportion to their number of frames.
+/// Largest number of entries of a chain. Longer chains of frames continue the chain of another frame, so that deep
+/// trees take memory in proportion to their number of frames.
 constexpr std::size_t kLongestChain = 16;
 
 /// Number of the world as a parent.

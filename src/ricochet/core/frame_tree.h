@@ -60,7 +60,7 @@ using FrameMotion = std::variant<KeyedRotation, KeyedTranslation, Spin, Swing, O
 struct FrameDescription {
     std::string name;
     std::string parent;                  ///< empty: the world
-    Vec3 translation;                    ///< m, of the origin in the parent's axes
+    Vec3 translation;                    ///< position of the origin in the parent's axes, in m
     Vec3 rotation_axis{0, 0, 1};         ///< of any nonzero length
     double rotation_degrees = 0.0;       ///< about rotation_axis, right-hand rule
     std::vector<FrameMotion> motions{};  ///< in order

@@ -28,12 +28,12 @@ struct MotionPart {
     };
 
     Kind kind = Kind::flight;
-    double time = 0.0;      ///< in s, simulation time at the begin
+    double time = 0.0;      ///< in s, simulation time at the start
     double duration = 0.0;  ///< in s
     double radius = 0.0;    ///< in m, of the solid sphere that touches surfaces; 0 for points
     RecordedMotion begin;
     RecordedMotion end;
-    /// Force over the mass, in m/s^2, at the begin, in the middle and at the end of a contact. Springs oscillate within
+    /// Force over the mass, in m/s^2, at the start, in the middle and at the end of a contact. Springs oscillate within
     /// a step, so their force in between can lie outside the range of both ends.
     std::array<Vec3, 3> forces{};
     bool forces_are_steady = true;  ///< the forces do not depend on time, position or velocity

@@ -230,8 +230,8 @@ Vec3 PlanDeviations::impulse_change(const ParticleSystem& system, const Particle
     return sum;
 }
 
-/// Returns the velocity change of a member by forces on single particles, in m/s, in excess of that on its planned
-/// path.
+/// Returns the velocity change of a member by forces on single particles on its flown path, less the change on its
+/// planned path, in m/s.
 Vec3 PlanDeviations::own_change(const ParticleSystem& system, std::size_t member, const Flight& plan) const {
     if (system.has_uniform_forces()) return {};
     const FlownPiece planned = piece_of(plan);

@@ -28,8 +28,8 @@ struct ForceInput {
     /// Action of other particles on this one, from a bounce to the end of the step; null if the particle is not
     /// coupled.
     const Coupling* coupling = nullptr;
-    /// Radius, in m, of the whole sphere if only a part of it collides, whose radius is then in `radius`; 0 otherwise.
-    /// ForceField passes the whole radius to the forces.
+    /// Radius of the whole sphere, in m, if only its core collides; `radius` is then the radius of the core. Otherwise
+    /// 0. ForceField passes the whole radius to the forces.
     double whole_radius = 0.0;
     /// The particle's attribute `temperature`, in K, at the start of the step; 0 if the particle has no such attribute.
     double temperature = 0.0;

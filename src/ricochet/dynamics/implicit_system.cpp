@@ -101,9 +101,9 @@ private:
     [[nodiscard]] bool is_supported(std::size_t i) const { return !supports_.empty() && supports_[i].count > 0; }
 
     /// Solves the equations by Newton's method. The residual is the gradient of an energy. It is the sum of the kinetic
-    /// energy relative to the motion without springs, the spring energy, the dissipation, and the work of forces.
-    /// Definite matrices descend from any start, past the saddles, to the minimum. Returns true if the method
-    /// converged.
+    /// energy relative to the motion without springs, the spring energy, the dissipation, and the work of forces. With
+    /// definite matrices every step descends, so the method reaches the minimum from any start and does not end at a
+    /// saddle. Returns true if the method converged.
     bool solve() {
         for (int iteration = 0; iteration < kMostSteps; ++iteration) {
             if (is_solved()) return true;

@@ -107,7 +107,7 @@ struct ContactColumns {
     std::vector<Vec3> normal;            ///< unit, from the surface to the particle
     std::vector<Vec3> velocity_before;   ///< m/s
     std::vector<Vec3> velocity_after;    ///< m/s
-    std::vector<Vec3> impulse;           ///< N s, on the surface
+    std::vector<Vec3> impulse;           ///< on the surface, in N s
     std::vector<double> radius;          ///< of the particle, m
     /// Velocity of the surface's own material, such as a conveyor belt, in m/s; only if materials move.
     std::optional<std::vector<Vec3>> surface_velocity;

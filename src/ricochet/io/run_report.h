@@ -71,7 +71,7 @@ struct ColliderSummary {
     Vec3 impulse;  ///< N s
     /// Loads on a collider that moves or whose material moves; nothing for other colliders.
     std::optional<ColliderTotals> loads = {};
-    Vec3 lasting_impulse = {};             ///< N s, part of `impulse` that is not due to impacts
+    Vec3 lasting_impulse = {};             ///< part of `impulse` that is not due to impacts, in N s
     ImpulseSizes sizes = {};               ///< impulses of its triangles, by origin
     std::vector<GroupTotals> groups = {};  ///< totals of its triangles; empty if the mesh has no groups
 };

@@ -31,14 +31,14 @@ struct OutputOptions {
 /// Position and optics of the camera.
 struct CameraDescription {
     Vec3 position;                                  ///< m
-    Vec3 target;                                    ///< m, centre of the picture
+    Vec3 target;                                    ///< centre of the picture, in m
     std::optional<Vec3> up;                         ///< any length; nothing: against gravity
     double field_of_view_degrees = 35.0;            ///< between the lower and the upper edge
     std::optional<double> focal_length{};           ///< mm, for a film of 24 mm height; determines the field of view
     double aperture = 0.0;                          ///< diameter of the lens, in m; 0: everything is sharp
     double focus_distance = 0.0;                    ///< distance of sharp objects along the view, in m; 0: the target's
-    std::optional<KeyedCurve<Vec3>> path{};         ///< m, replaces position
-    std::optional<KeyedCurve<Vec3>> target_path{};  ///< m, replaces target
+    std::optional<KeyedCurve<Vec3>> path{};         ///< replaces `position`, in m
+    std::optional<KeyedCurve<Vec3>> target_path{};  ///< replaces `target`, in m
     std::string frame{};                            ///< reference frame of all members; empty: the world
     std::shared_ptr<const FrameTree> frames{};      ///< frames of the scene, for a camera in a frame
 
@@ -68,9 +68,9 @@ struct TriangleGroups {
 
 /// Stretching of drawn particles as they move, at constant volume; it does not affect the run.
 struct StretchDescription {
-    double speed = 0.0;   ///< s/m: particles are longer along the velocity by 1 + `speed` times their speed
-    double impact = 0.0;  ///< s/m: at an impact, flatter along the normal by 1 + `impact` times the normal speed
-    double time = 0.1;    ///< s, > 0, duration of the flattening, half of it before the impact
+    double speed = 0.0;   ///< in s/m; the length along the velocity grows by the factor 1 + `speed` times the speed
+    double impact = 0.0;  ///< in s/m; an impact flattens by the factor 1 + `impact` times the normal speed
+    double time = 0.1;    ///< duration of the flattening, in s, > 0; half of it is before the impact
     double most = 2.0;    ///< >= 1, largest factor of both
 
     friend bool operator==(const StretchDescription&, const StretchDescription&) = default;
@@ -82,7 +82,7 @@ struct ParticleDrawingDescription {
     std::string sprite{};                 ///< PNG file of the sprites; run.json names a copy beside it
     std::string mesh{};                   ///< mesh file of the particles; run.json names a copy beside it
     std::string turn{};                   ///< name of the sprites' orientation; empty: upright
-    std::optional<MeanSpread> turning{};  ///< rad/s, rate of turn of sprites, and of meshes without a spin
+    std::optional<MeanSpread> turning{};  ///< rate of turn of sprites, and of meshes without a spin, in rad/s
 };
 
 /// Light and surroundings of pictures, and the default appearance of particles.

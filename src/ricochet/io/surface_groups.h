@@ -32,7 +32,7 @@ struct GroupTotals {
     std::uint64_t triangles = 0;
     std::uint64_t hits = 0;
     Vec3 impulse;          ///< N s
-    Vec3 lasting_impulse;  ///< N s, part of it that is not due to impacts
+    Vec3 lasting_impulse;  ///< part of `impulse` that is not due to impacts, in N s
 };
 
 /// Returns the totals of each group, in the order of the names, summed in the order of the triangles. Returns nothing

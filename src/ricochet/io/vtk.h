@@ -31,9 +31,8 @@ struct VtkArray {
     [[nodiscard]] std::size_t size() const;
 };
 
-/// Moves the arrays into a list.
-/// Reason: an initializer list copies them. If such a copy runs out of memory, the variant in GCC 12's library fails.
-/// It is destroyed without a value, a state that the library considers impossible.
+/// Moves the arrays into a list. Reason: an initializer list copies the arrays. If memory runs out during a copy, GCC
+/// 12's library destroys the variant without a value, a state that it considers impossible.
 template <class... Arrays>
 [[nodiscard]] std::vector<VtkArray> list_of(Arrays... arrays) {
     std::vector<VtkArray> list;

@@ -86,7 +86,7 @@ public:
     /// Returns the first hit of every ray.
     [[nodiscard]] MeshHits first_hits(const RayBatch& rays) const;
     /// Returns every hit of every ray once. Triangles that share the edge or vertex at which they are hit give one hit.
-    /// A path along the surface is also one hit, at its begin.
+    /// A path along the surface is also one hit, at its start.
     [[nodiscard]] AllMeshHits all_hits(const RayBatch& rays) const;
     /// Returns the numbers of these hits.
     [[nodiscard]] std::vector<std::uint64_t> count_hits(const RayBatch& rays) const;

@@ -17,8 +17,8 @@
 namespace ricochet {
 namespace {
 
-/// Directions of rays, against which the half-strips extend. They have few bits, and lie in no plane of symmetry of a
-/// grid.
+/// Directions of rays. Half-strips extend in the opposite directions. The directions have few bits, and lie in no plane
+/// of symmetry of a grid.
 constexpr std::array<Vec3, 3> kDirections{
     {{0.4375, 0.6171875, 1.0}, {-0.8046875, 1.0, 0.3671875}, {1.0, -0.5703125, -0.7421875}}};
 

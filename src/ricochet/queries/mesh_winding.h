@@ -25,11 +25,11 @@ struct BoundaryEdge {
 /// point, less the fraction in which its front does. It equals the result of geometry/mesh/mesh_openings.h up to
 /// rounding. Its time grows with the number of boundary edges instead of triangles.
 ///
-/// Half-strips from the boundary edges, against a fixed direction, close the mesh at infinity. A ray in that direction
-/// meets no half-strip, so its crossings of the mesh add up to the winding number of the closed surface, exactly. The
-/// solid angle of a half-strip is that of a spherical triangle. On the plane of a half-strip its sign is decided like
-/// the crossings. The idea: C. Martens, M. Bessmeltsev, "One-shot Method for Computing Generalized Winding Numbers",
-/// Computer Graphics Forum 44, 2025.
+/// Half-strips extend from the boundary edges, opposite to a fixed direction, and close the mesh at infinity. A ray in
+/// that direction meets no half-strip, so its crossings of the mesh add up to the winding number of the closed surface,
+/// exactly. The solid angle of a half-strip is that of a spherical triangle. If the point lies in the plane of a
+/// half-strip, the sign of this angle is decided by the same rule as the crossings. The idea: C. Martens, M.
+/// Bessmeltsev, "One-shot Method for Computing Generalized Winding Numbers", Computer Graphics Forum 44, 2025.
 [[nodiscard]] double winding_number(const MeshIndex& mesh, const Vec3& point);
 
 }  // namespace ricochet

@@ -60,7 +60,7 @@ bool comes_before(const Ray& ray, const Candidate& x, const Candidate& y) {
     return order != 0 ? order < 0 : x.triangle < y.triangle;
 }
 
-// All places: triangles that share the feature that the ray passes through are joined.
+// All hits of a ray. Triangles that share the feature through which the ray passes give one hit.
 
 /// Feature of a triangle that the ray passes through, and the candidate that it belongs to.
 struct Passed {
@@ -139,8 +139,8 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
 }  // namespace
 
 int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
-    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the sign of its change with o,
-    // -(q - p) x d.
+    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the result is the sign of its
+    // change with o, which is -(q - p) x d.
     const ExactDifference u(p, ray.origin);
     const ExactDifference v(q, ray.origin);
     const ExactDifference d(ray.direction, Vec3{});

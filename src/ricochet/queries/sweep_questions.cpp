@@ -149,8 +149,9 @@ std::optional<MovingContact> contact_after_leaving(const MovingPoint& point, dou
 }
 
 /// Returns the contact of a sphere that touches or overlaps the triangle from the start, in the contact `at_start`. The
-/// sphere is stopped at once if the distance shrinks, as beside a triangle at rest (SphereSweep). Otherwise it is free
-/// until it comes nearer than at the start, or comes back. It never comes nearer to a triangle that moves as a whole.
+/// sphere is stopped at once if the distance shrinks, as beside a triangle at rest (SphereSweep). Otherwise the sphere
+/// is free until it comes nearer to the triangle than at the start, or touches it again after a separation. If the
+/// triangle moves as a whole, the sphere never comes nearer.
 std::optional<MovingContact> contact_from_overlap(const MovingPoint& point, double radius,
                                                   const MovingTriangle& triangle, const MovingContact& at_start) {
     const auto& [a, b, c] = triangle.corners;

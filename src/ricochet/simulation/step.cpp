@@ -14,7 +14,7 @@
 namespace ricochet {
 namespace {
 
-/// True while it lives.
+/// Sets a flag for the lifetime of the object.
 class ScopedFlag {
 public:
     explicit ScopedFlag(bool& flag) : flag_(flag) { flag_ = true; }
@@ -26,10 +26,10 @@ private:
     bool& flag_;
 };
 
-/// Of a block of particles: how many leave why.
+/// Counts of removed particles in one block, by reason.
 class LeaverCounts {
 public:
-    /// lost: impulses of its weight that no total could take.
+    /// Counts a removed particle. `lost` is the number of impulses of its weight that were too large for the totals.
     void add(RemovalReason departure, std::uint64_t lost) {
         ++counts_[static_cast<std::size_t>(departure)];
         lost_impulses_ += lost;
@@ -79,7 +79,8 @@ bool Simulation::Impl::may_defer() const {
            !coupled.is_active() && !pairs && !heat;
 }
 
-// Children are moved from their spawning to the end of the step, as a batch that may have children in turn.
+// Moves all particles over the step. Newly spawned children are moved from their birth time to the end of the step.
+// Children can spawn children, so this repeats until a generation spawns none.
 void Simulation::Impl::step() {
     const TimeSpan step = begin_step();
     const ScopedFlag stepping(is_stepping);
@@ -103,7 +104,8 @@ void Simulation::Impl::refuse_after_error() {
         "the last step or restore() of this simulation has ended with an error; make it anew or restore a saved state");
 }
 
-// After an error inside a step, particles in free flight may be a step ahead of the others.
+// Begins a step. Throws after an error inside an earlier step, because particles in free flight may then be a step
+// ahead of the others.
 TimeSpan Simulation::Impl::begin_step() {
     if (is_reporting) throw RunError("a contact callback must not step its simulation");
     if (inside_step) refuse_after_error();
@@ -119,8 +121,8 @@ TimeSpan Simulation::Impl::begin_step() {
     return step;
 }
 
-// Coupled motion may take the step in several parts. Each is recorded for itself, so that what happens to a particle
-// stays in the order of time.
+// Moves a spawn generation over the step, in one or more substeps. Each substep is recorded separately, so that the
+// events of a particle stay in the order of time.
 void Simulation::Impl::move_generation(const ParticleRange& generation, const TimeSpan& step) {
     recorder.begin_generation();
     if ((driven.is_active() || coupled.is_active()) && !generation.are_children) mover.begin_step();
@@ -155,7 +157,8 @@ TimeSpan Simulation::Impl::plan_substep(const ParticleRange& generation, const T
     return driven.is_active() ? plan_driven_motion(generation, rest) : plan_coupled_motion(generation, rest);
 }
 
-// Children are moved through the parts of the step that have been, with the bodies where they were.
+// Plans the next substep of the bodies. Children repeat the substeps that the other particles have already taken, with
+// the bodies on the same paths.
 TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& generation, const TimeSpan& rest) {
     TimeSpan part = rest;
     if (!generation.are_children) {
@@ -169,7 +172,8 @@ TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& generation, c
     return part;
 }
 
-// Returns the end, s, of the part that is planned, with loads that fit to what the particles do in it.
+// Plans a substep until the planned loads agree with the loads that the particles exert in it. Returns the end of the
+// substep, in s.
 double Simulation::Impl::settle_driven_motion(const ParticleRange& generation, TimeSpan part) {
     for (int round = 0;; ++round) {
         bodies->begin_step(part.begin, part.end);
@@ -180,8 +184,8 @@ double Simulation::Impl::settle_driven_motion(const ParticleRange& generation, T
     }
 }
 
-// s, the earliest time at which a stored position is that of a particle; not after the step's begin, at which children
-// set out once more.
+// Returns the earliest time, in s, at which any particle's position is stored. It is at most the start of the step,
+// because children may start there.
 double Simulation::Impl::oldest_position() const {
     const double now = clock.time_at(recorder.statistics().steps);
     double oldest = now;
@@ -209,7 +213,7 @@ void Simulation::Impl::record_part(const ParticleRange& generation, const std::v
     }
 }
 
-// Children join the coupled motion with the next step.
+// Plans the coupled motion and returns the substep that is planned. Children join the coupled motion in the next step.
 TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& generation, const TimeSpan& rest) {
     if (generation.are_children) return rest;
     const double whole = rest.end - rest.begin;
@@ -217,11 +221,11 @@ TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& generation, 
     return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
 }
 
-// s, that are planned.
+// Plans the coupled motion of this process's particles. Returns the planned duration, in s.
 double Simulation::Impl::plan_coupled(const TimeSpan& rest) {
     const double whole = rest.end - rest.begin;
     if (!coupled.is_active()) return whole;
-    // What others press on is expected to go on as it does, as what walls hold is.
+    // A particle under load from other spheres is assumed to keep its velocity, like one supported by a wall.
     const std::vector<std::uint8_t> pressing = pairs ? pairs->pressing() : std::vector<std::uint8_t>();
     const auto hold = [&](std::size_t i, const Vec3& pull) {
         if (!pressing.empty() && pressing[i] != 0) return Vec3{};
@@ -230,8 +234,8 @@ double Simulation::Impl::plan_coupled(const TimeSpan& rest) {
     return coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
 }
 
-/// What sleeps takes part where a collider that moves comes near. What holds it is at rest, and it sleeps on where that
-/// has not changed.
+/// Wakes sleeping particles near moving colliders. Other sleeping particles stay asleep, because their supports are at
+/// rest.
 void Simulation::Impl::wake_sleepers(const TimeSpan& part) {
     if (!bodies || !store.may_sleep()) return;
     for (std::size_t i = 0; i < store.size(); ++i) {
@@ -288,14 +292,14 @@ void Simulation::Impl::check_spheres(double begin, double end) {
     statistics.overlap_verified = std::max(statistics.overlap_verified, check->largest_overlap());
 }
 
-// In the last step of the run.
+// Checks the final state in the last step of the run.
 void Simulation::Impl::check_end(double time) {
     if (!check || recorder.statistics().steps + 1 < clock.steps()) return;
     recorder.add_violations(check->check_end(particles(), time));
 }
 
-// Depths of penetration are added up by blocks of all particles, active or not; no other sum depends on how the active
-// set is cut and ordered, and the exact response sees no penetrations.
+// Divides and sorts the active set for speed. Only the sums of penetration depths depend on the blocks of the active
+// set, and the response `exact` has no penetrations. Other responses keep the blocks of all particles.
 void Simulation::Impl::order_active_set(ActiveSet& active) const {
     if (options.response != ResponseKind::exact) return;
     active.cut_evenly();

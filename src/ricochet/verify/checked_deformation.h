@@ -34,8 +34,8 @@ public:
     [[nodiscard]] bool is_on_surface(const Vec3& p, double time) const;
     /// Appends the crossings of a segment that a particle has travelled. The segment must be free of all triangles in
     /// space and time. It must also end at each key of the mesh, unless it is far from the mesh. A late segment
-    /// (`is_late`) belongs to a particle whose clock was stalled. It may extend over keys; its corners still move in
-    /// straight lines.
+    /// (`is_late`) belongs to a particle that was stalled. It may extend over keys. The test then lets the corners of
+    /// triangles move in straight lines too.
     void find_crossings(const Segment& segment, bool is_late, std::vector<CheckedFrame::Crossing>& crossings) const;
     /// Calls found(collider, triangle) for every triangle that a sphere about a point overlaps; see CheckedFrame.
     template <class Found>

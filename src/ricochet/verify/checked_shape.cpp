@@ -293,8 +293,8 @@ bool CheckedShape::intersects(const Vec3& p, const Vec3& q) const {
 }
 
 /// The body is convex. A segment from its surface to an inner point is therefore inside. A segment to an outer point is
-/// outside unless it enters the body. It then enters at once, also within the first 2^-40 of its length (or by less
-/// than that).
+/// outside unless it enters the body. If it enters, a point within the first 2^-40 of its length is inside, or the
+/// segment is inside for less than this part.
 bool CheckedShape::intersects_after_start(const Vec3& p, const Vec3& q) const {
     const int of_q = side(q);
     if (of_q <= 0) return of_q == 0;

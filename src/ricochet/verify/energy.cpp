@@ -7,7 +7,7 @@
 namespace ricochet::verify {
 namespace {
 
-/// A type with more digits than double, if the machine has one. Only rounding in the simulation is then judged.
+/// A type with more digits than double, if the machine has one. The rounding of the check itself is then negligible.
 using Long = long double;
 
 Long product(const Vec3& a, const Vec3& b) {

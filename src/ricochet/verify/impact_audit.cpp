@@ -9,7 +9,7 @@
 namespace ricochet::verify {
 namespace {
 
-/// A type with more digits than double, if the machine has one. Only rounding in the simulation is then judged.
+/// A type with more digits than double, if the machine has one. The rounding of the check itself is then negligible.
 using Long = long double;
 
 struct LongVec {
@@ -58,7 +58,7 @@ private:
         const LongVec apart = between(contact);
         return (1 / size(apart)) * apart;
     }
-    /// Returns the sum of both speeds. Rounding of approach speeds is relative to it.
+    /// Returns the sum of both speeds. The rounding error of an approach speed is relative to this sum.
     [[nodiscard]] Long speeds(const MetContact& contact) const {
         return size(wide(first(contact).before.velocity)) + size(wide(second(contact).before.velocity));
     }

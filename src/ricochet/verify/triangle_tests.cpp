@@ -272,8 +272,8 @@ VectorOf<Real> offset_from(const Vec3& p, const Corners& t) {
 }
 
 /// Returns true if doubles prove that p is at least `least` away. A plane across any direction separates if the whole
-/// triangle is behind it. p is then at least as far away as from the plane. The direction may differ slightly from that
-/// of the nearest point.
+/// triangle is behind it. The distance of p from the triangle is then at least its distance from the plane. The
+/// direction may differ slightly from that of the nearest point.
 bool is_certainly_clear(const Vec3& p, const Corners& t, double least) {
     const VectorOf<double> offset = offset_from<double>(p, t);
     const Vec3 direction{offset[0], offset[1], offset[2]};

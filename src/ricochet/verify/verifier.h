@@ -95,7 +95,7 @@ struct VerifiedParticle {
     /// then.
     bool has_been_free = true;
     double time = 0.0;           ///< time of the position, in s
-    double checked_until = 0.0;  ///< end of the last step, in s; later than `time` if the particle's clock is stalled
+    double checked_until = 0.0;  ///< end of the last step, in s; later than `time` if the particle is stalled
 };
 
 /// Recorded changes of a particle's motion in a step.
@@ -138,8 +138,8 @@ public:
     /// verifier with another number of sides.
     void check(const VerifiedStep& step, VerifiedParticle& particle, std::vector<Violation>& violations) const;
 
-    /// Checks a particle whose clock is stalled, at the end of a run. Appends the closed surfaces that have passed it
-    /// meanwhile, so that it is on their other side. `time` is the current time, in s.
+    /// Checks a stalled particle at the end of a run. Appends the closed surfaces that have passed it meanwhile, so
+    /// that it is on their other side. `time` is the current time, in s.
     void check_end(std::uint64_t id, double time, const VerifiedParticle& particle,
                    std::vector<Violation>& violations) const;
 

@@ -13,8 +13,8 @@ namespace ricochet {
 namespace {
 
 constexpr std::array<int, 3> kSteps = {1, 2, 4};  // distance between taps in each pass, in pixels
-constexpr float kLightSigmas = 2.0F;              // light differences of more standard deviations than this are edges
-constexpr float kLightFloor = 2e-3F;              // standard deviation below which noise is invisible
+constexpr float kLightSigmas = 2.0F;  // number of standard deviations above which a difference of light is an edge
+constexpr float kLightFloor = 2e-3F;  // standard deviation below which noise is invisible
 constexpr float kNormalSharpness = 48.0F;
 constexpr float kAlbedoSharpness = 260.0F;
 constexpr float kSmallestAlbedo = 0.03F;  // added to the albedo before light is divided by it

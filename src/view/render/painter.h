@@ -46,9 +46,8 @@ public:
     /// there.
     void pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                 const KnownSpheres& known = {}) const;
-    /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` holds the
-    /// visible spheres, as many as `places`. `shadows` holds the spheres' shadows towards sun_middle(). Without them,
-    /// rays find both.
+    /// Computes the pixels of a draft (see PictureOptions::quick). Sets only light and alpha. `finds` holds the visible
+    /// sphere of each place. `shadows` holds the spheres' shadows towards sun_middle(). Without them, rays find both.
     void quick_pixels(std::span<const PixelPosition> pixel_positions, std::span<PixelLight> out,
                       std::span<const SphereFind> finds = {}, const SunShadows* shadows = nullptr) const;
     /// Returns the direction to the middle of the sun, or nothing without a sun.

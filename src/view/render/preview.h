@@ -83,7 +83,7 @@ struct PreviewCopies {
     std::vector<Vec3> colors;
     std::vector<std::vector<Vec3>> shutter_paths{};  ///< path of the shape's origin, as for spheres; the linear map
                                                      ///< stays constant
-    std::vector<Vec3> emissions{};  ///< emitted light
+    std::vector<Vec3> emissions{};                   ///< emitted light
     /// Shape of each copy, counted from 1, or 0 for a ball. Empty: all copies use the first shape, or a ball if no
     /// shape is set.
     std::vector<std::uint32_t> shapes{};

@@ -10,8 +10,9 @@ namespace ricochet {
 /// query would have found. Larger: particles near surfaces need more queries.
 inline constexpr double kLookAheadSlack = 0x1p-36;
 
-/// Most steps of free flight without a new query, on straight paths and on parabolas. Larger: kLookAheadSlack must grow
-/// with the first. With the second it would apply to a longer path than the boxes' margin lets one query cover.
+/// Largest number of steps of free flight without a new query, on straight paths and on parabolas. Larger:
+/// kLookAheadSlack must grow with the first constant. With a larger second one a parabola would be longer than one
+/// query can cover with the boxes' margin.
 inline constexpr int kMaxLookAheadSteps = 4096;
 inline constexpr int kMaxLookAheadStepsCurved = 256;
 

@@ -19,33 +19,33 @@ inline constexpr double kTouchingOffsets = 8.0;
 /// budget is spent. Larger: they slide on air beyond convex edges by that distance (some 1e-12 of the coordinates).
 inline constexpr double kEdgeOffsets = 256.0;
 
-/// Most projections of a particle out of the surfaces that it is behind, in one step. After that it returns to its
-/// position before the move. Reason: in a corner of several colliders one projection leads behind the next. Smaller:
-/// corners stop particles more often. Larger: sharp wedges cost more queries.
+/// Largest number of projections of a particle out of the surfaces that it is behind, in one step. After that it
+/// returns to its position before the move. Reason: in a corner of several colliders one projection leads behind the
+/// next. Smaller: corners stop particles more often. Larger: sharp wedges cost more queries.
 inline constexpr int kMaxProjections = 16;
 
-/// Distance, in paths of one time tolerance, within which a particle that was rolled back to a collision touches the
-/// surface. Reason: bisection leaves it up to one such path away. Smaller than 1: a resting particle falls and lands in
-/// every step. Larger: particles rest on air that much further away.
+/// Distance within which a particle that was rolled back to a collision touches the surface, relative to its path in
+/// one time tolerance. Reason: bisection leaves it up to one such path away. Smaller than 1: a resting particle falls
+/// and lands in every step. Larger: particles rest on air that much further away.
 inline constexpr double kRollbackTouchPaths = 2.0;
 
-/// Number of consecutive contacts after which a particle comes to rest for the step. All must be loaded, and slower
-/// than the resting speed or without time between them. Reason: in a pit of four or more faces a sliding particle
-/// circles into the apex in infinitely many ever shorter segments. Smaller: slow sliding over many tiny triangles is
-/// cut short. Larger: circling costs more contacts per step.
+/// Number of consecutive contacts after which a particle comes to rest for the step. In each of them the particle must
+/// be under load. It must also be slower than the resting speed, or no time must pass between the contacts. Reason: in
+/// a pit of four or more faces a sliding particle circles into the apex in infinitely many ever shorter segments.
+/// Smaller: slow sliding over many tiny triangles is cut short. Larger: circling costs more contacts per step.
 inline constexpr int kMaxSlowContacts = 32;
 
 /// One minus the cosine of the angle between normals below which two surfaces touched together count as one plane.
 /// Smaller: coplanar triangles use up the three contact points of a manifold. Larger: a blunt corner counts as flat.
 inline constexpr double kSameNormal = 1e-12;
 
-/// Speed at which a velocity that was projected onto a plane may still approach it, relative to its length: a few
-/// roundings. Smaller: a projection counts as infeasible and the next best, slower one is used. Larger: a particle
-/// creeps into a wall's contact offset.
+/// Approach speed towards a plane that a velocity may have after projection onto the plane, relative to the velocity's
+/// length. Reason: a few roundings. Smaller: a projection counts as infeasible and the next best, slower one is used.
+/// Larger: a particle creeps into a wall's contact offset.
 inline constexpr double kProjectionRounding = 0x1p-48;
 
-/// Speed after braking to a stop that still counts as a stop, relative to the speed before: rounding across the
-/// heading. Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: sideways motion is
+/// Speed after braking that counts as a stop, relative to the speed before. It covers rounding perpendicular to the
+/// motion. Smaller: particles creep on at 1e-16 of their speed instead of coming to rest. Larger: sideways motion is
 /// lost.
 inline constexpr double kStopRounding = 0x1p-40;
 
@@ -55,8 +55,8 @@ inline constexpr double kStopRounding = 0x1p-40;
 inline constexpr double kShortestRelease = 1.0 / 64.0;
 
 /// Part of a step below which a path along a wall is skipped if it moves the particle only by rounding. Smaller: the
-/// rest before a rim or a release is divided by times so short that velocities overflow. Larger: a particle leaves a
-/// wall earlier, by a path of less than a quarter of a contact offset.
+/// remaining path before a rim or a release is divided by so short a time that velocities overflow. Larger: a particle
+/// leaves a wall earlier, by a path of less than a quarter of a contact offset.
 inline constexpr double kNoProgress = 0x1p-20;
 
 /// Number of bounces among moving colliders after which the progress of a particle is checked. The second constant is
@@ -93,17 +93,17 @@ inline constexpr double kDependentDirection = 0x1p-36;
 /// roundings. Smaller: rounding removes particles from their supports. Larger: slow separations are suppressed.
 inline constexpr double kLeavingRounding = 0x1p-46;
 
-/// The same fraction beyond the end of a face, if its edge turns away from the motion as far as the particle is beyond
-/// it. Smaller: rolling over an edge begins with a fall and a landing. Larger: slow separations are suppressed.
+/// The same fraction for a particle beyond the end of a face, where the surface turns away from the motion. Smaller:
+/// rolling over an edge begins with a fall and a landing. Larger: slow separations are suppressed.
 inline constexpr double kTurningAway = 0x1p-24;
 
-/// Speed in contact that counts as zero if it does not lead on. It is a fraction of the velocity change by the forces
-/// in the remaining time. Reason: it covers a ten-billionth of the path due to the forces. Smaller: beside a vertex at
-/// the origin steps are spent on moves below the resolution of the clock. Larger: particles that begin to slide there
-/// are stopped.
+/// Speed in contact that counts as zero if the particle makes no progress. It is a fraction of the velocity change by
+/// the forces in the remaining time. Reason: a particle of this speed covers only a ten-billionth of the path due to
+/// the forces. Smaller: beside a vertex at the origin steps are spent on moves below the resolution of the clock.
+/// Larger: particles that begin to slide there are stopped.
 inline constexpr double kNegligibleSpeed = 1e-10;
 
-/// Rebound, as a fraction of the resting speed, below which the bounce cascade takes negligible time. Reason: falling
+/// Rebound, as a fraction of the resting speed, below which the bounce cascade takes negligible time. Reason: a fall
 /// through the contact offset ends at some 1e-7 m/s. Smaller: particles rattle between surfaces by their offsets.
 /// Larger: cascades end too early.
 inline constexpr double kNegligibleRebound = 1e-3;

@@ -9,12 +9,12 @@ namespace ricochet {
 /// depends on the time step by the angle's square.
 inline constexpr double kMaxHeadingTurn = 0.05;
 
-/// The same limit for a slip whose direction turns within a small part of the step, because there is hardly any slip.
-/// Smaller: more segments for each reversal of a slip. Larger: the start of a slip depends on the time step.
+/// The same limit for a slip that is so slow that its direction turns within a small part of the step. Smaller: more
+/// segments for each reversal of a slip. Larger: the start of a slip depends on the time step.
 inline constexpr double kMostHeadingTurn = 0.5;
 
-/// Largest relative change, in one arc, of a slip that turns. Reason: as kMaxArcAngle. Smaller: more arcs at the end of
-/// every slip. Larger: the end of a slide depends on the time step.
+/// Largest relative change of the slip velocity in one arc, if its direction turns. Reason: as for kMaxArcAngle.
+/// Smaller: more arcs at the end of every slip. Larger: the end of a slide depends on the time step.
 inline constexpr double kMaxSlipChange = 0.1;
 
 /// Largest turn of friction, in rad, in an interval of constant acceleration. Beyond it, and up to kMaxHeadingTurn, the
@@ -46,15 +46,15 @@ inline constexpr double kMostTurn = 2.0 * kMaxArcAngle;
 /// jam. Larger: small jumps are missed.
 inline constexpr double kJump = 1e-3;
 
-/// Largest relative correction of an arc's end for the sake of its energy. Reason: the method's own error is far below
-/// it; more would hide another mistake. Smaller: slow turning points are left uncorrected. Larger: such mistakes are
-/// hidden.
+/// Largest relative correction of an arc's end that conserves its energy. Reason: the error of the method is far
+/// smaller, and a larger correction would hide other mistakes. Smaller: slow turning points are left uncorrected.
+/// Larger: such mistakes are hidden.
 inline constexpr double kMostEnergyCorrection = 1e-2;
 
 /// Largest turn, in rad, of surfaces of different frames, or of curved surfaces, under a particle that they support
-/// together, in one interval of contact. Reason: within an interval they are the planes at its start, and the error is
-/// the square of the turn. Smaller: more intervals (each costs a query), and a step's limit of intervals is reached
-/// sooner. Larger: contact with several frames at once is less exact.
+/// together, in one interval of contact. Reason: within an interval the surfaces are replaced by their planes at its
+/// start, and the error is the square of the turn. Smaller: more intervals (each costs a query), and a step's limit of
+/// intervals is reached sooner. Larger: contact with several frames at once is less exact.
 inline constexpr double kMostSharedTurn = 0.02;
 
 /// Phase, in rad, of a swing about a position of rest in one arc. Reason: with 0.45 the axial speed of a swing across a

@@ -17,8 +17,8 @@ inline constexpr double kCoulombResidual = 0x1p-40;
 
 /// Residual up to which a solution is accepted before less friction is tried. Reason: if surfaces press against each
 /// other with undetermined forces, rounding leaves 1e-7 and more. The next smaller friction would be wrong by 1e-3.
-/// Smaller: a sphere that rolls between two surfaces slips for a moment. Larger: worse solutions, whose energy is
-/// limited.
+/// Smaller: a sphere that rolls between two surfaces slips for a moment. Larger: less exact solutions are accepted.
+/// Their energy is still limited.
 inline constexpr double kNearlySolved = 1e-4;
 
 /// Fractions of the friction with which the equations of contact are solved in turn, until one is solved up to

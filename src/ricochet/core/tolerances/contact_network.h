@@ -30,7 +30,7 @@ inline constexpr double kNetworkOverlap = 2.5e-3;
 /// motion. Larger: piles creep.
 inline constexpr double kNetworkResidual = 1e-2;
 
-/// The same speed in smallest radii per step, as a lower limit. Reason: far below the largest allowed drift of a pile.
+/// Lower limit of that speed, in smallest radii per step. Reason: far below the largest allowed drift of a pile.
 /// Smaller: sweeps without effect. Larger: piles creep.
 inline constexpr double kNetworkStill = 1e-7;
 

@@ -15,19 +15,20 @@ inline constexpr double kMostBodyChange = 0.1;
 /// step to step.
 inline constexpr double kHeavyLoad = 0.5;
 
-/// Difference of planned and actual load on a body, as a fraction of the velocity change that a substep may have from
-/// the load. Larger: energy is gained or lost. Smaller: the substep is planned more often.
+/// Difference of planned and actual load on a body. It is measured as a velocity change, relative to the largest
+/// velocity change by the load in a substep. Larger: energy is gained or lost. Smaller: the substep is planned more
+/// often.
 inline constexpr double kLoadResidual = 1e-3;
 
-/// Most plans of a substep for one length of it. Smaller: substeps get shorter if loads begin and end within them.
-/// Larger: such substeps cost more before they get shorter.
+/// Largest number of plans of a substep of the same duration. Smaller: substeps get shorter if loads begin and end
+/// within them. Larger: such substeps cost more before they get shorter.
 inline constexpr int kMostLoadRounds = 8;
-/// Most plans of a substep that cannot be shorter.
+/// Largest number of plans of a substep that cannot be shortened.
 inline constexpr int kFewLoadRounds = 3;
 
 /// Fraction of the time to the next impact, or to the step's end, after which a substep ends and bodies receive their
-/// impulses. Its square or cube applies if impacts dissipate little energy. Larger: bodies move on longer without the
-/// impulses. Much smaller: grains that settle on a body cause many substeps.
+/// impulses. If impacts dissipate little energy, the square or cube of this fraction applies. Larger: bodies move on
+/// longer without the impulses. Much smaller: grains that settle on a body cause many substeps.
 inline constexpr double kPartAfterImpact = 1e-3;
 
 /// Least duration of a substep, as a fraction of the time step. Smaller: bodies between many impacts take longer.

@@ -33,14 +33,15 @@ inline constexpr double kSmallestTolerance = 1e-30;
 /// accuracy earlier.
 inline constexpr double kShortestSubstep = 0x1p-48;
 
-/// Most substeps of an adaptive method in one step of a particle. The rest of the step is not simulated, and is counted
-/// (budget_exhausted). Reason: some tenths of a second of work. Smaller: particles bound close to a point mass, which
-/// need some 50 substeps per orbit, stop for a part of each step. Larger: a step takes longer before it ends.
+/// Largest number of substeps of an adaptive method in one step of a particle. The rest of the step is not simulated,
+/// and is counted (budget_exhausted). Reason: some tenths of a second of work. Smaller: particles bound close to a
+/// point mass, which need some 50 substeps per orbit, stop for a part of each step. Larger: a step takes longer before
+/// it ends.
 inline constexpr std::uint32_t kMostSubsteps = 100000;
 
 /// Error of an adaptive substep that counts as zero, relative to the largest component of the state: a quarter of its
-/// rounding. Smaller: substeps shorten without end if the tolerance is below the precision of doubles. Larger:
-/// tolerances that are possible are missed.
+/// rounding. Smaller: substeps shorten without end if the tolerance is below the precision of doubles. Larger: the
+/// integrator does not meet tolerances that it could meet.
 inline constexpr double kStateRounding = 0x1p-54;
 
 /// Distance, in m, below which particles coincide and have no direction between them: forces between them are zero.

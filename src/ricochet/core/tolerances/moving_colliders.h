@@ -7,19 +7,19 @@ namespace ricochet {
 /// Largest deviation of a path in the frame of a moving body, as a fraction of a length. The length is the larger of
 /// the radius and the distance from the frame's origin. The path consists of cubics that are short enough for it.
 /// Reason: one cubic for a turn of about one degree. Times of impact are found again on the true path and do not depend
-/// on it. Smaller: more cubics. Larger: a near miss within this distance is taken for a graze sooner, and safe
-/// positions are searched from further away.
+/// on it. Smaller: more cubics. Larger: more near misses count as grazing contacts, and the search for safe positions
+/// starts farther from the surface.
 inline constexpr double kMovingPathTolerance = 1e-9;
 
-/// Most such cubics for one path between two keys. Reason: kMovingPathTolerance needs some 250 per turn, and no step
-/// can follow more than 16 turns. Smaller: paths relative to fast bodies are less exact than that tolerance. Larger: a
-/// step beside a body that turns still faster takes longer.
+/// Largest number of these cubics for one path between two keys. Reason: kMovingPathTolerance needs some 250 per turn,
+/// and no step can follow more than 16 turns. Smaller: paths relative to fast bodies are less exact than that
+/// tolerance. Larger: a step beside a body that turns still faster takes longer.
 inline constexpr double kMostMovingPieces = 4096.0;
 
-/// Most keys of a body's curves that one step handles individually: paths are split there, and boxes of the motion are
-/// united. Later keys, as in a curve that repeats much faster than the step, form one interval. Smaller: an impact
-/// beside a later key is found on a cubic across the jump, and boxes are wider. Larger: steps of such bodies take
-/// longer.
+/// Largest number of keys of a body's curves that one step handles individually: paths are split there, and boxes of
+/// the motion are united. Later keys, as in a curve that repeats much faster than the step, form one interval. Smaller:
+/// an impact beside a later key is found on a cubic across the jump, and boxes are wider. Larger: steps of such bodies
+/// take longer.
 inline constexpr int kMostKeysInStep = 256;
 
 /// Growth of a body's box over a step for the rounding of poses and sums, as a fraction of its largest coordinate.

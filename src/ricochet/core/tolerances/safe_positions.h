@@ -29,8 +29,8 @@ inline constexpr double kContactOffsetWidening = 4.0;
 /// position. Smaller: sharp wedges, whose bisector leaves both walls slowly, have fewer safe positions.
 inline constexpr double kLargestContactOffsetUlps = 4096.0;
 
-/// Fraction of the radius by which a sphere's distance at a contact may fall short of the radius and still be corrected
-/// by safe_position. Beyond it the sphere started in overlap and keeps its position. Smaller: grazing contacts are not
+/// Largest shortfall of a sphere's distance at a contact, as a fraction of the radius, that safe_position() corrects.
+/// With a larger one the sphere has started in overlap and keeps its position. Smaller: grazing contacts are not
 /// corrected. Larger: a sphere born in a slight overlap is pushed out.
 inline constexpr double kContactMismatch = 1e-9;
 

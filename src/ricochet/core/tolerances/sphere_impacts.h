@@ -12,12 +12,13 @@ namespace ricochet {
 inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 
 /// Approach of two touching spheres that counts as zero, relative to their speeds. Reason: some roundings of an impact
-/// that has stopped them. Smaller: such pairs collide repeatedly at one time. Larger: they sink in by it.
+/// that has stopped them. Smaller: such pairs collide repeatedly at one time. Larger: spheres overlap more.
 inline constexpr double kPairApproachRounding = 0x1p-48;
 
 /// Overlap of two spheres, relative to the smaller radius, from which they press on each other. The overlap must have
 /// grown in a step without a common plan. A force then drives them together that no impact resolves. Reason: far above
-/// the rounding of impacts, far below visible overlap. Smaller: rounding causes plans. Larger: spheres sink in by it.
+/// the rounding of impacts, far below visible overlap. Smaller: rounding causes plans. Larger: spheres overlap by as
+/// much.
 inline constexpr double kPressedOverlap = 1e-7;
 
 /// Difference of impact times, in ulp, up to which impacts are simultaneous. Reason: roundings of the times of

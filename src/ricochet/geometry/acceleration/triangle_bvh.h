@@ -74,8 +74,8 @@ public:
                    });
     }
 
-    /// Callback for a candidate. It returns the distance, in m, beyond which triangles no longer matter. The smallest
-    /// value returned so far applies.
+    /// Callback for a candidate. It returns the distance, in m, beyond which triangles no longer matter. The query uses
+    /// the smallest distance returned so far.
     using VisitPoint = double (*)(void* context, std::uint32_t triangle);
 
     /// Visits every triangle whose distance from p is at most within + margin() + slack(), in unspecified order. May

@@ -107,9 +107,8 @@ public:
     /// Finds, for each part, the first time at which the distance from the path shrinks to `radius` (m, >= 0), from
     /// either side. From outside, only the first contact over all parts is returned. Held parts are left out. If any
     /// part is held, contacts from outside are left out altogether. A sphere that starts in overlap stops only if it
-    /// approaches. It stops at the first time at which the distance shrinks (faster than kMinApproach of the speed)
-    /// while it is at most the radius. A point that starts on the surface is reflected from the side that it heads for,
-    /// at time 0.
+    /// approaches: at the first time at which the distance is at most the radius and shrinks (faster than kMinApproach
+    /// of the speed). A point that starts on the surface is reflected from the side that it heads for, at time 0.
     ///
     /// Points, spheres against spheres, and spheres inside circular cylinders use roots of polynomials in
     /// double-double, with an error of about an ulp. Other cases use conservative advancement on the true distance.

@@ -14,8 +14,8 @@ constexpr int kMaxSegmentSteps = 100;
 /// Local: it ends below the rounding of the result.
 constexpr double kSegmentError = 0x1p-50;
 
-/// Error of a squared length at the rounded foot of a perpendicular, relative to the square of the start. The point has
-/// an error of about 8 u, and the squared length has the square of that. Local: an error bound of this arithmetic.
+/// Excess of a squared length at the rounded foot of a perpendicular over its minimum, relative to the squared length
+/// at the start. The foot has an error of about 8 u, and the squared length has the square of that error.
 constexpr double kMinimumError = 0x1p-98;
 
 double rounded_value(double x) { return x; }

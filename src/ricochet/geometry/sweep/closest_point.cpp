@@ -132,7 +132,7 @@ bool projects_into_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
     if (is_certain) return true;
     const PreciseVec3 precise =
         cross_of(scaled_to_one(difference<DoubleDouble>(b, a)), scaled_to_one(difference<DoubleDouble>(c, a)));
-    // In a thinner triangle, the edges are as near as the face to far below rounding.
+    // In a thinner triangle, the distances of edges and face differ by far less than rounding.
     if (max_abs(rounded(precise)) < kThinnestFace) return false;
     return precise_side_of_edge(p, a, b, precise) >= 0 && precise_side_of_edge(p, b, c, precise) >= 0 &&
            precise_side_of_edge(p, c, a, precise) >= 0;

@@ -33,9 +33,9 @@ struct SphereContact {
 /// A moving sphere, prepared for many tests.
 ///
 /// Contact is the first time at which the distance between centre and surface shrinks to the radius. A sphere that
-/// starts in overlap stops only if it approaches. It stops at the first time at which the distance shrinks (faster than
-/// kMinApproach of the speed) while it is at most the radius. Separating motion and motion along the surface are free.
-/// If the centre starts on the surface itself, any motion is free until the centre returns.
+/// starts in overlap stops only if it approaches: at the first time at which the distance is at most the radius and
+/// shrinks (faster than kMinApproach of the speed). Separating motion and motion along the surface are free. If the
+/// centre starts on the surface itself, any motion is free until the centre returns.
 class SphereSweep {
 public:
     /// Prepares a sphere of the given radius (m, > 0). Certified segments can lie up to `beside` (m, >= 0) beside the

@@ -378,7 +378,7 @@ private:
         diagnostics_.error(member.key_location, path_of_key(path, member.key), "unknown key; " + help);
     }
 
-    // Without a type, values cannot be checked. But names that no type has are wrong.
+    // Checks the names of keys in an object without a type. Its values cannot be checked.
     void check_only_names(JsonNode& node, const ObjectSpec& spec, const std::string& path) {
         const std::vector<std::string_view> known = all_names(spec);
         for (const JsonMember& member : *node.object()) {

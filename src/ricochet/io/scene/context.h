@@ -241,7 +241,7 @@ void build_emitters(SceneContext& context, SimulationSetup& setup);
 /// Returns the rule of such an emitter. check_parents() sets the number of the parent, when all emitters are known.
 [[nodiscard]] ParentRule rule_of(const SceneContext& context, const ObjectView& view,
                                  const EmitterDescription& emitter);
-/// Finds the parent emitters, and reports unknown names, cycles and parents that are shared out twice.
+/// Finds the parent emitters, and reports unknown names, cycles and parents whose mass is distributed twice.
 void check_parents(const SceneContext& context, SimulationSetup& setup);
 /// Refuses settings that clouds cannot be combined with. Needs all other parts that they depend on.
 void check_clouds(const SceneContext& context, const SimulationSetup& setup);

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the solver of contact networks: sums and products of 3 x 3 blocks.
+/// Private to the direct contact solver: sums and products of 3 x 3 blocks.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,7 @@ inline void add_square(Block3& block, double factor, const Vec3& v) {
     return result;
 }
 
-/// That of v = normal x w.
+/// Returns the matrix of the map from w to n x w.
 [[nodiscard]] inline Block3 cross_matrix(const Vec3& n) {
     return {{{0.0, -n.z, n.y}, {n.z, 0.0, -n.x}, {-n.y, n.x, 0.0}}};
 }

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the solver of contact networks: which contacts belong to one impact, and what holds for each impact as a
-/// whole: its restitution and its energy.
+/// Private to the contact solver: groups of contacts that form one connected impact. Each has one restitution and one
+/// energy balance.
 #pragma once
 
 #include <cstddef>
@@ -12,13 +12,14 @@
 
 namespace ricochet {
 
-/// Bodies joined by contacts that push.
+/// Sets of bodies that contacts with an impulse join.
 class ConnectedImpacts {
 public:
-    /// Those of the rows whose impulse is not 0. states: of all bodies and walls; what nothing moves joins nothing.
+    /// Joins the bodies of every row with a normal impulse. `states` holds all bodies and walls. Fixed bodies
+    /// and walls join nothing.
     void assign(std::span<const SolverState> states, std::span<const ContactConstraint> rows);
 
-    /// Of a row: a number below the number of states that stands for its impact.
+    /// Returns the number of a row's impact, which is less than size().
     [[nodiscard]] std::uint32_t of(const ContactConstraint& row) const {
         return of_body(is_fixed(row.a) ? row.b : row.a);
     }

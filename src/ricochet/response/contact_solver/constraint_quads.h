@@ -1,5 +1,6 @@
 /// \file
-/// Private to the solver of contact networks: four rows, or four bodies, at once, see contact_constraints.h.
+/// Private to the iterative contact solver: the functions of contact_constraints.h for four rows or four bodies at
+/// once.
 #pragma once
 
 #include <array>
@@ -12,11 +13,11 @@ namespace ricochet {
 
 inline constexpr std::size_t kQuad = 4;
 
-/// Four of something, wherever they are.
+/// Pointers to four objects anywhere in memory.
 template <class T>
 using FourOf = std::array<T*, kQuad>;
 
-/// Four SolverState, and what is to be added to them.
+/// Four SolverState, and the changes to add to them.
 struct QuadState {
     QuadVec3 velocity;
     QuadVec3 turning;
@@ -47,7 +48,7 @@ RICOCHET_INLINE void apply(const QuadVec3& impulse, const QuadVec3& turn, QuadSt
     body.turning_change = body.inverse_inertia * turn;
 }
 
-/// The part of four vectors' lengths that is left where they may be no longer than `most`.
+/// Returns the factors, at most 1, that limit the lengths of four vectors to `most`.
 [[nodiscard]] RICOCHET_INLINE Quad length_kept(const QuadVec3& v, const Quad& most) {
     const Quad squared = length_squared(v);
     return select(squared > most * most, most / root(squared), quad_of(1.0));
@@ -64,13 +65,13 @@ static_assert(sizeof(ContactConstraint) == 16 * sizeof(double) &&
               offsetof(ContactConstraint, impulse) == 8 * sizeof(double) &&
               offsetof(ContactConstraint, direction) == 12 * sizeof(double));
 
-/// Doubles number part * 4 and the three after it of one of the four.
+/// Returns the address of the four doubles of an object that begin at number 4 * part.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE double* part_of(T* one, std::size_t part) {
     return reinterpret_cast<double*>(one) + part * kQuad;
 }
 
-/// The first of these doubles of all four, the second of all, ...
+/// Loads such a part of four objects and transposes it: result k holds double k of all four.
 template <class T>
 [[nodiscard]] RICOCHET_INLINE std::array<Quad, kQuad> load_part(const FourOf<T>& from, std::size_t part) {
     std::array<Quad, kQuad> rows{load_quad(part_of(from[0], part)), load_quad(part_of(from[1], part)),
@@ -90,7 +91,8 @@ template <class T>
     return states;
 }
 
-/// Adds the changes to those that something moves: threads share the others.
+/// Adds the changes to the states of bodies that are not fixed. Fixed bodies are not written to, because several
+/// threads can use them.
 RICOCHET_INLINE void store_changes(const QuadState& states, const FourOf<SolverState>& to) {
     const Quad none{};
     const QuadVec3& v = states.velocity_change;
@@ -127,7 +129,7 @@ RICOCHET_INLINE void store_push(const QuadImpulse& impulse, const FourOf<Contact
     for (std::size_t k = 0; k < kQuad; ++k) store(rows[k], part_of(to[k], part));
 }
 
-/// What relax() changes.
+/// Stores the members that relax() changes.
 RICOCHET_INLINE void store_pushes(const QuadConstraint& rows, const FourOf<ContactConstraint>& to) {
     store_push(rows.impulse, to, 2);
     store_push(rows.direction, to, 3);

@@ -26,7 +26,7 @@ RICOCHET_INLINE void relax_one(const SweptRows& swept, double factor, ContactCon
 
 #if defined(__x86_64__)
 
-/// Rows whose work is looked for together: they and their bodies stay in the first level of memory meanwhile.
+/// Number of rows that are searched for work together. Reason: they and their bodies stay in the first-level cache.
 constexpr std::size_t kLookAhead = 64;
 
 /// Four rows and the bodies of each.
@@ -35,8 +35,8 @@ struct QuadBodies {
     FourOf<SolverState> a, b;
 };
 
-/// First it finds the rows that are not idle, of which each colour has others in each sweep, then it relaxes four of
-/// those at once: four neighbours would be idle in part in nearly all cases.
+/// Sweep over four rows at once. It first finds the rows that are not idle, which differ from sweep to sweep, and then
+/// solves four of them at once. Reason: of four neighbouring rows some are nearly always idle.
 class QuadSweep {
 public:
     RICOCHET_INLINE QuadSweep(const SweptRows& swept, double factor) : swept_(swept), factor_(factor) {}
@@ -68,7 +68,7 @@ private:
         return places;
     }
 
-    /// Without branches, which nobody could foretell.
+    /// Appends the rows that are not idle, without branches, because they would be mispredicted.
     RICOCHET_INLINE void find_work(std::size_t begin, std::size_t end) {
         for (; begin + kQuad <= end; begin += kQuad) {
             ContactConstraint* row = &swept_.rows[begin];
@@ -99,7 +99,7 @@ private:
         add_up(change.normal_work, change.tangential_work, at.rows);
     }
 
-    /// In the order of the rows, as when they are relaxed one after the other.
+    /// Adds the changes in the order of the rows, as in a sweep over single rows.
     RICOCHET_INLINE void add_up(const Quad& normal_work, const Quad& tangential_work,
                                 const FourOf<ContactConstraint>& rows) {
         if ((rows[0]->rolling & rows[1]->rolling & rows[2]->rolling & rows[3]->rolling) == ContactConstraint::kNone) {
@@ -118,7 +118,7 @@ private:
     double factor_ = 0.0;
     SweepChange change_;
     RowChange<Quad> most_;
-    std::array<ContactConstraint*, kLookAhead + kQuad> work_;  // rows that are not idle, and not relaxed yet
+    std::array<ContactConstraint*, kLookAhead + kQuad> work_;  // rows that are not idle, and not solved yet
     std::size_t count_ = 0;
 };
 
@@ -126,14 +126,14 @@ private:
     return QuadSweep(swept, factor).run();
 }
 
-/// With twice as many registers, of the same size: a tenth faster.
+/// Uses twice as many registers of the same size, which is a tenth faster.
 [[gnu::target("avx512vl")]] SweepChange sweep_avx512(const SweptRows& swept, double factor) {
     return QuadSweep(swept, factor).run();
 }
 
 [[gnu::target("avx2")]] void go_on_avx2(std::span<SolverState> states, std::span<SolverState> last, double factor) {
     for (std::size_t i = 0; i < states.size(); ++i) {
-        for (std::size_t part = 0; part < 2; ++part) {  // mobilities have not changed, and do not
+        for (std::size_t part = 0; part < 2; ++part) {  // mobilities are constant, so this step leaves them unchanged
             const Quad now = load_quad(part_of(&states[i], part));
             const Quad before = load_quad(part_of(&last[i], part));
             store(now + factor * (now - before), part_of(&states[i], part));

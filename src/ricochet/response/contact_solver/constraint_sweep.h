@@ -1,5 +1,5 @@
 /// \file
-/// Private to the solver of contact networks: all rows once, as fast as the processor can.
+/// Private to the iterative contact solver: one sweep over rows, with the fastest instructions of the processor.
 #pragma once
 
 #include <span>
@@ -8,29 +8,28 @@
 
 namespace ricochet {
 
-/// Rows, and all that they refer to.
+/// Rows, and the data that they refer to.
 struct SweptRows {
     std::span<ContactConstraint> rows;
     std::span<RollingConstraint> rolling;
     std::span<SolverState> states;
 };
 
-/// How it is done. All ways lead to the same bits.
+/// Instruction set of a sweep. All give the same bits.
 enum class SweepVariant {
     one_by_one,
-    avx2,   ///< four at once: no two of the rows may have a body that moves in common
-    avx512  ///< the same, with twice as many registers
+    avx2,   ///< four rows at once; no two rows may share a body that is not fixed
+    avx512  ///< the same with twice as many registers
 };
 
-/// Those that this processor can; the fastest is the last.
+/// Returns the instruction sets that this processor has, the fastest last.
 [[nodiscard]] std::span<const SweepVariant> sweep_variants();
 
-/// Relaxes each row that is not idle, after it has gone on by a factor of what the last sweep and the momentum before
-/// it have changed.
+/// Solves each row that is not idle, after a momentum step of `factor` times its last change.
 [[nodiscard]] SweepChange sweep_rows(const SweptRows& swept, double factor, SweepVariant variant);
 
-/// Bodies go on by a factor of how they have changed since they were `last`, which is what they were before from now
-/// on.
+/// Applies the momentum step to bodies: `factor` times their change since `last`. Then `last` holds their states before
+/// this step.
 void go_on(std::span<SolverState> states, std::span<SolverState> last, double factor, SweepVariant variant);
 
 }  // namespace ricochet

@@ -1,9 +1,9 @@
 /// \file
-/// Private to the solver of contact networks: one contact, solved with all others as they are. What is a template does
-/// the same for four at once (constraint_quads.h), with the same bits.
+/// Private to the contact solvers: one contact constraint ("row"), solved while all others keep their impulses. The
+/// templates also process four rows at once (constraint_quads.h), with the same bits.
 ///
-/// Arms are parallel to normals, so that of a contact's own impulses the normal one changes the approach alone, and
-/// friction the slip alone: each has its answer in closed form. Spins enter as surface speeds, radius times spin.
+/// Lever arms are parallel to normals. A contact's normal impulse therefore changes only its approach, and its friction
+/// only its slip, so both have closed forms. Spins are stored as surface speeds: radius times spin.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 
 namespace ricochet {
 
-/// A body as it moves now, or a wall.
+/// Current motion of a body or a wall.
 struct alignas(64) SolverState {
     Vec3 velocity;
-    Vec3 turning;                ///< radius times spin, m/s
-    double inverse_mass = 0;     ///< 1 / mass, 1/kg
-    double inverse_inertia = 0;  ///< radius^2 / moment of inertia, 1/kg
+    Vec3 turning;                ///< radius times spin, in m/s
+    double inverse_mass = 0;     ///< 1 / mass, in 1/kg
+    double inverse_inertia = 0;  ///< radius^2 / moment of inertia, in 1/kg
 };
 
-/// A contact's impulse but for its moment, or a change of it.
+/// Impulse of a contact without its moment, or a change of that impulse, in N s.
 struct ConstraintImpulse {
     double normal = 0.0;
     Vec3 tangential;
@@ -32,54 +32,54 @@ struct ConstraintImpulse {
     friend bool operator==(const ConstraintImpulse&, const ConstraintImpulse&) = default;
 };
 
-/// What a contact needs in every sweep: two lines of memory, of which a sweep writes the second. Masses are those of
-/// its two bodies, which are at hand.
+/// Data of a contact that every sweep needs. They fill two cache lines, and a sweep writes only the second one. Masses
+/// are read from the states of the two bodies, which a sweep loads anyway.
 struct alignas(64) ContactConstraint {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     Vec3 normal;
-    double bound = 0.0;  ///< m/s, with which it may still approach; < 0: with which it has to leave
+    double bound = 0.0;  ///< largest approach speed, in m/s; if negative, the least separation speed
     double friction = 0.0;
-    double strictness = 1.0;    ///< >= 1, squared: so many times larger its errors count
-    std::uint32_t rolling = 0;  ///< its number among the rows that resist rolling; kNone
+    double strictness = 1.0;    ///< square of SolverContact::exactness
+    std::uint32_t rolling = 0;  ///< index of its RollingConstraint, or kNone
     ConstraintImpulse impulse;
-    ConstraintImpulse direction;  ///< by what the last sweep has changed it, with the momentum before it
+    ConstraintImpulse direction;  ///< change of `push` in the last sweep, its momentum step included
 
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 };
 
-/// The part of a contact that resists rolling.
+/// Rolling resistance of a contact.
 struct RollingConstraint {
     std::uint32_t row = 0;
-    double friction = 0.0;      ///< m
-    double per_radius_a = 0.0;  ///< 1 / radius, 1/m
+    double friction = 0.0;      ///< moment over normal force, in m
+    double per_radius_a = 0.0;  ///< 1 / radius, in 1/m
     double per_radius_b = 0.0;
-    Vec3 wall_turning;     ///< rad/s, of the wall
-    double inertia = 0.0;  ///< kg m^2, moment that changes the rolling by 1 rad/s
-    Vec3 moment;           ///< N m s
-    Vec3 direction;        ///< by what the last sweep has changed it, with the momentum before it
+    Vec3 wall_turning;     ///< angular velocity of the wall, in rad/s
+    double inertia = 0.0;  ///< angular impulse per change of the rolling velocity, in kg m^2
+    Vec3 moment;           ///< angular impulse, in N m s
+    Vec3 direction;        ///< change of `moment` in the last sweep, its momentum step included
 };
 
-/// m/s, by which the conditions of contacts may be violated.
+/// Velocities, in m/s, by which contact conditions may be violated.
 struct SolverLimits {
     double approach = 0.0;
-    double slip = 0.0;  ///< the same of rolling
+    double slip = 0.0;  ///< also for rolling
 };
 
-/// How much a row has changed, or each of four, see SweepChange.
+/// Change of one row, or of each of four, in a sweep. See SweepChange.
 template <class Number>
 struct RowChange {
-    Number normal_work{};       ///< J, by the normal impulse
-    Number tangential_work{};   ///< J, by friction
-    Number approach_squared{};  ///< m^2/s^2, as it counts
+    Number normal_work{};       ///< by the normal impulse, in J
+    Number tangential_work{};   ///< by friction, in J
+    Number approach_squared{};  ///< times `strictness`, in m^2/s^2
     Number slip_squared{};
 };
 
-/// How much a sweep has changed.
+/// Change of the network in a sweep.
 struct SweepChange {
-    double squared = 0.0;           ///< J, sum of impulses times the velocities that they change
-    double approach_squared = 0.0;  ///< m^2/s^2, of the largest change of a contact's approach, as it counts
-    double slip_squared = 0.0;      ///< m^2/s^2, of the largest change of its slip, as it counts
+    double squared = 0.0;           ///< sum of changes of impulses times the resulting changes of velocity, in J
+    double approach_squared = 0.0;  ///< largest change of an approach, squared and times `strictness`, in m^2/s^2
+    double slip_squared = 0.0;      ///< largest change of a slip, likewise
 
     void add(const SweepChange& other) {
         squared += other.squared;
@@ -103,21 +103,21 @@ template <class Row, class State>
     return dot(row.normal, a.velocity - b.velocity);
 }
 
-/// Slip of a over b.
+/// Returns the slip velocity of a relative to b, in m/s.
 template <class Row, class State>
 [[nodiscard]] RICOCHET_INLINE auto slip_of(const Row& row, const State& a, const State& b) {
     const auto between = a.velocity - b.velocity;
     return between - dot(row.normal, between) * row.normal - cross(a.turning + b.turning, row.normal);
 }
 
-/// Spin of a relative to b, across the normal.
+/// Returns the spin of a relative to b, perpendicular to the normal, in rad/s.
 [[nodiscard]] inline Vec3 rolling_of(const ContactConstraint& row, const RollingConstraint& rolling,
                                      const SolverState& a, const SolverState& b) {
     const Vec3 between = rolling.per_radius_a * a.turning - rolling.per_radius_b * b.turning - rolling.wall_turning;
     return between - dot(row.normal, between) * row.normal;
 }
 
-/// What nothing moves is not written to: threads share it.
+/// Applies an impulse to a body. A fixed body is not written to, because several threads can use it.
 RICOCHET_INLINE void apply(const Vec3& impulse, const Vec3& turn, SolverState& body) {
     if (body.inverse_mass == 0.0) return;
     body.velocity += body.inverse_mass * impulse;
@@ -137,29 +137,29 @@ inline void apply_moment(const RollingConstraint& rolling, const Vec3& moment, S
     if (b.inverse_mass != 0.0) b.turning -= (b.inverse_inertia * rolling.per_radius_b) * moment;
 }
 
-/// The part of a vector's length that is left where it may be no longer than `most`.
+/// Returns the factor, at most 1, that limits the length of a vector to `most`.
 [[nodiscard]] inline double length_kept(const Vec3& v, double most) {
     const double squared = length_squared(v);
     return squared > most * most ? most / std::sqrt(squared) : 1.0;
 }
 
-/// v, shortened to a length where it is longer.
+/// Returns v with its length limited to `most`.
 [[nodiscard]] inline Vec3 shortened(const Vec3& v, double most) { return length_kept(v, most) * v; }
 
-/// 1/kg, of the approach of two.
+/// Returns the inverse effective mass of the approach of two bodies, in 1/kg.
 template <class State>
 [[nodiscard]] RICOCHET_INLINE auto inverse_mass_of(const State& a, const State& b) {
     return a.inverse_mass + b.inverse_mass;
 }
 
-/// 1/kg, of their slip.
+/// Returns the inverse effective mass of the slip of two bodies, in 1/kg.
 template <class State>
 [[nodiscard]] RICOCHET_INLINE auto slip_inverse_mass_of(const State& a, const State& b) {
     return inverse_mass_of(a, b) + a.inverse_inertia + b.inverse_inertia;
 }
 
-/// Goes on with a row by a factor of its direction, as its bodies have gone already, and puts it right for the state
-/// that there is.
+/// Adds the momentum step, `factor` times the last change, to a row's impulse, and then solves the row for the current
+/// velocities. The velocities of its bodies already include the momentum step.
 template <class Row, class State>
 RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     RowChange<decltype(row.bound)> change;
@@ -189,7 +189,7 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     return change;
 }
 
-/// The same of its resistance to rolling; as a velocity counts that of the smaller sphere's surface.
+/// Does the same for the rolling resistance of a row. Its change of velocity is that of the smaller sphere's surface.
 inline void relax(const ContactConstraint& row, RollingConstraint& rolling, double factor, SolverState& a,
                   SolverState& b, SweepChange& change) {
     const Vec3 step = factor * rolling.direction;
@@ -206,7 +206,7 @@ inline void relax(const ContactConstraint& row, RollingConstraint& rolling, doub
     change.slip_squared = std::max(change.slip_squared, row.strictness * speed_squared);
 }
 
-/// It does nothing, has done nothing in the last sweep, and need not do anything now.
+/// Returns true if a row has no impulse, has not changed in the last sweep, and is not violated.
 template <class Row, class State>
 [[nodiscard]] RICOCHET_INLINE auto is_idle(const Row& row, const State& a, const State& b) {
     const auto& direction = row.direction.tangential;

@@ -10,26 +10,25 @@
 namespace ricochet {
 namespace {
 
-/// m/s. No faster either than a fall through the overlap, m, makes, which is what sinking into it has given: a small
-/// overlap would throw what is heavy else, the farther the shorter steps are. pull: m/s^2.
+/// Returns the largest speed, in m/s, that separates an overlap, in m. It is at most the speed of a free fall through
+/// the overlap, because sinking gave no more. Otherwise a small overlap would throw heavy spheres, and shorter steps
+/// would throw them farther. `pull` is in m/s^2, `approach` in m/s.
 double most_parting(double pull, double radius, double overlap, double approach) {
     if (!(overlap > 0.0)) return std::max(0.0, approach);
     const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
     return std::sqrt(pull * fall) + std::max(0.0, approach);
 }
 
-/// m, for a sphere that goes a way, m.
+/// Returns the search distance for contacts, in m, of a sphere whose path is `travel` long, in m.
 double reach_of(double travel, double radius) { return 2.0 * travel + kNetworkReach * radius; }
 
-/// Members, or contacts, that are added from the prefetch of one, or of what it did before, to its use.
+/// Number of members or contacts between the prefetch of their data and its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Factor of the reach of a pair beyond which it is certainly no contact. Local: it covers rounding, and the exact
-/// reach decides.
+/// Factor on the reach of a pair that covers rounding. Beyond it there is certainly no contact.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
-/// Part of the distance searched for walls that counts as clear. Local: it covers rounding, and only the cost depends
-/// on it.
+/// Fraction of a search distance without walls that counts as clear. The rest covers rounding.
 constexpr double kClear = 0.9;
 
 }  // namespace
@@ -55,7 +54,8 @@ SolverReport ContactIsland::plan(std::span<const ContactIslandMember> members, s
     return solver_.solve(bodies_, contacts_, wished);
 }
 
-/// What overlaps is parted by a part of it in a step: in a part of the step by as much less, else it would be thrown.
+/// Sets the duration as a fraction of the time step. A time step removes a fraction of an overlap. A substep removes
+/// correspondingly less, because otherwise the spheres would be thrown.
 void ContactIsland::set_part(bool is_coupled) {
     part_ = is_coupled ? std::min(1.0, duration_ / rules_.settings.time_step) : 1.0;
 }
@@ -112,9 +112,9 @@ void ContactIsland::add_pair(std::uint32_t first, std::uint32_t second) {
     const double farthest = kOutOfReach * (a.radius + b.radius + a.reach + b.reach);
     if (squared > farthest * farthest) return;
     const double distance = std::sqrt(squared);
-    if (!(distance > 0.0)) return;  // no direction parts them
+    if (!(distance > 0.0)) return;  // no direction separates them
     double gap = parted(distance - a.radius - b.radius);
-    // Between two sleepers there may be no room to part from both.
+    // Overlaps with sleeping spheres are ignored, because a sphere between two of them may have no room to separate.
     if (a.is_asleep || b.is_asleep) gap = std::max(0.0, gap);
     if (gap > a.reach + b.reach) return;
     SolverContact& contact = contacts_.emplace_back();
@@ -171,7 +171,7 @@ void ContactIsland::add_wall(std::uint32_t index, const ContactIslandMember& mem
     surfaces_.push_back(wall.surface);
 }
 
-/// Adds what the wall's material does, and how it turns.
+/// Adds the surface velocity of the wall's material, and sets the wall's angular velocity.
 void ContactIsland::carry(SolverContact& contact, const WallContact& wall, const Material& material,
                           const ForceInput& state) const {
     const BodyId body = rules_.bodies == nullptr ? kWorldBody : rules_.bodies->body_of(wall.surface);
@@ -187,14 +187,15 @@ void ContactIsland::carry(SolverContact& contact, const WallContact& wall, const
     contact.wall_turning += pose.world_from_frame.direction(material.motion.angular_velocity);
 }
 
-/// Has added the last contact; what it begins with is looked up while others are added.
+/// Sets the key of the last contact. Its start impulse is looked up while later contacts are added.
 void ContactIsland::add_key(const ContactKey& key) {
     keys_.push_back(key);
     before_.push_back(nullptr);
     warm_start(keys_.size() - 1);
 }
 
-/// Three stages, each for an earlier contact: what is remembered lies anywhere, and takes time to be fetched.
+/// Looks up start impulses in three stages, each for an earlier contact. Reason: remembered impulses are scattered in
+/// memory, so each stage prefetches the data of the next one.
 void ContactIsland::warm_start(std::size_t at) {
     const std::size_t count = keys_.size();
     if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());
@@ -208,13 +209,13 @@ void ContactIsland::warm_start(std::size_t at) {
     contacts_[k].touched = before_[k]->normal > 0.0;
 }
 
-/// A restitution, but for a rebound too slow to count. What the step's own kick puts into the approach is not the speed
-/// of an impact.
+/// Returns the restitution, or 0 if the rebound would be slower than the resting speed. `approach` is the speed at the
+/// start of the step, in m/s. Forces change it within the step, but that change is no impact speed.
 double ContactIsland::rebound(double restitution, double approach) const {
     return restitution * approach >= rules_.settings.resting_speed ? restitution : 0.0;
 }
 
-/// What moves fast may be less exact; what comes to rest is solved ever more closely.
+/// Returns tolerances that decrease with the speeds, so that networks are solved more exactly as they come to rest.
 SolverSettings ContactIsland::settings(const Pace& pace) const {
     SolverSettings settings;
     settings.duration = duration_;
@@ -247,7 +248,8 @@ ContactIsland::Pace ContactIsland::pace_of(std::span<const ContactIslandMember> 
     return pace;
 }
 
-/// Errors that something fast may leave would keep all that lies beside it awake.
+/// Sets stricter tolerances for contacts of slow spheres, because the errors of a fast sphere would keep its neighbours
+/// awake.
 void ContactIsland::set_exactness(const Pace& pace, double enough) {
     const double still = kNetworkStill * pace.smallest / duration_;
     const auto speed_of = [&](const MemberState& member) {
@@ -262,7 +264,7 @@ void ContactIsland::set_exactness(const Pace& pace, double enough) {
 
 void ContactIsland::move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const {
     if (member.is_fixed) return;
-    const double core = member.moving->state.radius;  // which turns faster than the whole sphere
+    const double core = member.moving->state.radius;  // it spins faster than the whole sphere
     PlannedMotion plan{bodies_[index].velocity, core > 0.0 ? (member.radius / core) * bodies_[index].spin : Vec3{},
                        member.duration, impulses_of(index)};
     plan.is_clear = member.duration * length(plan.velocity) < clear_[index];

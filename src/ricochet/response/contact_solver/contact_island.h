@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: spheres that are moved over a step together, by the problem of all their contacts.
+/// Private to the responses: a contact island, whose spheres are moved over a step by one contact problem.
 #pragma once
 
 #include <cmath>
@@ -18,84 +18,84 @@
 
 namespace ricochet {
 
-/// One of the spheres.
+/// A sphere of the island.
 struct ContactIslandMember {
     MovingParticle* moving = nullptr;
-    double radius = 0.0;         ///< m, as others meet it
-    bool is_fixed = false;       ///< nothing moves it
-    double duration = 0.0;       ///< s, of its part of the step
-    bool is_pinched = false;     ///< surfaces that close on it have stopped its clock: others find it where it is
-    bool is_asleep = false;      ///< fixed as long as it sleeps: what overlaps it is not parted from it
-    double reach = 0.0;          ///< m, how far beside its surface its contacts are looked for
-    std::uint32_t material = 0;  ///< its number among PairMaterials
-    // Out:
+    double radius = 0.0;         ///< radius for contacts with other spheres, in m
+    bool is_fixed = false;       ///< true if nothing moves it
+    double duration = 0.0;       ///< duration of its step, in s
+    bool is_pinched = false;     ///< true if it is pinched: its time is stalled, and others meet it at its position
+    bool is_asleep = false;      ///< fixed while asleep; overlaps with it are not separated
+    double reach = 0.0;          ///< search distance for contacts from its surface, in m
+    std::uint32_t material = 0;  ///< index in PairMaterials
+    // Output:
     MoveOutcome outcome{};
 
     [[nodiscard]] bool stays() const { return is_fixed || is_pinched; }
 };
 
-/// What one that is awake does to one that sleeps in a step.
+/// Impulse of a contact on a sleeping sphere in a step.
 struct SleeperImpulse {
-    std::uint64_t particle = 0;  ///< id of the sleeper
-    Vec3 impulse;                ///< N s
+    std::uint64_t particle = 0;  ///< id of the sleeping sphere
+    Vec3 impulse;                ///< in N s
 };
 
-/// Plans with the velocities that forces give the spheres within the step (symplectic Euler's), finds their contacts
-/// with each other and with walls, solves them, and moves each sphere along its plan. Keeps its memory from one island
-/// to the next.
+/// Solves and moves one contact island after the other, and reuses its memory. The forces first give each sphere its
+/// velocity at the end of the step (symplectic Euler). Then all contacts with spheres and walls are found and solved.
+/// Each sphere finally moves along its plan.
 class ContactIsland {
 public:
-    /// Both must outlive it.
+    /// Both must outlive the object.
     ContactIsland(const ResponseRules& rules, const PairMaterials& materials) : rules_(rules), materials_(materials) {}
 
-    /// m, for a first plan: as far as a member comes by itself, and more.
+    /// Returns the search distance for the first plan, in m: more than the length of the member's free path.
     [[nodiscard]] double first_reach(const ContactIslandMember& member) const;
-    /// Plans a step of `duration` seconds. pairs: those within reach of each other, by their numbers. memory: of the
-    /// last step.
+    /// Plans a step of `duration` seconds. `pairs` holds the indices of members within reach of each other, and
+    /// `memory` the contacts of the last step.
     SolverReport plan(std::span<const ContactIslandMember> members, std::span<const NeighbourPair> pairs,
                       double duration, const WarmStartMemory& memory, MoveScratch& scratch);
-    /// Moves one of the members, by its number, as it has been planned. Several threads may move different ones.
+    /// Moves the member with this index as planned. Several threads may move different members.
     void move(std::size_t index, ContactIslandMember& member, MoveScratch& scratch) const;
 
-    /// What is planned for a member, by its number.
+    /// Returns the planned motion of the member with this index.
     [[nodiscard]] const SolverBody& planned(std::size_t index) const { return bodies_[index]; }
-    /// Plans instead that it stays where it is, without spin.
+    /// Replaces the plan of a member by rest, without spin.
     void put_to_rest(std::size_t index) { bodies_[index].velocity = bodies_[index].spin = Vec3{}; }
-    /// m/s, that other spheres give it in the step.
+    /// Returns the velocity change of a member by other spheres in the step, in m/s.
     [[nodiscard]] Vec3 given_by_others(std::size_t index, const ContactIslandMember& member) const;
-    /// What walls do to it in the step.
+    /// Returns the effects of walls on a member in the step.
     [[nodiscard]] std::vector<WallImpulse> impulses_of(std::size_t index) const;
-    /// What the contacts of the last plan do, for the memory of the next step.
+    /// Returns the contacts of the last plan, for the memory of the next step.
     [[nodiscard]] std::vector<WarmStartMemory::Entry> entries() const;
-    /// Members that press on each other, by their numbers.
+    /// Returns the pairs of members that press on each other, by their indices.
     [[nodiscard]] std::vector<NeighbourPair> pressing() const;
-    /// By others that do not sleep, contact by contact.
+    /// Returns the impulses of spheres that are awake on sleeping spheres, one per contact.
     [[nodiscard]] std::vector<SleeperImpulse> impulses_on_sleepers() const;
-    /// Pairs that hardly leave a gap between them, whether they press or not.
+    /// Returns the pairs with at most a very small gap, whether they press or not.
     [[nodiscard]] std::vector<ContactKey> touching() const;
-    /// Lets members that others push farther than their contacts have been looked for reach as far: their numbers,
-    /// ascending. Where there are none what is planned leads into nothing.
+    /// Increases the search distance of members whose plan leads beyond it. Returns their indices in ascending order.
+    /// If there are none, the plan leads into no unknown contact.
     [[nodiscard]] std::vector<std::uint32_t> reach_farther(std::span<ContactIslandMember> members) const;
 
 private:
-    /// What contacts need of a member, close together.
+    /// Data of a member that contacts need, stored together.
     struct MemberState {
-        Vec3 position;  ///< m
-        Vec3 velocity;  ///< m/s, with which it sets out
+        Vec3 position;  ///< in m
+        Vec3 velocity;  ///< at the start of the step, in m/s
         std::uint64_t id = 0;
-        double radius = 0.0;  ///< m
-        double reach = 0.0;   ///< m
-        double pull = 0.0;    ///< m/s^2, of the forces on it
+        double radius = 0.0;  ///< in m
+        double reach = 0.0;   ///< in m
+        double pull = 0.0;    ///< acceleration by the forces on it, in m/s^2
         std::uint32_t material = 0;
         bool stays = false;
         bool is_asleep = false;
     };
 
-    /// What errors are measured by.
+    /// Scales of the tolerances.
     struct Pace {
-        double fastest = 0.0;         ///< m/s, with which one sets out
-        double force_velocity = 0.0;  ///< m/s, that forces give one in the step at most
-        double smallest = INFINITY;   ///< m, radius
+        double fastest = 0.0;         ///< largest speed at the start of the step, in m/s
+        double force_velocity = 0.0;  ///< largest velocity change by forces in the step, in m/s
+        double smallest = INFINITY;   ///< smallest radius, in m
     };
 
     void set_part(bool is_coupled);
@@ -118,19 +118,19 @@ private:
     const ResponseRules& rules_;
     const PairMaterials& materials_;
     double duration_ = 0.0;
-    double part_ = 1.0;  // of the run's step, where those that act on each other take it in parts
+    double part_ = 1.0;  // duration as a fraction of the time step, below 1 if coupled particles take substeps
     std::vector<SolverBody> bodies_;
-    std::vector<MemberState> members_;                   // of the members
-    std::vector<WarmStartMemory::OfParticle> memories_;  // of each member
-    std::vector<SolverContact> contacts_;
-    std::vector<ContactKey> keys_;              // of the contacts
-    std::vector<const SolverImpulse*> before_;  // of the contacts, what they did; null where there were none
-    std::vector<std::size_t> edges_of_sleep_;   // contacts of one that sleeps with one that does not
-    std::vector<NeighbourPair> ends_;           // of the contacts of two, which come first: their members
-    std::vector<WallContact> walls_;
-    std::vector<std::size_t> first_wall_;  // of each member among the contacts, and the end
-    std::vector<SurfaceId> surfaces_;      // of the contacts; of walls
-    std::vector<double> clear_;            // m, of each member: so far there is certainly no wall
+    std::vector<MemberState> members_;                   // one per member
+    std::vector<WarmStartMemory::OfParticle> memories_;  // one per member
+    std::vector<SolverContact> contacts_;                // between spheres, then with walls
+    std::vector<ContactKey> keys_;                       // one per contact
+    std::vector<const SolverImpulse*> before_;           // last impulse of each contact, or null
+    std::vector<std::size_t> edges_of_sleep_;            // contacts of a sleeping sphere with one that is awake
+    std::vector<NeighbourPair> ends_;                    // members of each contact between spheres
+    std::vector<WallContact> walls_;                     // scratch memory of add_walls()
+    std::vector<std::size_t> first_wall_;  // index of each member's first contact with a wall, and the end
+    std::vector<SurfaceId> surfaces_;      // one per contact, set for walls
+    std::vector<double> clear_;            // distance of each member in which there is certainly no wall, in m
     IterativeContactSolver solver_;
 };
 

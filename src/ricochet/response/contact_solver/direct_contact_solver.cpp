@@ -11,40 +11,39 @@ namespace {
 
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
-/// Stiffness of the dampers over the heaviest mass. Reason: a pass leaves a hundredth of the violation. Rounding leaves
-/// light spheres, of a billionth of the mass, an error of 1e-5 of the speeds. Smaller: more passes. Local, because
-/// SolverSettings has the tolerance.
+/// Stiffness of the dampers, relative to the heaviest mass. Reason: a pass leaves a hundredth of the violation.
+/// Rounding causes an error of 1e-5 of the speeds for spheres of a billionth of that mass. Smaller: more passes.
 constexpr double kStiffness = 100.0;
 
-/// Factor between two stiffnesses, from that of the lightest mass to that of the heaviest; and Newton steps for each of
-/// them and for the first attempt. Local: steps of this search.
+/// Factor between successive stiffnesses, from that of the lightest mass to that of the heaviest. The second constant
+/// is the number of Newton steps at each of them, and in the first attempt.
 constexpr double kStiffer = 100.0;
 constexpr int kFewSteps = 8;
 
-/// Most passes after the first, and most steps in each. A problem that needs more has no solution, or friction that
-/// circles. Local: a limit of this search, whose result is checked.
+/// Largest number of passes after the first, and of Newton steps in each. Networks that need more have no solution, or
+/// their friction cycles.
 constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
-/// Parts of the tolerance: largest lack of momentum at the end of a pass, and largest violation that a pass may find.
-/// Local: shares of the tolerance in SolverSettings.
+/// Largest momentum residual at the end of a pass, and largest violation of the conditions after the last pass,
+/// relative to the tolerance.
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
-/// Part of the slope at the start of a step that may be left at its end, and most trials of its length. Local: a rule
-/// of this line search.
+/// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
-/// Most operations of all factorizations of a network: about a second. Reason: they grow with the third power of the
-/// contacts in a cut through the network. A thousand spheres, some a thousand times as heavy, took minutes per step.
-/// Local: a limit of the work, after which sweeps continue.
+/// Largest number of operations of all factorizations of a network, about a second of work. Reason: the operations grow
+/// with the third power of the number of contacts that a cut through the network crosses. A thousand spheres, some of
+/// them a thousand times as heavy, took minutes per step.
 constexpr double kMostOperations = 1e9;
 
-/// Part of its stiffness that slipping friction keeps along the slip. Local: it only keeps the matrix regular.
+/// Stiffness of sliding friction along the slip, relative to its stiffness across the slip. It is above 0 so that no
+/// matrix is singular.
 constexpr double kSlipStiffness = 1e-9;
 
-/// How much what the cone leaves of a wish changes with the wish, across a normal.
+/// Returns the derivative of a tangential vector, limited to the length `most`, with respect to the vector `wish`.
 Block3 kept_change(const Vec3& normal, const Vec3& wish, double most, bool is_smooth) {
     Block3 result{};
     const double size = length(wish);
@@ -86,8 +85,9 @@ bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
     return is_solved;
 }
 
-/// The first pass: at once where the start is near, as it is where things lie still, else by and by from soft dampers
-/// to stiff ones, between which light spheres would be thrown to and fro.
+/// Makes the first pass. It tries the full stiffness first, which succeeds if the start is near the solution, as for
+/// spheres at rest. Otherwise the stiffness grows in stages, because stiff dampers would throw light spheres to and
+/// fro.
 void DirectContactSolver::begin_passes(double most_defect) {
     const double stiffest = kStiffness * heaviest_;
     const std::vector<SolverState> start(parts_.states.begin(), parts_.states.end());
@@ -121,7 +121,7 @@ std::uint32_t DirectContactSolver::pair_of(std::uint32_t first, std::uint32_t se
     return static_cast<std::uint32_t>(pairs_.size() - 1);
 }
 
-/// Which blocks of the matrix a row has a part in.
+/// Finds the matrix blocks of each row.
 void DirectContactSolver::find_places() {
     pairs_.clear();
     places_.clear();
@@ -165,13 +165,13 @@ DirectContactSolver::ImpulseResponse DirectContactSolver::response_to(std::size_
     return response;
 }
 
-/// m, of the smaller sphere of a row that resists rolling.
+/// Returns the radius, in m, of the smaller sphere of a row with rolling resistance.
 double DirectContactSolver::radius_of(std::size_t i) const {
     const RollingConstraint& rolling = parts_.rolling[parts_.rows[i].rolling];
     return 1.0 / std::max(rolling.per_radius_a, rolling.per_radius_b);
 }
 
-/// Impulses, and what momentum lacks of the velocities that there are.
+/// Computes the impulses and the momentum residual at the current velocities.
 void DirectContactSolver::evaluate() {
     gradient_.assign(6 * moving_, 0.0);
     for (std::size_t i = 0; i < parts_.bodies; ++i) {
@@ -206,7 +206,7 @@ void DirectContactSolver::evaluate() {
     }
 }
 
-/// m/s, that impulses change velocities by more than these have changed.
+/// Returns the largest velocity error, in m/s, from the momentum residual.
 double DirectContactSolver::largest_defect() const {
     double largest = 0.0;
     for (std::size_t i = 0; i < parts_.bodies; ++i) {
@@ -249,7 +249,7 @@ void DirectContactSolver::add_row(std::size_t i) {
     if (b != kFixed) add(matrix_.own[b], 1.0, moving);
     if (slots.velocities != kFixed) add(matrix_.between[slots.velocities], -1.0, moving);
     if (!(most > 0.0)) return;
-    // The slip is that of the velocities, and normal x (sum of the turnings).
+    // The slip is the tangential part of the relative velocity plus normal x (sum of the turnings).
     const Block3 turning = product(slipping, cross_matrix(row.normal));
     const Block3 turns = product(transposed(cross_matrix(row.normal)), turning);
     const auto add_turning = [&](std::uint32_t slot, double sign) {
@@ -281,7 +281,8 @@ void DirectContactSolver::add_rolling(std::size_t i) {
         add(matrix_.between[places_[i].turnings], -stiffness * rolling.per_radius_a * rolling.per_radius_b, change);
 }
 
-/// The velocities at which impulses of the dampers and of the multipliers balance.
+/// Finds the velocities at which the impulses of dampers and multipliers balance the momentum. Returns false if the
+/// residual, in m/s, remains above `most_defect`.
 bool DirectContactSolver::minimise(double most_defect, int most_steps) {
     is_smooth_ = true;
     ahead_.assign(parts_.rows.size(), 0);
@@ -294,7 +295,7 @@ bool DirectContactSolver::minimise(double most_defect, int most_steps) {
         std::vector<double> direction = gradient_;
         for (double& value : direction) value = -value;
         cholesky_.solve(direction);
-        if (!(slope_along(direction) < 0.0)) break;  // rounding alone is left
+        if (!(slope_along(direction) < 0.0)) break;  // only rounding remains
         is_smooth_ = search_along(direction);
     }
     return largest_defect() <= most_defect;
@@ -315,8 +316,8 @@ double DirectContactSolver::slope_along(std::span<const double> direction) const
     return sum;
 }
 
-/// To where the function hardly falls or rises any more: its slope grows along the line. False where that was not the
-/// whole step.
+/// Moves along a direction until the slope of the function, which increases along the line, is nearly 0. Returns false
+/// if the step was shortened.
 bool DirectContactSolver::search_along(std::span<const double> direction) {
     const double first = slope_along(direction);
     double low = 0.0;
@@ -332,7 +333,7 @@ bool DirectContactSolver::search_along(std::span<const double> direction) {
     for (std::size_t i = 0; i < responses_.size(); ++i) ahead_[i] = responses_[i].normal > 0.0 ? 1 : 0;
     double high_slope = slope;
     for (int trial = 0; trial < kMostTrials && std::fabs(slope) > kSlopeLeft * std::fabs(first); ++trial) {
-        // In turns between where the line through both slopes is zero and the middle.
+        // Alternates between the zero of the line through both slopes and the midpoint.
         const double part = trial % 2 == 0 ? low_slope / (low_slope - high_slope) : 0.5;
         const double next = low + std::clamp(part, 0.01, 0.99) * (high - low);
         go_along(direction, next - at);
@@ -345,7 +346,7 @@ bool DirectContactSolver::search_along(std::span<const double> direction) {
     return false;
 }
 
-/// Impulses become multipliers. Returns by how much the conditions were violated, m/s.
+/// Makes the impulses the new multipliers. Returns the largest violation of the conditions, in m/s.
 double DirectContactSolver::update_multipliers() {
     double worst = 0.0;
     for (std::size_t i = 0; i < responses_.size(); ++i) {
@@ -367,7 +368,8 @@ double DirectContactSolver::update_multipliers() {
     return worst;
 }
 
-/// Impulses inside the cone of friction, and the velocities that they give: momentum is kept to rounding.
+/// Limits the impulses to the friction cone and computes the velocities from them, so that momentum is conserved to
+/// rounding.
 void DirectContactSolver::hand_over() {
     std::copy(parts_.before.begin(), parts_.before.end(), parts_.states.begin());
     for (ContactConstraint& row : parts_.rows) {

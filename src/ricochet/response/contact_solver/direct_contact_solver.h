@@ -1,17 +1,17 @@
 /// \file
-/// Private to the solver of contact networks: Newton's method with a factorization, for networks in which masses differ
-/// so much that sweeps hardly get on.
+/// Private to the contact solver: the direct contact solver, an augmented Lagrangian Newton method with a
+/// factorization. It solves networks whose masses differ so much that sweeps hardly converge.
 ///
-/// What a light sphere passes on from a heavy one to a floor takes sweeps some times the ratio of the masses, since
-/// each of them moves the light one alone. Here all velocities are unknowns together. Impulses are those of stiff
-/// dampers between surfaces, beside what earlier passes have found (multipliers),
+/// Example: a light sphere transmits the load of a heavy one to a floor. Plain sweeps then need a number of the order
+/// of the mass ratio, because each sweep moves only the light sphere. Here all velocities are solved together. Impulses
+/// come from stiff dampers between surfaces, in addition to multipliers p from earlier passes:
 ///
-///     P_n = max(0, p_n - k (u_n + bound)),   P_t = what the cone leaves of (p_t - k u_t),
+///     P_n = max(0, p_n - k (u_n + bound)),   P_t = p_t - k u_t, limited to the friction cone
 ///
-/// with friction limited by the normal impulses at the same velocities. Each pass looks for the velocities at which
-/// these impulses balance: with friction as it is just limited they are the minimum of a convex function, which
-/// Newton's method finds. Its impulses are the next multipliers. The stiffness k is some times the heaviest mass: every
-/// pass takes away all but a small part of what is violated, whatever the light ones weigh.
+/// The friction cone is that of the normal impulses at the same velocities. Each pass finds the velocities at which
+/// these impulses balance the momentum. For fixed limits of friction they minimise a convex function, so Newton's
+/// method finds them. The impulses are the multipliers of the next pass. The stiffness k is a multiple of the heaviest
+/// mass. Each pass therefore removes all but a small part of the violation, however light the other spheres are.
 ///
 /// Source: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution
 /// methods", Comput. Methods Appl. Mech. Engrg. 92 (1991).
@@ -27,8 +27,8 @@
 
 namespace ricochet {
 
-/// The network: velocities without impulses and with those of the rows; the first `bodies` states are spheres, the
-/// others walls.
+/// A network: states without impulses (`before`), and with the impulses of the rows (`states`). The first `bodies`
+/// states are spheres, the others walls.
 struct SolverSystem {
     std::span<const SolverState> before;
     std::span<SolverState> states;
@@ -37,25 +37,26 @@ struct SolverSystem {
     std::span<RollingConstraint> rolling;
 };
 
-/// Keeps its memory from one network to the next.
+/// Direct contact solver, which reuses its memory for the next network.
 class DirectContactSolver {
 public:
-    /// Improves the impulses of a network, and its states with them, until the conditions are violated by no more than
-    /// the tolerance, m/s. False where it does not come to that, or would cost too much.
+    /// Improves the impulses and states of a network until the conditions are violated by at most the tolerance, in
+    /// m/s. Returns false if it does not reach the tolerance or would cost too much.
     [[nodiscard]] bool improve(const SolverSystem& parts, double tolerance);
 
 private:
-    /// Numbers of a row's pairs of blocks in the matrix, by what they join: velocities and turnings of a and b.
+    /// Indices of the off-diagonal matrix blocks of a row, by the unknowns that they couple: velocities and turnings of
+    /// a and b.
     struct BlockIndices {
         std::uint32_t velocities, a_turning_a, a_turning_b, b_turning_a, b_turning_b, turnings;
     };
-    /// Impulses at the velocities that there are, and how they change with these.
+    /// Impulses of a row at the current velocities, after and before the limits of friction.
     struct ImpulseResponse {
         double normal = 0.0;
         Vec3 tangential;
         Vec3 moment;
-        Vec3 wish;         // tangential impulse that would stop the slip
-        Vec3 wish_moment;  // moment that would stop the rolling
+        Vec3 wish;         // tangential impulse before the limit
+        Vec3 wish_moment;  // moment before the limit
     };
 
     void begin_passes(double most_defect);
@@ -77,20 +78,20 @@ private:
     void hand_over();
 
     SolverSystem parts_;
-    double heaviest_ = 0.0;  // kg
+    double heaviest_ = 0.0;  // in kg
     double lightest_ = 0.0;
-    double stiffness_ = 0.0;            // kg
-    bool is_smooth_ = true;             // the last step could be gone to its end
-    std::vector<std::uint32_t> slots_;  // of each state's velocity among the blocks of rows; kFixed
-    std::size_t moving_ = 0;            // bodies; their turnings follow their velocities
+    double stiffness_ = 0.0;            // in kg
+    bool is_smooth_ = true;             // true if the last Newton step had its full length
+    std::vector<std::uint32_t> slots_;  // index of each state's velocity among the unknowns, or kFixed
+    std::size_t moving_ = 0;            // number of bodies that are not fixed; turnings follow all velocities
     std::vector<BlockIndices> places_;
     std::vector<BlockCholesky::Pair> pairs_;
     BlockCholesky cholesky_;
-    double operations_left_ = 0.0;  // that factorizations may still take
+    double operations_left_ = 0.0;  // budget of the remaining factorizations
     BlockMatrix matrix_;
-    std::vector<ImpulseResponse> responses_;  // by row
-    std::vector<std::uint8_t> ahead_;  // by row: 1 where the last step, gone to its end, would press the two together
-    std::vector<double> gradient_;     // kg m/s, three numbers a row of blocks
+    std::vector<ImpulseResponse> responses_;  // one per row
+    std::vector<std::uint8_t> ahead_;  // one per row: 1 if the last step, at full length, would press the two together
+    std::vector<double> gradient_;     // in kg m/s, three numbers per unknown
 };
 
 }  // namespace ricochet

@@ -10,7 +10,7 @@
 namespace ricochet {
 namespace {
 
-/// Contacts per unit of parallel work; sums are made in such blocks whatever the number of threads.
+/// Contacts per block of parallel work. Sums are computed by these blocks for any number of threads.
 constexpr std::size_t kBlock = 512;
 
 /// Number of restarts of the momentum after which each restart is followed by one more sweep without momentum. Friction
@@ -18,12 +18,12 @@ constexpr std::size_t kBlock = 512;
 /// when the iteration ends.
 constexpr int kRestartsAPlainSweep = 64;
 
-/// tolerance: m/s.
+/// Returns the limits for a tolerance in m/s.
 SolverLimits limits_of(const SolverSettings& settings, double tolerance) {
     return {tolerance, std::max(tolerance, settings.slip)};
 }
 
-/// Of two masses that touch, the heavier over the lighter; 1 where one of them is that of a wall.
+/// Returns the heavier over the lighter mass of two bodies, or 1 if one of them is a wall.
 double ratio_of(const SolverState& a, const SolverState& b) {
     const auto [low, high] = std::minmax(a.inverse_mass, b.inverse_mass);
     return low > 0.0 ? high / low : 1.0;
@@ -112,7 +112,7 @@ void IterativeContactSolver::set_row(ContactConstraint& row, const SolverContact
         row.bound = -partings_.back();
     }
     if (inverse_mass_of(before_[row.a], before_[row.b]) == 0.0) {
-        row.bound = INFINITY;  // nothing could part them, and sweeps, which divide by their mobility, leave them out
+        row.bound = INFINITY;  // both are fixed; sweeps, which divide by the mobility, skip them
         return;
     }
     row.impulse.normal = std::max(0.0, contact.start.normal);
@@ -144,9 +144,9 @@ void IterativeContactSolver::add_rolling(const SolverContact& contact, std::span
     rolling_.push_back(rolling);
 }
 
-/// All of them or, where they do not act against what happens, as when forces have turned round, none. Most of a
-/// network goes on pressing as it did, and sweeps put right soon what single contacts begin with wrongly: to begin with
-/// a part of all of them would shake all that lies still.
+/// Applies all start impulses, or none if they would not oppose the motion, for example after a reversal of forces.
+/// Most contacts keep their impulses from step to step, and sweeps soon correct the others. A fraction of all start
+/// impulses would disturb all spheres at rest.
 void IterativeContactSolver::apply_start() {
     if (against_start_ > 0.0) {
         for (ContactConstraint& row : rows_) row.impulse = {};
@@ -161,7 +161,7 @@ void IterativeContactSolver::apply_start() {
     }
 }
 
-/// Adds what a contact's impulses act against, J.
+/// Adds the work of a contact's impulses at the given velocities to a sum, in J.
 void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<const SolverState> states,
                                       double& sum) const {
     if (row.impulse.normal == 0.0) return;
@@ -173,8 +173,9 @@ void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<co
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
 }
 
-/// Sweeps with momentum (Nesterov's), which begins anew whenever a sweep changes more than the one before. What few
-/// sweeps do not solve where masses differ much is solved directly, and a few sweeps more say whether it is.
+/// Sweeps with Nesterov's momentum, which restarts whenever a sweep changes more than the one before. If masses differ
+/// much and the sweeps do not converge, the direct contact solver is used. More sweeps then check its result, and the
+/// state before it is restored if the residual has grown.
 void IterativeContactSolver::iterate(const SolverSettings& settings, SolverReport& report) {
     const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
     const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
@@ -190,15 +191,15 @@ void IterativeContactSolver::iterate(const SolverSettings& settings, SolverRepor
     sweep_until(settings, settings.most_sweeps, report);
 }
 
-/// False where `most` sweeps do not come to what is asked for.
+/// Returns false if `most` sweeps do not meet the settings.
 bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int most, SolverReport& report) {
     const SolverLimits wished = limits_of(settings, settings.tolerance);
     const SolverLimits enough = limits_of(settings, std::max(settings.tolerance, settings.enough));
     double before = 0.0;
     double factor = 0.0;
-    int momentum = 0;  // sweeps since it last began anew
+    int momentum = 0;  // sweeps with momentum since its last restart
     int restarts = 0;
-    int plain = 0;  // sweeps without it to come
+    int plain = 0;  // remaining sweeps without momentum
     for (int k = 1;; ++k) {
         const SweepChange change = sweep(factor);
         ++report.sweeps;
@@ -219,8 +220,7 @@ bool IterativeContactSolver::sweep_until(const SolverSettings& settings, int mos
     }
 }
 
-/// All contacts once, after they and the bodies have gone on by a factor of what the last sweep and the momentum before
-/// it have changed.
+/// Solves every contact once, after a momentum step of contacts and bodies: `factor` times their last change.
 SweepChange IterativeContactSolver::sweep(double factor) {
     go_on(factor);
     SweepChange all;
@@ -242,8 +242,8 @@ SweepChange IterativeContactSolver::sweep(double factor) {
     return all;
 }
 
-/// Of the bodies: impulses and what they do to bodies are linear, so that rows need only do the same when it is their
-/// turn.
+/// Applies the momentum step to all bodies. Velocities are linear in the impulses, so each row can apply the same step
+/// to its impulse later, when it is solved.
 void IterativeContactSolver::go_on(double factor) {
     const auto go = [&](std::size_t, std::size_t begin, std::size_t end) {
         const std::size_t count = end - begin;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: solves a contact network, see contact_network.h.
+/// Private to the responses: the iterative contact solver. See contact_network.h for the problem.
 #pragma once
 
 #include <span>
@@ -14,34 +14,36 @@
 
 namespace ricochet {
 
-/// Keeps its memory from one network to the next. Large networks are worked on by all threads; the result has the same
-/// bits for any number of them. It depends on the order of the contacts within the tolerance only.
+/// Solves contact networks and reuses its memory. All threads solve a large network together. The result has the same
+/// bits for any number of threads. Another order of the contacts changes it only within the tolerance.
 class IterativeContactSolver {
 public:
     /// Updates the bodies' velocities and spins. Contacts name bodies by their index.
     SolverReport solve(std::span<SolverBody> bodies, std::span<const SolverContact> contacts,
                        const SolverSettings& settings);
-    /// Of the contacts of the last network, in their order.
+    /// Returns the impulses of the last network's contacts, in their order.
     [[nodiscard]] std::span<const SolverImpulse> impulses() const { return impulses_; }
-    /// Of the same, in their order: 1 where its restitution parts the two.
+    /// Returns 1 for each of these contacts that restitution separates, otherwise 0.
     [[nodiscard]] std::span<const std::uint8_t> rebounds() const { return rebounds_; }
 
 private:
-    /// Contacts from the prefetch of one to its use: those of a colour lie anywhere among all.
+    /// Number of contacts between the prefetch of a contact and its use. Contacts of one colour are scattered in
+    /// memory.
     static constexpr std::size_t kPrefetchDistance = 8;
 
-    /// Of a connected impact: with the part f of its impulses energy changes by f (against + f curvature / 2), J.
+    /// Energy change of a connected impact. The fraction f of its impulses changes the energy by f (against + f
+    /// curvature / 2), in J.
     struct Gain {
         double against = 0.0;
         double curvature = 0.0;
-        double size = 0.0;  ///< J, of which rounding is a part
+        double size = 0.0;  ///< sum of magnitudes, for the rounding error, in J
 
         [[nodiscard]] bool is_gain() const;
-        /// The largest part of the impulses that gains nothing.
+        /// Returns the largest fraction of the impulses that does not gain energy.
         [[nodiscard]] double factor() const;
     };
 
-    /// All that sweeps change.
+    /// All data that sweeps change.
     struct Impulses {
         std::vector<ContactConstraint> rows;
         std::vector<RollingConstraint> rolling;
@@ -68,20 +70,20 @@ private:
     void hand_over(std::span<SolverBody> bodies);
 
     ContactColoring coloring_;
-    std::vector<SolverState> before_;  // of bodies, then walls
+    std::vector<SolverState> before_;  // bodies, then walls, without contact impulses
     std::vector<SolverState> states_;
     std::size_t bodies_ = 0;
     std::vector<ContactConstraint> rows_;  // in the order of the colours
     std::vector<RollingConstraint> rolling_;
-    std::vector<double> partings_;      // m/s, >= 0, of the rows: with which what overlaps is parted
-    std::vector<double> restitutions_;  // of the rows, without those that others of the same impact may take away
-    double against_start_ = 0.0;        // J, of the impulses to begin with times what they act against before them
-    std::vector<SolverState> last_;     // of the bodies, after the sweep before the last
+    std::vector<double> partings_;      // speed of each row that separates its overlap, in m/s, >= 0
+    std::vector<double> restitutions_;  // own restitution of each row, not limited by its connected impact
+    double against_start_ = 0.0;        // work of the start impulses at the velocities before contact, in J
+    std::vector<SolverState> last_;     // bodies before the last momentum step
     std::vector<SweepChange> blocks_;
     DirectContactSolver direct_;
-    double mass_ratio_ = 1.0;  // largest of two that touch
+    double mass_ratio_ = 1.0;  // largest ratio of two masses in contact
     ConnectedImpacts impacts_;
-    std::vector<Gain> gains_;  // of the impacts, by their numbers; empty where impulses have changed since
+    std::vector<Gain> gains_;  // one per connected impact; empty if impulses have changed since
     std::vector<SolverImpulse> impulses_;
     std::vector<std::uint8_t> rebounds_;
 };

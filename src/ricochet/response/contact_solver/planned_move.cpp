@@ -17,7 +17,7 @@ constexpr int kCorrections = 3;
 /// quarters per pass leave 1e-4. Local, because the segment is certified before use.
 constexpr int kCorrectionsInWedge = 32;
 
-/// One particle on its way.
+/// The move of one particle.
 class PlannedMove {
 public:
     PlannedMove(const ResponseRules& rules, MovingParticle& particle, const PlannedMotion& plan, MoveScratch& scratch)
@@ -54,8 +54,8 @@ private:
     const PlannedMotion& plan_;
     MoveScratch& scratch_;
     mutable ParticleStep step_;
-    std::vector<ContactSurface> met_;  // in the step, and touched still
-    std::vector<SurfaceId> held_;      // ascending: surfaces that move and push, or are in its way
+    std::vector<ContactSurface> met_;  // surfaces that have blocked the particle and are still touched
+    std::vector<SurfaceId> held_;      // moving surfaces that push or block the particle, in ascending order
 };
 
 MoveOutcome PlannedMove::run() {
@@ -73,7 +73,7 @@ MoveOutcome PlannedMove::run() {
     return step_.outcome();
 }
 
-/// In straight lines, each to a place that surfaces which push leave free at the step's end.
+/// Follows the plan in straight lines. Each line ends clear of the surfaces in held_ at the end of the step.
 void PlannedMove::follow() {
     if (plan_.is_clear && held_.empty() && can_be_followed(next_line())) {
         step_.go_clear(next_line());
@@ -99,7 +99,7 @@ void PlannedMove::follow() {
     }
 }
 
-/// With the velocity, or to a place off the surfaces that hold it.
+/// Returns the line of the current velocity, with its end moved clear of the surfaces in held_.
 Path PlannedMove::next_line() const {
     const ForceInput& state = particle_.state;
     const double duration = step_.remaining();
@@ -111,8 +111,8 @@ Path PlannedMove::next_line() const {
     return line;
 }
 
-/// Where every line along a surface leads into it at once, as inside a sphere: along a chord, to a place that leaves
-/// the walls there free.
+/// Moves along a chord to a position clear of the walls there. Inside a sphere, for example, every line along the
+/// surface leads into it at once.
 void PlannedMove::cut_across() {
     const ForceInput& state = particle_.state;
     const Vec3 velocity = state.velocity;
@@ -127,7 +127,8 @@ void PlannedMove::cut_across() {
     if (contact) divert(*contact);
 }
 
-/// One correction of a place that walls which it would touch at a time are to leave free. True where none was needed.
+/// Moves a position once off the walls that the particle would touch there at a time, in s. Returns true if it touches
+/// none.
 bool PlannedMove::keep_off_walls(Vec3& end, double time) const {
     std::vector<WallContact> walls;
     find_walls(end, time, walls);
@@ -137,7 +138,7 @@ bool PlannedMove::keep_off_walls(Vec3& end, double time) const {
     return walls.empty();
 }
 
-/// That it would touch at a time.
+/// Finds the walls that the particle would touch at a position and a time, in s.
 void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const {
     const double radius = particle_.state.radius;
     const double reach = 4.0 * contact_offset(center);
@@ -149,7 +150,7 @@ void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallCo
     }
 }
 
-/// At the begin of the step, as the plan has it.
+/// Records the planned effects of walls at the start of the step.
 void PlannedMove::collect_impulses() {
     for (const WallImpulse& impulse : plan_.impulses) {
         step_.impact().record_impulse(impulse.surface, impulse.velocity_change, false, impulse.spin_change);
@@ -157,21 +158,22 @@ void PlannedMove::collect_impulses() {
     }
 }
 
-/// What is at rest needs no more than the line along it.
+/// Adds a moving surface to held_. Lines along a surface at rest stay clear of it anyway.
 void PlannedMove::hold(SurfaceId surface) {
     if (rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody) return;
     const auto at = std::lower_bound(held_.begin(), held_.end(), surface);
     if (at == held_.end() || *at != surface) held_.insert(at, surface);
 }
 
-/// Of a surface as it stands at a time, s.
+/// Returns the point nearest to p of a surface at a time, in s.
 CollisionWorld::Nearest PlannedMove::nearest(SurfaceId surface, const Vec3& p, double time) const {
     const bool is_at_rest = rules_.bodies == nullptr || rules_.bodies->body_of(surface) == kWorldBody;
     if (!is_at_rest) return nearest_at(*rules_.bodies, surface, p, time);
     return SurfaceGeometry(rules_.world, scratch_.contacts.plane_cache).nearest(surface, p);
 }
 
-/// A position at a time put off the surfaces that it would be too near, and off those into which that has put it.
+/// Moves a position off the given surfaces if it is too near to them at a time, in s. Also moves it off walls that it
+/// then touches.
 Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const {
     const double radius = particle_.state.radius;
     bool was_put_off = false;
@@ -191,7 +193,8 @@ Vec3 PlannedMove::kept_off(Vec3 end, double time, std::span<const SurfaceId> sur
     return flush_tiny(end);
 }
 
-/// Those held surfaces that a line goes along: it ends off them, and hardly comes nearer in between.
+/// Returns the surfaces in held_ that a line passes along: it ends clear of them and hardly comes nearer before its
+/// end.
 std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     const double radius = particle_.state.radius;
     std::vector<SurfaceId> passed;
@@ -212,7 +215,8 @@ std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     return passed;
 }
 
-/// Where something is in the way of a line before its end, the surfaces that it goes along may be a little too near.
+/// Moves the particle off surfaces that are too near. A line that a contact ends early may be slightly too near to the
+/// surfaces that it passes along.
 void PlannedMove::come_off(const Contact& contact) {
     const ForceInput& state = particle_.state;
     std::vector<SurfaceId> near = held_;
@@ -224,8 +228,8 @@ void PlannedMove::come_off(const Contact& contact) {
     if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
 }
 
-/// Takes away what leads into the surfaces of a contact, and of others that have been met and are still touched: a
-/// groove leaves the line along it, a corner nothing.
+/// Removes the velocity into the surfaces of a contact, and into earlier ones that are still touched. In a groove the
+/// velocity along it remains, in a corner none.
 void PlannedMove::divert(const Contact& contact) {
     std::erase_if(met_, [&](const ContactSurface& surface) { return !touches(surface.surface); });
     for (const ContactSurface& surface : contact.all()) met_.push_back(surface);
@@ -240,7 +244,8 @@ bool PlannedMove::touches(SurfaceId surface) const {
     return distance - state.radius <= kStillTouched * state.radius + 4.0 * contact_offset(state.position);
 }
 
-/// What of a velocity leads into none of the surfaces that have been met; a surface's own where they leave none.
+/// Returns a velocity without its parts into the surfaces in met_. If they block every direction, returns the velocity
+/// of one of these surfaces.
 Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
     std::vector<Vec3> normals;
     std::vector<double> missing;
@@ -254,7 +259,7 @@ Vec3 PlannedMove::along_those_met(const Vec3& velocity) const {
     return left;
 }
 
-/// That of those met into which a velocity leads fastest, beyond rounding; null where it leads into none.
+/// Returns the surface in met_ that a velocity leads into fastest, beyond rounding, or null if it leads into none.
 const ContactSurface* PlannedMove::most_approached(const Vec3& velocity) const {
     const ContactSurface* most = nullptr;
     double fastest = 0.0;

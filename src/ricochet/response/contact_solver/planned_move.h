@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: moves a particle as a contact network has planned it.
+/// Private to the responses: moves a particle along the plan of a contact network.
 #pragma once
 
 #include <span>
@@ -9,26 +9,27 @@
 
 namespace ricochet {
 
-/// What a wall does to a particle in a step, as changes of its velocity, m/s, and spin, rad/s.
+/// Effect of a wall on a particle in a step: changes of its velocity, in m/s, and spin, in rad/s.
 struct WallImpulse {
     SurfaceId surface = 0;
     Vec3 velocity_change;
     Vec3 spin_change;
 };
 
-/// What a contact network has planned for a particle.
+/// Planned motion of a particle in a step.
 struct PlannedMotion {
-    Vec3 velocity;          ///< m/s, from now on
-    Vec3 spin;              ///< rad/s, from now on
-    double duration = 0.0;  ///< s
+    Vec3 velocity;          ///< in m/s, constant during the move
+    Vec3 spin;              ///< in rad/s
+    double duration = 0.0;  ///< in s
     std::vector<WallImpulse> impulses{};
-    bool is_clear = false;  ///< certainly no surface is that near
+    bool is_clear = false;  ///< true if the move certainly reaches no surface
 };
 
-/// Along the straight line that its new velocity says: in certified segments up to what is on the way, and on along it.
-/// What is met is no impact (the plan has all impacts in it), but where the plan would lead through a wall the velocity
-/// into it is lost. Among colliders that move the line ends off those that push, where they will be. What was in
-/// contact is so no more. The motion is recorded as driven: others take part in its energy.
+/// Moves a particle along the straight line of its planned velocity, in certified segments. If a surface blocks the
+/// line, the particle continues along that surface. This is no impact, because the plan contains all impacts, but the
+/// velocity into the surface is lost. Among moving colliders the line ends clear of the surfaces that push, at their
+/// positions at the end of the step. Earlier contacts of the particle end. The motion is recorded as driven, because
+/// other particles take part in its energy.
 [[nodiscard]] MoveOutcome move_as_planned(const ResponseRules& rules, MovingParticle& particle,
                                           const PlannedMotion& plan, MoveScratch& scratch);
 

@@ -1,4 +1,4 @@
-// What holds for each connected impact as a whole: its restitution, and that it gains no energy.
+// Restitution and energy balance of connected impacts.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,8 @@
 namespace ricochet {
 namespace {
 
-/// The smallest of contacts that push and are approached; 1 where there is none. all_own: of the rows.
+/// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1
+/// without any. `all_own` holds the restitution of each row.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
                                  std::span<const ContactConstraint> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
@@ -33,7 +34,8 @@ bool IterativeContactSolver::may_rebound() const {
     return std::any_of(restitutions_.begin(), restitutions_.end(), [](double own) { return own > 0.0; });
 }
 
-/// The impact without rebound says what is connected.
+/// Solves the network with rebounds. The solution without rebound determines the connected impacts. Impacts that gain
+/// energy are solved again without their rebounds.
 void IterativeContactSolver::rebound(std::span<const SolverContact> contacts, const SolverSettings& settings,
                                      SolverReport& report) {
     SolverSettings first = settings;
@@ -54,7 +56,7 @@ void IterativeContactSolver::rebound(std::span<const SolverContact> contacts, co
     iterate(settings, report);
 }
 
-/// Sets the speeds with which contacts have to leave; false where none has to.
+/// Sets the separation speeds of contacts that rebound. Returns false if none rebounds.
 bool IterativeContactSolver::apply_restitution() {
     impacts_.assign(before_, rows_);
     const std::vector<double> least = restitutions(impacts_, before_, rows_, restitutions_);
@@ -71,7 +73,8 @@ bool IterativeContactSolver::apply_restitution() {
     return any;
 }
 
-/// By connected impact, which are found anew. The work that parts what overlaps is no gain.
+/// Finds the connected impacts again and computes the energy change of each. The work that separates overlaps is no
+/// gain.
 void IterativeContactSolver::find_gains() {
     impacts_.assign(before_, rows_);
     gains_.assign(impacts_.size(), {});
@@ -101,8 +104,8 @@ bool IterativeContactSolver::Gain::is_gain() const { return against + 0.5 * curv
 
 double IterativeContactSolver::Gain::factor() const { return std::clamp(-2.0 * against / curvature, 0.0, 1.0); }
 
-/// Where sweeps have ended before there was an answer the impulses of an impact can have let energy in: so much less of
-/// them does not.
+/// Reduces the impulses of connected impacts that gain energy until they gain none. Such gains occur if the sweeps end
+/// before convergence.
 void IterativeContactSolver::remove_energy_gains(SolverReport& report) {
     report.energy_change = 0.0;
     bool any = false;

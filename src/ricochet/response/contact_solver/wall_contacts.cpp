@@ -10,13 +10,14 @@
 namespace ricochet {
 namespace {
 
-/// A surface that is near.
+/// A surface near the sphere.
 struct Near {
     SurfaceId surface;
     CollisionWorld::Nearest nearest;
 };
 
-/// Calls visit(surface) for all whose distance from a point is at most `within`, and perhaps others.
+/// Calls visit(surface) for all surfaces whose distance from a point is at most `within`, in m, and possibly for
+/// others.
 template <class Visit>
 void visit_near(const CollisionWorld& world, const Vec3& p, double within, const Visit& visit) {
     for (const CollisionWorld::PlaneSurface& plane : world.planes()) {
@@ -36,8 +37,8 @@ void visit_near(const CollisionWorld& world, const Vec3& p, double within, const
     }
 }
 
-/// Appends those near surfaces at which the distance to all of them together is smallest among its neighbours.
-/// distance_to(surface, p): m; same: m, what counts as equally near.
+/// Appends the near surfaces at which the distance from the sphere's centre has a local minimum. distance_to(surface,
+/// p) returns a distance in m. Distances that differ by up to `same`, in m, count as equal.
 template <class DistanceTo>
 void keep_smallest(std::vector<Near>& near, const Vec3& center, double radius, double same,
                    const DistanceTo& distance_to, std::vector<WallContact>& found) {
@@ -57,7 +58,7 @@ void keep_smallest(std::vector<Near>& near, const Vec3& center, double radius, d
     }
 }
 
-/// Of a body with a frame: found in its coordinates, and carried along.
+/// Finds the contacts with a body in its own coordinates, and sets the velocities of its surfaces in the world.
 void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& step, const Vec3& center, double radius,
                   double reach, std::vector<WallContact>& found) {
     const CollisionWorld& world = bodies.world(body);
@@ -79,7 +80,8 @@ void find_on_body(const MovingColliders& bodies, BodyId body, const TimeOfStep& 
     }
 }
 
-/// Of meshes that deform: the point that is nearest goes with its triangle. Returns whether any may come near.
+/// Finds the contacts with deforming meshes. A contact point moves with its triangle. Returns true if any triangle may
+/// come near.
 bool find_on_deforming(const DeformingColliders& deforming, const TimeOfStep& step, const Vec3& center, double radius,
                        double reach, std::vector<WallContact>& found) {
     const double within = radius + reach;

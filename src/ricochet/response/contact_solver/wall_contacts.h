@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: the surfaces that a sphere may come to in a step, each where it is nearest.
+/// Private to the responses: contacts of a sphere with the surfaces that it may reach in a step.
 #pragma once
 
 #include <vector>
@@ -9,33 +9,33 @@
 
 namespace ricochet {
 
-/// An interval of simulation time, s.
+/// An interval of simulation time, in s.
 struct TimeOfStep {
     double begin = 0.0;
     double end = 0.0;
 };
 
-/// A place at which the distance from a sphere's centre to all surfaces together is smallest among its neighbours.
+/// Point of the surfaces at which the distance from a sphere's centre has a local minimum.
 struct WallContact {
     SurfaceId surface = 0;
     Vec3 normal;       ///< unit, from the surface to the centre
-    double gap = 0.0;  ///< m, between the surface and the sphere; < 0: they overlap
-    Vec3 carried{};    ///< m/s, of the surface there where its collider moves: its way in the step over the step
+    double gap = 0.0;  ///< between the surface and the sphere, in m; negative for an overlap
+    Vec3 carried{};    ///< mean velocity of the surface at this point in the step, in m/s
 };
 
-/// Appends the contacts of a sphere with gaps up to `reach` (m), in ascending order of the surfaces. The edge of a
-/// triangle is none where a neighbour that it belongs to is nearer: a floor of many triangles has one contact with a
-/// sphere, not one for each edge beside it. Returns whether any surface is so near.
+/// Appends the contacts of a sphere with gaps up to `reach`, in m, in ascending order of the surfaces. An edge of a
+/// triangle is no contact if a neighbouring triangle is nearer. A floor of many triangles therefore has one contact
+/// with a sphere, not one for each edge nearby. Returns true if any surface is within reach.
 bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
                         std::vector<WallContact>& found);
 
-/// The same among colliders that move, of those at rest and of all that come near in a step [begin, end], s, as they
-/// stand at its begin. Normals are those of the middle of the step: what is fixed to a surface that turns neither nears
-/// nor leaves it then. Returns whether any surface may come so near in the step.
+/// Does the same for colliders at rest and for moving colliders that come near in a step. Gaps are those at the start
+/// of the step. Normals are those in the middle of the step, so that a point fixed to a turning surface neither
+/// approaches nor leaves it. Returns true if any surface may come within reach in the step.
 bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
                         double reach, std::vector<WallContact>& found);
 
-/// m, from a surface at a time, s, to a position, with the unit normal towards it.
+/// Returns the distance of a position from a surface at a time, in s, and the unit normal towards the position.
 [[nodiscard]] CollisionWorld::Nearest nearest_at(const MovingColliders& bodies, SurfaceId surface, const Vec3& p,
                                                  double time);
 

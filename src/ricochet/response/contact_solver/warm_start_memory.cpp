@@ -10,12 +10,13 @@
 namespace ricochet {
 namespace {
 
-/// Entries from the prefetch of one to its use.
+/// Number of entries between the prefetch of an entry and its use.
 constexpr std::size_t kNetworkMemoryPrefetchDistance = 8;
 
 }  // namespace
 
-/// Sorts their numbers, by their particles and then the few of each: entries are too large to be moved about.
+/// Sorts indices, because entries are too large to be moved repeatedly. It sorts by particle, and then the few contacts
+/// of each particle.
 void WarmStartMemory::replace(std::span<const std::vector<Entry>* const> lists) {
     std::vector<const Entry*> all;
     order_.clear();

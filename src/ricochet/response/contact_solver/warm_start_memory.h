@@ -1,5 +1,6 @@
 /// \file
-/// Private to the responses: what contacts did in the last step, by what they are between.
+/// Private to the responses: contact impulses of the last step, by particle and partner, as start values of the next
+/// step.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 
 namespace ricochet {
 
-/// A contact, the same from step to step: the ids of two particles, the lower first, or one and a surface.
+/// Identity of a contact across steps: the ids of two particles, the lower first, or a particle's id and a surface.
 struct ContactKey {
     std::uint64_t particle = 0;
     std::uint64_t other = 0;
@@ -25,43 +26,43 @@ struct ContactKey {
         return {particle, surface | std::uint64_t{1} << 63U};
     }
     [[nodiscard]] bool is_wall() const { return (other >> 63U) != 0; }
-    /// Of a wall.
+    /// Returns the surface of a contact with a wall.
     [[nodiscard]] std::uint64_t surface() const { return other & ~(std::uint64_t{1} << 63U); }
 
     friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 
-/// What the last step's contacts did. Impulses are given to the particle of the key.
+/// Contacts of the last step with their impulses. An impulse acts on the key's `particle`.
 class WarmStartMemory {
 public:
     struct Entry {
         ContactKey key;
         SolverImpulse impulse;
-        bool rebounds = false;  ///< an impact: the two part
+        bool rebounds = false;  ///< true if restitution separates the two
     };
 
-    /// Those of a particle that comes first in their keys, ascending.
+    /// Contacts whose key has the same `particle`, in ascending order.
     struct OfParticle {
-        std::span<const std::uint64_t> others;  ///< of their keys: close together for searches
+        std::span<const std::uint64_t> others;  ///< from their keys, stored together for fast searches
         const Entry* first = nullptr;
 
         [[nodiscard]] std::span<const Entry> entries() const { return {first, others.size()}; }
-        /// Null where there was no such contact.
+        /// Returns the impulse of a contact, or null if there was no such contact.
         [[nodiscard]] const SolverImpulse* find(std::uint64_t other) const {
             const auto found = std::lower_bound(others.begin(), others.end(), other);
             return found != others.end() && *found == other ? &first[found - others.begin()].impulse : nullptr;
         }
     };
 
-    /// Takes entries in any order, each key once.
+    /// Replaces all entries. They can be in any order, but each key must be unique.
     void replace(std::span<const std::vector<Entry>* const> lists);
     void replace(const std::vector<Entry>& entries) {
         const std::vector<Entry>* const list = &entries;
         replace({&list, 1});
     }
-    /// Adds more of the same step.
+    /// Adds entries of the same step.
     void add(const std::vector<Entry>& more);
-    /// Null where there was no such contact.
+    /// Returns the impulse of a contact, or null if there was no such contact.
     [[nodiscard]] const SolverImpulse* find(const ContactKey& key) const {
         return of_particle(key.particle).find(key.other);
     }
@@ -71,7 +72,7 @@ public:
         const auto k = static_cast<std::size_t>(found - particles_.begin());
         return {std::span(others_).subspan(first_[k], first_[k + 1] - first_[k]), entries_.data() + first_[k]};
     }
-    /// True where one of a list of particles pressed on another one, and did not part from it.
+    /// Returns true if a listed particle pressed on another particle and did not rebound from it.
     template <class Iterator, class IdOf>
     [[nodiscard]] bool has_pair_of(Iterator begin, Iterator end, const IdOf& id_of) const {
         if (entries_.empty()) return false;
@@ -82,10 +83,10 @@ public:
         });
     }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
-    /// Ascending.
+    /// Returns all entries in ascending order of their keys.
     [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
-    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    /// Saves or restores the entries. `a` is an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         archive_entries(a, entries_, [&](Entry& entry) {
@@ -95,18 +96,18 @@ public:
         find_particles();
     }
 
-    /// Returns false for a memory that no run leaves behind: its entries must be in ascending order, each once, between
-    /// particles with ids below next_id, or one of them and one of so many surfaces.
+    /// Returns false for entries that no run produces. Their keys must be unique and in ascending order, ids must be
+    /// below next_id, surfaces must be below `surfaces`, and impulses must be finite.
     [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
 private:
     void find_particles();
 
-    std::vector<Entry> entries_;            // ascending
-    std::vector<std::uint64_t> particles_;  // that come first in their keys, ascending: close together for searches
-    std::vector<std::size_t> first_;        // of each of those among the entries, and the end
-    std::vector<std::uint64_t> others_;     // of the entries' keys
-    std::vector<KeyedIndex> order_;         // in replace(), as the next one
+    std::vector<Entry> entries_;            // in ascending order of the keys
+    std::vector<std::uint64_t> particles_;  // different particles of the keys, in ascending order
+    std::vector<std::size_t> first_;        // first entry of each of these particles, and the end
+    std::vector<std::uint64_t> others_;     // from the keys of the entries
+    std::vector<KeyedIndex> order_;         // scratch memory of replace()
     std::vector<KeyedIndex> spare_;
 };
 

@@ -40,7 +40,7 @@ class Notebooks(unittest.TestCase):
         self.assertIn("Clausing 0.6720", self.notebook("clausing.ipynb"))
 
     def test_the_examples_of_the_documents_run(self):
-        for document in ("README.md", "docs/python.md"):
+        for document in ("README.md", "docs/python.md", "docs/python-queries.md"):
             examples = re.findall(r"```python\n(.*?)```", (ROOT / document).read_text(encoding="utf-8"), re.DOTALL)
             self.assertTrue(examples, document)
             for example in examples:

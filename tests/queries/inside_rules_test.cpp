@@ -111,7 +111,7 @@ TEST(InsideRules, RepeatedTriangleChangesNeitherRule) {
     EXPECT_EQ(MeshQueries(box).inside(points, InsideRule::parity), (Flags{1, 0}));
 }
 
-// docs/python.md states these sums.
+// docs/python-queries.md states these sums.
 TEST(InsideRules, CrossingsAddUpToTheWindingNumber) {
     const auto sum = [](const TriangleMesh& shells, const Vec3& origin) {
         const Points origins{origin};

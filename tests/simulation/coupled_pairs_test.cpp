@@ -120,7 +120,7 @@ TEST(CoupledPairs, PairThatFallsByGravityReturnsAfterKeplersPeriodToSecondOrder)
 TEST(CoupledPairs, FallingPairKeepsItsEnergyForAnyTimeOfImpactInAStep) {
     struct Case {
         IntegratorKind kind;
-        double largest;  // from the table in docs/particle-forces.md, at 200 steps per period
+        double largest;  // from the table in docs/design/coupled-particles.md, at 200 steps per period
     };
     const double energy = -2.0 * kPull / 3.0 / kFrom;
     for (const Case& c : {Case{IntegratorKind::velocity_verlet, 8.0e-3}, Case{IntegratorKind::midpoint, 1.9e-2},

@@ -11,7 +11,7 @@
 namespace ricochet {
 namespace {
 
-/// Costs in tens of nanoseconds (docs/many-machines.md, "Balance"). Wrong ones leave ranks uneven, and change no bit.
+/// Costs in tens of nanoseconds (docs/design/many-machines.md). Wrong ones leave ranks uneven, and change no bit.
 constexpr std::uint64_t kQueriedWork = 150;
 constexpr std::uint64_t kContactWork = 150;
 constexpr std::uint64_t kFlyingWork = 6;

@@ -26,10 +26,15 @@ CHAIN = re.compile(
     r"\b(those that|those of|of what|by what|than what|that which|such as do|as does what|of whom|of whose|which thus)\b",
     re.IGNORECASE,
 )
+# Conditions in the place of a place, and nouns and prepositions of an older English.
+ODD = re.compile(
+    r"^(?:True|False|Null|Nothing|0) where\b|\bwhere (?:it|they|there|that|nothing|none) (?:is|are|was|were|does|do|has|have)\b"
+    r"|\bthe begin\b|\bbegin of\b|, but for\b|\bnor are so\b"
+)
 MOST_WORDS = 25
 
 # Largest share of sentences, in percent, that may break a rule.
-LIMITS = {"opening": 0.5, "chain": 0.5, "what": 1.0, "long": 3.0}
+LIMITS = {"opening": 0.5, "chain": 0.5, "what": 1.0, "odd": 0.5, "long": 3.0}
 
 SKIPPED_FOLDERS = {"third_party", "build", ".git", "__pycache__", "node_modules"}
 WORD = re.compile(r"[A-Za-z][A-Za-z'\-]*")
@@ -119,7 +124,7 @@ def cpp_comments(text: str) -> Iterator[Text]:
             whole.append((number, found.group(1)))
             continue
         trailing = re.search(r'(?:^|[^:"])//[/!]?<?\s(.*)', line)
-        if trailing:
+        if trailing and not trailing.group(1).startswith("namespace"):
             behind.append((number, trailing.group(1)))
     yield from joined_blocks(iter(whole))
     yield from behind
@@ -198,6 +203,7 @@ def broken_rules(sentence: str) -> List[str]:
         "opening": OPENING.match(sentence),
         "chain": CHAIN.search(sentence),
         "what": WHAT.search(sentence),
+        "odd": ODD.search(sentence),
         "long": len(WORD.findall(sentence)) > MOST_WORDS,
     }
     return [rule for rule, broken in checks.items() if broken]

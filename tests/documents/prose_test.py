@@ -26,6 +26,12 @@ class Prose(unittest.TestCase):
         for text in ("// Of all the particles here.\n", "// Where it ends the step stops.\n", "// Those in contact are kept.\n"):
             self.assertEqual(rules_in("a.h", text), ["opening"], text)
 
+    def test_odd_conditions_are_found(self):
+        """The word "where" is for places only."""
+        for text in ("/// True where it touches a wall.\n", "// It stays at the begin of the step.\n", "// The step ends where there is a wall.\n"):
+            self.assertEqual(rules_in("a.h", text), ["odd"], text)
+        self.assertEqual(rules_in("a.h", "}  // namespace of what\n"), [])
+
     def test_long_sentences_are_found_across_lines(self):
         """Lines of one comment form one text."""
         words = " ".join(["word"] * 13)

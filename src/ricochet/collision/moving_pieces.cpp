@@ -11,18 +11,19 @@ namespace ricochet {
 namespace {
 
 /// Least distance of a cut at a deforming mesh's key from the ends of a path, as a fraction of the path's duration.
+/// Local: a guard against pieces without duration.
 constexpr double kLeastPart = 0x1p-45;
 
 /// Divisor in the error bound of a cubic Hermite path: over a time h it deviates from the function by at most h^4 /
-/// kHermiteError times the largest fourth derivative.
+/// kHermiteError times the largest fourth derivative. Local: a bound of this interpolation.
 constexpr double kHermiteError = 384.0;
 
 /// Largest length, relative to a fine piece, of the rest of a path that is still taken as one fine piece. It covers
-/// rounding.
+/// rounding. Local: it covers rounding, and only the cost depends on it.
 constexpr double kAlmostOne = 1.0 + 1e-9;
 
 /// Largest length of a piece without contacts, in fine pieces. The error of its cubic is larger by the fourth power of
-/// this number.
+/// this number. Local, because boxes are enlarged by that error, so only the cost depends on it.
 constexpr double kLongestPiece = 16.0;
 
 /// Largest number of fine pieces in sequence before a longer one is tried again.

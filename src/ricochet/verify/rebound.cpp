@@ -14,7 +14,7 @@ namespace {
 constexpr double kReboundRounding = 1e-9;
 
 /// Relative error of the normal velocities if several surfaces with friction are hit. Impacts in wedges may have no
-/// exact solution and are solved approximately.
+/// exact solution and are solved approximately. Local: a tolerance of the audit, which does not affect the run.
 constexpr double kReboundInWedge = 1e-3;
 
 /// Largest normal speed, relative to all speeds, at which a supporting surface counts as neither approached nor left.

@@ -15,7 +15,8 @@ constexpr int kMaxSegmentSteps = 100;
 constexpr double kSegmentError = 0x1p-50;
 
 /// Excess of a squared length at the rounded foot of a perpendicular over its minimum, relative to the squared length
-/// at the start. The foot has an error of about 8 u, and the squared length has the square of that error.
+/// at the start. The foot has an error of about 8 u, and the squared length has the square of that error. Local: an
+/// error bound of this arithmetic.
 constexpr double kMinimumError = 0x1p-98;
 
 double rounded_value(double x) { return x; }

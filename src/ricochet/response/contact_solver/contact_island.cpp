@@ -25,10 +25,12 @@ double reach_of(double travel, double radius) { return 2.0 * travel + kNetworkRe
 /// Number of members or contacts between the prefetch of their data and its use.
 constexpr std::size_t kPrefetchDistance = 8;
 
-/// Factor on the reach of a pair that covers rounding. Beyond it there is certainly no contact.
+/// Factor on the reach of a pair that covers rounding. Beyond it there is certainly no contact. Local: it covers
+/// rounding, and the exact reach decides.
 constexpr double kOutOfReach = 1.0 + 1e-9;
 
-/// Fraction of a search distance without walls that counts as clear. The rest covers rounding.
+/// Fraction of a search distance without walls that counts as clear. The rest covers rounding. Local: it covers
+/// rounding, and only the cost depends on it.
 constexpr double kClear = 0.9;
 
 }  // namespace

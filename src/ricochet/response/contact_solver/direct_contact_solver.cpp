@@ -12,7 +12,8 @@ namespace {
 constexpr std::uint32_t kFixed = std::numeric_limits<std::uint32_t>::max();
 
 /// Stiffness of the dampers, relative to the heaviest mass. Reason: a pass leaves a hundredth of the violation.
-/// Rounding causes an error of 1e-5 of the speeds for spheres of a billionth of that mass. Smaller: more passes.
+/// Rounding causes an error of 1e-5 of the speeds for spheres of a billionth of that mass. Smaller: more passes. Local,
+/// because SolverSettings has the tolerance.
 constexpr double kStiffness = 100.0;
 
 /// Factor between successive stiffnesses, from that of the lightest mass to that of the heaviest. The second constant
@@ -26,21 +27,22 @@ constexpr int kMostPasses = 3;
 constexpr int kMostSteps = 80;
 
 /// Largest momentum residual at the end of a pass, and largest violation of the conditions after the last pass,
-/// relative to the tolerance.
+/// relative to the tolerance. Local: the sweeps afterwards decide whether the solution is accepted.
 constexpr double kDefect = 0.25;
 constexpr double kViolated = 0.5;
 
 /// Largest slope at the end of a line search, relative to the slope at its start, and largest number of trials.
+/// Local: a rule of this line search.
 constexpr double kSlopeLeft = 0.2;
 constexpr int kMostTrials = 40;
 
 /// Largest number of operations of all factorizations of a network, about a second of work. Reason: the operations grow
 /// with the third power of the number of contacts that a cut through the network crosses. A thousand spheres, some of
-/// them a thousand times as heavy, took minutes per step.
+/// them a thousand times as heavy, took minutes per step. Local: a limit of the work, after which sweeps continue.
 constexpr double kMostOperations = 1e9;
 
 /// Stiffness of sliding friction along the slip, relative to its stiffness across the slip. It is above 0 so that no
-/// matrix is singular.
+/// matrix is singular. Local, because the residual decides when a solution is accepted.
 constexpr double kSlipStiffness = 1e-9;
 
 /// Returns the derivative of a tangential vector, limited to the length `most`, with respect to the vector `wish`.

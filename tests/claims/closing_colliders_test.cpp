@@ -98,7 +98,7 @@ void expect_free_between(Simulation& simulation, const Press& press) {
     const TriangleMesh mesh = plate(press.placed.scale);
     const Particles& all = simulation.particles();
     for (std::size_t i = 0; i < all.size(); ++i) {
-        const Vec3 seen = simulation.collider_pose(0, simulation.time()).image(all.position[i]);
+        const Vec3 seen = simulation.collider_pose(0, simulation.time()).local_position(all.position[i]);
         EXPECT_EQ(winding_number(mesh, seen), 0) << all.id[i];
         const Vec3 from_wall = all.position[i] - press.placed.point({1, 0, 0});
         const double before_wall = -dot(from_wall, press.placed.turned({1, 0, 0}));

@@ -110,7 +110,7 @@ public:
         }
         const ParityOracle oracle(mesh);
         const MovingPose pose = deforms() ? MovingPose{} : simulation.collider_pose(0, simulation.time());
-        return count([&](const Vec3& p) { return oracle.inside(deforms() ? p : pose.image(p)); });
+        return count([&](const Vec3& p) { return oracle.inside(deforms() ? p : pose.local_position(p)); });
     }
 
 private:

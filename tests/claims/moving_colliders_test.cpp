@@ -70,7 +70,7 @@ TEST(PointsAndSpheres, StayInsideACubeThatSpins) {
         EXPECT_GT(contacts.size(), 1000U);
         const MovingPose pose = simulation.collider_pose(0, simulation.time());
         for (const Vec3& p : simulation.particles().position) {
-            EXPECT_LT(max_abs(pose.image(p)), 0.5 - radius + 1e-9);
+            EXPECT_LT(max_abs(pose.local_position(p)), 0.5 - radius + 1e-9);
         }
         EXPECT_EQ(simulation.statistics().squeezed, 0U);
     }
@@ -289,7 +289,7 @@ TEST(ASphere, KeepsItsPositionOnAUniformlyMovingBodyToTheLastBit) {
             simulation.step();
             const MovingPose pose = simulation.collider_pose(0, simulation.time());
             for (std::size_t i = 0; i < 2; ++i) {
-                const Vec3 image = pose.image(simulation.particles().position[i]);
+                const Vec3 image = pose.local_position(simulation.particles().position[i]);
                 if (simulation.time() > 3.0) {
                     EXPECT_LT(length(image - images[i]), 4e-15 * (1.0 + max_abs(simulation.particles().position[i])));
                     ++still;
@@ -392,7 +392,7 @@ TEST(APointOnATurningRamp, SlipsWhenTheSlopeExceedsTheAngleOfFriction) {
     Vec3 last;
     while (!simulation.finished()) {
         simulation.step();
-        const Vec3 image = simulation.collider_pose(0, simulation.time()).image(simulation.particles().position[0]);
+        const Vec3 image = simulation.collider_pose(0, simulation.time()).local_position(simulation.particles().position[0]);
         if (simulation.step_index() > 5 && std::fabs(image.x - last.x) > 1e-13) break;
         last = image;
     }

@@ -34,7 +34,7 @@ void expect_all_inside(Simulation& simulation, const TriangleMesh& mesh) {
         simulation.step();
         const MovingPose pose = simulation.collider_pose(0, simulation.time());
         for (const Vec3& position : simulation.particles().position) {
-            EXPECT_EQ(winding_number(mesh, pose.image(position)), 1) << simulation.time();
+            EXPECT_EQ(winding_number(mesh, pose.local_position(position)), 1) << simulation.time();
         }
     }
     EXPECT_EQ(simulation.statistics().violations, 0U);

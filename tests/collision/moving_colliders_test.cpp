@@ -122,7 +122,7 @@ TEST(MovingColliders, FollowTheirFramesWhateverWasQueriedBefore) {
             const double time = 0.1 * (step + static_cast<double>(static_cast<int>(5.0 * random.uniform())) / 4.0);
             const MovingPose pose = many.bodies->pose(body, time);
             const MovingPose other = many.frames->at(body, time);
-            EXPECT_EQ(pose.image({1, 2, 3}), other.image({1, 2, 3}));
+            EXPECT_EQ(pose.local_position({1, 2, 3}), other.local_position({1, 2, 3}));
             EXPECT_EQ(pose.velocity_of({1, 2, 3}), other.velocity_of({1, 2, 3}));
             EXPECT_EQ(pose.acceleration, other.acceleration);
         }

@@ -118,7 +118,7 @@ TEST(PlanDeviations, TransferTheImpulseOfTheDeviationToTheOthers) {
         PlannedSystem planned(kind);
         const std::vector<FlownPiece> flown = planned.turn_back();
         std::vector<Vec3> velocities = planned.planned_velocities();
-        const Vec3 turned = flown[1].departure - flown[0].arrival;
+        const Vec3 turned = flown[1].start_velocity - flown[0].arrival;
         velocities[0] = flown[1].arrival;
         planned.deviations.record(0, flown, turned);
         planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);
@@ -137,7 +137,7 @@ TEST(PlanDeviations, ConserveMomentumExceptForTheImpactImpulse) {
         const std::vector<FlownPiece> flown = planned.turn_back();
         std::vector<Vec3> velocities = planned.planned_velocities();
         const Vec3 before = planned.momentum(velocities);
-        const Vec3 turned = flown[1].departure - flown[0].arrival;
+        const Vec3 turned = flown[1].start_velocity - flown[0].arrival;
         velocities[0] = flown[1].arrival;
         planned.deviations.record(0, flown, turned);
         planned.deviations.correct(planned.system(), planned.plans, {1, 1, 1}, velocities);

@@ -142,7 +142,7 @@ TEST(Emitter, BirthsDoNotDependOnTheTimeSteps) {
         const auto whole = Emitter(description, 9, 4).births(0.0, 8.0);
         ASSERT_GT(whole.size(), 200U);
         for (const double step : {1.0 / 60.0, 0.1, 0.5, 1.0, 3.7}) {
-            SCOPED_TRACE(testing::Message() << "spread " << spread << ", step " << step);
+            SCOPED_TRACE(::testing::Message() << "spread " << spread << ", step " << step);
             Emitter emitter(description, 9, 4);
             std::vector<Particle> parts;
             for (double from = 0.0; from < 8.0; from = std::min(8.0, from + step)) {

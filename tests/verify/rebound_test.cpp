@@ -25,10 +25,10 @@ TEST(ReboundCheck, SurfaceThatIsHitDeterminesTheRestitution) {
 TEST(ReboundCheck, SupportingSurfacesAreKnownFromTheContactRecord) {
     RecordedImpact wrong = impact_on_wall(0.3, false);
     EXPECT_FALSE(has_wrong_rebound(wrong));  // as if the particle had flown in
-    wrong.held_by = {3};
+    wrong.supported_by = {3};
     EXPECT_TRUE(has_wrong_rebound(wrong));
     RecordedImpact right = impact_on_wall(0.7, false);
-    right.held_by = {3};
+    right.supported_by = {3};
     EXPECT_FALSE(has_wrong_rebound(right));
 }
 
@@ -46,7 +46,7 @@ TEST(ReboundCheck, SeparatingSurfaceTakenAsSupportIsReported) {
 
 TEST(ReboundCheck, SeparatingSurfaceMayBeApproachedByItsRestitutionAtMost) {
     RecordedImpact impact = impact_on_wall(0.3, false);
-    impact.held_by = {3};
+    impact.supported_by = {3};
     impact.before.velocity.z = 0.01;
     impact.after.velocity = {-0.7 * 2, 0, -0.7 * 0.01};  // Moreau's law; the floor is hit next
     EXPECT_FALSE(has_wrong_rebound(impact));

@@ -103,8 +103,8 @@ TEST(CoulombProblem, SphereOnASlopeRollsOrSlips) {
             add_contacts(problem, slope, free, true);
             ASSERT_TRUE(problem.solve(CoulombProblem::Effort::all));
             const double pull = 9.81 * std::sin(angle);
-            const double supported_acceleration = friction * 9.81 * std::cos(angle);
-            const double expected = std::max(pull - supported_acceleration, 5.0 / 7.0 * pull);
+            const double friction_limit = friction * 9.81 * std::cos(angle);
+            const double expected = std::max(pull - friction_limit, 5.0 / 7.0 * pull);
             const Vec3 a{problem.change()[0], problem.change()[1], problem.change()[2] - 9.81};
             EXPECT_LT(length(a - expected * down), 1e-13);
             EXPECT_NEAR(problem.reaction(0), 9.81 * std::cos(angle), 1e-13);

@@ -32,20 +32,18 @@ void ManifoldSurfaces::find_beside() {
     });
 }
 
-bool ManifoldSurfaces::touches_next_substep(const Vec3& position) const {
-    const double reach = kTouchingOffsets * geometry_.contact_offset(state_.position);
-    std::array<CollisionWorld::Nearest, kMostSupports> points;
+bool ManifoldSurfaces::touches_next_piece(const Vec3& position) const {
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const SurfaceId surface = manifold_[k].surface;
-        points[k] = geometry_.nearest(surface, position);
         const bool is_next = manifold_[k].flat ? is_beyond_rim(surface, position)
                                                : touched_feature(geometry_, surface, position) !=
                                                      touched_feature(geometry_, surface, state_.position);
         if (is_next) return true;
     }
+    const double reach = kTouchingOffsets * geometry_.contact_offset(state_.position);
     return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
         const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, position);
-        const CollisionWorld::Nearest& point = points[other.point];
+        const CollisionWorld::Nearest point = geometry_.nearest(manifold_[other.point].surface, position);
         return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
     });
 }

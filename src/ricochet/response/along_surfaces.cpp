@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/single_contact.h"
 #include "ricochet/response/sphere_contact.h"
 
 namespace ricochet {
@@ -122,6 +123,7 @@ Motion along_surfaces(const Motion& motion, double radius, std::span<const Suppo
     const bool is_sphere = radius > 0.0;
     const bool is_free = std::none_of(stuck.begin(), stuck.begin() + surfaces.size(), sticks);
     if (is_free && motion.velocity == Vec3{}) return motion;
+    if (is_free && surfaces.size() == 1) return along_single_surface(motion, radius, surfaces[0].normal, braked_from);
     // As it is seen from a surface that carries it: what stands still there does so exactly.
     const Vec3 carried = carrying_velocity(surfaces, stuck);
     Remover remover;

@@ -27,24 +27,30 @@ bool follows_varying_forces(IntegratorKind kind) {
            kind == IntegratorKind::dormand_prince;
 }
 
-/// How long an arc lasts, s, and how it ends.
+/// End of an arc.
 struct CurvedEnd {
-    double time = 0.0;
+    double time = 0.0;           ///< s, from its start
+    CurvedContact::State state;  ///< at that time
     bool leaves_surface = false;
     bool jams = false;
 };
 CurvedEnd end_of(const CurvedContact& arc) {
     using SupportChange = CurvedContact::SupportChange;
     constexpr int kHalvings = 40;
-    const auto support_after = [&](double time) { return arc.support_at(arc.at(time), time); };
-    const auto is_as_before = [&](double time) { return support_after(time) == SupportChange::as_before; };
+    const auto is_as_before = [&](const CurvedContact::State& state, double time) {
+        return arc.support_at(state, time) == SupportChange::as_before;
+    };
     const double longest = arc.longest();
-    if (is_as_before(longest)) return {longest};
-    const Bracket change = bisect(0.0, longest, kHalvings, is_as_before);
-    const CurvedContact::State from = arc.at(change.high);
-    if (arc.jumps(arc.at(change.low), from)) return {change.low, false, true};
-    const SupportChange hold = arc.support_at(from, change.high);
-    return {hold == SupportChange::turned ? change.low : change.high, hold == SupportChange::none};
+    const CurvedContact::State last = arc.at(longest);
+    if (is_as_before(last, longest)) return {longest, last};
+    const Bracket change =
+        bisect(0.0, longest, kHalvings, [&](double time) { return is_as_before(arc.at(time), time); });
+    const CurvedContact::State before = arc.at(change.low);
+    const CurvedContact::State after = arc.at(change.high);
+    if (arc.jumps(before, after)) return {change.low, before, false, true};
+    const SupportChange support = arc.support_at(after, change.high);
+    if (support == SupportChange::turned) return {change.low, before};
+    return {change.high, after, support == SupportChange::none};
 }
 
 }  // namespace
@@ -233,13 +239,13 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
 /// The way of an arc, up to where nothing holds it any more or another part of a surface begins; none where that is
 /// at once.
 std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const CurvedContact& arc) const {
-    if (arc.support_at(arc.start(), 0.0) == CurvedContact::SupportChange::none) return std::nullopt;
+    if (!arc.is_supported()) return std::nullopt;
     CurvedPath trajectory;
     const CurvedEnd end = end_of(arc);
     trajectory.leaves_surface = end.leaves_surface;
     trajectory.jams = end.jams;
     if (!(end.time > 0.0) && !trajectory.jams) return std::nullopt;
-    lead_until(end.time, arc, trajectory);
+    lead_to(end.state, end.time, arc, trajectory);
     if (end.time > 0.0) keep_to_pieces(arc, trajectory);  // else it jams at once, and has no path
     // In 1e-46 s and less the cubic between two places that are one but for rounding has no coefficients.
     if (!trajectory.jams && !can_be_followed(trajectory.path)) return std::nullopt;
@@ -256,12 +262,13 @@ void ContactFollower::keep_to_pieces(const CurvedContact& arc, CurvedPath& traje
         trajectory.turning_point = trajectory.path.position(on);
         trajectory.jams = false;
         trajectory.leaves_surface = held_.has_left_face(trajectory.turning_point);
-        lead_until(on, arc, trajectory);
+        lead_to(arc.at(on), on, arc, trajectory);
     }
 }
 
-void ContactFollower::lead_until(double time, const CurvedContact& arc, CurvedPath& trajectory) const {
-    trajectory.end = arc.at(time);
+void ContactFollower::lead_to(const CurvedContact::State& end, double time, const CurvedContact& arc,
+                              CurvedPath& trajectory) const {
+    trajectory.end = end;
     if (!(time > 0.0)) return;
     trajectory.path = hermite_path(arc.start().position, arc.start().motion.velocity, trajectory.end.position,
                                    trajectory.end.motion.velocity, time);
@@ -273,7 +280,7 @@ double ContactFollower::time_on_pieces(const Path& path) const {
     // Local: samples and halvings of a search that only shortens the path.
     constexpr int kLooks = 4;
     constexpr int kHalvings = 32;
-    const auto is_on_part = [&](double time) { return !held_.touches_next_substep(path.position(time)); };
+    const auto is_on_part = [&](double time) { return !held_.touches_next_piece(path.position(time)); };
     for (int k = 1; k <= kLooks; ++k) {
         const double time = k < kLooks ? (static_cast<double>(k) / kLooks) * path.duration : path.duration;
         if (!is_on_part(time)) return bisect(0.0, time, kHalvings, is_on_part).high;
@@ -285,10 +292,11 @@ double ContactFollower::time_on_pieces(const Path& path) const {
 std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const CurvedContact& arc) {
     RefinementBudget looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
-        const Vec3 there = arc.at(time).position;
-        if (!looks.may_improve(tried.position(time), there, step_.geometry().contact_offset(there))) return {};
+        const CurvedContact::State there = arc.at(time);
+        const double offset = step_.geometry().contact_offset(there.position);
+        if (!looks.may_improve(tried.position(time), there.position, offset)) return {};
         trajectory.leaves_surface = trajectory.jams = false;
-        lead_until(time, arc, trajectory);
+        lead_to(there, time, arc, trajectory);
         keep_to_pieces(arc, trajectory);
         return trajectory.path;
     };

@@ -69,7 +69,7 @@ private:
     void keep_offset(Path& path, const FlatInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
     [[nodiscard]] std::optional<CurvedPath> path_along(const CurvedContact& arc) const;
-    void lead_until(double time, const CurvedContact& arc, CurvedPath& trajectory) const;
+    void lead_to(const CurvedContact::State& end, double time, const CurvedContact& arc, CurvedPath& trajectory) const;
     void keep_to_pieces(const CurvedContact& arc, CurvedPath& trajectory) const;
     [[nodiscard]] double time_on_pieces(const Path& path) const;
     [[nodiscard]] std::optional<Contact> move_along(CurvedPath& trajectory, const CurvedContact& arc);

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/single_contact.h"
 #include "ricochet/response/sphere_contact.h"
 
 namespace ricochet {
@@ -132,10 +133,34 @@ private:
     }
 
     void solve() {
-        CoulombProblem problem;
-        for (const SupportSurface& surface : surfaces_) {
-            problem.add({normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature});
+        if (const auto forces = forces_of_single_surface()) {
+            const Vec3& n = surfaces_[0].normal;
+            reactions_[0] = forces->normal * n;
+            if (count_ > 0) reactions_[0] += along_tangents(forces->tangential, n);
+            acceleration_ = a_ + velocity_of(forces->change);
+            accept(forces->change);
+        } else {
+            solve_problem();
         }
+    }
+
+    [[nodiscard]] CoulombContact contact(const SupportSurface& surface) const {
+        return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
+    }
+
+    /// Returns the closed form for one surface without friction, or with friction that slips; else nothing.
+    [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
+        if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
+        if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
+        if (resistances_[0].kind != Kind::slip) return std::nullopt;
+        const CoulombResistance slip = resistance(resistances_[0]);
+        if (!slip.is_moving) return std::nullopt;
+        return solve_single_contact(contact(surfaces_[0]), &slip, grip_.pressure);
+    }
+
+    void solve_problem() {
+        CoulombProblem problem;
+        for (const SupportSurface& surface : surfaces_) problem.add(contact(surface));
         for (const Resistance& r : resistances()) problem.add(resistance(r));
         // What slides can jam; what is at rest has an answer.
         const bool slides =
@@ -153,6 +178,11 @@ private:
         const MotionVector change = problem.change();
         acceleration_ = a_ + velocity_of(change);
         if (!problem.is_solved()) stay_on_surfaces();
+        accept(change);
+    }
+
+    /// Sets the accelerations by a change of the motion. One that is rounding does not start a particle at rest.
+    void accept(const MotionVector& change) {
         if (motion_.velocity == Vec3{} && length(acceleration_) <= kHoldRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }

@@ -131,7 +131,7 @@ CurvedContact::State CurvedContact::by_stages(double t) const {
                      {begin.motion.velocity + s * r.acceleration, begin.motion.spin + s * r.spin_acceleration},
                      s * r.power};
     };
-    const Rate first = rate(begin, 0.0);
+    const Rate& first = rate_at_start();
     const Rate second = rate(moved(first, 0.5 * t), 0.5 * t);
     const Rate third = rate(moved(second, 0.5 * t), 0.5 * t);
     const Rate fourth = rate(moved(third, t), t);
@@ -150,7 +150,7 @@ CurvedContact::State CurvedContact::by_stages(double t) const {
 double CurvedContact::error_of(double t) const {
     const State begin = start();
     if (!(particle_.time + 0.5 * t > particle_.time)) return 0.0;
-    const Rate first = rate(begin, 0.0);
+    const Rate& first = rate_at_start();
     const double half = 0.5 * t;
     const State middle{
         begin.position + half * first.velocity,
@@ -247,7 +247,7 @@ double CurvedContact::longest() const {
 
 /// s, in which forces turn it by little from where it goes, along surfaces that turn by so much in a metre.
 double CurvedContact::longest_swing(double curvature) const {
-    const double acceleration = length(rate(start(), 0.0).acceleration);
+    const double acceleration = length(rate_at_start().acceleration);
     // Forces that press on a surface come to pull along it as it turns, up to all of them.
     const double frequency = std::sqrt(curvature * length(forces_at_start_));
     return std::min(std::sqrt(2.0 * kMaxArcAngle / (curvature * acceleration)), kMaxArcPhase / frequency);
@@ -302,6 +302,11 @@ CurvedContact::Rate CurvedContact::rate(const State& state, double t) const {
     const Vec3 change = spin_change(state, t);
     return {v, plan.acceleration, plan.spin_acceleration + change,
             dot(pull - forces_at_start_, v) + spin_power(state, change)};
+}
+
+const CurvedContact::Rate& CurvedContact::rate_at_start() const {
+    if (!rate_at_start_) rate_at_start_ = rate(start(), 0.0);
+    return *rate_at_start_;
 }
 
 /// At the contact offset from what holds it, along the normals, and moving along them.

@@ -5,6 +5,7 @@
 /// Integration", 2nd ed., Springer 2006, section IV.4.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -60,6 +61,10 @@ public:
     [[nodiscard]] bool jumps(const State& before, const State& after) const;
     /// The particle, moving along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
+    /// True if a surface carries load at the start.
+    [[nodiscard]] bool is_supported() const {
+        return std::any_of(has_load_.begin(), has_load_.end(), [](bool has_load) { return has_load; });
+    }
     /// s, until it has turned by kMaxArcAngle, or something is about to stick.
     [[nodiscard]] double longest() const;
 
@@ -86,6 +91,7 @@ private:
     [[nodiscard]] ContactInterval plan_at(const State& state, double t, double duration,
                                           const StuckSurfaces& stuck = {}) const;
     [[nodiscard]] Rate rate(const State& state, double t) const;
+    [[nodiscard]] const Rate& rate_at_start() const;
     void put_on_surfaces(State& state) const;
     [[nodiscard]] State by_stages(double t) const;
     [[nodiscard]] double error_of(double t) const;
@@ -114,6 +120,7 @@ private:
     bool is_driven_ = false;                      // by a surface that moves
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
+    mutable std::optional<Rate> rate_at_start_;  // computed when it is first needed
 };
 
 }  // namespace ricochet

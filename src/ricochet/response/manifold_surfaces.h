@@ -26,7 +26,7 @@ public:
     [[nodiscard]] std::span<const SurfaceId> all() const { return surfaces_; }
 
     /// True where, on the way, another part of a surface is touched, or another surface where this one is.
-    [[nodiscard]] bool touches_next_substep(const Vec3& position) const;
+    [[nodiscard]] bool touches_next_piece(const Vec3& position) const;
     /// True where it overlaps surfaces that are touched beside those of the manifold.
     [[nodiscard]] bool overlaps(const Vec3& position) const;
     /// True where a face of the manifold has ended.

@@ -1,0 +1,32 @@
+/// \file
+/// Private to the responses: closed forms of contact with a single surface. They have the bits of the general methods
+/// (CoulombProblem, along_surfaces()), which take many times longer.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "ricochet/core/vec3.h"
+#include "ricochet/response/contact_motion.h"
+#include "ricochet/response/coulomb_problem.h"
+
+namespace ricochet {
+
+/// Solution of the contact problem of one surface.
+struct SingleContactForces {
+    double normal = 0.0;                 ///< along the contact's direction, >= 0
+    std::array<double, 2> tangential{};  ///< along the directions of friction
+    MotionVector change{};               ///< change of the motion by both
+};
+
+/// Solves a contact without resistance (`slip` is null), or with friction that slips along its heading: the normal
+/// force cancels the approach, and friction is its multiple against the heading. `friction` is a factor on the bound,
+/// 0..1. Returns nothing if the directions depend on each other, or rounding leaves more than kCoulombResidual.
+[[nodiscard]] std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact,
+                                                                      const CoulombResistance* slip, double friction);
+
+/// Returns the motion nearest to the given one that is along a surface of unit normal n: along_surfaces() for one
+/// surface on which nothing sticks. The velocity must not be zero. `braked_from` as there, in m/s.
+[[nodiscard]] Motion along_single_surface(const Motion& motion, double radius, const Vec3& n, double braked_from);
+
+}  // namespace ricochet

@@ -1,0 +1,122 @@
+#include "ricochet/response/single_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "ricochet/core/random.h"
+#include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/sphere_contact.h"
+#include "support/counts.h"
+
+namespace ricochet {
+namespace RICOCHET_FILE {
+
+constexpr int kCases = 20'000;
+
+double between(RandomSequence& random, double low, double high) { return low + (high - low) * random.uniform(); }
+
+Vec3 random_vector(RandomSequence& random, double scale) {
+    const double x = random.uniform_around(0.0, scale);
+    const double y = random.uniform_around(0.0, scale);
+    return {x, y, random.uniform_around(0.0, scale)};
+}
+
+/// Returns a contact on a surface of unit normal n under an acceleration, and its friction, which slips along
+/// `heading`.
+struct Slide {
+    Slide(const Vec3& n, const Vec3& acceleration, double curvature, double friction, bool is_sphere,
+          const std::array<double, 2>& heading)
+        : contact{normal_direction(n), dot(acceleration, n) + curvature},
+          slip(sliding_friction(0, n, friction, is_sphere, acceleration)) {
+        slip.is_moving = true;
+        slip.heading = heading;
+    }
+    CoulombContact contact;
+    CoulombResistance slip;
+};
+
+TEST(SingleContact, BrakesABlockOnASlopeByCoulombsLaw) {
+    const double angle = 0.4;
+    const Vec3 n{std::sin(angle), 0.0, std::cos(angle)};
+    const Vec3 gravity{0.0, 0.0, -9.81};
+    const Vec3 down{std::cos(angle), 0.0, -std::sin(angle)};
+    const auto [first, second] = tangent_frame(n);
+    const Slide slide(n, gravity, 0.0, 0.3, false, {dot(down, first), dot(down, second)});
+    const auto forces = solve_single_contact(slide.contact, &slide.slip, 1.0);
+    ASSERT_TRUE(forces);
+    EXPECT_NEAR(forces->normal, 9.81 * std::cos(angle), 1e-14);
+    const Vec3 left = gravity + velocity_of(forces->change);
+    EXPECT_NEAR(dot(left, down), 9.81 * (std::sin(angle) - 0.3 * std::cos(angle)), 1e-14);
+    EXPECT_NEAR(dot(left, n), 0.0, 1e-14);
+}
+
+TEST(SingleContact, PushesNothingThatTheForcesLiftOff) {
+    const Slide slide({0.0, 0.0, 1.0}, {1.0, 0.0, 2.0}, 0.0, 0.5, false, {1.0, 0.0});
+    const auto forces = solve_single_contact(slide.contact, &slide.slip, 1.0);
+    ASSERT_TRUE(forces);
+    EXPECT_EQ(forces->normal, 0.0);
+    EXPECT_EQ(length(velocity_of(forces->change)), 0.0);
+}
+
+TEST(SingleContact, HasTheBitsOfTheGeneralSolution) {
+    RandomSequence random(5, 7, 0);
+    int solved = 0;
+    for (int k = 0; k < kCases * test::case_factor(); ++k) {
+        const Vec3 n = random.unit_vector();
+        const double turn = between(random, 0.0, 6.28);
+        const bool has_slip = k % 4 != 0;
+        const double size = std::ldexp(1.0, static_cast<int>(between(random, -40.0, 40.0)));
+        const Slide slide(n, random_vector(random, size), k % 3 == 0 ? between(random, -size, size) : 0.0,
+                          between(random, 0.0, 3.0), k % 2 == 0, {std::cos(turn), std::sin(turn)});
+        const double pressure = k % 5 == 0 ? 0.5 : 1.0;
+        CoulombProblem problem;
+        problem.add(slide.contact);
+        if (has_slip) problem.add(slide.slip);
+        ASSERT_EQ(problem.solve_with_most(CoulombProblem::Effort::some, pressure), 1.0);
+        const auto forces = solve_single_contact(slide.contact, has_slip ? &slide.slip : nullptr, pressure);
+        if (!forces) continue;
+        ++solved;
+        ASSERT_EQ(std::bit_cast<std::uint64_t>(forces->normal), std::bit_cast<std::uint64_t>(problem.reaction(0))) << k;
+        if (has_slip) {
+            ASSERT_EQ(forces->tangential, problem.force_of(0)) << k;
+        }
+        const MotionVector change = problem.change();
+        for (std::size_t c = 0; c < change.size(); ++c) {
+            ASSERT_EQ(std::bit_cast<std::uint64_t>(forces->change[c]), std::bit_cast<std::uint64_t>(change[c])) << k;
+        }
+    }
+    EXPECT_GT(solved, kCases * test::case_factor() * 99 / 100);
+}
+
+TEST(SingleContact, LeavesDependentDirectionsToTheGeneralSolution) {
+    Slide slide({0.0, 0.0, 1.0}, {1.0, 0.0, -2.0}, 0.0, 0.5, false, {1.0, 0.0});
+    slide.slip.direction[0] = normal_direction({0.6, 0.0, 0.8});
+    EXPECT_FALSE(solve_single_contact(slide.contact, &slide.slip, 1.0));
+}
+
+// A second surface with the same normal makes along_surfaces() take the general method, which drops dependent normals.
+TEST(SingleContact, ProjectsMotionsWithTheBitsOfTheGeneralMethod) {
+    RandomSequence random(5, 8, 0);
+    for (int k = 0; k < kCases * test::case_factor(); ++k) {
+        SupportSurface surface;
+        surface.normal = random.unit_vector();
+        const double radius = k % 2 == 0 ? 0.0 : random.uniform(1e-6, 10.0);
+        const double size = std::ldexp(1.0, static_cast<int>(between(random, -40.0, 40.0)));
+        const Motion motion{random_vector(random, size), radius > 0.0 ? random_vector(random, size) : Vec3{}};
+        const double braked_from = k % 7 == 0 ? size * 0x1p42 : 0.0;
+        const std::vector<SupportSurface> once{surface};
+        const std::vector<SupportSurface> twice{surface, surface};
+        const Motion closed = along_surfaces(motion, radius, once, {}, braked_from);
+        const Motion general = along_surfaces(motion, radius, twice, {}, braked_from);
+        ASSERT_EQ(closed.velocity, general.velocity) << k;
+        ASSERT_EQ(closed.spin, general.spin) << k;
+    }
+}
+
+}  // namespace RICOCHET_FILE
+}  // namespace ricochet

@@ -41,7 +41,7 @@ const std::vector<ComparisonColumn>& make_columns() {
         RICOCHET_COUNT("passed", row.figures.tunnel.passed),
         RICOCHET_COUNT("penetrations", row.figures.statistics.penetrations),
         RICOCHET_COLUMN("penetration_share", row.figures.penetration_share()),
-        RICOCHET_COLUMN("penetration_mean", row.figures.penetration_mean()),
+        RICOCHET_COLUMN("penetration_mean", row.figures.statistics.penetration_mean()),
         RICOCHET_COLUMN("penetration_deepest", row.figures.statistics.penetration_deepest),
         RICOCHET_COLUMN("energy_error_max", row.errors.energy_largest),
         RICOCHET_COLUMN("energy_error_final", row.errors.energy_final),

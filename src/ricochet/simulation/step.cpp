@@ -278,7 +278,7 @@ WorkCounts Simulation::Impl::work_of(const ParticleRange& batch, std::size_t que
     counts.queried = queried;
     counts.idle = schedule.count_left_alone(batch.begin, batch.end);
     counts.flying = batch.size() - std::min(batch.size(), counts.queried + counts.idle);
-    for (const BlockRecord& block : blocks) counts.contacts += block.contacts;
+    for (const BlockRecord& block : blocks) counts.contacts += block.counts.contacts;
     return counts;
 }
 

@@ -2,6 +2,7 @@ import gc
 import json
 import os
 import pickle
+import re
 import signal
 import tempfile
 import threading
@@ -27,6 +28,15 @@ class Simulation(unittest.TestCase):
         simulation.run()
         self.assertTrue(simulation.finished)
         self.assertGreater(simulation.statistics["contacts"], 0)
+
+    def test_statistics_have_every_counter_of_the_library_with_a_text(self):
+        table = (ROOT / "src/ricochet/simulation/statistics.h").read_text()
+        names = re.findall(r'\{"(\w+)", &S::', table)
+        self.assertGreater(len(names), 40)
+        self.assertEqual(list(ricochet.Simulation(bouncing()).statistics), names)
+        lines = ricochet.Simulation.statistics.__doc__.splitlines()
+        self.assertEqual([line.split(":")[0] for line in lines[2:]], names)
+        self.assertIn("unsimulated_time: time lost because a budget was spent, in s, summed over particles", lines)
 
     def test_steps_and_runs_give_the_same_bits(self):
         one, other = ricochet.Simulation(bouncing()), ricochet.Simulation(bouncing())

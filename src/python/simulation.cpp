@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <limits>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "python/arrays.h"
 #include "python/help_texts.h"
@@ -225,22 +228,19 @@ py::list bodies_of(const Handle& handle) {
 }
 
 py::dict statistics_of(const Handle& handle) {
-    const SimulationStatistics s = handle.read([](const Simulation& simulation) { return simulation.statistics(); });
-    py::dict d;
-    d["steps"] = s.steps, d["particle_steps"] = s.particle_steps, d["emitted"] = s.emitted;
-    d["expired"] = s.expired, d["absorbed"] = s.absorbed, d["shattered"] = s.shattered, d["children"] = s.children;
-    d["out_of_bounds"] = s.out_of_bounds, d["removed"] = s.removed, d["contacts"] = s.contacts;
-    d["bounces_per_step_max"] = s.bounces_per_step_max, d["resting"] = s.resting, d["asleep"] = s.asleep;
-    d["unsimulated_time"] = s.unsimulated_time, d["budget_exhausted"] = s.budget_exhausted;
-    d["coarse_steps"] = s.coarse_steps;
-    d["started_inside"] = s.started_inside, d["started_in_overlap"] = s.started_in_overlap;
-    d["stayed"] = s.stayed, d["squeezed"] = s.squeezed, d["frozen"] = s.frozen;
-    d["body_parts"] = s.body_parts;
-    d["violations"] = s.violations, d["energy_violations"] = s.energy_violations;
-    d["overlap_verified"] = s.overlap_verified, d["pair_violations"] = s.pair_violations;
-    d["born_in_overlap"] = s.born_in_overlap;
-    d["penetrations"] = s.penetrations, d["springs_broken"] = s.springs_broken;
-    return d;
+    const auto statistics = handle.read([](const Simulation& simulation) { return simulation.statistics(); });
+    py::dict dictionary;
+    for (const Statistic& line : kStatistics) {
+        const auto value_of = [&](auto member) { return py::cast(std::invoke(member, statistics)); };
+        dictionary[py::str(std::string(line.name))] = std::visit(value_of, line.member);
+    }
+    return dictionary;
+}
+
+std::string text_on_statistics() {
+    std::string text = "Dictionary of counts over the run so far:\n";
+    for (const Statistic& line : kStatistics) text += fmt::format("\n{}: {}", line.name, line.meaning);
+    return text;
 }
 
 // Steps.
@@ -328,7 +328,7 @@ void bind_state(py::class_<Handle>& type) {
                                "values when the simulation continues.")
         .def_property_readonly("attributes", &attributes_of,
                                "Dictionary of arrays: the visible attributes of particles, by name.")
-        .def_property_readonly("statistics", &statistics_of, "Dictionary of counts over the run so far.")
+        .def_property_readonly("statistics", &statistics_of, text_on_statistics().c_str())
         .def_property_readonly("colliders", &colliders_of, "List of the colliders' names.")
         .def_property_readonly("bodies", &bodies_of,
                                "List with a dictionary for each dynamic body: position and motion, in SI units.")

@@ -51,6 +51,7 @@
 #include "ricochet/response/settings.h"
 #include "ricochet/simulation.h"
 #include "ricochet/simulation/options.h"
+#include "ricochet/simulation/statistics.h"
 #include "ricochet/verify/impact_audit.h"
 #include "ricochet/verify/sphere_overlaps.h"
 #include "ricochet/verify/verifier.h"

@@ -32,6 +32,7 @@
 #include "ricochet/response/material.h"
 #include "ricochet/response/pair_record.h"
 #include "ricochet/simulation/options.h"
+#include "ricochet/simulation/statistics.h"
 #include "ricochet/verify/verifier.h"
 
 namespace ricochet {
@@ -65,54 +66,6 @@ struct SimulationSetup {
     std::optional<HeatSettings> heat = std::nullopt;
     /// Processes that share the particles, each with the same setup; null: a single process has all. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
-};
-
-/// Counters over the whole run so far. Their values do not depend on the number of threads.
-struct SimulationStatistics {
-    std::uint64_t steps = 0;
-    std::uint64_t particle_steps = 0;                ///< sum over steps of the particles alive, resting ones included
-    std::uint64_t emitted = 0;                       ///< all particles ever created, explicit ones included
-    std::uint64_t expired = 0;                       ///< removed at the end of their lifetime
-    std::uint64_t absorbed = 0;                      ///< removed by absorbing surfaces
-    std::uint64_t shattered = 0;                     ///< replaced by fragments at an impact
-    std::uint64_t children = 0;                      ///< emitted particles that were spawned by particles
-    std::uint64_t births_refused_by_depth = 0;       ///< refused because they exceed max_depth
-    std::uint64_t births_refused_by_population = 0;  ///< refused because they exceed most_particles
-    std::uint64_t births_refused_by_overlap = 0;     ///< spheres for which an emitter found no free position
-    std::uint64_t out_of_bounds = 0;                 ///< removed outside the bounds
-    std::uint64_t removed = 0;                       ///< removed by remove_particles()
-    std::uint64_t contacts = 0;                      ///< impacts
-    std::uint64_t pair_impacts = 0;                  ///< impacts between two spheres
-    double overlap_largest = 0.0;       ///< largest overlap of two spheres at a step's end, over the smaller radius
-    double overlap_verified = 0.0;      ///< largest overlap that options.verify has found, over the smaller radius
-    std::uint64_t pair_violations = 0;  ///< violations between spheres that options.verify has found
-    std::uint64_t born_in_overlap = 0;  ///< spheres that overlapped others at their birth
-    std::uint32_t bounces_per_step_max = 0;
-    std::uint64_t resting = 0;      ///< particles at rest after the last step
-    double unsimulated_time = 0.0;  ///< in s, summed over particles; time lost because a budget was spent
-    /// Particle-steps that spent their budget of bounces, or of dormand_prince substeps.
-    std::uint64_t budget_exhausted = 0;
-    std::uint64_t asleep = 0;              ///< resting particles that cost no time
-    std::uint64_t started_inside = 0;      ///< particles born on a surface or, for spheres, overlapping one
-    std::uint64_t started_in_overlap = 0;  ///< spheres among these
-    std::uint64_t stayed = 0;              ///< impacts without a certified position nearer to the surface
-    std::uint64_t squeezed = 0;            ///< particle-steps that ended pinched between approaching surfaces
-    std::uint64_t lost_impulses = 0;       ///< impulses too large for the per-triangle totals
-    std::uint64_t violations = 0;          ///< violations of positions and paths that options.verify has found
-    std::uint64_t energy_violations = 0;   ///< violations of energies and rebounds that options.verify has found
-    std::uint64_t trials = 0;              ///< states that a response tested for collision or penetration; 0 for exact
-    std::uint64_t penetrations = 0;        ///< particle-steps in which a particle was found behind a surface
-    double penetration_sum = 0.0;          ///< sum of penetration depths before their correction, in m
-    double penetration_deepest = 0.0;      ///< in m
-    std::uint64_t springs_broken = 0;      ///< stretched beyond their limit
-    std::uint64_t springs_lost = 0;        ///< removed because a particle at one end was gone
-    /// Steps whose implicit equations were not solved to the tolerance, or whose contacts did not settle. Also counts
-    /// steps of coupled particles in which dormand_prince could not keep its tolerance.
-    std::uint64_t unsolved_steps = 0;
-    std::uint64_t frozen = 0;  ///< particles stopped because their state was not finite or beyond 1e75
-    /// Particle-steps in which dormand_prince could not keep its tolerance, because its substeps could not be shorter.
-    std::uint64_t coarse_steps = 0;
-    std::uint64_t body_parts = 0;  ///< substeps of scenes with dynamic bodies; at least one per step
 };
 
 /// Totals per triangle of one mesh collider, since the start.

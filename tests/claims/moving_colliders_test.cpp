@@ -392,7 +392,8 @@ TEST(APointOnATurningRamp, SlipsWhenTheSlopeExceedsTheAngleOfFriction) {
     Vec3 last;
     while (!simulation.finished()) {
         simulation.step();
-        const Vec3 image = simulation.collider_pose(0, simulation.time()).local_position(simulation.particles().position[0]);
+        const Vec3 image =
+            simulation.collider_pose(0, simulation.time()).local_position(simulation.particles().position[0]);
         if (simulation.step_index() > 5 && std::fabs(image.x - last.x) > 1e-13) break;
         last = image;
     }

@@ -25,8 +25,7 @@ DeformingColliders triangle_of(const std::vector<Vec3>& corners, const std::vect
         for (std::size_t k = 0; k < positions.size(); ++k) positions[k] += time * velocities[k];
         return positions;
     };
-    shape.motion =
-        std::make_shared<const MeshMotion>(sampled_motion(positions_at, {0.0, 1.0}, MeshEnds::hold));
+    shape.motion = std::make_shared<const MeshMotion>(sampled_motion(positions_at, {0.0, 1.0}, MeshEnds::hold));
     return DeformingColliders(std::make_shared<ColliderList>(std::vector<ColliderDescription>{{"triangle", shape, 0}}));
 }
 

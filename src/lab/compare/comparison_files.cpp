@@ -6,8 +6,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <variant>
 
 #include "ricochet/core/hash.h"
+#include "ricochet/response/settings_table.h"
 
 namespace ricochet {
 
@@ -41,7 +45,7 @@ const std::vector<ComparisonColumn>& make_columns() {
         RICOCHET_COUNT("passed", row.figures.tunnel.passed),
         RICOCHET_COUNT("penetrations", row.figures.statistics.penetrations),
         RICOCHET_COLUMN("penetration_share", row.figures.penetration_share()),
-        RICOCHET_COLUMN("penetration_mean", row.figures.penetration_mean()),
+        RICOCHET_COLUMN("penetration_mean", row.figures.statistics.penetration_mean()),
         RICOCHET_COLUMN("penetration_deepest", row.figures.statistics.penetration_deepest),
         RICOCHET_COLUMN("energy_error_max", row.errors.energy_largest),
         RICOCHET_COLUMN("energy_error_final", row.errors.energy_final),
@@ -108,26 +112,21 @@ Json json_of(const ComparisonCell& cell) {
     return std::get<std::string>(cell);
 }
 
+void add_settings(Json& json, const auto& settings, const auto& table) {
+    const auto json_of_value = [](const auto& value) {
+        if constexpr (requires { value.has_value(); }) return value ? Json(*value) : Json(nullptr);
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) return Json(value);
+        return Json();
+    };
+    for (const auto& line : table) json[std::string(line.name)] = std::visit(json_of_value, value_of(line, settings));
+}
+
 Json json_of(const ResponseChoice& response, const SimulationOptions& scene) {
     const SimulationOptions options = options_for(scene, response, scene.time_step);
     Json json = {{"name", name_of(response)}};
-    switch (response.kind) {
-        case ResponseKind::exact:
-            break;
-        case ResponseKind::rollback:
-            json["time_tolerance"] = options.rollback.time_tolerance;
-            json["global"] = options.rollback.global;
-            break;
-        case ResponseKind::project:
-            json["offset"] = options.project.offset;
-            break;
-        case ResponseKind::penalty:
-            json["stiffness"] = options.penalty.stiffness ? Json(*options.penalty.stiffness) : Json(nullptr);
-            json["contact_steps"] = options.penalty.contact_steps;
-            json["substeps"] = options.penalty.substeps;
-            json["friction_speed"] = options.penalty.friction_speed;
-            break;
-    }
+    if (response.kind == ResponseKind::rollback) add_settings(json, options.rollback, kRollbackTable);
+    if (response.kind == ResponseKind::project) add_settings(json, options.project, kProjectTable);
+    if (response.kind == ResponseKind::penalty) add_settings(json, options.penalty, kPenaltyTable);
     return json;
 }
 

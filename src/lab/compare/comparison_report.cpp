@@ -87,7 +87,7 @@ Table details(const Comparison& comparison) {
         table.push_back({name_of(row->response), fmt::format("{:.4g}", row->time_step),
                          fmt::format("{}", f.tunnel.wrong_side), fmt::format("{}", f.tunnel.penetrating),
                          fmt::format("{}", f.tunnel.jumped), fmt::format("{}", f.tunnel.passed),
-                         short_text(f.penetration_share()), short_text(f.penetration_mean()),
+                         short_text(f.penetration_share()), short_text(s.penetration_mean()),
                          fmt::format("{}", row->errors.impacts_missed), fmt::format("{}", row->errors.impacts_extra),
                          fmt::format("{}", s.contacts), fmt::format("{}", s.bounces_per_step_max),
                          short_text(s.unsimulated_time), fmt::format("{}", s.resting), fmt::format("{}", s.trials),

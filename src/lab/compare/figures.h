@@ -60,11 +60,6 @@ struct RunFigures {
                    ? kNoNumber
                    : static_cast<double>(statistics.penetrations) / static_cast<double>(statistics.particle_steps);
     }
-    /// Returns the mean depth of these, in m; 0 if there were none.
-    [[nodiscard]] double penetration_mean() const {
-        return statistics.penetrations == 0 ? 0.0
-                                            : statistics.penetration_sum / static_cast<double>(statistics.penetrations);
-    }
 };
 
 /// Errors of one measured run against the reference.

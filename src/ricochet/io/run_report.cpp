@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <new>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string>
+#include <variant>
 
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
@@ -263,39 +265,17 @@ Json json_of(const BodyState& body) {
             {"kinetic_energy", body.kinetic_energy}};
 }
 
-void add_statistics(Json& json, const SimulationStatistics& statistics) {
-    json["particles_emitted"] = statistics.emitted;
-    json["expired"] = statistics.expired;
-    json["absorbed"] = statistics.absorbed;
-    json["out_of_bounds"] = statistics.out_of_bounds;
-    json["shattered"] = statistics.shattered;
-    json["children"] = statistics.children;
-    json["births_refused_by_depth"] = statistics.births_refused_by_depth;
-    json["births_refused_by_population"] = statistics.births_refused_by_population;
-    json["births_refused_by_overlap"] = statistics.births_refused_by_overlap;
-    json["frozen"] = statistics.frozen;
-    json["particle_steps"] = statistics.particle_steps;
-    json["contacts"] = statistics.contacts;
-    json["bounces_per_step_max"] = statistics.bounces_per_step_max;
-    json["resting"] = statistics.resting;
-    json["asleep"] = statistics.asleep;
-    json["unsimulated_time"] = statistics.unsimulated_time;
-    json["budget_exhausted"] = statistics.budget_exhausted;
-    json["coarse_steps"] = statistics.coarse_steps;
-    json["started_inside"] = statistics.started_inside;
-    json["started_in_overlap"] = statistics.started_in_overlap;
-    json["stayed"] = statistics.stayed;
-    if (statistics.squeezed > 0) json["squeezed"] = statistics.squeezed;
-    if (statistics.body_parts > 0) json["body_parts"] = statistics.body_parts;
-    json["lost_impulses"] = statistics.lost_impulses;
-    json["springs_broken"] = statistics.springs_broken;
-    json["springs_lost"] = statistics.springs_lost;
-    json["unsolved_steps"] = statistics.unsolved_steps;
-    json["trials"] = statistics.trials;
-    json["penetrations"] = statistics.penetrations;
-    json["penetration_mean"] =
-        statistics.penetrations > 0 ? statistics.penetration_sum / static_cast<double>(statistics.penetrations) : 0.0;
-    json["penetration_deepest"] = statistics.penetration_deepest;
+void add_statistics(Json& json, const RunSummary& summary) {
+    using enum InSummary;
+    for (const Statistic& line : kStatistics) {
+        const InSummary where = line.in_summary;
+        const auto value_of = [&](auto member) { return Json(std::invoke(member, summary.statistics)); };
+        const Json value = std::visit(value_of, line.member);
+        if (where == apart || (where == above_zero && value == 0)) continue;
+        if ((where == of_spheres || where == of_spheres_verified) && !summary.spheres_meet) continue;
+        const bool is_unknown = (where == verified || where == of_spheres_verified) && !summary.verified;
+        json[std::string(line.summary_name)] = is_unknown ? Json(nullptr) : value;
+    }
 }
 
 ColliderSummary collider_summary(const Simulation& simulation, std::size_t i, const TriangleGroups& groups) {
@@ -336,10 +316,7 @@ RunSummary summarize(const Simulation& simulation, const std::vector<TriangleGro
     summary.particles_alive = simulation.particles().size();
     summary.statistics = simulation.statistics();
     summary.spheres_meet = simulation.options().particle_contacts.has_value();
-    if (simulation.options().verify) {
-        summary.leaks = simulation.statistics().violations;
-        summary.energy_violations = simulation.statistics().energy_violations;
-    }
+    summary.verified = simulation.options().verify;
     summary.kinetic_energy = simulation.kinetic_energy();
     summary.potential_energy = simulation.potential_energy();
     summary.state_hash = simulation.state_hash();
@@ -372,18 +349,7 @@ std::string summary_text(const RunSummary& summary) {
     json["interrupted"] = summary.interrupted;
     json["diverged"] = summary.diverged ? Json(*summary.diverged) : Json(nullptr);
     json["particles_alive"] = summary.particles_alive;
-    add_statistics(json, summary.statistics);
-    if (summary.spheres_meet) {
-        json["pair_impacts"] = summary.statistics.pair_impacts;
-        json["overlap_largest"] = summary.statistics.overlap_largest;
-        json["born_in_overlap"] = summary.statistics.born_in_overlap;
-        const bool is_verified = summary.leaks.has_value();
-        json["overlap_verified"] = is_verified ? Json(summary.statistics.overlap_verified) : Json(nullptr);
-        json["pair_violations"] = is_verified ? Json(summary.statistics.pair_violations) : Json(nullptr);
-    }
-    // Only a verified run knows these counts.
-    json["leaks"] = summary.leaks ? Json(*summary.leaks) : Json(nullptr);
-    json["energy_violations"] = summary.energy_violations ? Json(*summary.energy_violations) : Json(nullptr);
+    add_statistics(json, summary);
     json["kinetic_energy"] = summary.kinetic_energy;
     json["potential_energy"] = summary.potential_energy ? Json(*summary.potential_energy) : Json(nullptr);
     json["state_hash"] = fmt::format("{:016x}", summary.state_hash);

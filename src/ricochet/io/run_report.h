@@ -95,11 +95,10 @@ struct RunSummary {
     std::optional<std::string> diverged;  ///< reason why the run stopped with invalid numbers
     std::uint64_t particles_alive = 0;
     SimulationStatistics statistics;
-    bool spheres_meet = false;                       ///< true if spheres collide with each other
-    std::optional<std::uint64_t> leaks;              ///< violations found by a verified run; nothing without --verify
-    std::optional<std::uint64_t> energy_violations;  ///< energy violations found by a verified run
-    double kinetic_energy = 0.0;                     ///< J
-    std::optional<double> potential_energy;          ///< J; nothing if a force has no potential
+    bool spheres_meet = false;               ///< true if spheres collide with each other
+    bool verified = false;                   ///< true for a run with --verify, which alone knows the violations
+    double kinetic_energy = 0.0;             ///< J
+    std::optional<double> potential_energy;  ///< J; nothing if a force has no potential
     std::uint64_t state_hash = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< sum of the peaks of all processes
     std::vector<ColliderSummary> colliders;

@@ -19,8 +19,7 @@ std::size_t number_of(const MaterialNumbers& numbers, const std::string& name) {
 }  // namespace
 
 PairMaterials::PairMaterials(const PairContactSettings& settings)
-    : count_(std::max<std::size_t>(1, settings.materials.size())),
-      table_(count_ * count_, PairMaterial{settings.restitution, settings.friction, settings.rolling_friction}) {
+    : count_(std::max<std::size_t>(1, settings.materials.size())), table_(count_ * count_, material_of_all(settings)) {
     const MaterialNumbers numbers(settings.materials);
     for (const MaterialPair& pair : settings.pairs) {
         const std::size_t a = number_of(numbers, pair.first);

@@ -21,6 +21,11 @@ namespace ricochet {
     return value.x >= 0.0 && value.x < static_cast<double>(materials) && value.x == std::floor(value.x);
 }
 
+/// Returns the contact of the pairs of spheres that have none of their own.
+[[nodiscard]] inline PairMaterial material_of_all(const PairContactSettings& settings) {
+    return {settings.restitution, settings.friction, settings.rolling_friction};
+}
+
 /// The numbers of materials by their names; pairs of a thousand of them look up a million.
 class MaterialNumbers {
 public:

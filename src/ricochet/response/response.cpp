@@ -15,6 +15,7 @@
 #include "ricochet/response/penalty.h"
 #include "ricochet/response/project.h"
 #include "ricochet/response/rollback.h"
+#include "ricochet/response/settings_table.h"
 
 namespace ricochet {
 namespace {
@@ -28,32 +29,20 @@ constexpr std::array<std::pair<ResponseKind, std::string_view>, 4> kNames{{
 constexpr std::array<ResponseKind, 4> kKinds{ResponseKind::exact, ResponseKind::rollback, ResponseKind::project,
                                              ResponseKind::penalty};
 
-void require_positive(double value, std::string_view what, std::string_view unit) {
-    if (value > 0.0 && std::isfinite(value)) return;
-    throw InputError(fmt::format("{}: found {}, expected a finite number above 0 ({})", what, value, unit));
-}
-
-void require_tolerance(double value, std::string_view what, std::string_view unit) {
-    if (value >= kSmallestTolerance && std::isfinite(value)) return;
-    throw InputError(fmt::format("{}: found {}, expected a finite number of at least {:g} ({})", what, value,
-                                 kSmallestTolerance, unit));
+void require(const auto& settings, const auto& table, std::string_view owner) {
+    const std::string refused = first_refusal(settings, table, owner);
+    if (!refused.empty()) throw InputError(refused);
 }
 
 void check(const ResponseSettings& settings) {
-    require_positive(settings.time_step, "time_step", "s");
-    require_positive(settings.rollback.time_tolerance, "rollback.time_tolerance", "s");
-    require_positive(settings.project.offset, "project.offset", "m");
-    const PenaltySettings& penalty = settings.penalty;
-    if (penalty.stiffness) require_positive(*penalty.stiffness, "penalty.stiffness", "N/m");
-    require_positive(penalty.contact_steps, "penalty.contact_steps", "sub-steps");
-    require_positive(penalty.friction_speed, "penalty.friction_speed", "m/s");
-    if (penalty.substeps == 0) throw InputError("penalty.substeps: found 0, expected at least 1");
+    require(settings.rollback, kRollbackTable, "rollback.");
+    require(settings.project, kProjectTable, "project.");
+    require(settings.penalty, kPenaltyTable, "penalty.");
+    require(settings.integrator.tolerance, kToleranceTable, "tolerance.");
 }
 
 /// What steps together, or in sub-steps of its own, cannot let each particle choose its steps.
 void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
-    require_tolerance(settings.integrator.tolerance.position, "tolerance.position", "m");
-    require_tolerance(settings.integrator.tolerance.velocity, "tolerance.velocity", "m/s");
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
     const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
     const bool is_implicit = settings.integrator.kind == IntegratorKind::implicit_euler;

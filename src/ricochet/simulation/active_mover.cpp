@@ -188,7 +188,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         return;
     }
     // One that slept on walls alone has weighed on them until now.
-    if (parts_.store.is_asleep(i)) record.lost_impulses += add_weight(i, life.begin, 1.0);
+    if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
 }
 
@@ -365,7 +365,7 @@ void ActiveMover::record_lists(const MoveScratch& scratch, BlockRecord& record) 
 
 void ActiveMover::record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
                                std::span<const ContactRecord> contacts, BlockRecord& record) {
-    record.lost_impulses += parts_.recorder.totals().add(hits);
+    record.counts.lost_impulses += parts_.recorder.totals().add(hits);
     record.loads.insert(record.loads.end(), loads.begin(), loads.end());
     record.contact_records.insert(record.contact_records.end(), contacts.begin(), contacts.end());
 }

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <functional>
 #include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "ricochet/core/binary_archive.h"
@@ -15,6 +17,7 @@
 #include "ricochet/core/hash.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/pair_materials.h"
+#include "ricochet/response/settings_table.h"
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
@@ -46,6 +49,21 @@ void expect(Archive& a, const T& expected, const char* complaint) {
     T value = expected;
     a(value);
     if (value != expected) throw InputError(complaint);
+}
+
+/// Adds the settings of a table to a fingerprint. Absent ones count as 0.
+void add_settings(StateHash& hash, const auto& object, const auto& table) {
+    const auto add = [&](auto member) {
+        const auto& value = object.*member;
+        if constexpr (requires { value.x; }) {
+            hash.add(value);
+        } else if constexpr (requires { value.value_or(0.0); }) {
+            hash.add(value.value_or(0.0));
+        } else {
+            hash.add(static_cast<double>(value));
+        }
+    };
+    for (const auto& line : table) std::visit(add, line.member);
 }
 
 }  // namespace
@@ -87,28 +105,28 @@ std::uint64_t Simulation::Impl::collider_hash() const {
 std::uint64_t Simulation::Impl::settings_hash() const {
     StateHash hash;
     const auto add = [&hash](auto... values) { (hash.add(static_cast<double>(values)), ...); };
-    add(options.integrator.kind, options.integrator.tolerance.position, options.integrator.tolerance.velocity);
+    add(options.integrator.kind);
+    add_settings(hash, options.integrator.tolerance, kToleranceTable);
     hash.add(options.seed);
-    add(options.response, options.resting_speed, options.bounce_budget, options.rollback.time_tolerance,
-        options.rollback.global, options.project.offset, options.penalty.stiffness.value_or(0.0),
-        options.penalty.contact_steps, options.penalty.substeps, options.penalty.friction_speed, options.walls,
-        options.flow != nullptr, options.frame_rate, options.max_depth, options.most_particles);
+    add(options.response, options.resting_speed, options.bounce_budget);
+    add_settings(hash, options.rollback, kRollbackTable);
+    add_settings(hash, options.project, kProjectTable);
+    add_settings(hash, options.penalty, kPenaltyTable);
+    add(options.walls, options.flow != nullptr, options.frame_rate, options.max_depth, options.most_particles);
     if (options.particle_contacts) {
         const PairContactSettings& p = *options.particle_contacts;
-        add(p.restitution, p.friction, p.rolling_friction, p.method, p.impact_budget);
         const PairMaterials all(p);
+        add_settings(hash, material_of_all(p), kSphereContactTable<PairMaterial>);
+        add(p.method, p.impact_budget);
         for (std::uint32_t a = 0; a < p.materials.size(); ++a) {
-            for (std::uint32_t b = 0; b <= a; ++b) {
-                const PairMaterial& pair = all.of(a, b);
-                add(pair.restitution, pair.friction, pair.rolling_friction);
-            }
+            for (std::uint32_t b = 0; b <= a; ++b) add_settings(hash, all.of(a, b), kSphereContactTable<PairMaterial>);
         }
     }
+    auto material_table = std::to_array(kMaterialTable);
+    std::swap(material_table[1], material_table[2]);  // the order of saved states: friction, then the threshold
     for (const Material& m : materials) {
-        add(m.restitution, m.friction, m.restitution_threshold, m.rolling_friction, m.spinning_friction, m.diffuse,
-            m.wall_temperature.value_or(0.0), m.absorption);
-        if (m.motion.is_none()) continue;
-        for (const Vec3& v : {m.motion.velocity, m.motion.angular_velocity, m.motion.center}) hash.add(v);
+        add_settings(hash, m, material_table);
+        if (!m.motion.is_none()) add_settings(hash, m.motion, kSurfaceMotionTable);
     }
     for (const DrivenBody& body : driven.bodies()) {
         const BodyDescription& b = body.description();

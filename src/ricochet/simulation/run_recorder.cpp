@@ -93,20 +93,6 @@ std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
 
 }  // namespace
 
-void BlockRecord::add_to(SimulationStatistics& statistics) const {
-    statistics.contacts += contacts;
-    statistics.stayed += stayed;
-    statistics.frozen += frozen;
-    statistics.coarse_steps += coarse;
-    statistics.lost_impulses += lost_impulses;
-    statistics.bounces_per_step_max = std::max(statistics.bounces_per_step_max, bounces_max);
-    statistics.trials += trials;
-    statistics.squeezed += squeezed;
-    statistics.penetrations += penetrations;
-    statistics.penetration_sum += penetration_sum;
-    statistics.penetration_deepest = std::max(statistics.penetration_deepest, penetration_deepest);
-}
-
 std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks) {
     std::optional<Runaway> first;
     for (const BlockRecord& block : blocks) {
@@ -123,7 +109,7 @@ void RunRecorder::begin_step() {
 
 void RunRecorder::record(const std::vector<BlockRecord>& blocks) {
     for (const BlockRecord& block : blocks) {
-        block.add_to(statistics_);
+        add_part(statistics_, block.counts);
         batch_contacts_.insert(batch_contacts_.end(), block.contact_records.begin(), block.contact_records.end());
     }
     record_cut_off(blocks);
@@ -147,7 +133,7 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
     for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;
     statistics_.budget_exhausted += all.size();
     // Where surfaces close on a particle more bounces would not help.
-    for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.squeezed;
+    for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
 }
 
 void RunRecorder::record_violations(const std::vector<BlockRecord>& blocks) {

@@ -109,17 +109,7 @@ struct Runaway {
 
 /// What one block of particles has done: written by the thread that moves the block.
 struct BlockRecord {
-    std::uint64_t contacts = 0;
-    std::uint64_t stayed = 0;
-    std::uint64_t frozen = 0;
-    std::uint64_t coarse = 0;
-    std::uint64_t lost_impulses = 0;
-    std::uint32_t bounces_max = 0;
-    std::uint64_t squeezed = 0;
-    std::uint64_t trials = 0;
-    std::uint64_t penetrations = 0;
-    double penetration_sum = 0.0;
-    double penetration_deepest = 0.0;
+    SimulationStatistics counts;  ///< of the moves of its particles
     std::vector<CutOff> cut_off;
     std::vector<ContactRecord> contact_records;
     std::vector<ColliderLoad> loads;
@@ -131,20 +121,19 @@ struct BlockRecord {
     void note(const Runaway& found) {
         if (!runaway || found.particle < runaway->particle) runaway = found;
     }
-    void add_to(SimulationStatistics& statistics) const;
 };
 
 inline void BlockRecord::add(const MoveOutcome& outcome) {
-    contacts += outcome.bounces;
-    stayed += outcome.stayed;
-    frozen += outcome.is_frozen() ? 1 : 0;
-    coarse += outcome.is_coarse ? 1 : 0;
-    bounces_max = std::max(bounces_max, outcome.bounces);
-    squeezed += outcome.squeezed;
-    trials += outcome.trials;
-    penetrations += outcome.depth > 0.0 ? 1 : 0;
-    penetration_sum += outcome.depth;
-    penetration_deepest = std::max(penetration_deepest, outcome.depth);
+    counts.contacts += outcome.bounces;
+    counts.stayed += outcome.stayed;
+    counts.frozen += outcome.is_frozen() ? 1 : 0;
+    counts.coarse_steps += outcome.is_coarse ? 1 : 0;
+    counts.bounces_per_step_max = std::max(counts.bounces_per_step_max, outcome.bounces);
+    counts.squeezed += outcome.squeezed;
+    counts.trials += outcome.trials;
+    counts.penetrations += outcome.depth > 0.0 ? 1 : 0;
+    counts.penetration_sum += outcome.depth;
+    counts.penetration_deepest = std::max(counts.penetration_deepest, outcome.depth);
 }
 
 /// Adds what a particle has done to a collider to the totals of all.

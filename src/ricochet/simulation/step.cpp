@@ -279,7 +279,7 @@ WorkCounts Simulation::Impl::work_of(const ParticleRange& generation, std::size_
     counts.queried = queried;
     counts.idle = schedule.count_left_alone(generation.begin, generation.end);
     counts.flying = generation.size() - std::min(generation.size(), counts.queried + counts.idle);
-    for (const BlockRecord& block : blocks) counts.contacts += block.contacts;
+    for (const BlockRecord& block : blocks) counts.contacts += block.counts.contacts;
     return counts;
 }
 

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "ricochet/core/error.h"
+#include "ricochet/core/setting.h"
 #include "ricochet/core/vec3.h"
 
 namespace ricochet {
@@ -27,15 +29,13 @@ public:
         refuse(what, std::to_string(found), expected);
     }
 
+    /// Refuses the first member that is outside its range; owner: written before its name.
+    void require_settings(const auto& object, const auto& table, std::string_view owner = "") const {
+        const std::string refused = first_refusal(object, table, owner);
+        if (!refused.empty()) throw InputError(name_ + ": " + refused);
+    }
+    void require(const SettingValue& value, const Range& range, std::string_view what, std::string_view unit) const;
     void require_in(double value, double least, double most, std::string_view what, std::string_view expected) const;
-    void require_positive(double value, std::string_view what, std::string_view unit) const;
-    /// Lengths that positions are made of.
-    void require_length(double value, std::string_view what) const;
-    void require_not_negative(double value, std::string_view what, std::string_view unit) const;
-    /// Every component finite and at most `most`.
-    void require_size(const Vec3& value, double most, std::string_view what, std::string_view unit) const;
-    /// The same with kLargestCoordinate.
-    void require_coordinates(const Vec3& value, std::string_view what, std::string_view unit) const;
     void require_direction(const Vec3& value, std::string_view what) const;
     void require_index(std::size_t index, std::size_t count, std::string_view what, std::string_view of) const;
 

@@ -11,7 +11,9 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/settings_table.h"
 #include "ricochet/simulation/memory_estimate.h"
+#include "ricochet/simulation/options_table.h"
 #include "ricochet/simulation/subject.h"
 
 namespace ricochet {
@@ -23,24 +25,13 @@ constexpr double kMostSteps = 1e15;
 /// limit of input values.
 constexpr double kMostBirths = 1e12;
 
-void validate_steps(const SimulationOptions& options) {
+void validate(const SimulationOptions& options) {
     const Subject subject("options");
-    subject.require_positive(options.time_step, "time_step", "s");
-    subject.require_not_negative(options.duration, "duration", "s");
+    subject.require_settings(options, kTimeTable);
+    subject.require_settings(options, kRulesTable);
     if (options.duration / options.time_step > kMostSteps) {
         subject.refuse("duration / time_step", options.duration / options.time_step,
                        fmt::format("at most {:g} steps", kMostSteps));
-    }
-}
-
-void validate(const SimulationOptions& options) {
-    const Subject subject("options");
-    validate_steps(options);
-    subject.require_not_negative(options.resting_speed, "resting_speed", "m/s");
-    subject.require_positive(options.frame_rate, "frame_rate", "frames a second");
-    if (options.bounce_budget == 0) subject.refuse("bounce_budget", 0, "at least 1");
-    if (options.most_particles > std::numeric_limits<std::uint32_t>::max()) {
-        subject.refuse("most_particles", options.most_particles, "a number below 2^32");
     }
     const auto kinds = response_kinds();
     if (std::find(kinds.begin(), kinds.end(), options.response) == kinds.end()) {
@@ -55,27 +46,17 @@ void validate(const SimulationOptions& options) {
 
 void validate(const Material& material, std::size_t number) {
     const Subject subject("material", number, material.name);
-    subject.require_in(material.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
-    subject.require_not_negative(material.restitution_threshold, "restitution_threshold", "m/s");
-    subject.require_not_negative(material.friction, "friction", "");
-    subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
-    subject.require_in(material.spinning_friction, 0.0, kLargestCoordinate, "spinning_friction", "0 to 1e75 (m)");
-    subject.require_in(material.diffuse, 0.0, 1.0, "diffuse", "a number from 0 to 1");
-    subject.require_in(material.absorption, 0.0, 1.0, "absorption", "a number from 0 to 1");
-    if (material.wall_temperature) subject.require_positive(*material.wall_temperature, "wall_temperature", "K");
-    const SurfaceMotion& motion = material.motion;
-    subject.require_size(motion.velocity, kMaxSpeed, "surface_motion.velocity", "m/s");
-    subject.require_size(motion.angular_velocity, kMaxSpeed, "surface_motion.angular_velocity", "rad/s");
-    subject.require_coordinates(motion.center, "surface_motion.center", "m");
+    subject.require_settings(material, kMaterialTable);
+    subject.require_settings(material.motion, kSurfaceMotionTable, "surface_motion.");
 }
 
 void validate(const Placement& placement, const Subject& subject) {
-    subject.require_coordinates(placement.position, "position", "m");
+    subject.require(placement.position, kCoordinate, "position", "m");
     subject.require_direction(placement.rotation_axis, "rotation axis");
     if (!std::isfinite(placement.rotation_degrees)) {
         subject.refuse("rotation", placement.rotation_degrees, "a finite number of degrees");
     }
-    subject.require_coordinates(placement.scale, "scale", "");
+    subject.require(placement.scale, kCoordinate, "scale", "");
 }
 
 /// Null pointers and indices past the end.
@@ -107,31 +88,31 @@ void validate(const MeshShape& shape, const Subject& subject, std::size_t materi
 
 void validate(const ColliderShape& shape, const Subject& subject, std::size_t materials) {
     if (const auto* plane = std::get_if<PlaneShape>(&shape)) {
-        subject.require_coordinates(plane->point, "point", "m");
+        subject.require(plane->point, kCoordinate, "point", "m");
         subject.require_direction(plane->normal, "normal");
     } else if (const auto* mesh = std::get_if<MeshShape>(&shape)) {
         validate(*mesh, subject, materials);
     } else if (const auto* ball = std::get_if<BallShape>(&shape)) {
-        subject.require_length(ball->radius, "radius");
+        subject.require(ball->radius, kLength, "radius", "m");
         validate(ball->placement, subject);
     } else if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
-        subject.require_length(cylinder->radius, "radius");
-        subject.require_length(cylinder->height, "height");
+        subject.require(cylinder->radius, kLength, "radius", "m");
+        subject.require(cylinder->height, kLength, "height", "m");
         validate(cylinder->placement, subject);
     } else if (const auto* cuboid = std::get_if<CuboidShape>(&shape)) {
-        for (int axis = 0; axis < 3; ++axis) subject.require_length(cuboid->size[axis], "size");
+        for (int axis = 0; axis < 3; ++axis) subject.require(cuboid->size[axis], kLength, "size", "m");
         validate(cuboid->placement, subject);
     }
 }
 
 /// Positions of the shape and the mesh that it samples; its sizes are checked by its sampler.
 void validate(const EmitterShape& shape, const Subject& subject) {
-    const auto check_center = [&](const Vec3& center) { subject.require_coordinates(center, "center", "m"); };
+    const auto check_center = [&](const Vec3& center) { subject.require(center, kCoordinate, "center", "m"); };
     if (const auto* point = std::get_if<PointShape>(&shape)) check_center(point->center);
     if (const auto* disk = std::get_if<DiskShape>(&shape)) check_center(disk->center);
     if (const auto* box = std::get_if<BoxShape>(&shape)) check_center(box->center);
     if (const auto* sphere = std::get_if<SphereShape>(&shape)) check_center(sphere->center);
-    if (const auto* cone = std::get_if<ConeShape>(&shape)) subject.require_coordinates(cone->apex, "apex", "m");
+    if (const auto* cone = std::get_if<ConeShape>(&shape)) subject.require(cone->apex, kCoordinate, "apex", "m");
     if (const auto* surface = std::get_if<MeshSurfaceShape>(&shape)) validate(surface->mesh.get(), subject);
     if (const auto* volume = std::get_if<MeshVolumeShape>(&shape)) validate(volume->mesh.get(), subject);
 }
@@ -194,20 +175,20 @@ void validate(const Box3& bounds) {
 
 void validate(const ReferenceCamera& camera) {
     const Subject subject("reference camera");
-    subject.require_coordinates(camera.position, "position", "m");
-    subject.require_coordinates(camera.target, "target", "m");
+    subject.require(camera.position, kCoordinate, "position", "m");
+    subject.require(camera.target, kCoordinate, "target", "m");
     subject.require_direction(camera.target - camera.position, "direction to the target");
     subject.require_in(camera.field_of_view_degrees, 1.0, 170.0, "field_of_view", "1 to 170 degrees");
-    subject.require_positive(camera.image_height, "image_height", "pixels");
+    subject.require(camera.image_height, kPositive, "image_height", "pixels");
 }
 
 }  // namespace
 
 void validate(const Particle& particle, std::size_t number, std::size_t columns) {
     const Subject subject("particle", number);
-    subject.require_coordinates(particle.position, "position", "m");
-    subject.require_coordinates(particle.velocity, "velocity", "m/s");
-    subject.require_coordinates(particle.spin, "spin", "rad/s");
+    subject.require(particle.position, kCoordinate, "position", "m");
+    subject.require(particle.velocity, kCoordinate, "velocity", "m/s");
+    subject.require(particle.spin, kCoordinate, "spin", "rad/s");
     if (!(particle.mass >= kSmallestMass && std::isfinite(particle.mass))) {
         subject.refuse("mass", particle.mass, fmt::format("a finite number of at least {:g} (kg)", kSmallestMass));
     }

@@ -10,8 +10,6 @@
 namespace ricochet {
 namespace {
 
-constexpr std::string_view kFraction = "a number from 0 to 1";
-
 /// Hotter than the inside of any star; fourth powers of it are far from the end of the arithmetic. Local: a limit of
 /// input values.
 constexpr double kHottest = 1e12;  // K
@@ -24,17 +22,17 @@ void validate_numbers(const HeatSettings& heat, const Subject& subject) {
     // With less, what is fast would be hotter after an impact than numbers go.
     subject.require_in(heat.specific_heat, 1e-3, 1e12, "specific_heat", "0.001 to 1e12 (J/(kg K))");
     require_temperature(subject, heat.ambient_temperature, "ambient_temperature");
-    subject.require_in(heat.emissivity, 0.0, 1.0, "emissivity", kFraction);
-    subject.require_in(heat.impact_fraction, 0.0, 1.0, "impact_fraction", kFraction);
-    subject.require_in(heat.friction_fraction, 0.0, 1.0, "friction_fraction", kFraction);
+    subject.require(heat.emissivity, kFraction, "emissivity", "");
+    subject.require(heat.impact_fraction, kFraction, "impact_fraction", "");
+    subject.require(heat.friction_fraction, kFraction, "friction_fraction", "");
     if (heat.convection) {
         const Convection& convection = *heat.convection;
         const Subject medium("heat.convection");
-        if (convection.coefficient) medium.require_not_negative(*convection.coefficient, "coefficient", "W/(m^2 K)");
-        medium.require_positive(convection.conductivity, "conductivity", "W/(m K)");
-        medium.require_not_negative(convection.density, "fluid_density", "kg/m^3");
-        medium.require_positive(convection.viscosity, "viscosity", "Pa s");
-        medium.require_positive(convection.prandtl, "prandtl", "");
+        medium.require(convection.coefficient, kNotNegative, "coefficient", "W/(m^2 K)");
+        medium.require(convection.conductivity, kPositive, "conductivity", "W/(m K)");
+        medium.require(convection.density, kNotNegative, "fluid_density", "kg/m^3");
+        medium.require(convection.viscosity, kPositive, "viscosity", "Pa s");
+        medium.require(convection.prandtl, kPositive, "prandtl", "");
     }
     if (heat.exchanges() || heat.is_heated_by_surfaces()) return;
     subject.refuse("convection, emissivity, impact_fraction and friction_fraction", "none",

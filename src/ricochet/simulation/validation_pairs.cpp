@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "ricochet/response/pair_materials.h"
+#include "ricochet/response/settings_table.h"
 #include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 #include "ricochet/verify/sphere_overlaps.h"
@@ -26,12 +27,6 @@ void require_mass(const Subject& subject, double mass) {
     subject.require_in(mass, kLeastMass, kLargestMass, "mass", "1e-100 to 1e100 (kg) where spheres meet");
 }
 
-void require_material(const Subject& subject, const PairMaterial& material) {
-    subject.require_in(material.restitution, 0.0, 1.0, "restitution", "a number from 0 to 1");
-    subject.require_not_negative(material.friction, "friction", "");
-    subject.require_not_negative(material.rolling_friction, "rolling_friction", "");
-}
-
 void validate_names(const PairContactSettings& contacts, const Subject& subject) {
     if (contacts.materials.size() > kMostMaterials) {
         subject.refuse("materials", contacts.materials.size(), fmt::format("at most {}", kMostMaterials));
@@ -48,7 +43,7 @@ void validate_names(const PairContactSettings& contacts, const Subject& subject)
         for (const std::string& name : {pair.first, pair.second}) {
             if (!numbers.of(name)) subject.refuse("pairs", "\"" + name + "\"", "names of `materials`");
         }
-        require_material(subject, pair.material);
+        subject.require_settings(pair.material, kSphereContactTable<PairMaterial>);
         const std::size_t first = *numbers.of(pair.first);
         const std::size_t second = *numbers.of(pair.second);
         if (pairs.insert(std::minmax(first, second)).second) continue;
@@ -151,8 +146,8 @@ void validate_particle_contacts(const SimulationSetup& setup) {
     if (!setup.options.particle_contacts) return;
     const PairContactSettings& contacts = *setup.options.particle_contacts;
     const Subject subject("particle_contacts");
-    require_material(subject, {contacts.restitution, contacts.friction, contacts.rolling_friction});
-    if (contacts.impact_budget == 0) subject.refuse("impact_budget", 0, "at least 1");
+    subject.require_settings(contacts, kSphereContactTable<PairContactSettings>);
+    subject.require_settings(contacts, kPairBudgetTable);
     validate_names(contacts, subject);
     for (std::size_t k = 0; k < setup.particles.size(); ++k) {
         validate_sphere(setup.particles[k], k, contacts, setup.attributes);

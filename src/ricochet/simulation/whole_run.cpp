@@ -1,6 +1,5 @@
 // A run that ranks share, put together on the first of them.
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -12,52 +11,9 @@
 namespace ricochet {
 namespace {
 
-/// Everything that is counted by each rank for its own particles.
-constexpr std::array kCounted = {
-    &SimulationStatistics::particle_steps,
-    &SimulationStatistics::emitted,
-    &SimulationStatistics::expired,
-    &SimulationStatistics::absorbed,
-    &SimulationStatistics::shattered,
-    &SimulationStatistics::children,
-    &SimulationStatistics::births_refused_by_depth,
-    &SimulationStatistics::births_refused_by_population,
-    &SimulationStatistics::births_refused_by_overlap,
-    &SimulationStatistics::out_of_bounds,
-    &SimulationStatistics::removed,
-    &SimulationStatistics::contacts,
-    &SimulationStatistics::pair_impacts,
-    &SimulationStatistics::pair_violations,
-    &SimulationStatistics::born_in_overlap,
-    &SimulationStatistics::resting,
-    &SimulationStatistics::budget_exhausted,
-    &SimulationStatistics::asleep,
-    &SimulationStatistics::started_inside,
-    &SimulationStatistics::started_in_overlap,
-    &SimulationStatistics::stayed,
-    &SimulationStatistics::squeezed,
-    &SimulationStatistics::lost_impulses,
-    &SimulationStatistics::violations,
-    &SimulationStatistics::energy_violations,
-    &SimulationStatistics::trials,
-    &SimulationStatistics::penetrations,
-    &SimulationStatistics::springs_broken,
-    &SimulationStatistics::springs_lost,
-    &SimulationStatistics::unsolved_steps,
-    &SimulationStatistics::coarse_steps,
-    &SimulationStatistics::frozen,
-};
-/// Besides them there are: the steps, their parts, the most bounces with a gap, four numbers of what ranks refuse (of
-/// spheres that meet, and of penetrations), and the time that is added up by its own order.
-static_assert(sizeof(SimulationStatistics) == (kCounted.size() + 8) * sizeof(std::uint64_t),
-              "a counter is missing in kCounted");
-
 SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks, double unsimulated_time) {
     SimulationStatistics all = of_ranks.front();
-    for (std::size_t k = 1; k < of_ranks.size(); ++k) {
-        for (const auto counter : kCounted) all.*counter += of_ranks[k].*counter;
-        all.bounces_per_step_max = std::max(all.bounces_per_step_max, of_ranks[k].bounces_per_step_max);
-    }
+    for (std::size_t k = 1; k < of_ranks.size(); ++k) add_part(all, of_ranks[k]);
     all.unsimulated_time = unsimulated_time;
     return all;
 }

@@ -6,6 +6,8 @@
 
 #include "ricochet/dynamics/flight.h"
 #include "ricochet/io/scene/context.h"
+#include "ricochet/response/settings_table.h"
+#include "ricochet/simulation/options_table.h"
 
 namespace ricochet::detail {
 namespace {
@@ -24,47 +26,27 @@ struct OutputKeys : OutputOptions {
     bool contacts = false;
 };
 
-constexpr Range kTolerance = between(kSmallestTolerance, kLargestCoordinate);
-
 const ObjectSpec& tolerance_spec() {
-    using T = ErrorTolerance;
-    static const ObjectSpec spec = object<T>(
-        "tolerance", "Largest error of one sub-step of an adaptive integrator.",
-        {{"position", &T::position, kTolerance, "m", "Error of the position, also between the ends of a sub-step."},
-         {"velocity", &T::velocity, kTolerance, "m/s", "Error of the velocity."}});
+    static const ObjectSpec spec = object("tolerance", "Largest error of one sub-step of an adaptive integrator.",
+                                          fields_of<ErrorTolerance>(kToleranceTable));
     return spec;
 }
 
 const ObjectSpec& rollback_spec() {
-    using R = RollbackSettings;
     static const ObjectSpec spec =
-        object<R>("rollback", "Settings of the rollback response.",
-                  {{"time_tolerance", &R::time_tolerance, kPositive, "s",
-                    "Largest error of the time of contact, which bisection brackets."},
-                   {"global", &R::global,
-                    "true: the whole system goes back to the earliest contact, as in textbooks. Costs grow with "
-                    "particles times contacts. false: each particle goes back by itself."}});
+        object("rollback", "Settings of the rollback response.", fields_of<RollbackSettings>(kRollbackTable));
     return spec;
 }
 
 const ObjectSpec& project_spec() {
-    static const ObjectSpec spec = object<ProjectSettings>("project", "Settings of the project response.",
-                                                           {{"offset", &ProjectSettings::offset, kLength, "m",
-                                                             "Thickness of the contact layer on surfaces. A particle "
-                                                             "in the layer is in contact and is moved to its top."}});
+    static const ObjectSpec spec =
+        object("project", "Settings of the project response.", fields_of<ProjectSettings>(kProjectTable));
     return spec;
 }
 
 const ObjectSpec& penalty_spec() {
-    using P = PenaltySettings;
-    static const ObjectSpec spec = object<P>(
-        "penalty", "Settings of the penalty response.",
-        {{"stiffness", &P::stiffness, kPositive, "N/m", "Spring constant of contacts.",
-          Without{"a value for each particle: an undamped contact lasts `contact_steps` sub-steps"}},
-         {"contact_steps", &P::contact_steps, kPositive, "",
-          "Duration of an undamped contact, in sub-steps, if no stiffness is given."},
-         {"substeps", &P::substeps, between(1, 1e6), "", "Number of equal sub-steps in every step."},
-         {"friction_speed", &P::friction_speed, kPositive, "m/s", "Slip speed up to which friction grows linearly."}});
+    static const ObjectSpec spec =
+        object("penalty", "Settings of the penalty response.", fields_of<PenaltySettings>(kPenaltyTable));
     return spec;
 }
 
@@ -100,13 +82,9 @@ Choices motion_choices() {
                    "than `exact` do not apply")};
 }
 
-Fields<SimulationKeys> time_fields() {
+Fields<SimulationKeys> choice_fields() {
     using S = SimulationKeys;
-    return {{"time_step", &S::time_step, kPositive, "s", "Length of a step."},
-            {"duration", &S::duration, kNotNegative, "s",
-             "Simulated time. The number of steps is ceil(duration / time_step - 1e-6), and at least 1 if the duration "
-             "is above 0. The last step ends at the duration."},
-            {"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
+    return {{"integrator", [](S& s) -> IntegratorKind& { return s.integrator.kind; },
              "Method that moves particles inside a step. If a flow carries the particles, only `forward_euler`, "
              "`midpoint`, `rk4` and `dormand_prince` are allowed.",
              integrator_choices(), Without{"`\"ballistic\"`; with `motion` `flow` it is `\"rk4\"`"}},
@@ -122,31 +100,17 @@ Fields<SimulationKeys> time_fields() {
                      choice(WallRule::stop, "stop", "they stay there until the flow turns away")}}};
 }
 
-Fields<SimulationKeys> rule_fields() {
+Fields<SimulationKeys> response_fields() {
     using S = SimulationKeys;
-    return {{"seed", &S::seed, kSeed, "", "Seed of all random numbers. The same seed gives the same run, bit for bit."},
-            {"resting_speed", &S::resting_speed, kNotNegative, "m/s",
-             "Rebound speed below which resting or sliding contact begins, if bounces lose energy and a force presses "
-             "the particle on."},
-            {"frame_rate", &S::frame_rate, positive_up_to(1e6), "1/s",
-             "Frames per second for emitter rates per frame. It affects neither the output nor the time step."},
-            {"max_depth", &S::max_depth, kCount, "",
-             "Highest generation of particles that are born of particles. Births beyond it are refused and counted."},
-            {"most_particles", &S::most_particles, kCount, "",
-             "Largest number of particles alive at a time. Births beyond it are refused and counted. It is a fixed "
-             "number, so that a run is the same on every machine. It must still fit the memory."},
-            {"bounce_budget", &S::bounce_budget, between(1.0, 4294967295.0), "",
-             "Largest number of impacts of one particle in one step. Beyond 64 contact intervals, every four intervals "
-             "count as one impact. A particle that spends the budget stops for the rest of the step, and the omitted "
-             "time is counted."},
-            {"rollback", &S::rollback, "Settings of the rollback response.", &rollback_spec(), Without{"its defaults"}},
+    return {{"rollback", &S::rollback, "Settings of the rollback response.", &rollback_spec(), Without{"its defaults"}},
             {"project", &S::project, "Settings of the project response.", &project_spec(), Without{"its defaults"}},
             {"penalty", &S::penalty, "Settings of the penalty response.", &penalty_spec(), Without{"its defaults"}}};
 }
 
 const ObjectSpec& simulation_spec() {
-    static const ObjectSpec spec =
-        object("simulation", "Time steps and the handling of impacts.", joined({time_fields(), rule_fields()}));
+    static const ObjectSpec spec = object("simulation", "Time steps and the handling of impacts.",
+                                          joined({fields_of<SimulationKeys>(kTimeTable), choice_fields(),
+                                                  fields_of<SimulationKeys>(kRulesTable), response_fields()}));
     return spec;
 }
 

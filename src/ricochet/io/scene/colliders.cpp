@@ -13,6 +13,7 @@
 
 #include "ricochet/core/printable.h"
 #include "ricochet/io/scene/context.h"
+#include "ricochet/response/settings_table.h"
 
 namespace ricochet::detail {
 namespace {
@@ -60,19 +61,13 @@ std::vector<Variant> shapes() {
                                         {{"size", &CuboidShape::size, kLength, "m", "Full edge lengths.", kRequired}})};
 }
 
-constexpr Range kSurfaceSpeed = between(-kMaxSpeed, kMaxSpeed);
-
 const ObjectSpec& surface_motion_spec() {
-    using S = SurfaceMotion;
     static const ObjectSpec spec =
-        object<S>("surface motion",
-                  "Motion of the surface material while the geometry stands still: a conveyor belt, or the wall of a "
-                  "drum that turns about its own axis. Friction, rolling and spinning resistance, and diffuse "
-                  "reflection act relative to it. Only the velocity component along the surface counts.",
-                  {{"velocity", &S::velocity, kSurfaceSpeed, "m/s", "Uniform velocity."},
-                   {"angular_velocity", &S::angular_velocity, kSurfaceSpeed, "rad/s",
-                    "Rotation by the right-hand rule about an axis through `center`, added to `velocity`."},
-                   {"center", &S::center, kCoordinate, "m", "A point on the axis, in world coordinates."}});
+        object("surface motion",
+               "Motion of the surface material while the geometry stands still: a conveyor belt, or the wall of a "
+               "drum that turns about its own axis. Friction, rolling and spinning resistance, and diffuse "
+               "reflection act relative to it. Only the velocity component along the surface counts.",
+               fields_of<SurfaceMotion>(kSurfaceMotionTable));
     return spec;
 }
 
@@ -273,25 +268,11 @@ private:
 }  // namespace
 
 const ObjectSpec& material_spec() {
-    using M = Material;
-    static const ObjectSpec spec = object<M>(
-        "material", "Response of a surface to impacts and contacts.",
-        {{"restitution", &M::restitution, kFraction, "", "Rebound speed divided by approach speed, along the normal."},
-         {"restitution_threshold", &M::restitution_threshold, kNotNegative, "m/s",
-          "Approach speed below which the restitution falls linearly to 0."},
-         {"friction", &M::friction, kNotNegative, "", "Coulomb coefficient, for impacts and sliding."},
-         {"rolling_friction", &M::rolling_friction, kNotNegative, "",
-          "Moment that resists rolling, divided by radius times normal force. For particles with a radius."},
-         {"spinning_friction", &M::spinning_friction, kLengthOrZero, "m",
-          "Moment that resists spinning about the normal, divided by normal force. For particles with a radius."},
-         {"diffuse", &M::diffuse, kFraction, "",
-          "Accommodation: fraction of the impacts that reflect by the cosine law."},
-         {"wall_temperature", &M::wall_temperature, kPositive, "K",
-          "Temperature of the wall. Diffuse reflections leave with its thermal speeds.",
-          Without{"diffuse reflections keep their impact speed"}},
-         {"absorption", &M::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
-         {"surface_motion", ValueType::object, "Motion of the surface material.", Without{"the material is at rest"},
-          &surface_motion_spec()}});
+    static const ObjectSpec spec =
+        object("material", "Response of a surface to impacts and contacts.",
+               joined<Material>({fields_of<Material>(kMaterialTable),
+                                 {{"surface_motion", ValueType::object, "Motion of the surface material.",
+                                   Without{"the material is at rest"}, &surface_motion_spec()}}}));
     return spec;
 }
 

@@ -3,7 +3,9 @@
 /// of a key. The checker, the reader, the JSON Schema and the reference in docs/ all follow from it. Type and default
 /// come from the member:
 ///
-///     {"restitution", &Material::restitution, kFraction, "", "Rebound speed divided by approach speed."}
+///     {"density", &BodyKeys::density, kPositive, "kg/m^3", "Mass per volume."}
+///
+/// Structs whose settings have a table of their own (core/setting.h) take their keys from it, see fields_of().
 #pragma once
 
 #include <concepts>
@@ -13,6 +15,7 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
@@ -167,7 +170,8 @@ struct Field : KeySpec {
         type = Format<Value>::kType;
         describe(key, allowed, si_unit, meaning, options...);
         if constexpr (std::default_initializable<Struct>) {
-            Struct defaults = Struct();
+            // Static, because GCC takes members of unknown place in a local struct for uninitialized.
+            static Struct defaults = Struct();
             if (without.empty() && !required) default_value = Format<Value>::text(*this, std::invoke(member, defaults));
         }
         read = [member, spec = reading_spec()](void* object, const JsonNode& value) {
@@ -210,6 +214,20 @@ private:
 
 template <class Struct>
 using Fields = std::vector<Field<Struct>>;
+
+/// Returns the keys of a table of settings. The options apply to all of them.
+template <class Struct>
+[[nodiscard]] Fields<Struct> fields_of(const auto& table, auto... options) {
+    Fields<Struct> fields;
+    for (const auto& line : table) {
+        const auto add = [&](auto member) {
+            fields.push_back(
+                {line.name, member, line.range, line.unit, line.meaning, Without{line.without}, options...});
+        };
+        std::visit(add, line.member);
+    }
+    return fields;
+}
 
 template <class Struct>
 [[nodiscard]] Fields<Struct> joined(std::initializer_list<Fields<Struct>> parts) {

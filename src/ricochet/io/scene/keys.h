@@ -5,13 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <typeinfo>
 #include <vector>
 
-#include "ricochet/core/tolerances.h"
+#include "ricochet/core/setting.h"
 #include "ricochet/io/scene/document.h"
 
 namespace ricochet::detail {
@@ -38,29 +37,6 @@ enum class ValueType {
     quantity_table,  ///< an object whose keys are names and whose values are numbers, vectors, or pairs of these
     text_table,      ///< an object whose keys are names in a file (any characters) and whose values are non-empty texts
 };
-
-/// Allowed numbers (or vector components).
-struct Range {
-    double lower = -std::numeric_limits<double>::infinity();
-    double upper = std::numeric_limits<double>::infinity();
-    bool lower_open = false;  ///< lower itself is not allowed
-
-    [[nodiscard]] bool contains(double x) const { return (lower_open ? x > lower : x >= lower) && x <= upper; }
-};
-[[nodiscard]] constexpr Range between(double lower, double upper) { return {.lower = lower, .upper = upper}; }
-[[nodiscard]] constexpr Range positive_up_to(double upper) {
-    return {.lower = 0.0, .upper = upper, .lower_open = true};
-}
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{.lower = 0.0, .lower_open = true};
-inline constexpr Range kMass{.lower = kSmallestMass};
-inline constexpr Range kNotNegative{.lower = 0.0};
-inline constexpr Range kFraction = between(0.0, 1.0);
-inline constexpr Range kCoordinate = between(-kLargestCoordinate, kLargestCoordinate);
-inline constexpr Range kLength = positive_up_to(kLargestCoordinate);
-inline constexpr Range kLengthOrZero = between(0.0, kLargestCoordinate);
-inline constexpr Range kCount = between(0.0, 4294967295.0);
-inline constexpr Range kSeed = between(0.0, 18446744073709551615.0);
 
 /// A value of ValueType::choice.
 struct Choice {
@@ -156,8 +132,13 @@ public:
     template <class Struct>
     [[nodiscard]] Struct read() const {
         Struct result = Struct();
-        read_members(*node_, keys_for(typeid(Struct)), &result);
+        read_into(result);
         return result;
+    }
+    /// Sets the members whose keys are present.
+    template <class Struct>
+    void read_into(Struct& object) const {
+        read_members(*node_, keys_for(typeid(Struct)), &object);
     }
 
     /// Returns true if the object is absent or was refused.

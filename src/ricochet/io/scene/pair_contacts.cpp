@@ -10,22 +10,13 @@
 
 #include "ricochet/io/scene/context.h"
 #include "ricochet/response/pair_materials.h"
+#include "ricochet/response/settings_table.h"
 
 namespace ricochet::detail {
 namespace {
 
-// Absent keys have the values for all spheres.
-constexpr Without kOfAll{"the value for all spheres"};
-constexpr std::string_view kRestitution = "Separation speed divided by approach speed, along the normal.";
-constexpr std::string_view kFriction = "Coulomb coefficient between spheres.";
-constexpr std::string_view kRolling =
-    "Moment that resists relative rotation, divided by reduced radius times normal impulse.";
-
 Fields<PairMaterial> material_fields() {
-    using P = PairMaterial;
-    return {{"restitution", &P::restitution, kFraction, "", kRestitution, kOfAll},
-            {"friction", &P::friction, kNotNegative, "", kFriction, kOfAll},
-            {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling, kOfAll}};
+    return fields_of<PairMaterial>(kSphereContactTable<PairMaterial>, Without{"the value for all spheres"});
 }
 
 const ObjectSpec& own_material_spec() {
@@ -48,10 +39,8 @@ const ObjectSpec& material_pair_spec() {
 
 /// Returns the material of an object. Absent keys have the values for all spheres.
 PairMaterial material_at(const ObjectView& view, const PairContactSettings& all) {
-    auto material = view.read<PairMaterial>();
-    if (!view.has("restitution")) material.restitution = all.restitution;
-    if (!view.has("friction")) material.friction = all.friction;
-    if (!view.has("rolling_friction")) material.rolling_friction = all.rolling_friction;
+    PairMaterial material = material_of_all(all);
+    view.read_into(material);
     return material;
 }
 
@@ -95,22 +84,18 @@ void read_pairs(const SceneContext& context, const ObjectView& view, PairContact
 const ObjectSpec& particle_contacts_spec() {
     using P = PairContactSettings;
     static const ObjectSpec spec = [] {
-        ObjectSpec result =
-            object<P>("particle contacts", "Contacts between spheres.",
-                      {{"restitution", &P::restitution, kFraction, "", kRestitution},
-                       {"friction", &P::friction, kNotNegative, "", kFriction},
-                       {"rolling_friction", &P::rolling_friction, kNotNegative, "", kRolling},
-                       {"method", &P::method, "Method that resolves contacts between spheres.",
-                        Choices{choice(PairMethod::automatic, "auto",
-                                       "as `contacts` if spheres press on each other or impacts follow each other "
-                                       "closely, else as `events`"),
-                                choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
-                                choice(PairMethod::contacts, "contacts",
-                                       "all contacts of a step at once, with an error of first order in the step, "
-                                       "except for two spheres that meet alone")}},
-                       {"impact_budget", &P::impact_budget, between(1.0, 4294967295.0), "",
-                        "Largest number of impacts of one sphere on others in one step. A sphere that spends the "
-                        "budget stops for the rest of the step, and the omitted time is counted."}});
+        ObjectSpec result = object<P>(
+            "particle contacts", "Contacts between spheres.",
+            joined<P>({fields_of<P>(kSphereContactTable<P>),
+                       {{"method", &P::method, "Method that resolves contacts between spheres.",
+                         Choices{choice(PairMethod::automatic, "auto",
+                                        "as `contacts` if spheres press on each other or impacts follow each other "
+                                        "closely, else as `events`"),
+                                 choice(PairMethod::events, "events", "impact by impact, each at its exact time"),
+                                 choice(PairMethod::contacts, "contacts",
+                                        "all contacts of a step at once, with an error of first order in the step, "
+                                        "except for two spheres that meet alone")}}},
+                       fields_of<P>(kPairBudgetTable)}));
         const Fields<Unbound> materials = {
             {"materials", ValueType::table,
              "Materials of spheres by name, with the contact between spheres of the same material. Emitters and "

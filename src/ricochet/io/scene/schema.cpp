@@ -17,7 +17,6 @@ namespace {
 
 using detail::KeySpec;
 using detail::ObjectSpec;
-using detail::Range;
 using detail::ValueType;
 using detail::Variant;
 using Json = nlohmann::ordered_json;

@@ -166,7 +166,7 @@ void RunRecorder::list(const std::vector<Violation>& found) {
     violations_.insert(violations_.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept));
 }
 
-void RunRecorder::end_batch(std::size_t particles) {
+void RunRecorder::end_generation(std::size_t particles) {
     statistics_.particle_steps += particles;
     if (shows_contacts_) contacts_.insert(contacts_.end(), batch_contacts_.begin(), batch_contacts_.end());
 }

@@ -170,7 +170,7 @@ public:
     /// Takes over what blocks have done in a part of the step.
     void record(const std::vector<BlockRecord>& blocks);
     /// particles: how many were moved.
-    void end_batch(std::size_t particles);
+    void end_generation(std::size_t particles);
     /// Puts the contact records in the order of (time, particle, order of events).
     void end_step();
     static void put_in_order(std::vector<ContactRecord>& records);

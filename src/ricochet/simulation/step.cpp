@@ -150,7 +150,7 @@ void Simulation::Impl::move_generation(const ParticleRange& generation, const Ti
     }
     if (coupled.is_active() && !generation.are_children) coupled.settle(particles());
     if (heat) heat->after_move(store.particles(), generation, step, std::move(gains));
-    recorder.end_batch(generation.size());
+    recorder.end_generation(generation.size());
 }
 
 TimeSpan Simulation::Impl::plan_substep(const ParticleRange& generation, const TimeSpan& rest) {

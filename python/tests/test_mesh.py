@@ -74,7 +74,7 @@ class Mesh(unittest.TestCase):
             for scale in (0, float("nan"), [1, 2], [1, 0, 1], "mm", "0.5", None, [[1, 2], [3]], True, [[1, 2, 3]], ["1", 1, 1], 1 + 0j):
                 with self.assertRaisesRegex(ricochet.InputError, "scale: found .*expected a finite number other than 0"):
                     ricochet.Mesh.read(file, scale=scale)
-            for wrong in ({"up": "x"}, {"merge": -1.0}, {"merge": 1e-20}):
+            for wrong in ({"up": "x"}, {"merge": -1.0}, {"merge": 1e-20}, {"merge": True}, {"scale": [True, 1, 1]}):
                 with self.assertRaises(ricochet.InputError):
                     ricochet.Mesh.read(file, **wrong)
 

@@ -36,6 +36,8 @@ class Simulation(unittest.TestCase):
         self.assertEqual(list(ricochet.Simulation(bouncing()).statistics), names)
         lines = ricochet.Simulation.statistics.__doc__.splitlines()
         self.assertEqual([line.split(":")[0] for line in lines[2:]], names)
+        self.assertIsNone(ricochet.Simulation(bouncing()).statistics["violations"])
+        self.assertEqual(ricochet.Simulation(bouncing(), verify=True).statistics["violations"], 0)
         self.assertIn("unsimulated_time: time lost because a budget was spent, in s, summed over particles", lines)
 
     def test_steps_and_runs_give_the_same_bits(self):

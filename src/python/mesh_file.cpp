@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,6 +18,25 @@
 namespace ricochet::python {
 namespace {
 
+/// Returns the text of an object on one line, cut after 60 characters.
+std::string one_line(const py::object& object) {
+    constexpr std::size_t kMost = 60;
+    std::string text;
+    for (const char letter : std::string(py::repr(object))) {
+        if (letter == '\n') continue;
+        if (text.size() == kMost) return text + "...";
+        text += letter;
+    }
+    return text;
+}
+
+/// Returns true for a list with True or False in it, which NumPy takes for numbers.
+bool has_flag(const py::object& list) {
+    if (!py::isinstance<py::sequence>(list)) return false;
+    return std::any_of(list.begin(), list.end(),
+                       [](const py::handle& entry) { return PyBool_Check(entry.ptr()) != 0; });
+}
+
 /// Returns the factors of a scale along x, y and z, in the form of scenes: one number or three; negative ones mirror.
 Vec3 factors_of(const py::object& scale) {
     constexpr const char* kExpected = "expected a finite number other than 0, such as 0.001 for mm, or three";
@@ -24,7 +45,7 @@ Vec3 factors_of(const py::object& scale) {
         const py::array array = py::module_::import("numpy").attr("asarray")(scale);
         const bool holds_numbers =
             array.dtype().kind() == 'f' || array.dtype().kind() == 'i' || array.dtype().kind() == 'u';
-        if (holds_numbers && array.ndim() <= 1) {
+        if (holds_numbers && !has_flag(scale) && array.ndim() <= 1) {
             const Doubles numbers = py::cast<Doubles>(array);
             const std::span<const double> list = values(numbers);
             if (array.ndim() == 0) factors = Vec3{list[0], list[0], list[0]};
@@ -34,8 +55,21 @@ Vec3 factors_of(const py::object& scale) {
         factors.reset();  // lists of several lengths
     }
     const bool is_good = factors && is_finite(*factors) && factors->x != 0.0 && factors->y != 0.0 && factors->z != 0.0;
-    if (!is_good) throw InputError(fmt::format("scale: found {}, {}", std::string(py::str(scale)), kExpected));
+    if (!is_good) throw InputError(fmt::format("scale: found {}, {}", one_line(scale), kExpected));
     return *factors;
+}
+
+/// Returns the distance within which vertices are joined, in m; nothing for None.
+std::optional<double> distance_of(const py::object& merge) {
+    if (merge.is_none()) return std::nullopt;
+    const bool is_number = !PyBool_Check(merge.ptr()) && PyNumber_Check(merge.ptr()) != 0;
+    const double distance = is_number ? PyFloat_AsDouble(merge.ptr()) : -1.0;
+    if (PyErr_Occurred() != nullptr) PyErr_Clear();
+    if (!(distance >= 0.0)) {
+        throw InputError(
+            fmt::format("merge: found {}, expected a distance of at least 0 in m, or None", one_line(merge)));
+    }
+    return distance;
 }
 
 /// Rotates the up axis first and then scales, as scenes do.
@@ -85,18 +119,19 @@ void take_names(const py::object& mesh, const PolygonMesh& polygons, std::vector
 }  // namespace
 
 MeshObject read_named_mesh(const std::filesystem::path& file, const std::optional<std::string>& up,
-                           const py::object& scale, const std::optional<double>& merge) {
+                           const py::object& scale, const py::object& merge) {
     if (up && *up != "y" && *up != "z") {
         throw InputError(fmt::format("up: found \"{}\", expected \"y\", \"z\" or None (as the format says)", *up));
     }
     const Vec3 factors = factors_of(scale);
+    const std::optional<double> within = distance_of(merge);
     ImportedMesh imported;
     std::optional<MeshQueries> queries;
     {
         const Unlocked unlocked;
         imported = read_mesh(file.string());
         place(imported, up, factors);
-        if (merge) imported.mesh = merged_within(imported.mesh, *merge);
+        if (within) imported.mesh = merged_within(imported.mesh, *within);
         queries.emplace(std::move(imported.mesh));
     }
     const py::object mesh = py::cast(std::move(*queries));

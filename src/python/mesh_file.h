@@ -14,6 +14,6 @@ namespace ricochet::python {
 /// three, none of them 0. merge: tolerance within which vertices are joined, in m. Throws InputError for other values
 /// and as read_mesh() does.
 [[nodiscard]] MeshObject read_named_mesh(const std::filesystem::path& file, const std::optional<std::string>& up,
-                                         const py::object& scale, const std::optional<double>& merge);
+                                         const py::object& scale, const py::object& merge);
 
 }  // namespace ricochet::python

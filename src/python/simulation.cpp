@@ -228,11 +228,14 @@ py::list bodies_of(const Handle& handle) {
 }
 
 py::dict statistics_of(const Handle& handle) {
-    const auto statistics = handle.read([](const Simulation& simulation) { return simulation.statistics(); });
+    const auto [statistics, is_verified] = handle.read(
+        [](const Simulation& simulation) { return std::pair(simulation.statistics(), simulation.options().verify); });
     py::dict dictionary;
     for (const Statistic& line : kStatistics) {
-        const auto value_of = [&](auto member) { return py::cast(std::invoke(member, statistics)); };
-        dictionary[py::str(std::string(line.name))] = std::visit(value_of, line.member);
+        const auto value_of = [&, &found = statistics](auto member) { return py::cast(std::invoke(member, found)); };
+        const bool is_unknown = !is_verified && is_found_by_verification(line);
+        dictionary[py::str(std::string(line.name))] =
+            is_unknown ? py::object(py::none()) : std::visit(value_of, line.member);
     }
     return dictionary;
 }

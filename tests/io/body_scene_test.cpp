@@ -127,6 +127,28 @@ std::string two_cubes(double apart) {
     return text;
 }
 
+TEST(BodyScene, MeshesThatAreClosedByPositionsHaveAMass) {
+    const test::TemporaryFolder folder;
+    const auto errors = [&](const std::string& obj) -> Lines {
+        static_cast<void>(folder.write("part.obj", obj));
+        const std::string mesh = R"({"name": "part", "type": "mesh", "file": "part.obj", "frame": "wheel"})";
+        try {
+            static_cast<void>(read_scene(folder.write("s.json", scene_of(R"("density": 10)", mesh))));
+        } catch (const InputError& error) {
+            return {error.what()};
+        }
+        return {};
+    };
+    const std::string touching = two_cubes(1.0);  // a wall that both list
+    EXPECT_EQ(errors(touching), Lines{});
+    const std::string fin = "v 0.5 0.5 1\nv 0.7 0.5 1\nv 0.6 0.5 2\nf -3 -2 -1\nf -3 -1 -2\n";  // listed on both sides
+    EXPECT_EQ(errors(two_cubes(2.0) + fin), Lines{});
+    const Lines open = errors("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    ASSERT_EQ(open.size(), 1U);
+    EXPECT_NE(open[0].find("the collider \"part\" has no volume because its mesh is open"), std::string::npos)
+        << open[0];
+}
+
 TEST(BodyScene, SelfIntersectingMeshGivesAWarningIfItsVolumeCounts) {
     const test::TemporaryFolder folder;
     const auto warnings = [&](double apart) {
@@ -137,7 +159,9 @@ TEST(BodyScene, SelfIntersectingMeshGivesAWarningIfItsVolumeCounts) {
     EXPECT_EQ(warnings(2.0), Lines{});
     const Lines crossing = warnings(0.5);
     ASSERT_EQ(crossing.size(), 1U);
-    EXPECT_NE(crossing[0].find("frames.wheel.body: the mesh \"cubes\" crosses itself: some 3"), std::string::npos)
+    EXPECT_NE(crossing[0].find(
+                  "frames.wheel.body: the mesh \"cubes\" crosses itself, or nests shells that are wound alike: some 3"),
+              std::string::npos)
         << crossing[0];
 }
 

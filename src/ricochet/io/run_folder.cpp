@@ -178,6 +178,7 @@ constexpr std::string_view kMarkerText = "ricochet run: a later run into this fo
 
 void make_folder(const std::filesystem::path& path) {
     std::error_code error;
+    if (path.empty()) throw InputError("--output: found an empty name, expected the name of a folder");
     if (std::filesystem::exists(path, error) && !std::filesystem::is_directory(path)) {
         throw InputError(fmt::format(
             "{}: is not a folder; give --output a folder that is new, empty or an earlier run's", path.string()));

@@ -273,7 +273,7 @@ void add_statistics(Json& json, const RunSummary& summary) {
         const Json value = std::visit(value_of, line.member);
         if (where == apart || (where == above_zero && value == 0)) continue;
         if ((where == of_spheres || where == of_spheres_verified) && !summary.spheres_meet) continue;
-        const bool is_unknown = (where == verified || where == of_spheres_verified) && !summary.verified;
+        const bool is_unknown = is_found_by_verification(line) && !summary.verified;
         json[std::string(line.summary_name)] = is_unknown ? Json(nullptr) : value;
     }
 }

@@ -48,14 +48,16 @@ struct Starts {
     std::vector<Particle> particles;
     double largest_radius = 0.0;    ///< largest radius of all particles, in m
     std::uint64_t overlapping = 0;  ///< number of an emitter's other samples, which overlap a surface
+    double fastest = 0.0;           ///< largest speed, in m/s
 };
 
 Starts explicit_starts(const Simulation& simulation) {
     const Particles& all = simulation.particles();
-    Starts starts{"particles", {}, 0.0, 0};
+    Starts starts{"particles", {}, 0.0, 0, 0.0};
     const std::size_t count = std::min(all.size(), kMostExplicit);
     for (std::size_t k = 0; k < count; ++k) starts.particles.push_back(all.at(k * all.size() / count));
     for (const double radius : all.radius) starts.largest_radius = std::max(starts.largest_radius, radius);
+    for (const Vec3& velocity : all.velocity) starts.fastest = std::max(starts.fastest, length(velocity));
     return starts;
 }
 
@@ -107,7 +109,11 @@ bool overlaps(const Simulation& simulation, std::span<const Solid> moving, const
 
 Starts starts_of(const Simulation& simulation, std::span<const Solid> moving, const EmitterDescription& emitter,
                  std::size_t index) {
-    Starts starts{name_in_list("emitters", index, emitter.name), {}, emitter.radius.mean + emitter.radius.spread, 0};
+    Starts starts{name_in_list("emitters", index, emitter.name),
+                  {},
+                  emitter.radius.mean + emitter.radius.spread,
+                  0,
+                  std::fabs(emitter.speed.mean) + emitter.speed.spread + length(emitter.velocity)};
     for (const Particle& particle : drawn_starts(emitter, index, kDrawnStarts)) {
         if (overlaps(simulation, moving, particle)) {
             ++starts.overlapping;
@@ -144,12 +150,14 @@ public:
         if (auto line = long_step_warning(simulation_.options(), extent(), fall_)) lines_.push_back(std::move(*line));
         std::ranges::move(pair_method_warnings(simulation_, fall_), std::back_inserter(lines_));
         for (std::size_t i = 0; i < simulation_.colliders().size(); ++i) review_collider(i);
-        const Box3 near = surfaces();
+        const std::optional<Box3> near = still_surfaces();
         for (const Starts& starts : starts_) {
             review_positions(starts);
-            for (auto line : {small_radius_warning(starts.where, starts.particles),
-                              far_starts_warning(starts.where, starts.particles, near)}) {
-                if (line) lines_.push_back(std::move(*line));
+            if (auto line = small_radius_warning(starts.where, starts.particles)) lines_.push_back(std::move(*line));
+            if (!near) continue;
+            const double path = starts.fastest * simulation_.options().duration;
+            if (auto line = far_starts_warning(starts.where, starts.particles, *near, path)) {
+                lines_.push_back(std::move(*line));
             }
         }
         return std::move(lines_);
@@ -158,6 +166,7 @@ public:
 private:
     [[nodiscard]] Box3 extent() const;
     [[nodiscard]] Box3 surfaces() const;
+    [[nodiscard]] std::optional<Box3> still_surfaces() const;
     void review_surfaces();
     void review_area(const TriangleMesh& mesh, const std::string& where);
     void review_shells(const TriangleMesh& mesh, const std::string& where);
@@ -187,6 +196,15 @@ Box3 SceneReview::surfaces() const {
         for (const Vec3& vertex : mesh.vertices) box.include(pose.point(vertex));
     }
     return box;
+}
+
+/// Returns the box of all colliders, or nothing if one of them is a plane or moves: these can be near any start.
+std::optional<Box3> SceneReview::still_surfaces() const {
+    for (const ColliderDescription& collider : simulation_.colliders()) {
+        const bool moves = !collider.frame.empty() || is_deforming(collider);
+        if (moves || std::holds_alternative<PlaneShape>(collider.shape)) return std::nullopt;
+    }
+    return surfaces();
 }
 
 /// Returns the box of all starts and colliders; a plane contributes its point.

@@ -48,9 +48,9 @@ namespace ricochet {
                                                               std::span<const Particle> starts);
 
 /// Warns of starts so far from the colliders that a wrong unit is likely.
-/// surfaces: box of all colliders except planes, in m.
+/// surfaces: box of all colliders. path: farthest distance that particles fly in the run without forces. Both in m.
 [[nodiscard]] std::optional<std::string> far_starts_warning(const std::string& where, std::span<const Particle> starts,
-                                                            const Box3& surfaces);
+                                                            const Box3& surfaces, double path);
 
 /// Number of sampled starts of each emitter.
 inline constexpr std::size_t kDrawnStarts = 256;

@@ -110,16 +110,17 @@ std::optional<std::string> small_radius_warning(const std::string& where, std::s
 }
 
 std::optional<std::string> far_starts_warning(const std::string& where, std::span<const Particle> starts,
-                                              const Box3& surfaces) {
+                                              const Box3& surfaces, double path) {
     if (!(surfaces.diagonal() > 0.0)) return std::nullopt;
     double farthest = 0.0;
     for (const Particle& particle : starts) {
         if (is_finite(particle.position)) farthest = std::max(farthest, beyond(surfaces, particle.position).distance);
     }
-    if (farthest <= kFarStarts * surfaces.diagonal()) return std::nullopt;
+    if (farthest <= kFarStarts * surfaces.diagonal() || farthest <= path) return std::nullopt;
     return fmt::format(
-        "{}: particles begin up to {:.3g} m away from the colliders, which measure {:.3g} m together: "
-        "lengths are in metres; scale the mesh or the emitter if one of them is in another unit",
+        "{}: particles begin up to {:.3g} m away from the colliders, which measure {:.3g} m together: lengths are in "
+        "metres; "
+        "scale the mesh or the emitter if one of them is in another unit",
         where, farthest, surfaces.diagonal());
 }
 

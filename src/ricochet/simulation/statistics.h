@@ -146,6 +146,11 @@ inline constexpr Statistic kStatistics[] = {
 }  // namespace statistics_table
 using statistics_table::kStatistics;
 
+/// Returns true if the value is unknown unless the run is verified.
+[[nodiscard]] constexpr bool is_found_by_verification(const Statistic& line) {
+    return line.in_summary == InSummary::verified || line.in_summary == InSummary::of_spheres_verified;
+}
+
 /// Adds the statistics of a part of a run, which is another rank or a block of particles.
 void add_part(SimulationStatistics& run, const SimulationStatistics& part);
 

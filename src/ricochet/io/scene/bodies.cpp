@@ -99,7 +99,10 @@ public:
         for (const ColliderDescription& collider : setup_.colliders) {
             if (collider.frame != frame) continue;
             const auto one = std::visit([&](const auto& shape) { return moments(shape); }, collider.shape);
-            if (!one) return refuse(fmt::format("the collider \"{}\" has no volume", collider.name));
+            if (!one) {
+                return refuse(
+                    fmt::format("the collider \"{}\" has no volume{}", collider.name, cause_in(collider.shape)));
+            }
             all = all + *one;
         }
         if (!(all.volume > 0.0)) return refuse("no closed collider stands in the frame");
@@ -111,13 +114,20 @@ private:
         context_.error(view_, why + ", expected closed colliders, or \"mass\", \"center\" and \"inertia\"");
         return std::nullopt;
     }
+    /// Returns the reason why a mesh has no moments, as an addition to a message; nothing for other shapes.
+    [[nodiscard]] static std::string_view cause_in(const ColliderShape& shape) {
+        const auto* const mesh = std::get_if<MeshShape>(&shape);
+        if (mesh == nullptr || !mesh->mesh) return "";
+        const ClosedSurface closed = closed_surface(*mesh->mesh);
+        if (!closed.closed) return " because its mesh is open";
+        return closed.oriented ? "" : " because its faces are wound both ways";
+    }
     [[nodiscard]] static std::optional<MassMoments> moments(const PlaneShape& /*plane*/) { return std::nullopt; }
     [[nodiscard]] static std::optional<MassMoments> moments(const MeshShape& shape) {
         if (!shape.mesh || shape.mesh->triangles.empty()) return std::nullopt;
-        const TriangleMesh surface = counted_surface(*shape.mesh);
-        const TopologyReport report = MeshTopology(surface).report();
-        if (!report.closed || !report.consistently_oriented) return std::nullopt;
-        const MassMoments found = moments_of(transformed(surface, shape.placement));
+        const ClosedSurface closed = closed_surface(*shape.mesh);
+        if (!closed.closed || !closed.oriented) return std::nullopt;
+        const MassMoments found = moments_of(transformed(counted_surface(*shape.mesh), shape.placement));
         return found.volume < 0.0 ? negative(found) : found;  // its triangles are wound inward
     }
     [[nodiscard]] static std::optional<MassMoments> moments(const BallShape& shape) {

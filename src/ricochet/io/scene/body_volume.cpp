@@ -121,13 +121,14 @@ std::optional<std::string> doubly_filled(const SimulationSetup& setup, const std
     const double share =
         static_cast<double>(shares.again) / static_cast<double>(std::max<std::size_t>(1, shares.inside));
     if (share < kNegligibleShare) return std::nullopt;
-    const std::string where = shares.second.empty()
-                                  ? fmt::format("the mesh \"{}\" crosses itself", shares.first)
-                                  : fmt::format("the colliders \"{}\" and \"{}\" overlap", shares.first, shares.second);
+    const std::string where =
+        shares.second.empty()
+            ? fmt::format("the mesh \"{}\" crosses itself, or nests shells that are wound alike", shares.first)
+            : fmt::format("the colliders \"{}\" and \"{}\" overlap", shares.first, shares.second);
     return fmt::format(
         "{}: some {:.2g} % of the inside of the body's colliders counts more than once in its mass, centre and "
         "inertia; "
-        "let them touch only, or give \"mass\", \"center\" and \"inertia\"",
+        "let them touch only, reverse the inner shell of a cavity, or give \"mass\", \"center\" and \"inertia\"",
         where, 100.0 * share);
 }
 

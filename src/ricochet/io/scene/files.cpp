@@ -44,6 +44,7 @@ std::string nearest_file(const fs::path& path) {
 }  // namespace
 
 std::optional<std::string> file_problem(const fs::path& path) {
+    if (path.empty()) return "found an empty name, expected the name of a file";
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (status.type() == fs::file_type::not_found) {

@@ -118,5 +118,27 @@ TEST(SingleContact, ProjectsMotionsWithTheBitsOfTheGeneralMethod) {
     }
 }
 
+TEST(SingleContact, KeepsTheSignsOfZerosOfTheGeneralMethod) {
+    const auto bits = [](const Vec3& v) {
+        return std::array{std::bit_cast<std::uint64_t>(v.x), std::bit_cast<std::uint64_t>(v.y),
+                          std::bit_cast<std::uint64_t>(v.z)};
+    };
+    const std::array<double, 3> values{-0.0, 0.0, -1.5};
+    const std::array<Vec3, 4> normals{{{-0.0, -0.0, -1.0}, {0.0, 0.0, -1.0}, {-0.6, -0.0, -0.8}, {0.0, -0.0, 1.0}}};
+    for (const Vec3& normal : normals) {
+        SupportSurface surface;
+        surface.normal = normal;
+        for (int k = 0; k < 729; ++k) {
+            const auto value = [&](int digit) { return values[static_cast<std::size_t>(k / digit % 3)]; };
+            const Motion motion{{value(1), value(3), value(9)}, {value(27), value(81), value(243)}};
+            if (motion.velocity == Vec3{}) continue;
+            const Motion closed = along_surfaces(motion, 2.47, std::array{surface}, {});
+            const Motion general = along_surfaces(motion, 2.47, std::array{surface, surface}, {});
+            ASSERT_EQ(bits(closed.velocity), bits(general.velocity)) << k;
+            ASSERT_EQ(bits(closed.spin), bits(general.spin)) << k;
+        }
+    }
+}
+
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

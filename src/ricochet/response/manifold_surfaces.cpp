@@ -3,41 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/normal_rate.h"
+#include "ricochet/response/rim_side.h"
 
 namespace ricochet {
-namespace {
-
-/// Error of plain arithmetic on the distance of a point from the line of an edge, relative to the largest coordinate
-/// involved: 2^-47 by the unit normal, and some roundings. Local: an error bound of this arithmetic.
-constexpr double kRimError = 0x1p-44;
-
-/// Returns whether the foot of a point on a triangle's plane lies farther than `slack` beyond the triangle, or inside
-/// it, if plain arithmetic can tell; else nothing. `normal` is the unit normal of the triangle.
-std::optional<bool> is_surely_beyond(const Vec3& p, const std::array<Vec3, 3>& corners, const Vec3& normal,
-                                     double slack) {
-    const auto& [a, b, c] = corners;
-    const double error = kRimError * std::max({max_abs(p), max_abs(a), max_abs(b), max_abs(c)});
-    double farthest = -std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& from = corners[k];
-        const Vec3 outward = normalized(cross(corners[(k + 1) % 3] - from, normal));
-        const bool points_outward = dot(corners[(k + 2) % 3] - from, outward) < -error;
-        if (!points_outward) return std::nullopt;
-        farthest = std::max(farthest, dot(p - from, outward));
-    }
-    if (farthest > slack + error) return true;
-    return farthest < -error ? std::optional(false) : std::nullopt;
-}
-
-}  // namespace
-
 ManifoldSurfaces::ManifoldSurfaces(ParticleStep& step, ContactManifold& manifold)
     : step_(step), geometry_(step.geometry()), state_(step.state()), manifold_(manifold) {}
 
@@ -94,10 +68,8 @@ bool ManifoldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) co
     const double slack = kEdgeOffsets * geometry_.contact_offset(position);
     const Vec3 normal = geometry_.unit_normal_of(surface, position);
     if (const auto triangle = geometry_.world().triangle_of(surface)) {
-        const TrianglePlane& plane = geometry_.plane_of(*triangle);
-        if (const auto beyond = is_surely_beyond(position, {plane.a(), plane.b(), plane.c()}, normal, slack)) {
-            return *beyond;
-        }
+        const auto beyond = is_foot_beyond(geometry_.plane_of(*triangle), position, slack);
+        if (beyond) return *beyond;
     }
     const Vec3 height = geometry_.signed_distance_from(surface, position) * normal;
     return geometry_.nearest(surface, position - height).distance > slack;

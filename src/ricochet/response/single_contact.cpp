@@ -67,10 +67,11 @@ std::optional<SingleContactForces> solve_single_contact(const CoulombContact& co
 
 Motion along_single_surface(const Motion& motion, double radius, const Vec3& n, double braked_from) {
     const MotionVector direction = normal_direction(n / length(n));
+    const double left_along = -dot(Vec3{}, n) / length(n);  // 0, with the sign that the general method gives it
     MotionVector all = motion_vector(motion.velocity, (radius / kTurning) * motion.spin);
     const double before = std::max(std::sqrt(dot(all, all)), braked_from);
     // Projects twice, because the first projection leaves the rounding of the part that it removes.
-    for (int pass = 0; pass < 2; ++pass) add_multiple_of(all, -dot(all, direction), direction);
+    for (int pass = 0; pass < 2; ++pass) add_multiple_of(all, left_along - dot(all, direction), direction);
     if (std::sqrt(dot(all, all)) <= kStopRounding * before) return {};
     return {velocity_of(all), radius > 0.0 ? (kTurning / radius) * turning_of(all) : Vec3{}};
 }

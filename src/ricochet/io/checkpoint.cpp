@@ -88,7 +88,7 @@ OpenFile open_checkpoint(const std::filesystem::path& file) {
     if (opened) return opened;
     if (errno != ENOENT) fail_to_read(file);
     throw InputError(
-        fmt::format("{}: there is no checkpoint to resume from: the run was finished in less steps than "
+        fmt::format("{}: there is no checkpoint to resume from: the run was finished in fewer steps than "
                     "output.every, or killed before its first checkpoint (output.checkpoint_every); run it without "
                     "--resume",
                     file.string()));
@@ -218,7 +218,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
         reader(format);
         reader(checkpoint.scene);
         if (checkpoint.scene != scene) {
-            throw InputError("the scene, or a file that it reads, is not the one that was interrupted");
+            throw InputError("the scene, or a file that it reads, is not the one that was interrupted: undo the change to resume");
         }
         archive_checkpoint(reader, checkpoint);
         require_sound_series(checkpoint);

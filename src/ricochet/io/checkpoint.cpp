@@ -218,7 +218,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& file, std::uint64_t scen
         reader(format);
         reader(checkpoint.scene);
         if (checkpoint.scene != scene) {
-            throw InputError("the scene, or a file that it reads, is not the one that was interrupted: undo the change to resume");
+            throw InputError(
+                "the scene, or a file that it reads, is not the one that was interrupted: undo the change to resume");
         }
         archive_checkpoint(reader, checkpoint);
         require_sound_series(checkpoint);

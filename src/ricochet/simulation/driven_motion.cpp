@@ -183,8 +183,9 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
             tallies[body].add(preview[next]);
             is_heavy = is_heavy || loads_on_bodies().heaviness_on(body, preview[next]) > kHeavyLoad;
         }
+        const auto at_once = std::span(preview).subspan(first, next - first);
         const bool is_too_much =
-            first > 0 && std::any_of(preview.begin() + first, preview.begin() + next, [&](const ColliderLoad& load) {
+            first > 0 && std::any_of(at_once.begin(), at_once.end(), [&](const ColliderLoad& load) {
                 const std::size_t body = *loads_on_bodies().body_of(load);
                 return tallies[body].changes_energy(load.time) ||
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);

@@ -385,7 +385,8 @@ std::vector<std::uint32_t> repeated_faces(const FaceList& faces) {
 
 std::vector<std::uint32_t> copied_faces(const FaceList& faces) {
     return faces_with_earlier_equals(faces, [](std::span<std::uint32_t> corners) {
-        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        // Not std::ranges::rotate(), which clang 14 cannot compile with this standard library.
+        std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
     });
 }
 

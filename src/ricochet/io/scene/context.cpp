@@ -113,7 +113,8 @@ std::string SceneContext::unique_name(const ObjectView& view, std::size_t index,
 std::string unknown_name(std::string_view kind, const std::string& name, const std::vector<std::string_view>& all) {
     // A scene can have many names and many errors, so each error compares with a limited number of names.
     constexpr std::size_t kMostNames = 200;
-    const std::vector<std::string_view> known(all.begin(), all.begin() + std::min(all.size(), kMostNames));
+    const std::vector<std::string_view> known(
+        all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min(all.size(), kMostNames)));
     const std::string unknown = fmt::format("there is no {} \"{}\"", kind, printable(name, 60));
     if (known.empty()) return unknown + ", the scene has none";
     const std::string help = did_you_mean(nearest_names(name, known));

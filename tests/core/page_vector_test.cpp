@@ -43,7 +43,8 @@ TEST(PageVector, AlignsSmallListsToo) {
 }
 
 TEST(PageVector, ThrowsIfMemoryRunsOut) {
-    EXPECT_THROW(PageVector<std::uint8_t>(std::numeric_limits<std::ptrdiff_t>::max()), std::bad_alloc);
+    constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max();
+    EXPECT_THROW(static_cast<void>(PageVector<std::uint8_t>(kMost)), std::bad_alloc);
 }
 
 TEST(PageVector, WorksAsBeforeOnceItsPagesAreReplaced) {

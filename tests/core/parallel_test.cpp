@@ -158,7 +158,7 @@ TEST(LoopStop, IsCheckedByItsOwnLoopsAloneAndOnlyDuringItsLifetime) {
 
 // Sorts keys that differ in few bits, in all, or in none, with many equal ones.
 TEST(Parallel, SortsByKeyAndKeepsTheOrderOfEqualKeys) {
-    for (const std::size_t count : {0, 1, 1000, 1024, 100003}) {
+    for (const std::size_t count : {0U, 1U, 1000U, 1024U, 100003U}) {
         for (const std::uint64_t mask : {0ULL, 0x7ULL, 0xFF00FULL << 20U, 0x8000000000000001ULL, ~0ULL}) {
             SCOPED_TRACE(std::to_string(count) + " " + std::to_string(mask));
             std::vector<KeyedIndex> items(count);

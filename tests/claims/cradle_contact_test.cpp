@@ -74,7 +74,8 @@ TEST(ASphereBetweenTwoBalls, GainsNoEnergyFromResistance) {
                 double last = kG;  // above all later energies
                 watch(in_saddle(saddle, angle, material, step), [&](double time, const Particle& p) {
                     if (time > 0.0) {
-                        EXPECT_LE(energy_of(p), last + 1e-11) << rolling << ", " << spinning << ", " << step;
+                        EXPECT_LE(energy_of(p), last + 1e-11)
+                            << material.rolling_friction << ", " << material.spinning_friction << ", " << step;
                     }
                     last = energy_of(p);
                     return true;

@@ -156,7 +156,7 @@ Budget budget_of(const Simulation& simulation) {
         sum.angular_momentum += p.mass[i] * cross(p.position[i], p.velocity[i]);
         sum.energy += 0.5 * p.mass[i] * dot(p.velocity[i], p.velocity[i]);
     }
-    const BodyState& body = simulation.bodies()[0];
+    const BodyState body = simulation.bodies()[0];
     sum.momentum += body.mass * body.velocity;
     sum.angular_momentum += body.mass * cross(body.center, body.velocity) + body.angular_momentum;
     sum.energy += body.kinetic_energy;

@@ -85,7 +85,7 @@ std::vector<Pair> grid(std::uint32_t side) {
 TEST(BlockCholesky, SolvesForRandomPairsAndGrids) {
     RandomSequence random(31, 0, 0);
     for (const std::uint32_t rows : {1U, 2U, 3U, 7U, 40U, 150U}) {
-        for (int density = 0; density < 4; ++density) {
+        for (std::uint32_t density = 0; density < 4; ++density) {
             std::vector<Pair> pairs;  // some of them repeated
             for (std::uint32_t k = 0; rows > 1 && k < density * rows; ++k) {
                 const auto first = static_cast<std::uint32_t>(random.uniform() * rows);

@@ -100,7 +100,7 @@ public:
     [[nodiscard]] bool is_dynamic(BodyId body) const {
         return body < bodies_.size() && bodies_[body].mobility.has_value();
     }
-    /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires yields().
+    /// Returns the mobility of a dynamic body at a time, in s, in world coordinates. Requires is_dynamic().
     [[nodiscard]] Mobility mobility(BodyId body, double time) const {
         return bodies_[body].mobility->seen_by(pose(body, time).world_from_frame);
     }

@@ -72,7 +72,7 @@ public:
     [[nodiscard]] bool is_coarse() const { return is_coarse_; }
     /// True when the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
-    /// The round shapes along which the last path bends: it does not hit those, see ContactQuery::held.
+    /// The round shapes along which the last path bends: it does not hit those, see ContactQuery::supports.
     [[nodiscard]] std::span<const SurfaceId> followed() const { return {followed_.data(), followed_count_}; }
     /// True when a path is back, after this time along it, at a flat surface that the particle has just left: the
     /// cubic dips into the surface where the flow does not.

@@ -24,7 +24,7 @@ public:
     struct Pull {
         Vec3 forces;            ///< over the mass, m/s^2
         bool acts = true;       ///< false: they have been in the velocity from the step's start on
-        double pressure = 1.0;  ///< as Grip::pressure
+        double pressure = 1.0;  ///< as FrictionLimits::pressure
     };
     /// Why an interval, or several, have ended before their time.
     struct Stop {

@@ -281,7 +281,7 @@ private:
         return duration;
     }
 
-    /// s, until some slip has changed by kMaxSlipChange; not less than Grip::shortest.
+    /// s, until some slip has changed by kMaxSlipChange; not less than FrictionLimits::shortest.
     [[nodiscard]] double time_to_change() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {

@@ -23,8 +23,8 @@ struct ContactInterval {
     bool is_stiff = false;   ///< friction could end a slip, if it were against it, before the interval ends
     std::array<Vec3, kMostSupports> reaction{};  ///< force over the mass with which each surface holds it, m/s^2
     StuckSurfaces stuck{};                       ///< from the end on
-    bool ends_at_once = false;                   ///< a slip or turning ends within Grip::negligible_path, or jams
-    bool jams = false;                           ///< friction leaves no answer to what slips
+    bool ends_at_once = false;  ///< a slip or turning ends within FrictionLimits::negligible_path, or jams
+    bool jams = false;          ///< no friction force exists for the slip
 };
 
 /// How surfaces grip while a particle is pressed on.
@@ -34,15 +34,15 @@ struct FrictionLimits {
     double negligible_path = 0.0;  ///< m; motion that friction ends within this distance is rest already
 };
 
-/// True when a velocity leaves a surface of unit normal n, by more than rounding: it does not hold then.
+/// Returns true if a velocity leaves a surface of unit normal n by more than rounding, so that contact ends.
 [[nodiscard]] bool leaves(const Vec3& velocity, const Vec3& n);
 
 /// Plans the contact of a particle under acceleration a with surfaces that hold it (at most kMostSupports count), as if
 /// their normals stayed, for at most `duration` seconds. It ends where slip, rolling or spinning comes to a stop at one
 /// of them, and before friction has turned by kMaxHeadingTurn (kMostHeadingTurn where that is soon); friction has the
-/// direction of the middle of the interval. What slips on surfaces at rest whose friction leaves no answer jams: its
-/// slip stops at once. For a duration of 0 it says what the forces are. stuck: where slip and turning are an error of
-/// the motion that is given, and count as none.
+/// direction of the middle of the interval. If no friction force exists for a slip on surfaces at rest, the particle
+/// jams: its slip stops at once. A duration of 0 gives the forces alone. stuck: surfaces on which slip and turning are
+/// errors of the given motion, and count as none.
 [[nodiscard]] ContactInterval plan_interval(const Motion& motion, double radius, const Vec3& a,
                                             std::span<const SupportSurface> surfaces, const FrictionLimits& grip,
                                             double duration, const StuckSurfaces& stuck = {});

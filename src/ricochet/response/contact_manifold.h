@@ -95,7 +95,7 @@ public:
         [[nodiscard]] std::span<const SupportSurface> all() const { return {surfaces.data(), count}; }
     };
     [[nodiscard]] SupportList supports(const ImpactResolver& impact) const;
-    /// How they grip, in a step of this duration, s. pressure: as Grip::pressure.
+    /// How they grip, in a step of this duration, s. pressure: as FrictionLimits::pressure.
     [[nodiscard]] FrictionLimits grip(double pressure, double step) const;
     /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its part by its load, what
     /// is left on the first.

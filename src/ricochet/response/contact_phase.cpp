@@ -349,7 +349,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
         manifold_.record_impulse(-before - duration * forces, duration, impact_);
         step_.log().note_impact();
         static_cast<void>(step_.wait(duration));
-        step_.log().note_stay(supported_by);  // what stays where it is gains nothing by forces
+        step_.log().note_stay(supported_by);  // forces do no work on a particle at rest
         return std::nullopt;
     }
     step_.log().note_impact();

@@ -67,7 +67,7 @@ private:
     ContactManifold manifold_;
     ContactSupport support_;
     ContactFollower follower_;
-    ContactState began_;                  // what the particle touched at the start of the step
+    ContactState began_;                  // contact at the start of the step
     bool began_still_;                    // its place stayed then
     Vec3 began_spin_;                     // rad/s
     int slow_contacts_ = 0;               // in a row, all slower than the resting speed or without time between them

@@ -24,10 +24,10 @@ namespace ricochet {
 /// What an arc starts from, besides the particle.
 struct CurvedStart {
     Vec3 spin;                   ///< rad/s
-    double pressure = 1.0;       ///< as Grip::pressure
+    double pressure = 1.0;       ///< as FrictionLimits::pressure
     bool has_forces = true;      ///< false: the forces have been in the velocity from the step's start on
-    double shortest = 0.0;       ///< s, as Grip::shortest
-    double negligible_path = 0;  ///< m, as Grip::negligible_path
+    double shortest = 0.0;       ///< s, as FrictionLimits::shortest
+    double negligible_path = 0;  ///< m, as FrictionLimits::negligible_path
     double duration = 0.0;       ///< s, that it may last at most
     std::optional<ErrorTolerance> tolerance{};  ///< of a method that chooses its own steps
     const FrameForces* frame = nullptr;         ///< that all is seen from; null in the world

@@ -26,10 +26,10 @@ struct DeformedContact {
                                                             const ForceInput& particle, double separation_speed);
 
 /// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
-/// (SupportSurface::bend and slip_curvature). Its points are not accelerated between keys. With the normal n, which
-/// changes by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' = s
-/// relative to that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an edge
-/// of the direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
+/// (SupportSurface::curvature and slip_curvature). Its points are not accelerated between keys. With the normal n,
+/// which changes by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' =
+/// s relative to that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an
+/// edge of the direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
 struct CurvatureTerms {
     double curvature = 0.0;
     Vec3 slip_curvature;

@@ -1,6 +1,5 @@
 /// \file
-/// Spheres that may meet each other in a step, and no others: an island. Its impacts are worked off one after the
-/// other.
+/// An island: spheres that may meet each other in a step, and no others. Its impacts are solved in order of time.
 ///
 /// Every member has its true path to the end of the step, as if it met none of the others: the polynomial pieces that
 /// the response has moved it along, bounces off walls and contact with them included. The first meeting of two of those
@@ -27,7 +26,7 @@
 
 namespace ricochet {
 
-/// A member of an island: in, what it is at the step's begin; out, at its end.
+/// A member of an island. Inputs hold for the start of the step, outputs for its end.
 struct IslandMember {
     std::size_t particle = 0;    ///< its number in the particles' arrays
     MovingParticle moving;       ///< at the time moving.state.time

@@ -48,7 +48,7 @@ private:
     ParticleStep& step_;
     Vec3 velocity_;         // m/s
     Vec3 arm_;              // m, from ImpactResolver::moment_center()
-    Vec3 recorded_change_;  // ImpactResolver::pushed()
+    Vec3 recorded_change_;  // ImpactResolver::recorded_change()
     Vec3 angular_impulse_;  // ImpactResolver::angular_impulse()
     double remaining_;      // s, of the step
 };

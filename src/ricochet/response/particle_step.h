@@ -100,8 +100,8 @@ public:
     void end_substep();
     /// The frame that the state is given in.
     [[nodiscard]] const ReferenceFrame& reference() const { return reference_; }
-    /// What a ball of a radius, m, would meet first on a path in the world; nothing is moved. held: as
-    /// ContactQuery::held.
+    /// Returns the first contact of a ball of the given radius, in m, on a path in the world. Moves nothing. supports:
+    /// see ContactQuery::supports.
     [[nodiscard]] std::optional<Contact> first_contact(const Path& path, double radius,
                                                        std::span<const SurfaceId> supports) {
         return first_contact_among_bodies({path, radius, nullptr, {}, supports});

@@ -70,17 +70,19 @@ struct MoveScratch {
     bool driven = false;  ///< a surface that moves or has a temperature has pushed since the last MotionPart
 };
 
-/// The surfaces that a particle slides, rolls or rests on, as they are kept between steps.
+/// Surfaces that a particle slides, rolls or rests on, from one step to the next.
 struct ContactState {
     std::array<SurfaceId, 3> surfaces{};  ///< 0 beyond count
     std::uint8_t count = 0;               ///< 0: it flies
     double cascade_left = 0.0;            ///< s of a bounce cascade that the end of the step has cut in two
 
-    /// Of a particle that was placed where it touches these, and perhaps more. Local: a mark, not a distance.
+    /// Marks a particle that was placed in contact with these surfaces, and perhaps with more. Local: a mark, not a
+    /// distance.
     static constexpr double kPlaced = -1.0;
     [[nodiscard]] bool is_placed() const { return cascade_left == kPlaced; }
 
-    /// Of a particle in flight that a jump of a body's velocity has let go: m/s, at which it leaves the body.
+    /// Returns the state of a particle in flight that a velocity jump of a body has released. `speed`: separation speed
+    /// from the body, in m/s.
     [[nodiscard]] static ContactState release_at(double speed) { return {{}, 0, kLetGo - speed}; }
     [[nodiscard]] std::optional<double> release_speed() const {
         if (count > 0 || !(cascade_left <= kLetGo)) return std::nullopt;
@@ -108,7 +110,7 @@ struct MovingParticle {
     Vec3 spin;         ///< rad/s
     std::uint64_t id = 0;
     std::uint32_t draws = 0;           ///< random numbers drawn so far by this particle's impacts
-    ContactState contact{};            ///< what it is in contact with; contact goes on in the next step
+    ContactState contact{};            ///< contact that continues in the next step
     std::span<SideMemory> sides = {};  ///< one a collider, for responses that keep sides; updated in place
     /// N s: an impact that changes its momentum by as much removes it there, as if it were absorbed.
     double shatter_impulse = std::numeric_limits<double>::infinity();

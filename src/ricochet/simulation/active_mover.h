@@ -134,7 +134,7 @@ public:
     [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
     /// Takes over where it has gone and what it has done.
     void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
-    /// Begins to fetch from memory what set_out() and write_back() use of a particle.
+    /// Prefetches the data of a particle that set_out() and write_back() use.
     void prefetch(std::size_t i) const {
         parts_.store.prefetch(i);
         parts_.schedule.prefetch(i);

@@ -13,7 +13,7 @@ Box3 box_within_reach(const ContactIslandMember& member) {
     return ball_box(member.moving->state.position, member.radius + member.reach);
 }
 
-/// Where a member has gone; what has no time left stays where it is to the end.
+/// Records the path of a member. After its end the member stays at rest until the end of the step.
 void keep_path(IslandMember& member, const ForceInput& from, const std::vector<FlownPiece>& flown) {
     member.trajectory = flown;
     member.swept = ball_box(from.position, member.radius());

@@ -68,7 +68,7 @@ inline constexpr double kMaxArcPhase = 2.0 * kMaxArcAngle;
 inline constexpr double kSameMiddle = 1.25;
 
 /// Number of equal intervals of a step that are not shortened further for a turn of friction. It is the usual value of
-/// 1 / Grip::shortest. Smaller: turning friction is followed less exactly. Larger: more intervals.
+/// 1 / FrictionLimits::shortest. Smaller: turning friction is followed less exactly. Larger: more intervals.
 inline constexpr double kShortestIntervals = 32.0;
 
 /// Smallest speed of a flow along a round surface, as a fraction of its free speed, that sets the length of a chord.

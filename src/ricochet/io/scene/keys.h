@@ -107,7 +107,7 @@ struct ObjectSpec {
 [[nodiscard]] std::string expectation(const KeySpec& key);
 /// Returns a range in words, for example `>= 0 and <= 180`. Empty if every finite number is allowed.
 [[nodiscard]] std::string range_words(const Range& range);
-/// Returns the message for a feature that belongs to the format but is not implemented in this version.
+/// Returns the message for a key that the format reserves and this version refuses.
 [[nodiscard]] std::string not_built(const std::string& what);
 
 /// Reports everything in the document that the tables do not allow: unknown keys (with the nearest known names), wrong

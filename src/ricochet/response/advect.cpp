@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/carried_particle.h"
 #include "ricochet/response/constrained_flow.h"
 #include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/particle_step.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 namespace {
@@ -69,13 +71,13 @@ MoveOutcome Advector::run() {
     while (step_.remaining() > 0.0 && !outcome.is_frozen()) {
         rules_.poll();
         if (outcome.bounces + surface_segments_ >= rules_.settings.bounce_budget || flow_.has_spent_substeps()) {
-            step_.stop();
+            give_up(step_);
             break;
         }
         if (is_over()) {
-            step_.wait(step_.remaining());
+            wait_in_place(step_, step_.remaining());
         } else if (is_stopped()) {
-            step_.wait(is_stuck_ ? step_.remaining() : flow_.time_to_release(step_.remaining()));
+            wait_in_place(step_, is_stuck_ ? step_.remaining() : flow_.time_to_release(step_.remaining()));
         } else {
             advance();
         }
@@ -92,7 +94,7 @@ void Advector::advance() {
     int halvings = 0;
     double duration = path.duration;
     const auto contact =
-        step_.follow(path, flow_.followed(), [&](double time, const Path& tried) -> std::optional<Path> {
+        follow_path(step_, path, flow_.followed(), [&](double time, const Path& tried) -> std::optional<Path> {
             if (!flow_.dips(tried, time) || halvings++ == kMostHalvings) return std::nullopt;
             const Path shorter = flow_.next_path(0.5 * tried.duration, reach());
             duration = shorter.duration;
@@ -114,8 +116,8 @@ void Advector::resolve(const Contact& contact) {
     watch_progress();
     state_.velocity = is_stopped() ? Vec3{} : flow_.velocity();
     for (const ContactSurface& surface : contact.all()) {
-        step_.impact().record_impulse(surface.surface, Vec3{}, true);
-        step_.impact().record(surface, arriving);
+        step_.impact().ledger().record_impulse(surface.surface, Vec3{}, true);
+        step_.impact().ledger().log_contact(surface, arriving);
     }
 }
 

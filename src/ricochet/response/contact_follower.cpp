@@ -8,6 +8,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/predicates/predicates.h"
 #include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 
@@ -56,26 +57,20 @@ CurvedEnd end_of(const CurvedContact& arc) {
 }  // namespace
 
 ContactFollower::ContactFollower(ParticleStep& step, ContactManifold& manifold)
-    : step_(step),
-      rules_(step.rules()),
-      particle_(step.particle()),
-      state_(step.state()),
-      impact_(step.impact()),
-      manifold_(manifold),
-      held_(step, manifold) {}
+    : step_(step), manifold_(manifold), held_(step, manifold) {}
 
 ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration) {
     step_.note_interval();
     manifold_.drop_left(kLeavingRounding);
     if (manifold_.empty()) return {std::nullopt, true, false};
     if (goes_nowhere(pull, duration)) {
-        particle_.spin = Vec3{};
+        particle().spin = Vec3{};
         return {std::nullopt, false, true};
     }
-    if (!manifold_.is_curved() && !manifold_.is_turned(impact_)) {
+    if (!manifold_.is_curved() && !manifold_.is_turned(surfaces())) {
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
-            particle_.spin = interval.motion.spin;
+            particle().spin = interval.motion.spin;
             return {std::nullopt, false, true};
         }
         const bool turns = interval.turn > kMostStraightTurn && !interval.is_stiff;
@@ -90,10 +85,10 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
 /// One interval after the other takes less time than the clock can tell, and what it does in them is nothing beside
 /// what its forces would do: next to a vertex at the origin, where coordinates have no end, from one face to the next.
 bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
-    timeless_ = state_.time > clock_ ? 0 : timeless_ + 1;
-    clock_ = state_.time;
+    timeless_ = state().time > clock_ ? 0 : timeless_ + 1;
+    clock_ = state().time;
     if (timeless_ < kMostTimelessIntervals) return false;
-    const double speed = length(state_.velocity) + state_.radius * length(particle_.spin);
+    const double speed = length(state().velocity) + state().radius * length(particle().spin);
     return speed <= kNegligibleSpeed * length(pull.forces) * duration;
 }
 
@@ -113,17 +108,17 @@ FlatInterval ContactFollower::plan_by_middle(PlannedInterval begin, double press
 /// The forces, over the mass, in the middle of an interval that was planned with those at its start.
 Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
     const double half = 0.5 * interval.duration;
-    ForceInput middle = state_;
+    ForceInput middle = state();
     middle.position += half * (interval.motion.velocity + (0.5 * half) * interval.acceleration);
     middle.velocity = interval.motion.velocity + half * interval.acceleration;
     middle.time += half;
-    return rules_.forces.acceleration(middle);
+    return rules().forces.acceleration(middle);
 }
 
 ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
     const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
-    const ContactInterval interval = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull.forces,
-                                                   manifold_.supports(impact_).all(), grip, duration);
+    const ContactInterval interval = plan_interval({state().velocity, particle().spin}, state().radius, pull.forces,
+                                                   manifold_.supports(surfaces()).all(), grip, duration);
     manifold_.load(interval);
     return interval;
 }
@@ -134,26 +129,26 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     if (trajectory.path.duration <= 0.0) return {std::nullopt, true, false};
     step_.log().note_impact();
     const double before = step_.remaining();
-    const Vec3 turned = flat.motion().velocity - state_.velocity;
-    const Vec3 from = state_.position;
-    const double most = twice_kinetic({state_.velocity, particle_.spin}, state_.radius);
+    const Vec3 turned = flat.motion().velocity - state().velocity;
+    const Vec3 from = state().position;
+    const double most = twice_kinetic({state().velocity, particle().spin}, state().radius);
     held_.find();
-    Stop stop{step_.follow(trajectory.path, held_.all()), trajectory.leaves_surface, false};
+    Stop stop{follow_path(step_, trajectory.path, held_.all()), trajectory.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
     const bool is_over = !stop.is_early() || elapsed >= interval.duration;
-    Motion motion =
-        motion_after(interval, elapsed, is_over, state_.velocity, state_.radius, manifold_.supports(impact_).all());
-    const double work = pull.acts ? flat.work_until(elapsed, state_.position - from) : 0.0;
-    if (!manifold_.is_driven(impact_)) {
-        limit_energy(motion, state_.radius, most + 2.0 * work,
-                     length(forces) * step_.geometry().contact_offset(state_.position));
+    Motion motion = motion_after(interval, elapsed, is_over, state().velocity, state().radius,
+                                 manifold_.supports(surfaces()).all());
+    const double work = pull.acts ? flat.work_until(elapsed, state().position - from) : 0.0;
+    if (!manifold_.is_driven(surfaces())) {
+        limit_energy(motion, state().radius, most + 2.0 * work,
+                     length(forces) * step_.geometry().contact_offset(state().position));
     }
     // Also what surfaces take of a slip that ends: friction turns while it does, and not all of it ends by itself.
-    const Vec3 stopped = motion.velocity - state_.velocity;
-    manifold_.record_impulse(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, impact_);
-    state_.velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    const Vec3 stopped = motion.velocity - state().velocity;
+    manifold_.record_impulse(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, ledger());
+    state().velocity = motion.velocity;
+    particle().spin = motion.spin;
     step_.log().note_contact(pull.forces, trajectory.path, pull.acts, held_.all());
     held_.meet(stop.contact);
     return stop;
@@ -161,17 +156,17 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
 
 /// The way of an interval, up to where a surface ends; its end keeps the contact offset.
 ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval) const {
-    Path path = interval.path(state_.position, interval.duration());
+    Path path = interval.path(state().position, interval.duration());
     if (!is_finite(path.end)) return {path, false};
-    const double slack = kEdgeOffsets * step_.geometry().contact_offset(state_.position);
+    const double slack = kEdgeOffsets * step_.geometry().contact_offset(state().position);
     double on = interval.duration();
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
-        of_contact_point.c[0] -= state_.radius * manifold_[k].normal;
-        on = std::min(on, rules_.world.time_over(manifold_[k].surface, of_contact_point, slack));
+        of_contact_point.c[0] -= state().radius * manifold_[k].normal;
+        on = std::min(on, rules().world.time_over(manifold_[k].surface, of_contact_point, slack));
     }
     const bool leaves = on < interval.duration();
-    if (leaves) path = interval.path(state_.position, on);
+    if (leaves) path = interval.path(state().position, on);
     if (path.duration > 0.0) keep_offset(path, interval);
     return {path, leaves};
 }
@@ -187,7 +182,7 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
         const double side = dot(geometry.unit_normal_of(surface.surface, path.end), surface.normal) < 0.0 ? -1.0 : 1.0;
-        const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state_.radius;
+        const double height = side * geometry.signed_distance_from(surface.surface, path.end) - state().radius;
         const double lift = step_.geometry().contact_offset(path.end) - height;
         if (!interval.is_held_by(k) && lift < 0.0) continue;
         normals[count] = surface.normal;
@@ -202,33 +197,33 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
 /// Follows one arc.
 ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double duration) {
     held_.find();
-    const ContactManifold::SupportList materials = manifold_.supports(impact_);
+    const ContactManifold::SupportList materials = manifold_.supports(surfaces());
     const FrictionLimits grip = manifold_.grip(pull.pressure, step_.duration());
-    const CurvedContact arc(step_.geometry(), rules_.forces, state_, manifold_, materials,
-                            {particle_.spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
-                             tolerance(), rules_.frame});
+    const CurvedContact arc(step_.geometry(), rules().forces, state(), manifold_, materials,
+                            {particle().spin, grip.pressure, pull.acts, grip.shortest, grip.negligible_path, duration,
+                             tolerance(), rules().frame});
     if (arc.plan().at_rest) {
-        particle_.spin = arc.plan().motion.spin;
+        particle().spin = arc.plan().motion.spin;
         return {std::nullopt, false, true};
     }
     std::optional<CurvedPath> trajectory = path_along(arc);
     if (!trajectory) return {std::nullopt, true, false};
-    const Vec3& from = state_.position;
+    const Vec3& from = state().position;
     const bool is_short =
         length(trajectory->end.position - from) <= kTouchingOffsets * step_.geometry().contact_offset(from);
     if (trajectory->jams && (is_short || !(trajectory->path.duration > 0.0))) {
-        particle_.spin = Vec3{};
+        particle().spin = Vec3{};
         return {std::nullopt, false, true};
     }
     step_.log().note_impact();
     const double before = step_.remaining();
-    const Vec3 velocity_before = state_.velocity;
+    const Vec3 velocity_before = state().velocity;
     std::optional<Contact> contact = move_along(*trajectory, arc);
     const double elapsed = before - step_.remaining();
-    const Vec3 forces_after = pull.acts ? rules_.forces.acceleration(state_) : Vec3{};
+    const Vec3 forces_after = pull.acts ? rules().forces.acceleration(state()) : Vec3{};
     const Vec3 by_forces = (0.5 * elapsed) * (pull.forces + forces_after);
     manifold_.load(arc.plan());
-    manifold_.record_impulse(state_.velocity - velocity_before - by_forces, elapsed, impact_);
+    manifold_.record_impulse(state().velocity - velocity_before - by_forces, elapsed, ledger());
     step_.log().note_contact(pull.forces, trajectory->path, pull.acts, held_.all());
     held_.meet(contact);
     Stop stop{contact, trajectory->leaves_surface, false};
@@ -272,7 +267,7 @@ void ContactFollower::lead_to(const CurvedContact::State& end, double time, cons
     if (!(time > 0.0)) return;
     trajectory.path = hermite_path(arc.start().position, arc.start().motion.velocity, trajectory.end.position,
                                    trajectory.end.motion.velocity, time);
-    lift_middle(step_.geometry(), manifold_, state_.radius, trajectory.path);
+    lift_middle(step_.geometry(), manifold_, state().radius, trajectory.path);
 }
 
 /// The time on the path, s, from which another part of a surface is touched, if only for a while.
@@ -300,29 +295,29 @@ std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const
         keep_to_pieces(arc, trajectory);
         return trajectory.path;
     };
-    const std::optional<Contact> contact = step_.follow(trajectory.path, held_.all(), closer);
+    const std::optional<Contact> contact = follow_path(step_, trajectory.path, held_.all(), closer);
     const Motion motion = contact ? arc.at(contact->time).motion : trajectory.jams ? Motion{} : trajectory.end.motion;
-    state_.velocity = motion.velocity;
-    particle_.spin = motion.spin;
+    state().velocity = motion.velocity;
+    particle().spin = motion.spin;
     return contact;
 }
 
 /// The forces do in a step, and the integrator is of second order or more.
 bool ContactFollower::forces_vary() const {
-    if (rules_.frame != nullptr) return true;
-    const bool is_coupled = state_.coupling != nullptr && state_.coupling->varies();  // ballistic follows that too
-    const bool follows = follows_varying_forces(rules_.settings.integrator.kind) || is_coupled;
-    return follows && !rules_.forces.is_uniform_for(state_);
+    if (rules().frame != nullptr) return true;
+    const bool is_coupled = state().coupling != nullptr && state().coupling->varies();  // ballistic follows that too
+    const bool follows = follows_varying_forces(rules().settings.integrator.kind) || is_coupled;
+    return follows && !rules().forces.is_uniform_for(state());
 }
 
 /// Forces that vary ask for an arc, for its energy or its tolerance; a frame that moves, for what it does to spins.
 bool ContactFollower::needs_arc() const {
-    return rules_.frame != nullptr || tolerance() || rules_.forces.is_conservative_for(state_);
+    return rules().frame != nullptr || tolerance() || rules().forces.is_conservative_for(state());
 }
 
 /// What an arc may be wrong by, where the integrator chooses its own steps.
 std::optional<ErrorTolerance> ContactFollower::tolerance() const {
-    const Integrator& integrator = rules_.settings.integrator;
+    const Integrator& integrator = rules().settings.integrator;
     if (integrator.kind != IntegratorKind::dormand_prince) return std::nullopt;
     return integrator.tolerance;
 }

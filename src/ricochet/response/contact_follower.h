@@ -75,11 +75,13 @@ private:
     [[nodiscard]] std::optional<Contact> move_along(CurvedPath& trajectory, const CurvedContact& arc);
     [[nodiscard]] std::optional<ErrorTolerance> tolerance() const;
 
+    [[nodiscard]] const ResponseRules& rules() const { return step_.rules(); }
+    [[nodiscard]] MovingParticle& particle() const { return step_.particle(); }
+    [[nodiscard]] ForceInput& state() const { return step_.state(); }
+    [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
+    [[nodiscard]] ImpulseLedger& ledger() { return step_.impact().ledger(); }
+
     ParticleStep& step_;
-    const ResponseRules& rules_;
-    MovingParticle& particle_;
-    ForceInput& state_;
-    ImpactResolver& impact_;
     ContactManifold& manifold_;
     ManifoldSurfaces held_;
     double clock_ = -std::numeric_limits<double>::infinity();  // s, at the last look

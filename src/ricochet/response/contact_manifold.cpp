@@ -6,7 +6,8 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_interval.h"
-#include "ricochet/response/impact_resolver.h"
+#include "ricochet/response/impulse_ledger.h"
+#include "ricochet/response/surface_kinematics.h"
 
 namespace ricochet {
 namespace {
@@ -184,29 +185,29 @@ void ContactManifold::load(const Vec3& pull) {
 
 void ContactManifold::load(const ContactInterval& interval) { loads_ = interval.reaction; }
 
-ContactManifold::SupportList ContactManifold::supports(const ImpactResolver& impact) const {
+ContactManifold::SupportList ContactManifold::supports(const SurfaceKinematics& surfaces) const {
     SupportList supports;
     for (std::size_t k = 0; k < count_; ++k) {
-        const Material& material = impact.material_of(surfaces_[k]);
+        const Material& material = surfaces.material_of(surfaces_[k]);
         supports.surfaces[supports.count++] = {normals_[k],
                                                material.friction,
                                                material.rolling_friction,
                                                material.spinning_friction,
-                                               impact.velocity_of((*this)[k]),
-                                               impact.angular_velocity_of(surfaces_[k]),
+                                               surfaces.velocity_of((*this)[k]),
+                                               surfaces.angular_velocity_of(surfaces_[k]),
                                                material.drives() ? &material.motion : nullptr};
     }
     return supports;
 }
 
-bool ContactManifold::is_driven(const ImpactResolver& impact) const {
+bool ContactManifold::is_driven(const SurfaceKinematics& surfaces) const {
     return std::any_of(surfaces_.begin(), surfaces_.begin() + count_,
-                       [&](SurfaceId surface) { return impact.material_of(surface).drives(); });
+                       [&](SurfaceId surface) { return surfaces.material_of(surface).drives(); });
 }
 
-bool ContactManifold::is_turned(const ImpactResolver& impact) const {
+bool ContactManifold::is_turned(const SurfaceKinematics& surfaces) const {
     return std::any_of(surfaces_.begin(), surfaces_.begin() + count_, [&](SurfaceId surface) {
-        const Material& material = impact.material_of(surface);
+        const Material& material = surfaces.material_of(surface);
         return material.drives() && material.motion.angular_velocity != Vec3{};
     });
 }
@@ -215,15 +216,15 @@ FrictionLimits ContactManifold::grip(double pressure, double step) const {
     return {pressure, step / kShortestIntervals, kTouchingOffsets * geometry_.contact_offset(particle_.position)};
 }
 
-void ContactManifold::record_impulse(const Vec3& velocity_change, double elapsed, ImpactResolver& impact) const {
+void ContactManifold::record_impulse(const Vec3& velocity_change, double elapsed, ImpulseLedger& ledger) const {
     Vec3 left = velocity_change;
     for (std::size_t k = 1; k < count_; ++k) {
         if (loads_[k] == Vec3{}) continue;
         const Vec3 part = elapsed * loads_[k];
-        impact.record_impulse(surfaces_[k], part, false);
+        ledger.record_impulse(surfaces_[k], part, false);
         left -= part;
     }
-    impact.record_impulse(surfaces_[0], left, false);
+    ledger.record_impulse(surfaces_[0], left, false);
 }
 
 std::optional<Vec3> turned_along(const Vec3& velocity, std::span<const Vec3> normals) {

@@ -16,7 +16,8 @@
 
 namespace ricochet {
 
-class ImpactResolver;
+class ImpulseLedger;
+class SurfaceKinematics;
 
 /// When a particle touches a surface.
 struct TouchRule {
@@ -49,9 +50,9 @@ public:
         return !std::all_of(flat_.begin(), flat_.begin() + count_, [](bool flat) { return flat; });
     }
     /// True when one of the surfaces moves and grips.
-    [[nodiscard]] bool is_driven(const ImpactResolver& impact) const;
+    [[nodiscard]] bool is_driven(const SurfaceKinematics& surfaces) const;
     /// True when the velocity of one that does is not the same everywhere.
-    [[nodiscard]] bool is_turned(const ImpactResolver& impact) const;
+    [[nodiscard]] bool is_turned(const SurfaceKinematics& surfaces) const;
     /// What the next step begins with.
     [[nodiscard]] ContactState contact_state() const { return {surfaces_, static_cast<std::uint8_t>(count_), 0.0}; }
     /// What the last step has kept, without normals yet: touch_again() has to follow.
@@ -94,12 +95,12 @@ public:
         std::size_t count = 0;
         [[nodiscard]] std::span<const SupportSurface> all() const { return {surfaces.data(), count}; }
     };
-    [[nodiscard]] SupportList supports(const ImpactResolver& impact) const;
+    [[nodiscard]] SupportList supports(const SurfaceKinematics& surfaces) const;
     /// How they grip, in a step of this duration, s. pressure: as FrictionLimits::pressure.
     [[nodiscard]] FrictionLimits grip(double pressure, double step) const;
     /// Records what contact has changed the velocity by in `elapsed` seconds: each surface its part by its load, what
     /// is left on the first.
-    void record_impulse(const Vec3& velocity_change, double elapsed, ImpactResolver& impact) const;
+    void record_impulse(const Vec3& velocity_change, double elapsed, ImpulseLedger& ledger) const;
 
 private:
     static constexpr std::size_t kMostPoints = kMostSupports;

@@ -10,8 +10,12 @@
 #include "ricochet/core/bisection.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/carried_particle.h"
+#include "ricochet/response/certified_motion.h"
 #include "ricochet/response/contact_motion.h"
 #include "ricochet/response/impact_problem.h"
+#include "ricochet/response/nearby_surfaces.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 
@@ -30,32 +34,28 @@ Vec3 along_plane(const Vec3& velocity, const Vec3& normal) {
 
 ContactPhase::ContactPhase(ParticleStep& step)
     : step_(step),
-      rules_(step.rules()),
-      particle_(step.particle()),
-      state_(step.state()),
-      impact_(step.impact()),
       manifold_(step.geometry(), step.state()),
       support_(step, manifold_),
       follower_(step, manifold_),
-      began_(particle_.contact),
-      began_still_(state_.velocity == Vec3{}),
-      began_spin_(particle_.spin) {}
+      began_(step.particle().contact),
+      began_still_(step.state().velocity == Vec3{}),
+      began_spin_(step.particle().spin) {}
 
 std::optional<Contact> ContactPhase::resume(double rounding) {
-    if (particle_.contact.count == 0) return std::nullopt;
-    const ContactState before = std::exchange(particle_.contact, ContactState{});
-    manifold_.touch_again(before, TouchRule::at(step_.geometry(), state_.position));
+    if (particle().contact.count == 0) return std::nullopt;
+    const ContactState before = std::exchange(particle().contact, ContactState{});
+    manifold_.touch_again(before, TouchRule::at(step_.geometry(), state().position));
     if (before.is_placed()) gather();
     if (rounding > 0.0) drop_rounding(rounding);
-    const Vec3 forces = rules_.forces.acceleration(state_);
+    const Vec3 forces = rules().forces.acceleration(state());
     const auto support = support_.hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
-    if (kicks_first(rules_.settings.integrator.kind) && rules_.frame == nullptr) {
+    if (kicks_first(rules().settings.integrator.kind) && rules().frame == nullptr) {
         // A kick ends every other contact: it is part of the step, and landing answers it.
         if (!began_still_ || !is_finite(forces)) return std::nullopt;
         const ContactInterval interval = follower_.plan({forces}, step_.remaining());
         if (!interval.at_rest) return std::nullopt;
-        particle_.spin = interval.motion.spin;
+        particle().spin = interval.motion.spin;
         return rest(forces, true);
     }
     const Stop stop = spend_cascade(*support, std::max(0.0, before.cascade_left));
@@ -75,7 +75,7 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
     }
     if (slow_contacts_ > kMaxSlowContacts) {
         manifold_.unload();
-        particle_.spin = Vec3{};
+        particle().spin = Vec3{};
         return rest(is_kicked(flight) ? Vec3{} : forces_now(flight), false);
     }
     if (is_kicked(flight)) {
@@ -87,32 +87,32 @@ std::optional<Contact> ContactPhase::begin(const Flight& flight, const Contact& 
 }
 
 void ContactPhase::record_weight() {
-    manifold_.touch_again(particle_.contact, TouchRule::at(step_.geometry(), state_.position));
-    const Vec3 forces = rules_.forces.acceleration(state_);
+    manifold_.touch_again(particle().contact, TouchRule::at(step_.geometry(), state().position));
+    const Vec3 forces = rules().forces.acceleration(state());
     if (!manifold_.empty()) static_cast<void>(follower_.plan({forces}, step_.remaining()));
-    const Vec3 change = -state_.velocity - step_.remaining() * forces;
+    const Vec3 change = -state().velocity - step_.remaining() * forces;
     if (manifold_.empty()) {
-        impact_.record_impulse(particle_.contact.surfaces[0], change, false);
+        ledger().record_impulse(particle().contact.surfaces[0], change, false);
     } else {
-        manifold_.record_impulse(change, step_.remaining(), impact_);
+        manifold_.record_impulse(change, step_.remaining(), ledger());
     }
 }
 
 std::optional<Contact> ContactPhase::stay(const Contact& contact) {
-    state_.velocity = Vec3{};
-    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
+    state().velocity = Vec3{};
+    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state().position));
     gather();
     const ContactState contact_state = manifold_.contact_state();
     lift();
     const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
-    auto met = step_.wait(step_.remaining(), supported_by);
+    auto met = wait_in_place(step_, step_.remaining(), supported_by);
     step_.log().note_stay(supported_by);
     return met;
 }
 
 /// What will hold it, of all that is touched at an impact.
 std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, const Contact& contact) {
-    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state_.position));
+    manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state().position));
     gather();
     // What the step's own kick put into the velocity is not the speed of a departure.
     const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : step_.resting_speed();
@@ -126,22 +126,22 @@ std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, c
 /// reached on one of them first. Surfaces that begin to hold it take part. Their own rebounds end here, because a
 /// surface holds a particle only if that does not leave it.
 std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support) {
-    const double rounding = kSlowSlip * length(state_.velocity);
+    const double rounding = kSlowSlip * length(state().velocity);
     const double slow = std::max(step_.resting_speed(), rounding);
     // A body that yields answers its surfaces one after the other, which does not end in a narrow wedge of them. There,
     // contact takes the approach.
-    const MovingColliders* const bodies = rules_.bodies;
+    const MovingColliders* const bodies = rules().bodies;
     if (bodies != nullptr && bodies->is_dynamic(bodies->body_of(manifold_[0].surface))) return std::nullopt;
     std::array<double, kMostSupports> departures{};
     const auto is_hit_at = [&](const Vec3& velocity) {
         for (std::size_t k = 0; k < manifold_.size(); ++k) departures[k] = dot(velocity, manifold_.normals()[k]);
         return *std::min_element(departures.begin(), departures.begin() + manifold_.size()) < -slow;
     };
-    if (!is_hit_at(state_.velocity)) return std::nullopt;
-    const Vec3 velocity = support_.velocity_after_rebounds(rules_.forces.acceleration(state_));
+    if (!is_hit_at(state().velocity)) return std::nullopt;
+    const Vec3 velocity = support_.velocity_after_rebounds(rules().forces.acceleration(state()));
     if (!is_hit_at(velocity)) return std::nullopt;
-    impact_.record_impulse(support.surface, velocity - state_.velocity, false);
-    state_.velocity = velocity;
+    ledger().record_impulse(support.surface, velocity - state().velocity, false);
+    state().velocity = velocity;
     Contact contact;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         if (departures[k] > step_.resting_speed()) continue;
@@ -154,62 +154,62 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
 
 /// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.
 void ContactPhase::land(const Motion& arriving) {
-    const Vec3 before = state_.velocity;  // with the rebound, whose impulse is recorded already
-    std::array<ImpactSurface, kMostSupports> surfaces;
-    for (std::size_t k = 0; k < manifold_.size(); ++k) surfaces[k] = impact_.landing_on(manifold_[k]);
-    Motion after = solve_impact(arriving, state_.radius, std::span(surfaces).first(manifold_.size())).after;
+    const Vec3 before = state().velocity;  // with the rebound, whose impulse is recorded already
+    std::array<ImpactSurface, kMostSupports> landing;
+    for (std::size_t k = 0; k < manifold_.size(); ++k) landing[k] = surfaces().landing_on(manifold_[k]);
+    Motion after = solve_impact(arriving, state().radius, std::span(landing).first(manifold_.size())).after;
     const auto speed = [&](const Motion& motion) {
-        return length(motion.velocity) + state_.radius * length(motion.spin);
+        return length(motion.velocity) + state().radius * length(motion.spin);
     };
     if (speed(after) <= kStopRounding * speed(arriving)) after = {};
     // Rounding of a fast spin, too, is no speed.
     if (length(after.velocity) <= kStopRounding * speed(arriving)) after.velocity = {};
-    state_.velocity = project_off(after.velocity, manifold_.normals());
-    particle_.spin = after.spin;
-    manifold_.load(before - state_.velocity);
-    manifold_.record_impulse(state_.velocity - before, 1.0, impact_);
+    state().velocity = project_off(after.velocity, manifold_.normals());
+    particle().spin = after.spin;
+    manifold_.load(before - state().velocity);
+    manifold_.record_impulse(state().velocity - before, 1.0, ledger());
 }
 
 /// Where flights are straight until the forces act at their end, they lead back at once onto a surface that bends
 /// towards them and that the forces pull off: it goes along the surface instead, and the forces act at the end of that.
 std::optional<Contact> ContactPhase::drift(const Flight& flight) {
-    if (rules_.settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
+    if (rules().settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
     const auto support = support_.after_rebounds(Vec3{}, step_.resting_speed());
     if (!support) return std::nullopt;
     const Vec3 forces = forces_now(flight);
-    const Vec3 velocity = state_.velocity;
+    const Vec3 velocity = state().velocity;
     const double before = step_.remaining();
     const double rebound = std::max(0.0, dot(velocity, support->normal));
-    state_.velocity = project_off(velocity - rebound * support->normal, manifold_.normals());
-    impact_.record_impulse(support->surface, state_.velocity - velocity, false);
+    state().velocity = project_off(velocity - rebound * support->normal, manifold_.normals());
+    ledger().record_impulse(support->surface, state().velocity - velocity, false);
     const auto contact = follow_surface(true);
     step_.log().note_impact();
-    state_.velocity += (before - step_.remaining()) * forces;
+    state().velocity += (before - step_.remaining()) * forces;
     step_.log().note_flight();
     return contact;
 }
 
 /// The rest of the bounce cascade, summed.
 ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
-    const double rebound = std::max(0.0, dot(state_.velocity, support.normal));
-    const Vec3 forces = rules_.forces.acceleration(state_);
+    const double rebound = std::max(0.0, dot(state().velocity, support.normal));
+    const Vec3 forces = rules().forces.acceleration(state());
     const double pressing = support_.pressing_on(support, forces);
-    const Vec3 before = state_.velocity;
+    const Vec3 before = state().velocity;
     if (const auto landed = support_.landing_on_all(forces)) {
         // Rattling between several surfaces that hold it would not end.
-        state_.velocity = project_off(landed->velocity, manifold_.normals());
-        particle_.spin = landed->spin;
+        state().velocity = project_off(landed->velocity, manifold_.normals());
+        particle().spin = landed->spin;
     } else {
-        state_.velocity =
+        state().velocity =
             project_off(rebound > 0.0 ? along_plane(before, support.normal) : before, manifold_.normals());
     }
-    if (const auto still = rest_beside_rounding({state_.velocity, particle_.spin}, state_.radius, forces,
-                                                manifold_.supports(impact_).all(),
+    if (const auto still = rest_beside_rounding({state().velocity, particle().spin}, state().radius, forces,
+                                                manifold_.supports(surfaces()).all(),
                                                 manifold_.grip(1.0, step_.duration()), step_.duration())) {
-        state_.velocity = still->velocity;
-        particle_.spin = still->spin;
+        state().velocity = still->velocity;
+        particle().spin = still->spin;
     }
-    impact_.record_impulse(support.surface, state_.velocity - before, false);
+    ledger().record_impulse(support.surface, state().velocity - before, false);
     const bool rattles = manifold_.size() > 1 && rebound < kNegligibleRebound * step_.resting_speed();
     const double restitution = slow_restitution(support.surface);
     if (!(pressing > 0.0) || rattles || restitution == 1.0) return {};
@@ -222,10 +222,10 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
     // What is shorter than the clock, or the rest of the step, can tell never passes.
     const auto passes = [&](double time) {
-        return state_.time + time > state_.time && step_.remaining() - time < step_.remaining();
+        return state().time + time > state().time && step_.remaining() - time < step_.remaining();
     };
     for (int part = 0; part < kMostContactIntervals && passes(left) && step_.remaining() > 0.0; ++part) {
-        const Vec3 forces = rules_.forces.acceleration(state_);
+        const Vec3 forces = rules().forces.acceleration(state());
         const double before = step_.remaining();
         const Stop stop = follower_.advance({forces, true, pressure}, std::min(left, before));
         if (stop.is_early()) return stop;
@@ -235,8 +235,8 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
         left -= before - step_.remaining();
     }
     if (step_.remaining() <= 0.0) {
-        particle_.contact = manifold_.contact_state();
-        particle_.contact.cascade_left = std::max(0.0, left);
+        particle().contact = manifold_.contact_state();
+        particle().contact.cascade_left = std::max(0.0, left);
     }
     return {};
 }
@@ -244,47 +244,47 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
 /// Slides, rolls or rests. A kicked particle has had its force already.
 std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
-        const Vec3 forces = kicked ? Vec3{} : rules_.forces.acceleration(state_);
+        const Vec3 forces = kicked ? Vec3{} : rules().forces.acceleration(state());
         if (!support_.is_pressed(forces)) return std::nullopt;
         const Stop stop = follower_.advance({forces, !kicked, 1.0}, step_.remaining());
         if (stop.contact) return stop.contact;
         if (stop.left_surface) {
             find_next_surfaces();
             if (manifold_.empty() || lands()) return std::nullopt;
-            state_.velocity = along_all(state_.velocity, manifold_.normals());
+            state().velocity = along_all(state().velocity, manifold_.normals());
             continue;
         }
         if (stop.rests) {
-            const double until = rules_.frame == nullptr ? step_.remaining() : time_at_rest();
+            const double until = rules().frame == nullptr ? step_.remaining() : time_at_rest();
             if (until >= step_.remaining()) return rest(forces, !kicked);
             if (auto contact = wait(until, forces)) return contact;
         }
     }
-    if (step_.remaining() <= 0.0 && !kicked) particle_.contact = manifold_.contact_state();
+    if (step_.remaining() <= 0.0 && !kicked) particle().contact = manifold_.contact_state();
     return std::nullopt;
 }
 
 /// Removes what rounding has put into a motion that goes on in contact: speed along the normals, or all of it.
 void ContactPhase::drop_rounding(double rounding) {
-    const auto is_rounding = [&](const Vec3& normal) { return std::fabs(dot(state_.velocity, normal)) <= rounding; };
+    const auto is_rounding = [&](const Vec3& normal) { return std::fabs(dot(state().velocity, normal)) <= rounding; };
     const std::span<const Vec3> normals = manifold_.normals();
     if (std::all_of(normals.begin(), normals.end(), is_rounding)) {
-        state_.velocity = along_all(state_.velocity, normals);
+        state().velocity = along_all(state().velocity, normals);
     }
-    if (length(state_.velocity) + state_.radius * length(particle_.spin) > rounding) return;
-    state_.velocity = {};
-    particle_.spin = {};
+    if (length(state().velocity) + state().radius * length(particle().spin) > rounding) return;
+    state().velocity = {};
+    particle().spin = {};
 }
 
 /// Adds to the manifold all that is touched.
 void ContactPhase::gather() {
-    const TouchRule rule = TouchRule::at(step_.geometry(), state_.position);
-    step_.visit_near([&](SurfaceId surface) { manifold_.touch(surface, rule); });
+    const TouchRule rule = TouchRule::at(step_.geometry(), state().position);
+    visit_near(step_, [&](SurfaceId surface) { manifold_.touch(surface, rule); });
 }
 
 /// Where a surface has ended: what holds it from there on, beside it or around its edge.
 void ContactPhase::find_next_surfaces() {
-    manifold_.touch_again(TouchRule::at(step_.geometry(), state_.position));
+    manifold_.touch_again(TouchRule::at(step_.geometry(), state().position));
     gather();
     manifold_.drop_left(kTurningAway);
 }
@@ -292,7 +292,7 @@ void ContactPhase::find_next_surfaces() {
 /// True when it moves into one of the surfaces: an impact, as of what is born there.
 bool ContactPhase::lands() const {
     return std::any_of(manifold_.normals().begin(), manifold_.normals().end(), [&](const Vec3& normal) {
-        return -dot(state_.velocity, normal) > kSlowSlip * length(state_.velocity);
+        return -dot(state().velocity, normal) > kSlowSlip * length(state().velocity);
     });
 }
 
@@ -300,16 +300,17 @@ bool ContactPhase::lands() const {
 void ContactPhase::lift() {
     std::array<Vec3, kMostSupports> normals;
     std::array<double, kMostSupports> lifts{};
-    const double offset = step_.geometry().contact_offset(state_.position);
+    const double offset = step_.geometry().contact_offset(state().position);
     bool is_low = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         normals[k] = manifold_[k].normal;
-        const double height = step_.geometry().nearest(manifold_[k].surface, state_.position).distance - state_.radius;
+        const double height =
+            step_.geometry().nearest(manifold_[k].surface, state().position).distance - state().radius;
         lifts[k] = std::max(0.0, offset - height);
         is_low = is_low || height < 0.5 * offset;
     }
     if (!is_low) return;
-    state_.position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
+    state().position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
 }
 
 /// How long a body that moves holds it, s: its forces change meanwhile. At most what is left of the step.
@@ -332,39 +333,39 @@ double ContactPhase::time_at_rest() {
 
 /// True where it would rest at a time, s from now.
 bool ContactPhase::rests_on(double time) {
-    ForceInput later = state_;
+    ForceInput later = state();
     later.velocity = {};
     later.time += time;
-    const Vec3 forces = rules_.forces.acceleration(later);
+    const Vec3 forces = rules().forces.acceleration(later);
     return support_.is_pressed(forces) && follower_.plan({forces}, step_.remaining()).at_rest;
 }
 
 /// Time passes at rest; the surfaces carry the weight. Returns what comes to it there.
 std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
-    const Vec3 before = state_.velocity;
+    const Vec3 before = state().velocity;
     const ContactState contact_state = manifold_.contact_state();
     const std::span<const SurfaceId> supported_by = std::span(contact_state.surfaces).first(contact_state.count);
-    state_.velocity = Vec3{};
+    state().velocity = Vec3{};
     if (!step_.is_near_bodies()) {
-        manifold_.record_impulse(-before - duration * forces, duration, impact_);
+        manifold_.record_impulse(-before - duration * forces, duration, ledger());
         step_.log().note_impact();
-        static_cast<void>(step_.wait(duration));
+        static_cast<void>(wait_in_place(step_, duration));
         step_.log().note_stay(supported_by);  // forces do no work on a particle at rest
         return std::nullopt;
     }
     step_.log().note_impact();
     const double left = step_.remaining();
     lift();
-    auto contact = step_.wait(duration, supported_by);
+    auto contact = wait_in_place(step_, duration, supported_by);
     if (contact) follower_.join_impact(*contact);
     const double elapsed = left - step_.remaining();
     Vec3 mean = forces;
-    if (rules_.frame != nullptr) {
-        ForceInput middle = state_;
+    if (rules().frame != nullptr) {
+        ForceInput middle = state();
         middle.time -= 0.5 * elapsed;
-        mean = rules_.forces.acceleration(middle);
+        mean = rules().forces.acceleration(middle);
     }
-    manifold_.record_impulse(-before - elapsed * mean, elapsed, impact_);
+    manifold_.record_impulse(-before - elapsed * mean, elapsed, ledger());
     step_.log().note_stay(supported_by);
     return contact;
 }
@@ -372,25 +373,25 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
 /// Rests for what is left of the step. held: until the forces change. Returns what comes to it before.
 std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.start();
-    const bool is_back = length(state_.position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
+    const bool is_back = length(state().position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
     // Landing again from one contact offset above, step after step, it would creep downhill.
-    if (state_.position != start && is_back && !step_.is_near_bodies()) step_.return_to_start();
+    if (state().position != start && is_back && !step_.is_near_bodies()) return_to_start(step_);
     if (const auto contact = wait(step_.remaining(), forces)) return contact;
     // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
-    const bool stays = held && began_still_ && began_spin_ == particle_.spin && state_.position == start &&
+    const bool stays = held && began_still_ && began_spin_ == particle().spin && state().position == start &&
                        began_ == manifold_.contact_state();
     step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
-    particle_.contact = manifold_.contact_state();
+    particle().contact = manifold_.contact_state();
     return std::nullopt;
 }
 
 Vec3 ContactPhase::forces_now(const Flight& flight) const {
-    return is_kicked(flight) ? flight.acceleration : rules_.forces.acceleration(state_);
+    return is_kicked(flight) ? flight.acceleration : rules().forces.acceleration(state());
 }
 
 /// Restitution of the bounces of a cascade.
 double ContactPhase::slow_restitution(SurfaceId surface) const {
-    return impact_.material_of(surface).restitution_at(step_.resting_speed());
+    return surfaces().material_of(surface).restitution_at(step_.resting_speed());
 }
 
 }  // namespace ricochet

@@ -59,11 +59,13 @@ private:
     [[nodiscard]] Vec3 forces_now(const Flight& flight) const;
     [[nodiscard]] double slow_restitution(SurfaceId surface) const;
 
+    [[nodiscard]] const ResponseRules& rules() const { return step_.rules(); }
+    [[nodiscard]] MovingParticle& particle() const { return step_.particle(); }
+    [[nodiscard]] ForceInput& state() const { return step_.state(); }
+    [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
+    [[nodiscard]] ImpulseLedger& ledger() { return step_.impact().ledger(); }
+
     ParticleStep& step_;
-    const ResponseRules& rules_;
-    MovingParticle& particle_;
-    ForceInput& state_;
-    ImpactResolver& impact_;
     ContactManifold manifold_;
     ContactSupport support_;
     ContactFollower follower_;

@@ -10,14 +10,6 @@
 
 namespace ricochet {
 
-ContactSupport::ContactSupport(ParticleStep& step, const ContactManifold& manifold)
-    : step_(step),
-      rules_(step.rules()),
-      particle_(step.particle()),
-      state_(step.state()),
-      impact_(step.impact()),
-      manifold_(manifold) {}
-
 bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                      double kick_duration) const {
     const auto dies_out = [&] {
@@ -25,7 +17,7 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
                            [&](const ContactSurface& surface) { return has_losses(surface); });
     };
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        const Material& material = impact_.material_of(surface.surface);
+        const Material& material = surfaces().material_of(surface.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
@@ -38,7 +30,7 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
 
 /// True when bounces on the surface die out.
 bool ContactSupport::has_losses(const ContactSurface& surface) const {
-    return impact_.material_of(surface.surface).can_hold(step_.resting_speed());
+    return surfaces().material_of(surface.surface).can_hold(step_.resting_speed());
 }
 
 /// The speed of rebounds, m/s, below which bounces on a surface are contact. Without losses they die out between it and
@@ -48,11 +40,11 @@ double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& f
                                     bool dies_out) const {
     const double resting_speed = step_.resting_speed();
     if (has_losses(surface)) return resting_speed;
-    if (kicked || impact_.material_of(surface.surface).is_random()) return 0.0;
+    if (kicked || surfaces().material_of(surface.surface).is_random()) return 0.0;
     if (dies_out) return resting_speed;
     const double pressing = std::max(0.0, pressing_on(surface, forces));
     return std::min(resting_speed,
-                    std::sqrt(2.0 * pressing * kTouchingOffsets * step_.geometry().contact_offset(state_.position)));
+                    std::sqrt(2.0 * pressing * kTouchingOffsets * step_.geometry().contact_offset(state().position)));
 }
 
 std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces, double fastest) const {
@@ -69,7 +61,7 @@ std::optional<ContactSurface> ContactSupport::after_rebounds(const Vec3& forces,
 
 std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
     const PointAccelerations accelerations = combined_accelerations(forces, step_.resting_speed());
-    const ContactManifold::SupportList supports = manifold_.supports(impact_);
+    const ContactManifold::SupportList supports = manifold_.supports(surfaces());
     std::array<SupportSurface, kMostSupports> surfaces;
     std::size_t count = 0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
@@ -77,19 +69,19 @@ std::optional<Motion> ContactSupport::landing_on_all(const Vec3& forces) const {
     }
     if (count < 2) return std::nullopt;
     const std::span<const SupportSurface> together(surfaces.data(), count);
-    return along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, sticking(together));
+    return along_surfaces({state().velocity, particle().spin}, state().radius, together, sticking(together));
 }
 
 Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
     const PointAccelerations accelerations = combined_accelerations(forces, step_.resting_speed());
-    const double rounding = kSlowSlip * length(state_.velocity);
+    const double rounding = kSlowSlip * length(state().velocity);
     std::array<Vec3, kMostSupports> normals;
     std::size_t count = 0;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const Vec3& normal = manifold_.normals()[k];
-        if (accelerations[k] != Vec3{} && dot(state_.velocity, normal) >= -rounding) normals[count++] = normal;
+        if (accelerations[k] != Vec3{} && dot(state().velocity, normal) >= -rounding) normals[count++] = normal;
     }
-    return along_all(state_.velocity, std::span(normals).first(count));
+    return along_all(state().velocity, std::span(normals).first(count));
 }
 
 /// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
@@ -108,17 +100,18 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
 /// The same. die_out: bounces on surfaces without losses do, between them and others.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest,
                                                                           bool die_out) const {
+    const ContactManifold::SupportList supports = manifold_.supports(surfaces());
     PointAccelerations accelerations{};
     std::array<SupportSurface, kMostSupports> surfaces;
     std::array<std::size_t, kMostSupports> number{};
     std::size_t count = 0;
-    const ContactManifold::SupportList supports = manifold_.supports(impact_);
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const ContactSurface surface = manifold_[k];
-        if (!(dot(state_.velocity, surface.normal) <= fastest_separation(surface, forces, fastest, die_out))) continue;
+        if (!(dot(state().velocity, surface.normal) <= fastest_separation(surface, forces, fastest, die_out))) continue;
         surfaces[count] = supports.surfaces[k];
         if (!surface.flat)
-            surfaces[count].curvature = CurvedContact::curvature_of(step_.geometry(), state_, surface, state_.velocity);
+            surfaces[count].curvature =
+                CurvedContact::curvature_of(step_.geometry(), state(), surface, state().velocity);
         number[count++] = k;
     }
     if (count == 1) {
@@ -128,10 +121,10 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     }
     const std::span<const SupportSurface> together(surfaces.data(), count);
     const StuckSurfaces stuck = sticking(together);
-    const Motion motion = along_surfaces({state_.velocity, particle_.spin}, state_.radius, together, stuck);
+    const Motion motion = along_surfaces({state().velocity, particle().spin}, state().radius, together, stuck);
     const FrictionLimits grip = manifold_.grip(1.0, step_.duration());
     const ContactInterval interval =
-        plan_interval(motion, state_.radius, forces, together, grip, step_.remaining(), stuck);
+        plan_interval(motion, state().radius, forces, together, grip, step_.remaining(), stuck);
     for (std::size_t i = 0; i < count; ++i) accelerations[number[i]] = interval.reaction[i];
     return accelerations;
 }
@@ -147,10 +140,10 @@ double ContactSupport::fastest_separation(const ContactSurface& surface, const V
 /// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
 StuckSurfaces ContactSupport::sticking(std::span<const SupportSurface> surfaces) const {
     StuckSurfaces stuck{};
-    const Motion motion{state_.velocity, particle_.spin};
-    const double scale = speed_scale(motion, state_.radius, surfaces);
+    const Motion motion{state().velocity, particle().spin};
+    const double scale = speed_scale(motion, state().radius, surfaces);
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        const Vec3 slip = slip_on(surfaces[k], motion, state_.radius);
+        const Vec3 slip = slip_on(surfaces[k], motion, state().radius);
         stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip) <= kSlowSlip * scale;
     }
     return stuck;
@@ -179,7 +172,7 @@ bool ContactSupport::is_pressed(const Vec3& forces) const {
 double ContactSupport::pressing_on(const ContactSurface& surface, const Vec3& forces) const {
     const double by_forces = -dot(forces, surface.normal);
     if (surface.flat) return by_forces;
-    return by_forces - CurvedContact::curvature_of(step_.geometry(), state_, surface, state_.velocity);
+    return by_forces - CurvedContact::curvature_of(step_.geometry(), state(), surface, state().velocity);
 }
 
 }  // namespace ricochet

@@ -18,7 +18,7 @@ namespace ricochet {
 class ContactSupport {
 public:
     /// Both must outlive it.
-    ContactSupport(ParticleStep& step, const ContactManifold& manifold);
+    ContactSupport(const ParticleStep& step, const ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
     /// True when all rebounds of an impact are so slow that the cascade of bounces becomes contact, if something
     /// presses on. arriving: the motion before it, into which the forces of so many seconds have been kicked.
@@ -56,11 +56,11 @@ private:
     [[nodiscard]] PointAccelerations combined_accelerations(const Vec3& forces, double fastest, bool die_out) const;
     [[nodiscard]] StuckSurfaces sticking(std::span<const SupportSurface> surfaces) const;
 
+    [[nodiscard]] const MovingParticle& particle() const { return step_.particle(); }
+    [[nodiscard]] const ForceInput& state() const { return step_.state(); }
+    [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
+
     const ParticleStep& step_;
-    const ResponseRules& rules_;
-    const MovingParticle& particle_;
-    const ForceInput& state_;
-    const ImpactResolver& impact_;
     const ContactManifold& manifold_;
 };
 

@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/nearby_surfaces.h"
 #include "ricochet/response/normal_rate.h"
 #include "ricochet/response/rim_side.h"
 
 namespace ricochet {
-ManifoldSurfaces::ManifoldSurfaces(ParticleStep& step, ContactManifold& manifold)
-    : step_(step), geometry_(step.geometry()), state_(step.state()), manifold_(manifold) {}
 
 void ManifoldSurfaces::find() {
     surfaces_.clear();
@@ -24,10 +23,10 @@ void ManifoldSurfaces::find() {
 }
 
 void ManifoldSurfaces::find_beside() {
-    if (state_.radius == 0.0) return;
-    const double reach = state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position);
-    step_.visit_near([&](SurfaceId surface) {
-        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
+    if (state().radius == 0.0) return;
+    const double reach = state().radius + kTouchingOffsets * geometry().contact_offset(state().position);
+    visit_near(step_, [&](SurfaceId surface) {
+        const CollisionWorld::Nearest nearest = geometry().nearest(surface, state().position);
         const auto point = manifold_.point_of(nearest.normal);
         if (nearest.distance > reach || !point || manifold_[*point].surface == surface) return;
         beside_.push_back({surface, *point});
@@ -38,21 +37,21 @@ bool ManifoldSurfaces::touches_next_piece(const Vec3& position) const {
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         const SurfaceId surface = manifold_[k].surface;
         const bool is_next = manifold_[k].flat ? is_beyond_rim(surface, position)
-                                               : touched_feature(geometry_, surface, position) !=
-                                                     touched_feature(geometry_, surface, state_.position);
+                                               : touched_feature(geometry(), surface, position) !=
+                                                     touched_feature(geometry(), surface, state().position);
         if (is_next) return true;
     }
-    const double reach = kTouchingOffsets * geometry_.contact_offset(state_.position);
+    const double reach = kTouchingOffsets * geometry().contact_offset(state().position);
     return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
-        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, position);
-        const CollisionWorld::Nearest point = geometry_.nearest(manifold_[other.point].surface, position);
+        const CollisionWorld::Nearest nearest = geometry().nearest(other.surface, position);
+        const CollisionWorld::Nearest point = geometry().nearest(manifold_[other.point].surface, position);
         return nearest.distance < point.distance - reach || (nearest.flat && !point.flat);
     });
 }
 
 bool ManifoldSurfaces::overlaps(const Vec3& position) const {
     return std::any_of(beside_.begin(), beside_.end(), [&](const Beside& other) {
-        return geometry_.nearest(other.surface, position).distance < state_.radius;
+        return geometry().nearest(other.surface, position).distance < state().radius;
     });
 }
 
@@ -65,14 +64,14 @@ bool ManifoldSurfaces::has_left_face(const Vec3& position) const {
 
 /// True where the foot of a position on a face's plane is so far beyond the face that it holds the particle no more.
 bool ManifoldSurfaces::is_beyond_rim(SurfaceId surface, const Vec3& position) const {
-    const double slack = kEdgeOffsets * geometry_.contact_offset(position);
-    const Vec3 normal = geometry_.unit_normal_of(surface, position);
-    if (const auto triangle = geometry_.world().triangle_of(surface)) {
-        const auto beyond = is_foot_beyond(geometry_.plane_of(*triangle), position, slack);
+    const double slack = kEdgeOffsets * geometry().contact_offset(position);
+    const Vec3 normal = geometry().unit_normal_of(surface, position);
+    if (const auto triangle = geometry().world().triangle_of(surface)) {
+        const auto beyond = is_foot_beyond(geometry().plane_of(*triangle), position, slack);
         if (beyond) return *beyond;
     }
-    const Vec3 height = geometry_.signed_distance_from(surface, position) * normal;
-    return geometry_.nearest(surface, position - height).distance > slack;
+    const Vec3 height = geometry().signed_distance_from(surface, position) * normal;
+    return geometry().nearest(surface, position - height).distance > slack;
 }
 
 void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path) {
@@ -110,7 +109,7 @@ void ManifoldSurfaces::meet(std::optional<Contact>& contact) {
 /// True for a surface of the manifold, and for what continues one: the next triangle of a plane, a seam, or a plane
 /// that another collider has there too.
 bool ManifoldSurfaces::goes_on(const ContactSurface& surface) const {
-    return geometry_.world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
+    return geometry().world().owns(surface.surface) && manifold_.point_of(surface.normal).has_value();
 }
 
 bool ManifoldSurfaces::goes_on_along(const Contact& contact) {
@@ -130,11 +129,12 @@ void ManifoldSurfaces::join_impact(Contact& contact) const {
         const SurfaceId surface = manifold_[k].surface;
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(),
                                           [&](const ContactSurface& other) { return other.surface == surface; });
-        const CollisionWorld::Nearest nearest = geometry_.nearest(surface, state_.position);
-        if (is_there || nearest.distance > state_.radius + kTouchingOffsets * geometry_.contact_offset(state_.position))
+        const CollisionWorld::Nearest nearest = geometry().nearest(surface, state().position);
+        if (is_there ||
+            nearest.distance > state().radius + kTouchingOffsets * geometry().contact_offset(state().position))
             continue;
         // A point next to a rim: the direction from the rim is rounding.
-        const bool is_beside_rim = state_.radius == 0.0 && nearest.rim;
+        const bool is_beside_rim = state().radius == 0.0 && nearest.rim;
         contact.surfaces[static_cast<std::size_t>(contact.count++)] =
             is_beside_rim ? ContactSurface{surface, manifold_[k].normal, manifold_[k].flat, true}
                           : ContactSurface{surface, nearest.normal, nearest.flat, true};
@@ -142,11 +142,11 @@ void ManifoldSurfaces::join_impact(Contact& contact) const {
 }
 
 void ManifoldSurfaces::touch_again(const Vec3& turning_point) {
-    const TouchRule rule = TouchRule::at(geometry_, state_.position);
+    const TouchRule rule = TouchRule::at(geometry(), state().position);
     manifold_.touch_again(rule);
     for (const SurfaceId surface : surfaces_) manifold_.touch(surface, rule);
     for (const Beside& other : beside_) {
-        const CollisionWorld::Nearest nearest = geometry_.nearest(other.surface, turning_point);
+        const CollisionWorld::Nearest nearest = geometry().nearest(other.surface, turning_point);
         if (nearest.flat) manifold_.add({other.surface, nearest.normal, true});
     }
 }

@@ -18,7 +18,7 @@ namespace ricochet {
 class ManifoldSurfaces {
 public:
     /// Both must outlive it.
-    ManifoldSurfaces(ParticleStep& step, ContactManifold& manifold);
+    ManifoldSurfaces(const ParticleStep& step, ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
     /// Looks for them where the particle is, for a way that begins there.
     void find();
@@ -54,9 +54,10 @@ private:
     [[nodiscard]] bool goes_on(const ContactSurface& surface) const;
     [[nodiscard]] bool goes_on_along(const Contact& contact);
 
-    ParticleStep& step_;
-    const SurfaceGeometry& geometry_;
-    const ForceInput& state_;
+    [[nodiscard]] const SurfaceGeometry& geometry() const { return step_.geometry(); }
+    [[nodiscard]] const ForceInput& state() const { return step_.state(); }
+
+    const ParticleStep& step_;
     ContactManifold& manifold_;
     std::vector<SurfaceId> surfaces_;
     std::vector<Beside> beside_;

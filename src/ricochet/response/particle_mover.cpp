@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/carried_particle.h"
 #include "ricochet/response/contact_with_bodies.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 namespace {
@@ -17,7 +19,7 @@ constexpr std::uint32_t kBouncesInNarrowGap = 2;
 /// depends on it.
 constexpr double kWholeStep = 1.0 + 1e-9;
 
-/// Lets a flight end after a duration, s, on its own path.
+/// Ends a flight after a duration, in s, on its own path.
 void cut(Flight& flight, double duration, const Integrator& integrator, const ForceField& forces) {
     if (flight.path.duration <= duration) return;
     flight.end_velocity = velocity_at(integrator, forces, flight, duration);
@@ -29,139 +31,163 @@ void cut(Flight& flight, double duration, const Integrator& integrator, const Fo
 
 MoveOutcome ParticleMover::run() {
     MoveOutcome& outcome = step_.outcome();
-    // What is copied here is large: no contact is assigned without need.
-    let_go_speed_ = particle_.contact.release_speed();
-    std::optional<Contact> contact = resume();
+    release_speed_ = particle_.contact.release_speed();
+    std::optional<Contact> contact = resume_contact();
     Flight flight;
     for (bool is_first = true; contact || step_.remaining() > 0.0; is_first = false) {
         rules_.poll();
         outcome.free_for = outcome.candidates_for = 0.0;
-        if (!contact) contact = fly(flight, std::exchange(flies_anew_, false) || is_first);
-        while (contact && !outcome.is_absorbed() && step_.has_budget() && has_room()) {
-            step_.impact().release(*contact);
-            contact = resolve(flight, *contact);
-        }
+        // Contacts are large to copy, so none is assigned without need.
+        if (!contact) contact = advance_flight(flight, std::exchange(flies_anew_, false) || is_first);
+        while (contact && !outcome.is_absorbed() && may_answer()) contact = answer(flight, *contact);
         if (outcome.is_absorbed()) break;
         if (contact && !follows_receding_body(contact)) {
-            step_.stop();
+            give_up(step_);
             break;
         }
     }
-    if (particle_.contact.count == 0) {
-        particle_.contact = let_go_speed_ ? ContactState::release_at(*let_go_speed_) : ContactState{};
-    }
-    if (frame_rules_ != nullptr) step_.store_position();
-    step_.impact().finish_recording();
-    step_.log().note_impact();
+    finish();
     return outcome;
 }
 
-/// At a surface that moves: what a kick has done for the time that is left is taken back, and done by the forces.
-std::optional<Contact> ParticleMover::resolve_without_impulse(const Flight& flight, const Contact& contact) {
-    if (!flies_anew_) {
-        particle_.state.velocity -= step_.remaining() * flight.acceleration;
-        step_.log().note_flight();  // of the integrator's doing, not of the surfaces'
-    }
-    flies_anew_ = is_without_impulse_ = true;
-    return resolve(Flight{}, contact);
-}
-
-/// False where surfaces close on it: many bounces have passed in almost no time, and more of them would not help.
-bool ParticleMover::has_room() {
-    if (!has_met_moving_ || step_.outcome().meetings() < bounces_at_look_ + kBouncesUntilPinched) return true;
-    bounces_at_look_ = step_.outcome().meetings();
-    const double before = std::exchange(remaining_at_look_, step_.remaining());
-    return before - step_.remaining() > kPinchedProgress * step_.duration();
-}
-
-/// Contact that lasted to the end of the last step goes on: on the surfaces of one frame, or of several, and of meshes
-/// that deform, until those of one are left.
-std::optional<Contact> ParticleMover::resume() {
+std::optional<Contact> ParticleMover::resume_contact() {
     if (frame_rules_ == nullptr) return contact_phase_.resume();
-    if (!step_.catch_up() || particle_.contact.count == 0) return std::nullopt;
+    if (!catch_up(step_) || particle_.contact.count == 0) return std::nullopt;
     return resume_among_bodies();
 }
 
-/// s, for which the next flight is planned.
-double ParticleMover::planned_duration(bool is_first) const {
-    if (particle_.beyond == 0.0) return step_.remaining();
-    const bool as_planned = is_first && particle_.planned != nullptr;
-    return as_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
-}
-
-/// Flies until the step's end or the contact that is returned. flight: the one before; replaced.
-std::optional<Contact> ParticleMover::fly(Flight& flight, bool is_first) {
+/// Flies until the step's end or the contact that is returned. flight: in, the last flight; out, the new one.
+std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first) {
     const double remaining = planned_duration(is_first);
-    const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
+    const Integrator integrator = is_without_kick_ ? IntegratorKind::ballistic : rules_.settings.integrator;
     flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
                       : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
     const auto look_ahead = look_ahead_of(flight);
     step_.log().note_impact();
-    const auto contact = step_.follow(flight, integrator, look_ahead ? &*look_ahead : nullptr,
-                                      is_first ? particle_.candidates : ContactCandidates{});
+    const auto contact = follow_flight(step_, flight, integrator, look_ahead ? &*look_ahead : nullptr,
+                                       is_first ? particle_.candidates : ContactCandidates{});
     step_.log().note_flight();
     step_.outcome().is_coarse |= flight.is_coarse;
-    if (flight.has_spent_substeps() && !contact) step_.stop();
+    if (flight.has_spent_substeps() && !contact) give_up(step_);
     return contact;
 }
 
-/// After an impact contact goes on with the surfaces that have held it, if it does not leave them: without a landing.
-/// At the end of a step they are kept for the next one. Returns the next contact.
-std::optional<Contact> ParticleMover::go_on(const Flight& flight, const Contact& contact) {
-    const Contact held = supporting_part(contact);
-    if (held.count == 0) return std::nullopt;
-    if (step_.remaining() > 0.0) return begin_contact(flight, held, {particle_.state.velocity, particle_.spin});
+/// Returns false if the budget of bounces is used up, or if moving surfaces close on the particle. In the latter case
+/// many bounces have taken almost no time, and more would not help.
+bool ParticleMover::may_answer() {
+    if (!step_.has_budget()) return false;
+    const std::uint32_t meetings = step_.outcome().meetings();
+    if (!has_met_moving_ || meetings < meetings_at_check_ + kBouncesUntilPinched) return true;
+    meetings_at_check_ = meetings;
+    const double before = std::exchange(remaining_at_check_, step_.remaining());
+    return before - step_.remaining() > kPinchedProgress * step_.duration();
+}
+
+/// Answers a contact with an impact and, if the rebound is slow, with lasting contact.
+std::optional<Contact> ParticleMover::answer(const Flight& flight, Contact& contact) {
+    step_.impact().release(contact);
+    if (!(flight.kick_duration > 0.0) || !meets_moving(contact)) return answer_impact(flight, contact);
+    retract_kick(flight);
+    return answer_impact(Flight{}, contact);
+}
+
+std::optional<Contact> ParticleMover::answer_impact(const Flight& flight, const Contact& contact) {
+    const ResolvedImpact impact = resolve_impact(flight, contact);
+    if (step_.outcome().is_absorbed()) return std::nullopt;
+    if (impact.is_fast && surfaces().approaches_pushed_body(contact.all())) return follow_receding_body(contact);
+    return begin_or_continue_contact(flight, contact, impact);
+}
+
+ParticleMover::ResolvedImpact ParticleMover::resolve_impact(const Flight& flight, const Contact& contact) {
+    ResolvedImpact impact{{particle_.state.velocity, particle_.spin}, rules_.settings.resting_speed};
+    impact.meets_moving = meets_moving(contact);
+    has_met_moving_ = has_met_moving_ || impact.meets_moving;
+    contact_phase_.remember(contact);
+    if (impact.meets_moving) {
+        ledger().note_driven();
+        impact.slowest_rebound = ricochet::slowest_rebound(rules_, *frame_rules_, particle_, contact);
+        impact.is_fast = surfaces().approach(contact.all()) > impact.slowest_rebound;
+    }
+    step_.set_resting_speed(impact.slowest_rebound);
+    const bool is_resumed = lands_again(contact, impact.slowest_rebound);
+    if (is_resumed) impact.release_speed = std::exchange(release_speed_, {});
+    ledger().set_hits(!is_resumed);
+    const bool is_impact = step_.impact().reflect(contact.all(), impact.is_fast);
+    ledger().set_hits(true);
+    ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
+    if (is_impact) release_speed_.reset();
+    // After a kick the particle lands from its motion before the impact, so the log takes both together.
+    if (flight.kick_duration == 0.0) step_.log().note_impact();
+    return impact;
+}
+
+std::optional<Contact> ParticleMover::begin_or_continue_contact(const Flight& flight, const Contact& contact,
+                                                                const ResolvedImpact& impact) {
+    const double before = step_.remaining();
+    auto next = begin_contact(flight, contact, impact.arriving);
+    const auto has_begun = [&] { return next || particle_.contact.count > 0 || step_.remaining() < before; };
+    if (!has_begun() && flight.kick_duration == 0.0) next = continue_contact(flight, contact);
+    if (!has_begun() && !release_speed_) release_speed_ = impact.release_speed;
+    if (!impact.meets_moving || has_begun()) return next;
+    // The body leaves the particle, but until the move's end its path keeps it in the particle's way.
+    if (surfaces().approach_of_paths(contact.all()) > impact.slowest_rebound) return follow_receding_body(contact);
+    step_.impact().go_with_paths(contact.all());
+    return next;
+}
+
+void ParticleMover::finish() {
+    if (particle_.contact.count == 0) {
+        particle_.contact = release_speed_ ? ContactState::release_at(*release_speed_) : ContactState{};
+    }
+    if (frame_rules_ != nullptr) step_.write_stored_position();
+    ledger().close();
+    step_.log().note_impact();
+}
+
+/// Continues contact after an impact with the surfaces that have supported the particle, if it does not leave them.
+/// There is no landing. At the end of a step they are kept for the next one.
+std::optional<Contact> ParticleMover::continue_contact(const Flight& flight, const Contact& contact) {
+    const Contact supporting = supporting_part(contact);
+    if (supporting.count == 0) return std::nullopt;
+    if (step_.remaining() > 0.0) return begin_contact(flight, supporting, {particle_.state.velocity, particle_.spin});
     ContactState contact_state;
-    for (const ContactSurface& surface : held.all()) {
-        const bool is_left =
-            step_.impact().separation_speed(surface) > kLeavingRounding * length(particle_.state.velocity);
-        if (!is_left && contact_state.count < contact_state.surfaces.size())
+    for (const ContactSurface& surface : supporting.all()) {
+        const bool is_left = surfaces().separation_speed(surface) > kLeavingRounding * length(particle_.state.velocity);
+        if (!is_left && contact_state.count < contact_state.surfaces.size()) {
             contact_state.surfaces[contact_state.count++] = surface.surface;
+        }
     }
     particle_.contact = contact_state;
     return std::nullopt;
 }
 
-/// Answers an impact. Returns the next contact when the particle slides into one.
-std::optional<Contact> ParticleMover::resolve(const Flight& flight, const Contact& contact) {
-    const bool moves = has_moving(contact);
-    if (moves && flight.kick_duration > 0.0) return resolve_without_impulse(flight, contact);
-    has_met_moving_ = has_met_moving_ || moves;
-    contact_phase_.remember(contact);
-    const Motion arriving{particle_.state.velocity, particle_.spin};
-    if (moves) step_.impact().note_driven();
-    // A slow one cuts no step short: it begins contact.
-    const double slow =
-        moves ? slowest_rebound(rules_, *frame_rules_, particle_, contact) : rules_.settings.resting_speed;
-    step_.set_resting_speed(slow);
-    const bool is_fast = moves && step_.impact().approach(contact.all()) > slow;
-    const bool is_resumed = lands_again(contact, slow);
-    const std::optional<double> release_speed = is_resumed ? std::exchange(let_go_speed_, {}) : std::nullopt;
-    step_.impact().set_hits(!is_resumed);
-    const bool is_impact = step_.impact().reflect(contact.all(), is_fast);
-    step_.impact().set_hits(true);
-    ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
-    if (is_impact) let_go_speed_.reset();
-    // A kicked particle that lands does so anew, without a rebound.
-    if (flight.kick_duration == 0.0) step_.log().note_impact();
-    if (step_.outcome().is_absorbed()) return std::nullopt;
-    if (is_fast && step_.impact().waits_for(contact.all())) return follow_receding_body(contact);
-    const double before = step_.remaining();
-    auto next = begin_contact(flight, contact, arriving);
-    const auto has_begun = [&] { return next || particle_.contact.count > 0 || step_.remaining() < before; };
-    if (!has_begun() && flight.kick_duration == 0.0) next = go_on(flight, contact);
-    if (!has_begun() && !let_go_speed_) let_go_speed_ = release_speed;
-    if (!moves || has_begun()) return next;
-    // It goes on into a body that leaves it, but is where its path has it until the move's end.
-    if (step_.impact().approach_of_paths(contact.all()) > slow) return follow_receding_body(contact);
-    step_.impact().go_with_paths(contact.all());
-    return next;
+/// Returns the duration, in s, for which the next flight is planned.
+double ParticleMover::planned_duration(bool is_first) const {
+    if (particle_.beyond == 0.0) return step_.remaining();
+    const bool is_planned = is_first && particle_.planned != nullptr;
+    return is_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
 }
 
-/// The horizon of the last flight of a step: as far as its path is known, which it is where the acceleration is
-/// uniform and the steps are those of the run.
-std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
+/// Takes back what a kick has added for the time left, at an impact on a moving surface. From then on the forces act on
+/// the flight itself.
+void ParticleMover::retract_kick(const Flight& flight) {
+    if (!flies_anew_) {
+        particle_.state.velocity -= step_.remaining() * flight.acceleration;
+        step_.log().note_flight();  // a change by the integrator, not by surfaces
+    }
+    flies_anew_ = is_without_kick_ = true;
+}
+
+/// Notes that contact on a body has ended the flight: the next one does not continue it.
+void ParticleMover::leave_flight() {
+    flies_anew_ = true;
+    is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
+}
+
+/// Returns the horizon of the last flight of a step: as far as its path is known. That requires uniform acceleration
+/// and steps of the run's length.
+std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) const {
     const ForceInput& state = particle_.state;
     const double remaining = step_.remaining();
     const double time_step = rules_.settings.time_step;
@@ -180,7 +206,7 @@ std::optional<LookAhead> ParticleMover::look_ahead_of(const Flight& flight) {
     const double speed = length(flight.end_velocity) + acceleration * duration;
     const double largest = max_abs(flight.path.end) + speed * duration + state.radius;
     if (!(largest < kLargestCoordinate) || !(speed < kMaxSpeed)) return std::nullopt;
-    const double clocks = 4.0 * ulp(state.time + duration) * speed;  // steps are as long as the clock's times say
+    const double clocks = 4.0 * ulp(state.time + duration) * speed;  // the clock's times are rounded
     look_ahead.margin = kLookAheadSlack * largest + 0.125 * time_step * time_step * acceleration + clocks;
     return look_ahead;
 }

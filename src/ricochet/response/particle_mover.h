@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the life of one particle in one step.
+/// Private to the exact response: the life of one particle in one step, as a loop over named stages.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,17 @@
 
 namespace ricochet {
 
-/// The exact response to one particle in one step: fly to the first contact, answer it, go on with the time that is
-/// left.
+/// Moves one particle over one step. The stages:
+/// 1. Resume contact: lasting contact continues from the last step.
+/// 2. Advance flight: the integrator gives a path; its first contact is found; the particle moves there in certified
+///    segments and stops at a safe position.
+/// 3. Resolve impact: restitution, friction and spin.
+/// 4. Begin or continue contact: if the rebound is slow, the particle slides, rolls or rests on the surfaces.
+/// 5. Finish.
+/// Stages 2 to 4 repeat until the time is used up. Stages 1, 2 and 4 return the contact to which they have led.
 class ParticleMover {
 public:
-    /// rides: null where nothing moves.
+    /// frame_rules: null if no collider moves. All must outlive it.
     ParticleMover(const ResponseRules& rules, const FrameRules* frame_rules, MovingParticle& particle, double duration,
                   MoveScratch& scratch)
         : rules_(rules),
@@ -30,51 +36,75 @@ public:
     MoveOutcome run();
 
 private:
-    std::optional<Contact> fly(Flight& flight, bool is_first);
+    /// Result of an impact.
+    struct ResolvedImpact {
+        Motion arriving;            ///< the motion before it
+        double slowest_rebound;     ///< m/s; slower rebounds are contact
+        bool meets_moving = false;  ///< one of its surfaces belongs to a body
+        bool is_fast = false;       ///< on a body, faster than the slowest rebound
+        /// Speed at which a body's velocity jump had released the particle, m/s, if the impact only resumes that
+        /// contact.
+        std::optional<double> release_speed{};
+    };
+
+    [[nodiscard]] std::optional<Contact> resume_contact();
+    [[nodiscard]] std::optional<Contact> advance_flight(Flight& flight, bool is_first);
+    [[nodiscard]] bool may_answer();
+    [[nodiscard]] std::optional<Contact> answer(const Flight& flight, Contact& contact);
+    [[nodiscard]] std::optional<Contact> answer_impact(const Flight& flight, const Contact& contact);
+    [[nodiscard]] ResolvedImpact resolve_impact(const Flight& flight, const Contact& contact);
+    [[nodiscard]] std::optional<Contact> begin_or_continue_contact(const Flight& flight, const Contact& contact,
+                                                                   const ResolvedImpact& impact);
+    void finish();
+
+    // Flights.
     [[nodiscard]] double planned_duration(bool is_first) const;
-    std::optional<Contact> resolve(const Flight& flight, const Contact& contact);
-    std::optional<Contact> resolve_without_impulse(const Flight& flight, const Contact& contact);
-    [[nodiscard]] bool has_room();
-    bool follows_receding_body(std::optional<Contact>& contact);
-    [[nodiscard]] bool has_moving(const Contact& contact) const {
+    [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight) const;
+    void retract_kick(const Flight& flight);
+    void leave_flight();
+
+    // Contact in the world and on bodies.
+    [[nodiscard]] std::optional<Contact> resume_among_bodies();
+    [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
+                                                       const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> continue_contact(const Flight& flight, const Contact& contact);
+    [[nodiscard]] std::optional<Contact> begin_in_frame(BodyId body, const Contact& contact, const Motion& arriving);
+    [[nodiscard]] std::optional<Contact> begin_shared();
+    [[nodiscard]] std::optional<Contact> follow_shared();
+    template <class Follow>
+    [[nodiscard]] std::optional<Contact> follow_in_frame(BodyId body, Contact* contact, const Follow& follow);
+    template <class Follow>
+    [[nodiscard]] std::optional<Contact> follow_in_frame_unsettled(BodyId body, Contact* contact, const Follow& follow);
+
+    // Bodies that leave the particle.
+    [[nodiscard]] bool follows_receding_body(std::optional<Contact>& contact);
+    [[nodiscard]] std::optional<Contact> follow_receding_body(const Contact& contact);
+    [[nodiscard]] bool is_released_by_jump() const;
+    [[nodiscard]] bool lands_again(const Contact& contact, double slow) const;
+
+    [[nodiscard]] bool meets_moving(const Contact& contact) const {
         return rules_.bodies != nullptr &&
                std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
                    return rules_.bodies->body_of(surface.surface) != kWorldBody;
                });
     }
-    [[nodiscard]] std::optional<Contact> resume();
-    [[nodiscard]] std::optional<Contact> resume_among_bodies();
-    [[nodiscard]] bool is_released_by_jump() const;
-    [[nodiscard]] double rounding_on(BodyId body) const;
-    [[nodiscard]] std::optional<Contact> begin_contact(const Flight& flight, const Contact& contact,
-                                                       const Motion& arriving);
-    [[nodiscard]] std::optional<Contact> begin_attached(BodyId body, const Contact& contact, const Motion& arriving);
-    [[nodiscard]] std::optional<Contact> begin_shared();
-    [[nodiscard]] Contact part_with(BodyId body, const Contact& contact) const;
-    [[nodiscard]] std::optional<Contact> follow_receding_body(const Contact& contact);
-    [[nodiscard]] std::optional<Contact> go_on(const Flight& flight, const Contact& contact);
-    [[nodiscard]] bool lands_again(const Contact& contact, double slow);
-    template <class Go>
-    std::optional<Contact> attach(BodyId body, Contact* contact, const Go& go);
-    template <class Go>
-    std::optional<Contact> attach_unsettled(BodyId body, Contact* contact, const Go& go);
-    [[nodiscard]] std::optional<Contact> follow_shared();
-    [[nodiscard]] std::optional<LookAhead> look_ahead_of(const Flight& flight);
+    [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
+    [[nodiscard]] ImpulseLedger& ledger() { return step_.impact().ledger(); }
 
     const ResponseRules& rules_;
     const FrameRules* frame_rules_;
     MovingParticle& particle_;
     ParticleStep step_;
     ContactPhase contact_phase_;
-    std::uint32_t bounces_at_look_ = 0;  // of has_room()
-    double remaining_at_look_ = std::numeric_limits<double>::infinity();
+    std::uint32_t meetings_at_check_ = 0;  // of may_answer()
+    double remaining_at_check_ = std::numeric_limits<double>::infinity();
     int shared_count_ = 0;         // of contacts with several frames at once
-    bool has_met_moving_ = false;  // a surface that moves, in this step
-    bool flies_anew_ = false;      // the next flight does not go on from one before: it comes from a ride
-    /// For the rest of the step: another kick would lead what leaves a surface back onto it at once.
-    bool is_without_impulse_ = false;
-    /// In flight since a jump of a body's velocity has let it go: see ContactState::release_speed().
-    std::optional<double> let_go_speed_;
+    bool has_met_moving_ = false;  // a surface of a body, in this step
+    bool flies_anew_ = false;      // the next flight does not continue the last one: it begins after contact on a body
+    /// For the rest of the step. Another kick would lead a particle that leaves a surface back onto it at once.
+    bool is_without_kick_ = false;
+    /// Set in flight after a velocity jump of a body has released the particle. See ContactState::release_speed().
+    std::optional<double> release_speed_;
 };
 
 }  // namespace ricochet

@@ -237,8 +237,8 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view, const Vec3& cente
     contact.rolling_friction = material.rolling_friction;
     contact.spinning_friction = material.spinning_friction;
     contact.mass = mass;
-    contact.velocity = impact_.velocity_of({view.surface, view.normal, true}, center);
-    contact.angular_velocity = impact_.angular_velocity_of(view.surface);
+    contact.velocity = impact_.surfaces().velocity_of({view.surface, view.normal, true}, center);
+    contact.angular_velocity = impact_.surfaces().angular_velocity_of(view.surface);
     return contact;
 }
 
@@ -257,7 +257,7 @@ ContactForces PenaltyMover::force_at(const BodyState& body, double time, const s
         const Vec3 acceleration = force.force / state_.mass;
         contact_force.acceleration += acceleration;
         if (inertia > 0.0) contact_force.spin_acceleration += force.torque / inertia;
-        if (weight > 0.0) impact_.record_impulse(view.surface, weight * acceleration, false);
+        if (weight > 0.0) impact_.ledger().record_impulse(view.surface, weight * acceleration, false);
     }
     return contact_force;
 }
@@ -268,12 +268,12 @@ void PenaltyMover::begin_contacts() {
         if (watch_.memory(view.collider).touching) continue;
         ++outcome_.bounces;
         const ContactSurface surface{view.surface, view.normal, true};
-        if (impact_.material_of(view.surface).is_random()) {
+        if (impact_.surfaces().material_of(view.surface).is_random()) {
             impact_.reflect({&surface, 1});
             if (outcome_.is_absorbed()) return;
         } else {
-            impact_.record_impulse(view.surface, Vec3{}, true);
-            impact_.record(surface, state_.velocity);
+            impact_.ledger().record_impulse(view.surface, Vec3{}, true);
+            impact_.ledger().log_contact(surface, state_.velocity);
             // The contact's impulse is yet to come; what arrives along the normal stands for it.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
             if (outcome_.is_absorbed()) return;

@@ -124,7 +124,7 @@ private:
         return std::all_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
             const double towards = -dot(state_.velocity, contact.normal);
             if (towards <= 0.0) return true;
-            const Material& material = impact_.material_of(contact.surface);
+            const Material& material = impact_.surfaces().material_of(contact.surface);
             const double pressed = std::max(0.0, -dot(pull_, contact.normal)) * duration;
             const double approach = std::max(0.0, towards - pressed);
             return pressed > 0.0 && material.can_hold(rules_.settings.resting_speed) &&

@@ -104,8 +104,8 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
                             rules_.bodies->body_of(particle.contact.surfaces[0]) != kWorldBody;
     if (is_carried) {
         // It goes with its body, which takes what comes so late.
-        impact.record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
-        impact.finish_recording();
+        impact.ledger().record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
+        impact.ledger().close();
         return;
     }
     const Vec3 pull = rules_.forces.acceleration(particle.state);
@@ -122,14 +122,14 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
                 if (before.surfaces[j] == after.surfaces[k]) given -= duration * before.reaction[j];
             }
             left -= given;
-            impact.record_impulse(after.surfaces[k], given, false, Vec3{});
+            impact.ledger().record_impulse(after.surfaces[k], given, false, Vec3{});
         }
-        impact.record_impulse(after.surfaces[0], left, false, Vec3{});
+        impact.ledger().record_impulse(after.surfaces[0], left, false, Vec3{});
         particle.spin += duration * (after.spin_acceleration - before.spin_acceleration);
         corrections = kept;
     }
     particle.state.velocity += corrections;
-    impact.finish_recording();
+    impact.ledger().close();
 }
 
 void Response::add_weight(const MovingParticle& /*particle*/, double /*duration*/,

@@ -1,12 +1,12 @@
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/response/certified_motion.h"
+#include "ricochet/response/particle_step.h"
 #include "ricochet/response/rollback.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/predicates/predicates.h"
-#include "ricochet/response/particle_step.h"
 
 namespace ricochet {
 namespace {
@@ -94,7 +94,7 @@ void RollbackMover::run(double duration) {
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
-    manifold_.record_impulse(-state_.velocity - duration * pull_, duration, impact_);
+    manifold_.record_impulse(-state_.velocity - duration * pull_, duration, impact_.ledger());
     state_.velocity = particle_.spin = Vec3{};
     state_.time += duration;
     outcome_.end = MoveEnd::resting;
@@ -184,10 +184,10 @@ void RollbackMover::follow_interval(double elapsed) {
     const bool is_over = elapsed >= interval_->duration;
     const Motion motion = rests ? interval_->motion
                                 : motion_after(*interval_, elapsed, is_over, flight_.path.velocity(elapsed),
-                                               state_.radius, manifold_.supports(impact_).all());
+                                               state_.radius, manifold_.supports(impact_.surfaces()).all());
     state_.velocity = motion.velocity;
     particle_.spin = motion.spin;
-    manifold_.record_impulse(state_.velocity - before - elapsed * pull_, elapsed, impact_);
+    manifold_.record_impulse(state_.velocity - before - elapsed * pull_, elapsed, impact_.ledger());
     outcome_.end = rests ? MoveEnd::resting : MoveEnd::moving;
     kick_velocity_ = Vec3{};
     if (turns_) turn_along();
@@ -228,7 +228,7 @@ bool RollbackMover::will_stay() const {
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& hit : hit_) {
-        const Material& material = impact_.material_of(hit.surface);
+        const Material& material = impact_.surfaces().material_of(hit.surface);
         // What the step's own kick put into the velocity is not the speed of an impact.
         const double approach = -dot(state_.velocity, hit.normal) - std::max(0.0, -dot(kick_velocity_, hit.normal));
         const bool can_rest = material.can_hold(rules_.settings.resting_speed);
@@ -258,7 +258,7 @@ void RollbackMover::plan_contact(double duration) {
     }
     const FrictionLimits grip = manifold_.grip(kicked ? 0.0 : 1.0, duration);
     interval_ = plan_interval({state_.velocity, particle_.spin}, state_.radius, pull_,
-                              manifold_.supports(impact_).all(), grip, duration);
+                              manifold_.supports(impact_.surfaces()).all(), grip, duration);
     manifold_.load(*interval_);
     limit_interval();
 }
@@ -292,7 +292,7 @@ void RollbackMover::turn_along() {
     manifold_.touch_again(touch_rule());
     const auto turned = turned_along(state_.velocity, manifold_.normals());
     if (manifold_.empty() || !turned) return;
-    impact_.record_impulse(manifold_[0].surface, *turned - state_.velocity, false);
+    impact_.ledger().record_impulse(manifold_[0].surface, *turned - state_.velocity, false);
     state_.velocity = *turned;
 }
 

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/carried_particle.h"
 #include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/impact_problem.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 namespace {
@@ -18,10 +20,9 @@ constexpr int kCorrections = 3;
 }  // namespace
 
 bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
-    const ImpactResolver& impact = step_.impact();
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        const Material& material = impact.material_of(surface.surface);
-        const double approach = impact.surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
+        const Material& material = surfaces().material_of(surface.surface);
+        const double approach = surfaces().surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
         if (surface.is_support || !(approach > 0.0)) return true;
         return !material.is_random() && material.restitution_at(approach) * approach < step_.resting_speed();
     });
@@ -29,27 +30,27 @@ bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) cons
 
 /// Loses what leads into the surfaces; false where they leave it no way out.
 bool SharedContact::land() {
-    ImpactResolver& impact = step_.impact();
     const double before = fastest();
     // What goes on along all of them has landed already.
     const bool is_along = std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
         return separation_speed(one) >= -kStopRounding * before;
     });
     if (is_along) return true;
-    std::array<ImpactSurface, kMostSupports> surfaces;
-    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = impact.landing_on(touched_[k].surface);
+    std::array<ImpactSurface, kMostSupports> landing;
+    for (std::size_t k = 0; k < count_; ++k) landing[k] = surfaces().landing_on(touched_[k].surface);
     const ImpactResult result =
-        solve_impact({state_.velocity, particle_.spin}, state_.radius, std::span(surfaces).first(count_));
-    state_.velocity = result.after.velocity;
-    particle_.spin = result.after.spin;
+        solve_impact({state().velocity, particle().spin}, state().radius, std::span(landing).first(count_));
+    state().velocity = result.after.velocity;
+    particle().spin = result.after.spin;
     for (std::size_t k = 0; k < count_; ++k) {
         if (result.velocity_change[k] != Vec3{}) {
-            impact.record_impulse(touched_[k].surface.surface, result.velocity_change[k], false);
+            ledger().record_impulse(touched_[k].surface.surface, result.velocity_change[k], false);
         };
     }
-    const double scale = before + length(state_.velocity);
-    return std::all_of(touched().begin(), touched().end(),
-                       [&](const Touched& one) { return impact.separation_speed(one.surface) >= -kSlowSlip * scale; });
+    const double scale = before + length(state().velocity);
+    return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
+        return surfaces().separation_speed(one.surface) >= -kSlowSlip * scale;
+    });
 }
 
 /// Returns the speed, m/s, that scales the rounding of departures: beside a surface at rest, the velocity of a particle
@@ -57,13 +58,13 @@ bool SharedContact::land() {
 double SharedContact::fastest() const {
     double carried = 0.0;
     for (const Touched& one : touched()) carried = std::max(carried, length(one.velocity));
-    return length(state_.velocity) + carried;
+    return length(state().velocity) + carried;
 }
 
 /// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What
 /// does not press is left.
 SharedContact::SupportKind SharedContact::settle(double duration) {
-    const Vec3 leaving = state_.velocity;
+    const Vec3 leaving = state().velocity;
     for (;;) {
         std::array<Vec3, kMostSupports> normals;
         std::array<double, kMostSupports> departures{};
@@ -71,7 +72,7 @@ SharedContact::SupportKind SharedContact::settle(double duration) {
             normals[k] = touched_[k].surface.normal;
             departures[k] = -separation_speed(touched_[k]);
         }
-        state_.velocity += shift_by({normals.data(), count_}, {departures.data(), count_});
+        state().velocity += shift_by({normals.data(), count_}, {departures.data(), count_});
         const std::size_t before = count_;
         const SupportKind hold = plan(duration);
         std::size_t contact_state = 0;
@@ -81,14 +82,14 @@ SharedContact::SupportKind SharedContact::settle(double duration) {
         }
         if (contact_state == before || contact_state == 0 || hold != SupportKind::shared) {
             // Surfaces of one frame answer the departure from them by themselves.
-            if (hold != SupportKind::shared) state_.velocity = leaving;
+            if (hold != SupportKind::shared) state().velocity = leaving;
             if (hold == SupportKind::shared) {
-                step_.impact().record_impulse(touched_[0].surface.surface, state_.velocity - leaving, false);
+                ledger().record_impulse(touched_[0].surface.surface, state().velocity - leaving, false);
             }
             return hold;
         }
         count_ = contact_state;
-        state_.velocity = leaving;
+        state().velocity = leaving;
     }
 }
 
@@ -98,7 +99,7 @@ StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const Supp
                                       double most) const {
     StuckSurfaces stuck{};
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
-        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip_on(surfaces[k], motion, state_.radius)) <= most;
+        stuck[k].to_slip = surfaces[k].friction > 0.0 && length(slip_on(surfaces[k], motion, state().radius)) <= most;
     }
     return stuck;
 }
@@ -114,12 +115,12 @@ SharedContact::SupportKind SharedContact::plan(double duration) {
     }
     shift_ = shift_by({normals.data(), count_}, {advances.data(), count_});
     for (std::size_t k = 0; k < count_; ++k) surfaces[k] = supports(touched_[k], shift_);
-    const Vec3 forces = step_.rules().forces.acceleration(state_);
-    const double reach = kTouchingOffsets * contact_offset(state_.position);
+    const Vec3 forces = step_.rules().forces.acceleration(state());
+    const double reach = kTouchingOffsets * contact_offset(state().position);
     const FrictionLimits grip{1.0, step_.duration() / kShortestIntervals, reach};
-    const Motion motion{state_.velocity - shift_, particle_.spin};
+    const Motion motion{state().velocity - shift_, particle().spin};
     const std::span<const SupportSurface> supporting_it(surfaces.data(), count_);
-    interval_ = plan_interval(motion, state_.radius, forces, supporting_it, grip, duration,
+    interval_ = plan_interval(motion, state().radius, forces, supporting_it, grip, duration,
                               sticking(motion, supporting_it, kNegligibleSpeed * duration * length(forces)));
     std::optional<BodyId> holder;
     bool is_shared = false;
@@ -147,7 +148,7 @@ Vec3 SharedContact::kept_off(Vec3 end, double time) const {
         std::size_t count = 0;
         for (std::size_t k = 0; k < count_; ++k) {
             const Height height = height_above(touched_[k], end, time);
-            const double missing = state_.radius + height.offset - height.above;
+            const double missing = state().radius + height.offset - height.above;
             if (interval_.reaction[k] == Vec3{} && !(missing > 0.0)) continue;
             normals[count] = height.normal;
             lifts[count++] = missing;
@@ -161,10 +162,10 @@ Vec3 SharedContact::kept_off(Vec3 end, double time) const {
 /// On which side of the surface it is would be rounding from then on: puts it at the contact offset.
 void SharedContact::lift() {
     const bool is_low = std::any_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        const Height height = height_above(one, state_.position, state_.time);
-        return height.above - state_.radius < 0.25 * height.offset;
+        const Height height = height_above(one, state().position, state().time);
+        return height.above - state().radius < 0.25 * height.offset;
     });
-    if (is_low) step_.shift_to(kept_off(state_.position, state_.time));
+    if (is_low) shift_to(step_, kept_off(state().position, state().time));
 }
 
 /// Between its ends the path of a point can be behind surfaces that turn, by the cubic's error, where it would be
@@ -178,15 +179,15 @@ void SharedContact::lift_middle(Path& path) const {
     bool is_behind = false;
     for (std::size_t k = 0; k < count_; ++k) {
         const auto height_at = [&](double time) {
-            return height_above(touched_[k], path.position(time), state_.time + time);
+            return height_above(touched_[k], path.position(time), state().time + time);
         };
         double behind = 0.0;
         for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
             const Height height = height_at(part * path.duration);
-            const double missing = state_.radius + height.offset - height.above;
+            const double missing = state().radius + height.offset - height.above;
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
         }
-        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state_.radius)) behind = 0.0;
+        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state().radius)) behind = 0.0;
         if (interval_.reaction[k] == Vec3{} && behind == 0.0) continue;
         is_behind = is_behind || behind > 0.0;
         normals[count] = height_at(0.0).normal;
@@ -207,9 +208,9 @@ void SharedContact::lift_middle(Path& path) const {
 Path SharedContact::interval_path(double duration) const {
     const Vec3 velocity = interval_.motion.velocity + shift_;
     const Vec3 last = velocity + duration * interval_.acceleration;
-    const Vec3 end = state_.position + duration * (velocity + (0.5 * duration) * interval_.acceleration);
-    const double until = duration >= step_.remaining() ? particle_.step_end : state_.time + duration;
-    Path path = hermite_path(state_.position, velocity, kept_off(end, until), last, duration);
+    const Vec3 end = state().position + duration * (velocity + (0.5 * duration) * interval_.acceleration);
+    const double until = duration >= step_.remaining() ? particle().step_end : state().time + duration;
+    Path path = hermite_path(state().position, velocity, kept_off(end, until), last, duration);
     if (path.duration > 0.0) lift_middle(path);
     return path;
 }
@@ -221,7 +222,7 @@ Vec3 SharedContact::velocity_change_of(std::size_t k, double elapsed, bool has_a
     const Vec3 reaction = elapsed * interval_.reaction[k];
     if (reaction == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return reaction;
     const Vec3& n = one.surface.normal;
-    return reaction + 0.5 * dot(reaction, n) * (height_above(one, state_.position, state_.time).normal - n);
+    return reaction + 0.5 * dot(reaction, n) * (height_above(one, state().position, state().time).normal - n);
 }
 
 /// Relative to all that presses on it.
@@ -230,10 +231,10 @@ bool SharedContact::rests() const {
     for (std::size_t k = 0; k < count_; ++k) {
         if (interval_.reaction[k] == Vec3{}) continue;
         const Touched& one = touched_[k];
-        const double rounding = kStopRounding * (length(state_.velocity) + length(one.velocity));
-        if (length(state_.velocity - one.velocity) > rounding) return false;
-        const Vec3 turning = step_.impact().angular_velocity_of(one.surface.surface);
-        if (state_.radius * length(particle_.spin - turning) > rounding) return false;
+        const double rounding = kStopRounding * (length(state().velocity) + length(one.velocity));
+        if (length(state().velocity - one.velocity) > rounding) return false;
+        const Vec3 turning = surfaces().angular_velocity_of(one.surface.surface);
+        if (state().radius * length(particle().spin - turning) > rounding) return false;
         is_held = true;
     }
     return is_held;
@@ -253,7 +254,7 @@ Path SharedContact::path_until_rim(double& duration) const {
 SharedContact::Followed SharedContact::follow_interval(double most) {
     step_.log().note_impact();
     const double before = step_.remaining();
-    const Vec3 forces = step_.rules().forces.acceleration(state_);
+    const Vec3 forces = step_.rules().forces.acceleration(state());
     const Vec3 velocity = interval_.motion.velocity + shift_;
     // What ends at once has ended after the shortest interval.
     const double shortest = std::min(before, step_.duration() / kShortestIntervals);
@@ -270,43 +271,43 @@ SharedContact::Followed SharedContact::follow_interval(double most) {
         return next;
     };
     const std::vector<SurfaceId> supported_by = supporting(path);
-    followed.contact = step_.follow(path, supported_by, closer);
+    followed.contact = follow_path(step_, path, supported_by, closer);
     if (followed.contact) lift();
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
     // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
-    if (has_arrived || is_on_deforming()) state_.velocity = velocity + elapsed * interval_.acceleration;
+    if (has_arrived || is_on_deforming()) state().velocity = velocity + elapsed * interval_.acceleration;
     for (std::size_t k = 0; k < count_; ++k) {
         const Vec3 reaction = velocity_change_of(k, elapsed, has_arrived);
-        if (has_arrived) state_.velocity += reaction - elapsed * interval_.reaction[k];
-        if (reaction != Vec3{}) step_.impact().record_impulse(touched_[k].surface.surface, reaction, false);
+        if (has_arrived) state().velocity += reaction - elapsed * interval_.reaction[k];
+        if (reaction != Vec3{}) ledger().record_impulse(touched_[k].surface.surface, reaction, false);
     }
-    particle_.spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
-    step_.impact().note_driven();
+    particle().spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
+    ledger().note_driven();
     step_.log().note_contact(forces, path, true, supported_by);
     return followed;
 }
 
 std::optional<Contact> SharedContact::follow() {
-    particle_.contact = {};
+    particle().contact = {};
     bool has_jumped = false;
     for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         step_.note_interval();
-        step_.impact().note_driven();
+        ledger().note_driven();
         gather();
         if (count_ == 0) return std::nullopt;
         if (!land()) {
             step_.log().note_impact();
-            step_.stop();
+            give_up(step_);
             return std::nullopt;
         }
         const std::optional<double> jump = next_jump();
         double most = std::min(step_.remaining(), longest());
-        if (jump) most = std::clamp(*jump - state_.time, 0.0, most);
+        if (jump) most = std::clamp(*jump - state().time, 0.0, most);
         const SupportKind hold = settle(most);
-        if (hold == SupportKind::single) particle_.contact = contact_state();
+        if (hold == SupportKind::single) particle().contact = contact_state();
         if (hold != SupportKind::shared) return std::nullopt;
-        const double begin = state_.time;
+        const double begin = state().time;
         Followed followed = follow_interval(most);
         if (followed.contact) {
             join_impact(*followed.contact);
@@ -317,7 +318,7 @@ std::optional<Contact> SharedContact::follow() {
     }
     // At a jump a body goes on with another velocity, and the particle with its own.
     if (step_.remaining() <= 0.0 && !has_jumped) {
-        particle_.contact = contact_state();
+        particle().contact = contact_state();
         if (rests()) step_.outcome().end = MoveEnd::resting;
     }
     return std::nullopt;

@@ -20,7 +20,7 @@ namespace ricochet {
 class SharedContact {
 public:
     /// In the world. The step must outlive it.
-    explicit SharedContact(ParticleStep& step) : step_(step), particle_(step.particle()), state_(step.state()) {}
+    explicit SharedContact(ParticleStep& step) : step_(step) {}
 
     /// True where an impact is so slow, on all surfaces that it approaches, that it begins or goes on. arriving: the
     /// motion before.
@@ -88,9 +88,12 @@ private:
     [[nodiscard]] std::span<const Touched> touched() const { return {touched_.data(), count_}; }
     [[nodiscard]] MovingView view_at(double time) const;
 
+    [[nodiscard]] MovingParticle& particle() const { return step_.particle(); }
+    [[nodiscard]] ForceInput& state() const { return step_.state(); }
+    [[nodiscard]] const SurfaceKinematics& surfaces() const { return step_.impact().surfaces(); }
+    [[nodiscard]] ImpulseLedger& ledger() { return step_.impact().ledger(); }
+
     ParticleStep& step_;
-    MovingParticle& particle_;
-    ForceInput& state_;
     std::array<Touched, kMostSupports> touched_;
     std::size_t count_ = 0;
     Vec3 shift_;  ///< m/s, of the frame that the interval is planned in

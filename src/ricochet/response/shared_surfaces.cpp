@@ -7,6 +7,7 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
+#include "ricochet/response/nearby_surfaces.h"
 #include "ricochet/response/shared_contact.h"
 
 namespace ricochet {
@@ -17,10 +18,10 @@ MovingView SharedContact::view_at(double time) const {
 
 /// All that is touched, of all frames, but what is left.
 void SharedContact::gather() {
-    const double margin = state_.radius + kEdgeOffsets * contact_offset(state_.position);
+    const double margin = state().radius + kEdgeOffsets * contact_offset(state().position);
     const Vec3 by{margin, margin, margin};
     std::vector<BodyId> near{kWorldBody};
-    step_.rules().bodies->near({state_.position - by, state_.position + by}, kWorldBody, near);
+    step_.rules().bodies->near({state().position - by, state().position + by}, kWorldBody, near);
     count_ = 0;
     for (const BodyId body : near) gather_in(body);
     gather_deforming();
@@ -29,47 +30,47 @@ void SharedContact::gather() {
 void SharedContact::gather_deforming() {
     const MovingColliders& bodies = *step_.rules().bodies;
     const double separation_speed = step_.resting_speed();
-    for (const DeformedContact& contact : touched_surfaces(deforming(), state_, separation_speed)) {
+    for (const DeformedContact& contact : touched_surfaces(deforming(), state(), separation_speed)) {
         if (count_ == kMostSupports) return;
         Touched& touched = touched_[count_++];
         const ContactSurface& surface = contact.surface;
         touched.surface = surface;
         touched.all = contact.all;
         touched.body = bodies.body_of(surface.surface);
-        touched.velocity = step_.impact().velocity_of(surface);
-        touched.turning = deforming().motion_at(surface.surface, state_.position, state_.time).turning;
+        touched.velocity = surfaces().velocity_of(surface);
+        touched.turning = deforming().motion_at(surface.surface, state().position, state().time).turning;
     }
 }
 
 void SharedContact::gather_in(BodyId body) {
-    const MovingView view = view_at(state_.time);
+    const MovingView view = view_at(state().time);
     const CollisionWorld& world = view.bodies().world(body);
     if (world.empty()) return;
-    ForceInput seen = state_;
-    seen.position = view.local_position(body, state_.position, 0.0);
-    seen.velocity = view.velocity_in(body, {state_.position, 0.0, state_.position}, state_.velocity);
+    ForceInput seen = state();
+    seen.position = view.local_position(body, state().position, 0.0);
+    seen.velocity = view.velocity_in(body, {state().position, 0.0, state().position}, state().velocity);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(world, planes);
     ContactManifold manifold(geometry, seen);
-    const double offset = std::max(contact_offset(seen.position), contact_offset(state_.position));
+    const double offset = std::max(contact_offset(seen.position), contact_offset(state().position));
     const double reach = kTouchingOffsets * offset;
     const TouchRule rule{reach, reach, reach, step_.resting_speed()};
-    step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
+    visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostSupports; ++k) {
         Touched& touched = touched_[count_++];
         touched.surface = manifold[k];
         touched.all.clear();
         if (!manifold[k].flat && !world.is_shape(manifold[k].surface)) {
             const Vec3 rim = rim_of(world, manifold[k].surface, seen.position);
-            step_.visit_near_in(geometry, seen.position, reach, [&](SurfaceId other) {
+            visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId other) {
                 if (other == manifold[k].surface || !world.triangle_of(other)) return;
                 if (length(rim_of(world, other, seen.position) - rim) <= reach) touched.all.push_back(other);
             });
         }
         touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
         touched.body = body;
-        touched.velocity = step_.impact().velocity_of(touched.surface);
-        touched.turning = view.bodies().pose(body, state_.time).angular_velocity;
+        touched.velocity = surfaces().velocity_of(touched.surface);
+        touched.turning = view.bodies().pose(body, state().time).angular_velocity;
     }
 }
 
@@ -84,14 +85,13 @@ bool SharedContact::is_on_deforming() const {
 }
 
 double SharedContact::separation_speed(const Touched& touched) const {
-    return dot(state_.velocity - touched.velocity, touched.surface.normal);
+    return dot(state().velocity - touched.velocity, touched.surface.normal);
 }
 
 /// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
 /// (omega x n) . (v - w), and by what its curvature adds; a_s: of its own point there.
 SupportSurface SharedContact::supports(const Touched& touched, const Vec3& shift) const {
-    const ImpactResolver& impact = step_.impact();
-    const Material& material = impact.material_of(touched.surface.surface);
+    const Material& material = surfaces().material_of(touched.surface.surface);
     const Vec3& n = touched.surface.normal;
     const Vec3 relative = touched.velocity - shift;
     SupportSurface held{n,
@@ -99,26 +99,26 @@ SupportSurface SharedContact::supports(const Touched& touched, const Vec3& shift
                         material.rolling_friction,
                         material.spinning_friction,
                         relative - dot(relative, n) * n,
-                        impact.angular_velocity_of(touched.surface.surface)};
+                        surfaces().angular_velocity_of(touched.surface.surface)};
     if (deforms(touched)) {
-        const CurvatureTerms bent = curvature_of(deforming(), state_, touched.surface);
+        const CurvatureTerms bent = curvature_of(deforming(), state(), touched.surface);
         held.curvature = bent.curvature;
         held.slip_curvature = bent.slip_curvature;
         return held;
     }
-    const MovingView view = view_at(state_.time);
-    const MovingPose pose = view.bodies().pose(touched.body, state_.time);
-    const Vec3 arm = state_.position - pose.world_from_frame.translation;
+    const MovingView view = view_at(state().time);
+    const MovingPose pose = view.bodies().pose(touched.body, state().time);
+    const Vec3 arm = state().position - pose.world_from_frame.translation;
     const Vec3& turning = pose.angular_velocity;
     const Vec3 carried = cross(turning, arm);
     const Vec3 of_surface = pose.acceleration + cross(pose.angular_acceleration, arm) + cross(turning, carried);
-    const Vec3 slip = state_.velocity - pose.velocity - carried;
+    const Vec3 slip = state().velocity - pose.velocity - carried;
     held.curvature = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
     const Vec3 change = of_surface + cross(turning, slip);
     held.slip_curvature = dot(change, n) * n - change;
     if (touched.surface.flat) return held;
-    ForceInput seen = state_;
-    seen.position = view.local_position(touched.body, state_.position, 0.0);
+    ForceInput seen = state();
+    seen.position = view.local_position(touched.body, state().position, 0.0);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(view.bodies().world(touched.body), planes);
     const ContactSurface in_frame{touched.surface.surface, pose.local_direction(n), false};
@@ -157,8 +157,8 @@ double SharedContact::longest() const {
         const SurfaceId surface = one.surface.surface;
         // A sphere turns about an edge, however large the triangle.
         const double own = deforms(one) ? 0.0 : step_.rules().bodies->world(one.body).size_of(surface);
-        const double size = std::max(state_.radius, own);
-        rate = std::max(rate, length(state_.velocity - one.velocity) / size);
+        const double size = std::max(state().radius, own);
+        rate = std::max(rate, length(state().velocity - one.velocity) / size);
     }
     return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
 }
@@ -167,7 +167,7 @@ double SharedContact::longest() const {
 std::optional<double> SharedContact::next_jump() const {
     std::optional<double> first;
     for (const Touched& one : touched()) {
-        const auto jump = step_.rules().bodies->next_jump(one.body, state_.time, particle_.step_end);
+        const auto jump = step_.rules().bodies->next_jump(one.body, state().time, particle().step_end);
         if (jump && (!first || *jump < *first)) first = jump;
     }
     return first;
@@ -177,20 +177,20 @@ std::optional<double> SharedContact::next_jump() const {
 /// of two leads beyond the rim of the other: it counts as put back.
 double SharedContact::until_rim(const Path& path) const {
     const auto position_at = [&](double at) {
-        return at < path.duration ? kept_off(path.position(at), state_.time + at) : path.end;
+        return at < path.duration ? kept_off(path.position(at), state().time + at) : path.end;
     };
     double most = path.duration;
     for (std::size_t k = 0; k < count_; ++k) {
         const Touched& one = touched_[k];
         if (interval_.reaction[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
-        most = std::min(most, time_over(deforming(), {one.surface, one.all}, position_at, path.duration, state_.time));
+        most = std::min(most, time_over(deforming(), {one.surface, one.all}, position_at, path.duration, state().time));
     }
     return most;
 }
 
 /// Those that a path goes along. At a rim others end there too: they are nothing else to it where it ends off them.
 std::vector<SurfaceId> SharedContact::supporting(const Path& path) const {
-    const double end = path.duration >= step_.remaining() ? particle_.step_end : state_.time + path.duration;
+    const double end = path.duration >= step_.remaining() ? particle().step_end : state().time + path.duration;
     std::vector<SurfaceId> list;
     for (const Touched& one : touched()) {
         if (deforms(one)) {
@@ -201,7 +201,7 @@ std::vector<SurfaceId> SharedContact::supporting(const Path& path) const {
         const MovingView view = view_at(end);
         const Vec3 local_position = view.local_position(one.body, path.end, 0.0);
         std::copy_if(one.all.begin(), one.all.end(), std::back_inserter(list), [&](SurfaceId other) {
-            return view.bodies().world(one.body).nearest(other, local_position).distance >= state_.radius;
+            return view.bodies().world(one.body).nearest(other, local_position).distance >= state().radius;
         });
     }
     std::sort(list.begin(), list.end());

@@ -4,21 +4,19 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/contact_interval.h"
-#include "ricochet/response/impact_resolver.h"
+#include "ricochet/response/surface_kinematics.h"
 
 namespace ricochet {
 namespace {
 
-SupportedAcceleration acceleration_on(const ResponseRules& rules, MovingParticle& particle, const Vec3& pull,
+SupportedAcceleration acceleration_on(const ResponseRules& rules, const MovingParticle& particle, const Vec3& pull,
                                       ContactManifold& manifold) {
     manifold.drop_left(kLeavingRounding);
     if (manifold.empty()) return {pull};
-    MoveScratch scratch;
-    MoveOutcome outcome;
-    const ImpactResolver impact(rules, particle, scratch, outcome);
+    const SurfaceKinematics surfaces(rules, particle, ReferenceFrame::world());
     const FrictionLimits grip = manifold.grip(1.0, rules.settings.time_step);
     const ContactInterval interval = plan_interval({particle.state.velocity, particle.spin}, particle.state.radius,
-                                                   pull, manifold.supports(impact).all(), grip, 0.0);
+                                                   pull, manifold.supports(surfaces).all(), grip, 0.0);
     SupportedAcceleration held{interval.acceleration, interval.spin_acceleration};
     held.count = static_cast<std::uint8_t>(manifold.size());
     for (std::size_t k = 0; k < manifold.size(); ++k) {

@@ -4,8 +4,10 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/along_surfaces.h"
+#include "ricochet/response/carried_particle.h"
 #include "ricochet/response/contact_solver/wall_contacts.h"
 #include "ricochet/response/particle_step.h"
+#include "ricochet/response/path_motion.h"
 
 namespace ricochet {
 namespace {
@@ -41,7 +43,7 @@ private:
     void find_walls(const Vec3& center, double time, std::vector<WallContact>& found) const;
     [[nodiscard]] bool keep_off_walls(Vec3& end, double time) const;
     [[nodiscard]] Vec3 velocity_of(const ContactSurface& surface) const {
-        return rules_.bodies == nullptr ? Vec3{} : step_.impact().velocity_of(surface);
+        return rules_.bodies == nullptr ? Vec3{} : step_.impact().surfaces().velocity_of(surface);
     }
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const Vec3& p, double time) const;
     [[nodiscard]] Vec3 kept_off(Vec3 end, double time, std::span<const SurfaceId> surfaces) const;
@@ -65,8 +67,8 @@ MoveOutcome PlannedMove::run() {
     collect_impulses();
     particle_.spin = plan_.spin;
     particle_.state.velocity = plan_.velocity;
-    if (rules_.bodies == nullptr || step_.catch_up()) follow();
-    if (rules_.bodies != nullptr) step_.store_position();
+    if (rules_.bodies == nullptr || catch_up(step_)) follow();
+    if (rules_.bodies != nullptr) step_.write_stored_position();
     scratch_.driven = true;
     step_.log().note_impact();
     scratch_.driven = false;
@@ -76,14 +78,14 @@ MoveOutcome PlannedMove::run() {
 /// Follows the plan in straight lines. Each line ends clear of the surfaces in held_ at the end of the step.
 void PlannedMove::follow() {
     if (plan_.is_clear && held_.empty() && can_be_followed(next_line())) {
-        step_.go_clear(next_line());
+        follow_clear_path(step_, next_line());
         return;
     }
     for (int k = 0; k < kMostDiversions && step_.remaining() > 0.0; ++k) {
         const Vec3 velocity = particle_.state.velocity;
         const Path path = next_line();
         const std::vector<SurfaceId> along = passed_by(path);
-        const std::optional<Contact> contact = step_.follow(path, along);
+        const std::optional<Contact> contact = follow_path(step_, path, along);
         particle_.state.velocity = velocity;
         if (!contact) break;
         divert(*contact);
@@ -93,9 +95,9 @@ void PlannedMove::follow() {
     if (step_.remaining() > 0.0) cut_across();
     if (!(step_.remaining() > 0.0)) return;
     if (step_.is_near_bodies()) {
-        step_.stop();
+        give_up(step_);
     } else {
-        static_cast<void>(step_.wait(step_.remaining()));
+        static_cast<void>(wait_in_place(step_, step_.remaining()));
     }
 }
 
@@ -122,7 +124,7 @@ void PlannedMove::cut_across() {
     end = flush_tiny(end);
     Path path = line_path(state.position, (end - state.position) / duration, duration);
     path.end = end;
-    const std::optional<Contact> contact = step_.follow(path);
+    const std::optional<Contact> contact = follow_path(step_, path);
     particle_.state.velocity = velocity;
     if (contact) divert(*contact);
 }
@@ -153,7 +155,7 @@ void PlannedMove::find_walls(const Vec3& center, double time, std::vector<WallCo
 /// Records the planned effects of walls at the start of the step.
 void PlannedMove::collect_impulses() {
     for (const WallImpulse& impulse : plan_.impulses) {
-        step_.impact().record_impulse(impulse.surface, impulse.velocity_change, false, impulse.spin_change);
+        step_.impact().ledger().record_impulse(impulse.surface, impulse.velocity_change, false, impulse.spin_change);
         hold(impulse.surface);
     }
 }
@@ -205,7 +207,7 @@ std::vector<SurfaceId> PlannedMove::passed_by(const Path& line) {
     std::vector<SurfaceId> met;
     for (int k = 0; !passed.empty(); ++k) {
         if (k == kMostDiversions) return {};
-        const std::optional<Contact> contact = step_.first_contact(line, (1.0 - kChordSagitta) * radius, met);
+        const std::optional<Contact> contact = first_contact_of_ball(step_, line, (1.0 - kChordSagitta) * radius, met);
         if (!contact) break;
         for (const ContactSurface& surface : contact->all()) {
             std::erase(passed, surface.surface);
@@ -225,7 +227,7 @@ void PlannedMove::come_off(const Contact& contact) {
     const bool is_off = std::all_of(near.begin(), near.end(), [&](SurfaceId surface) {
         return nearest(surface, state.position, state.time).distance >= least;
     });
-    if (!is_off) step_.shift_to(kept_off(state.position, state.time, near));
+    if (!is_off) shift_to(step_, kept_off(state.position, state.time, near));
 }
 
 /// Removes the velocity into the surfaces of a contact, and into earlier ones that are still touched. In a groove the
@@ -235,7 +237,7 @@ void PlannedMove::divert(const Contact& contact) {
     for (const ContactSurface& surface : contact.all()) met_.push_back(surface);
     const Vec3 before = particle_.state.velocity;
     particle_.state.velocity = along_those_met(before);
-    step_.impact().record_impulse(contact.first().surface, particle_.state.velocity - before, false, Vec3{});
+    step_.impact().ledger().record_impulse(contact.first().surface, particle_.state.velocity - before, false, Vec3{});
 }
 
 bool PlannedMove::touches(SurfaceId surface) const {

@@ -1,0 +1,261 @@
+#include "ricochet/response/carried_particle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "ricochet/collision/clearance.h"
+#include "ricochet/collision/obstacles.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/predicates/predicates.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+
+namespace ricochet {
+namespace {
+
+const MovingColliders& bodies_of(const ParticleStep& step) { return *step.rules().bodies; }
+double radius_of(const ParticleStep& step) { return step.state().radius; }
+
+/// Returns a position in the world at a time, in a body's frame.
+Vec3 position_in(const MovingColliders& bodies, BodyId body, const StoredPosition& at) {
+    return body == kWorldBody ? at.position : bodies.pose(body, at.time).local_position(at.position);
+}
+
+/// Tests a segment in the frames of rigid colliders, moving and at rest.
+bool is_segment_free_of_rigid(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to) {
+    const MovingColliders& bodies = bodies_of(step);
+    const auto is_free_in = [&](BodyId body) {
+        const CollisionWorld& world = bodies.world(body);
+        if (world.empty()) return true;
+        return !Obstacles(world, position_in(bodies, body, from), radius_of(step)).block(position_in(bodies, body, to));
+    };
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        if (!is_free_in(body)) return false;
+    }
+    return is_free_in(kWorldBody);
+}
+
+/// Moves the stored position along a segment, if that is free.
+bool take_segment(ParticleStep& step, const StoredPosition& next) {
+    if (!is_segment_free(step, step.stored(), next)) return false;
+    step.store_by_segment(next, step.stored().time);
+    return true;
+}
+
+/// Carries the particle until a time, as far as segments are free. carried_position(time) is the position to which a
+/// body, or a triangle of a deforming mesh, carries it. Halves a blocked segment, up to `depth` times. Segments end at
+/// the keys of deforming meshes.
+template <class CarriedPosition>
+bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, double until, int depth) {
+    const double key = bodies_of(step).deforming().next_key(step.stored().time);
+    if (key < until) {
+        return carry_until(step, carried_position, key, depth) && carry_until(step, carried_position, until, depth);
+    }
+    if (take_segment(step, {carried_position(until), until})) return true;
+    const double middle = 0.5 * (step.stored().time + until);
+    if (depth == 0 || !(middle > step.stored().time) || !(middle < until)) return false;
+    return carry_until(step, carried_position, middle, depth - 1) &&
+           carry_until(step, carried_position, until, depth - 1);
+}
+
+/// Carries the particle with a body, or lets it stay in the world.
+bool carry_with_body(ParticleStep& step, BodyId body, double until) {
+    const MovingColliders& bodies = bodies_of(step);
+    const Vec3 local_position = position_in(bodies, body, step.stored());
+    const auto carried_position = [&](double time) {
+        if (body == kWorldBody) return step.stored().position;
+        return flush_tiny(bodies.pose(body, time).point(local_position));
+    };
+    return carry_until(step, carried_position, until, kCarryDepth);
+}
+
+/// Returns the position at a time of a particle that moves with the nearest point of a deforming triangle and keeps its
+/// distance. A sphere that overlaps the triangle by rounding is moved off it.
+Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double until) {
+    const DeformingColliders& deforming = bodies_of(step).deforming();
+    const Vec3& from = step.stored().position;
+    const auto [a, b, c] = deforming.corners_at(surface, step.stored().time);
+    const ClosestPointOnTriangle closest = closest_point_on_triangle(from, a, b, c);
+    const Vec3 weights = barycentric_coordinates(closest, a, b, c);
+    const std::array<Vec3, 3> later = deforming.corners_at(surface, until);
+    const Vec3 displacement = weights.x * (later[0] - a) + weights.y * (later[1] - b) + weights.z * (later[2] - c);
+    const Vec3 moved = from + displacement;
+    const double radius = radius_of(step);
+    double distance = std::sqrt(closest.distance_squared);
+    if (distance >= radius - sphere_tolerance(radius, max_abs(moved))) distance = std::max(distance, radius);
+    const CollisionWorld::Nearest nearest = deforming.nearest(surface, moved, until);
+    const Vec3 normal = dot(nearest.normal, closest.offset) < 0.0 ? -nearest.normal : nearest.normal;
+    return flush_tiny(moved + (distance - nearest.distance) * normal);
+}
+
+/// Carries the particle with each deforming triangle that it is next to, in turn.
+void carry_with_meshes(ParticleStep& step, double until) {
+    const DeformingColliders& deforming = bodies_of(step).deforming();
+    const double radius = radius_of(step);
+    const Vec3& position = step.stored().position;
+    const double beside =
+        2.0 * kEdgeOffsets * contact_offset(position) + 2.0 * sphere_tolerance(radius, max_abs(position));
+    const Vec3 reach{radius + beside, radius + beside, radius + beside};
+    std::vector<SurfaceId> near;
+    deforming.near({position - reach, position + reach}, near);
+    for (const SurfaceId surface : near) {
+        if (step.stored().time >= until) break;
+        const double distance = deforming.nearest(surface, step.stored().position, step.stored().time).distance;
+        if (distance > radius + std::max(beside, kEdgeOffsets * deforming.offset_of(surface))) continue;
+        const auto carried_position = [&](double time) { return carried_by_triangle(step, surface, time); };
+        static_cast<void>(carry_until(step, carried_position, until, kCarryDepth));
+    }
+}
+
+/// Lets the particle stay, or be carried by one collider after another, as far as segments are free.
+void carry_by_turns(ParticleStep& step, double until) {
+    constexpr int kMostTurns = 8;
+    const BodyId own = step.reference().body();
+    for (int turn = 0; turn < kMostTurns; ++turn) {
+        const double before = step.stored().time;
+        if (carry_with_body(step, own, until)) break;
+        if (step.reference().is_moving() && carry_with_body(step, kWorldBody, until)) break;
+        for (BodyId body = 0; body < bodies_of(step).size() && step.stored().time < until; ++body) {
+            if (body != own) static_cast<void>(carry_with_body(step, body, until));
+        }
+        if (step.stored().time < until) carry_with_meshes(step, until);
+        if (step.stored().time >= until || step.stored().time == before) break;
+    }
+}
+
+/// Bounds the rounding, in m, of stored positions in a frame until a time.
+double rounding_in(const ParticleStep& step, BodyId body, double until) {
+    const MovingColliders& bodies = bodies_of(step);
+    double rounding = ulp(max_abs(step.stored().position));
+    if (body == kWorldBody) return rounding;
+    const Vec3 local_position = position_in(bodies, body, step.stored());
+    rounding = std::max(rounding, ulp(max_abs(local_position)));
+    for (const double time : {step.stored().time, until}) {
+        const MovingPose pose = bodies.pose(body, time);
+        const Vec3 world = pose.point(local_position);
+        const double largest = std::max(max_abs(world), max_abs(pose.world_from_frame.translation));
+        rounding = std::max({rounding, ulp(largest), max_abs(pose.local_position(world) - local_position)});
+    }
+    return rounding;
+}
+
+/// Moves the particle in no time off the surfaces of a body that are nearer than the clearance, in m.
+bool step_aside(ParticleStep& step, BodyId body, double clearance) {
+    const MovingColliders& bodies = bodies_of(step);
+    const StoredPosition& stored = step.stored();
+    const MovingPose pose = bodies.pose(body, stored.time);
+    const Vec3 local_position = body == kWorldBody ? stored.position : pose.local_position(stored.position);
+    const auto displacement = displacement_to_clear(bodies.world(body), local_position, radius_of(step), clearance);
+    if (!displacement) return false;
+    const Vec3 aside = local_position + *displacement;
+    if (!take_segment(step, {flush_tiny(body == kWorldBody ? aside : pose.point(aside)), stored.time})) return false;
+    step.particle().attachment.reset();  // it has left its place of rest
+    return true;
+}
+
+/// Moves the particle to a position with more clearance, and carries it from there. A rigid collider leaves a particle
+/// the same room at all times. But stored positions are rounded in the world, so in a narrow gap a carried position may
+/// lie behind a surface.
+void carry_with_clearance(ParticleStep& step, double until) {
+    for (const double roundings : kCarryingClearances) {
+        const auto try_body = [&](BodyId body) {
+            if (step.stored().time < until && step_aside(step, body, roundings * rounding_in(step, body, until))) {
+                static_cast<void>(carry_with_body(step, body, until));
+            }
+        };
+        try_body(kWorldBody);
+        for (BodyId body = 0; body < bodies_of(step).size(); ++body) try_body(body);
+        if (step.stored().time >= until) return;
+    }
+}
+
+/// Lets the particle wait until a time, at its position or carried along. Returns false if neither is free. Its stored
+/// time then stands still.
+bool wait_until(ParticleStep& step, double until) {
+    step.scratch().driven = true;
+    carry_by_turns(step, until);
+    if (step.stored().time < until) carry_with_clearance(step, until);
+    step.state().position = position_in(bodies_of(step), step.reference().body(), step.stored());
+    return step.stored().time >= until;
+}
+
+/// Moves a particle whose stored time stands still to a position at the present time, if a free segment leads there.
+bool take_late_segment(ParticleStep& step, const Vec3& position) {
+    const StoredPosition next{flush_tiny(position), step.state().time};
+    const bool is_free = is_segment_free_of_rigid(step, step.stored(), next) &&
+                         bodies_of(step).deforming().is_late_segment_free(step.stored(), next, radius_of(step));
+    if (!is_free) return false;
+    step.store_by_segment(next, step.stored().time);
+    step.particle().attachment.reset();
+    return true;
+}
+
+/// Moves a particle whose stored time stands still to the present in one segment. If deforming meshes have left it no
+/// room for a time, no chain of segments leads through that time. Its new position is the present one, or where a body
+/// or a near triangle has carried it.
+bool catch_up_directly(ParticleStep& step) {
+    constexpr std::size_t kMostTriangles = 8;
+    const MovingColliders& bodies = bodies_of(step);
+    if (bodies.deforming().empty()) return false;
+    const double now = step.state().time;
+    if (take_late_segment(step, step.stored().position)) return true;
+    for (BodyId body = 0; body < bodies.size(); ++body) {
+        const Vec3 local_position = position_in(bodies, body, step.stored());
+        if (take_late_segment(step, bodies.pose(body, now).point(local_position))) return true;
+    }
+    std::vector<SurfaceId> nearest;
+    bodies.deforming().nearest_to(step.stored().position, step.stored().time, kMostTriangles, nearest);
+    return std::any_of(nearest.begin(), nearest.end(), [&](SurfaceId surface) {
+        return take_late_segment(step, carried_by_triangle(step, surface, now));
+    });
+}
+
+}  // namespace
+
+bool is_segment_free(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to) {
+    return is_segment_free_of_rigid(step, from, to) &&
+           bodies_of(step).deforming().is_segment_free(from, to, radius_of(step));
+}
+
+bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& others, const PathPoint& from,
+                     const PathPoint& to) {
+    const PathClock& clock = others.view().clock();
+    return is_segment_free(step, {from.world, clock.at(from.time)}, {to.world, clock.at(to.time)});
+}
+
+void shift_to(ParticleStep& step, const Vec3& position) {
+    if (take_segment(step, {position, step.stored().time})) step.state().position = position;
+}
+
+void stay_until(ParticleStep& step, double until) {
+    if (step.rules().bodies == nullptr) return;
+    step.store_by_segment({step.stored().position, until}, step.stored().time);
+}
+
+void give_up(ParticleStep& step) {
+    step.outcome().unsimulated_time = step.remaining();
+    const double end = step.particle().step_end;
+    if (!step.is_near_bodies()) {
+        stay_until(step, end);
+    } else if (!wait_until(step, end)) {
+        step.outcome().squeezed = 1;
+    }
+    step.end();
+}
+
+bool catch_up(ParticleStep& step) {
+    const double now = step.state().time;
+    if (!(step.stored().time < now)) return true;
+    if (wait_until(step, now)) return true;
+    if (catch_up_directly(step)) {
+        step.state().position = step.stored().position;
+        return true;
+    }
+    step.outcome().unsimulated_time = step.remaining();
+    step.outcome().squeezed = 1;
+    step.end();
+    return false;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,30 @@
+/// \file
+/// Private to the exact response: a particle that waits among moving colliders. It stays at its position, or is carried
+/// along by a collider, in segments that are free of all colliders.
+#pragma once
+
+#include "ricochet/collision/surfaces_in_other_frames.h"
+#include "ricochet/response/particle_step.h"
+
+namespace ricochet {
+
+/// Returns true if a segment is free in the frames of all colliders. Exact. Only where colliders move.
+[[nodiscard]] bool is_segment_free(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to);
+/// Returns the same for a segment between two points of a path. others: surfaces of other frames near the path.
+[[nodiscard]] bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& others, const PathPoint& from,
+                                   const PathPoint& to);
+
+/// Moves the particle to a position in the world in no time, if a free segment leads there. Else it stays.
+void shift_to(ParticleStep& step, const Vec3& position);
+
+/// Leaves the stored position as it is until a time, in s. No moving collider may come near it.
+void stay_until(ParticleStep& step, double until);
+
+/// Gives up the time that is left of the step: it counts as unsimulated. The particle waits.
+void give_up(ParticleStep& step);
+
+/// Advances the stored position of a particle that was squeezed in earlier steps to the particle's time. Returns false
+/// if it is still squeezed. The rest of the step is then unsimulated.
+[[nodiscard]] bool catch_up(ParticleStep& step);
+
+}  // namespace ricochet

@@ -1,0 +1,148 @@
+#include "ricochet/response/certified_motion.h"
+
+#include <utility>
+#include <vector>
+
+#include "ricochet/collision/safe_position.h"
+#include "ricochet/collision/surfaces_in_other_frames.h"
+#include "ricochet/response/carried_particle.h"
+
+namespace ricochet {
+namespace {
+
+/// Moves a particle off the surface that it is on, where colliders move: by a segment that is free in all frames.
+bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
+    ForceInput& state = step.state();
+    const auto position = step_off(near, state.position);
+    if (!position) return false;
+    const PathPoint to = near.point_at(*position, 0.0);
+    if (!near.is_free_after(state.position, to.position)) return false;
+    if (near.other_frames() != nullptr && !near.other_frames()->are_free(near.start(), to)) return false;
+    step.store_by_segment({to.world, step.stored().time}, state.time);
+    state.position = to.position;
+    return true;
+}
+
+void leave_surface(ParticleStep& step, const NearSurfaces& near) {
+    const bool is_off = step.rules().bodies == nullptr ? step_off_surface(near, step.state(), step.scratch())
+                                                       : step_off_in_frame(step, near);
+    is_off ? step.begin_chain() : give_up(step);
+}
+
+/// Moves to a safe position at the contact. A surface that blocks the way there becomes the contact.
+void stop_at_contact(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found) {
+    std::optional<Contact>& contact = found.contact;
+    const NearSurfaces& near = found.near;
+    const SafePosition safe = find_safe_position(near, query.path, *contact, step.scratch().contacts.chain);
+    step.outcome().stayed += safe.stayed ? 1 : 0;
+    step.state().position = safe.reached.position;
+    const bool is_supported = !query.supports.empty() || near.other_frames() != nullptr;
+    if (!is_supported || !safe.blocker || safe.reached.time >= contact->time) return;
+    contact = contact_with_blocker(near, query.path, {safe.reached, safe.blocker});
+}
+
+/// Puts the control polygon of a path into the chain. Returns false if the polygon is not free. A surface that bends
+/// away blocks every chord of a point's path along it, and maybe the chords of a small sphere. It leaves the polygon
+/// free.
+bool is_polygon_free(const ParticleStep& step, const NearSurfaces& near, const ContactQuery& query) {
+    const Path& path = query.path;
+    if (query.supports.empty() || path.degree != 3) return false;
+    std::vector<PathPoint>& chain = step.scratch().contacts.chain;
+    ControlPoints outside = path.control_points();
+    outside.point[3] = path.end;
+    chain.assign(1, near.start());
+    for (std::size_t k = 1; k < 4; ++k) {
+        const double time = k < 3 ? static_cast<double>(k) / 3.0 * path.duration : path.duration;
+        const PathPoint next = near.point_at(outside.point[k], time);
+        if (!near.is_free(chain.back().position, next.position)) return false;
+        // In other frames the polygon does not enclose the path, and only surfaces near the path are known.
+        if (near.other_frames() != nullptr && !is_segment_free(step, *near.other_frames(), chain.back(), next)) {
+            return false;
+        }
+        chain.push_back(next);
+    }
+    return true;
+}
+
+CertifiedPath follow_to_end(const ParticleStep& step, const NearSurfaces& near, const ContactQuery& query) {
+    std::vector<PathPoint>& chain = step.scratch().contacts.chain;
+    const auto end_of_polygon = [&] { return CertifiedPath{chain.back(), std::nullopt}; };
+    if (query.radius == 0.0 && is_polygon_free(step, near, query)) return end_of_polygon();
+    const Path& path = query.path;
+    const CertifiedPath followed = follow_path(near, path, path.duration, path.end, chain);
+    if (!followed.blocker || query.radius == 0.0) return followed;
+    std::vector<PathPoint> until_blocked = chain;
+    if (is_polygon_free(step, near, query)) return end_of_polygon();
+    chain.swap(until_blocked);
+    return followed;
+}
+
+void record_chain(ParticleStep& step, const PathClock& clock) {
+    MoveScratch& scratch = step.scratch();
+    const std::vector<PathPoint>& chain = scratch.contacts.chain;
+    const bool is_timed = step.rules().bodies != nullptr;
+    const auto time_of = [&](const PathPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
+    if (is_timed) step.store({chain.back().world, time_of(chain.back())});
+    if (!scratch.record_segments) return;
+    for (std::size_t k = 1; k < chain.size(); ++k) {
+        scratch.segments.push_back(
+            {chain[k - 1].world, chain[k].world, step.state().time, time_of(chain[k - 1]), time_of(chain[k])});
+    }
+}
+
+}  // namespace
+
+double move_certified(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found) {
+    const PathClock clock = step.rules().bodies == nullptr ? PathClock{} : step.clock_of(query.path);
+    const double elapsed = move_certified_within(step, query, found, clock);
+    step.pass(elapsed);
+    return elapsed;
+}
+
+double move_certified_within(ParticleStep& step, const ContactQuery& query, ContactQueryResult& found,
+                             const PathClock& clock) {
+    const Path& path = query.path;
+    const NearSurfaces& near = found.near;
+    std::optional<Contact>& contact = found.contact;
+    const bool starts_on_surface =
+        contact ? contact->time == 0.0 : query.radius > 0.0 && query.supports.empty() && near.starts_in_overlap();
+    if (starts_on_surface && !near.surfaces_at(path.c[0]).empty()) {
+        leave_surface(step, near);
+        contact.reset();
+        return 0.0;
+    }
+    if (contact) {
+        stop_at_contact(step, query, found);
+    } else {
+        const CertifiedPath followed = follow_to_end(step, near, query);
+        step.state().position = followed.reached.position;
+        if (followed.blocker) contact = contact_with_blocker(near, path, followed);
+    }
+    record_chain(step, clock);
+    return contact ? contact->time : path.duration;
+}
+
+void return_to_start(ParticleStep& step) {
+    step.state().position = step.start();
+    step.store({step.start(), step.stored().time});
+    std::vector<Segment>& segments = step.scratch().segments;
+    for (std::size_t k = segments.size(); k-- > step.first_segment();) {
+        Segment back = segments[k];
+        std::swap(back.from, back.to);
+        back.time = step.state().time;
+        back.begin = back.end = step.stored().time;
+        segments.push_back(back);
+    }
+}
+
+bool step_off_surface(const NearSurfaces& near, ForceInput& state, MoveScratch& scratch) {
+    const auto position = step_off(near, state.position);
+    if (!position) return false;
+    if (scratch.record_segments) {
+        scratch.segments.push_back({state.position, *position, state.time, state.time, state.time});
+    }
+    state.position = *position;
+    return true;
+}
+
+}  // namespace ricochet

@@ -1,0 +1,70 @@
+/// \file
+/// Private to the responses: records the impulses that one particle gives to surfaces in one move.
+#pragma once
+
+#include <optional>
+
+#include "ricochet/response/impulse_recorder.h"
+#include "ricochet/response/surface_kinematics.h"
+
+namespace ricochet {
+
+/// Records impulses as changes of the particle's velocity: for the totals of surfaces, the loads on colliders and the
+/// contact log. See MoveScratch.
+class ImpulseLedger {
+public:
+    /// All must outlive it.
+    ImpulseLedger(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch,
+                  const ReferenceFrame& reference, const SurfaceKinematics& surfaces)
+        : particle_(particle),
+          scratch_(scratch),
+          reference_(reference),
+          surfaces_(surfaces),
+          recorder_(rules, particle, scratch, reference),
+          moment_center_(particle.state.position) {}
+
+    /// Records a change of velocity by a surface, in m/s, and the change of spin with it, in rad/s. Without the latter,
+    /// the spin has changed by all that has happened since the last record. impact: false for lasting contact.
+    void record_impulse(SurfaceId surface, const Vec3& velocity_change, bool impact,
+                        const std::optional<Vec3>& spin_change = std::nullopt);
+    /// Marks the last impulse as a further pass of an impact that is counted already.
+    void mark_as_repeated() { scratch_.hits.back().again = are_hits_; }
+    /// Records an impact in the contact log. The particle has its velocity after the impact.
+    void log_contact(const ContactSurface& surface, const Vec3& velocity_before);
+    /// The impulses between these two calls belong to one impact. approach: its largest speed, m/s, or 0 for one that
+    /// begins contact.
+    void begin_impact(double approach) { recorder_.begin_impact(approach); }
+    void end_impact() { recorder_.end_impact(); }
+    /// Records a moment on a surface besides the moments of all impulses, as the change of the particle's angular
+    /// momentum over its mass, m^2/s.
+    void record_moment(SurfaceId surface, const Vec3& change) {
+        recorder_.add_couple(surface, -particle_.state.mass * change);
+    }
+    /// Ends the records of the move.
+    void close() { recorder_.close(); }
+    /// Notes that moving surfaces take part in the next record.
+    void note_driven() { scratch_.driven = true; }
+    /// Says whether the next impacts are hits. The contact log and the counts of hits omit impacts that only resume a
+    /// contact. Their impulses count.
+    void set_hits(bool are_hits) { are_hits_ = are_hits; }
+
+    /// Sum of all recorded changes of velocity in the world, m/s.
+    [[nodiscard]] const Vec3& velocity_change() const { return velocity_change_; }
+    /// Sum of their moments about moment_center(), m^2/s, each at the particle's centre.
+    [[nodiscard]] const Vec3& angular_impulse() const { return angular_impulse_; }
+    /// Position in the world at which the move began, m.
+    [[nodiscard]] const Vec3& moment_center() const { return moment_center_; }
+
+private:
+    const MovingParticle& particle_;
+    MoveScratch& scratch_;
+    const ReferenceFrame& reference_;
+    const SurfaceKinematics& surfaces_;
+    ImpulseRecorder recorder_;
+    Vec3 moment_center_;
+    Vec3 velocity_change_;
+    Vec3 angular_impulse_;
+    bool are_hits_ = true;
+};
+
+}  // namespace ricochet

@@ -16,6 +16,7 @@ namespace {
 
 const MovingColliders& bodies_of(const ParticleStep& step) { return *step.rules().bodies; }
 double radius_of(const ParticleStep& step) { return step.state().radius; }
+const StoredPosition& stored_of(const ParticleStep& step) { return step.chain().stored(); }
 
 /// Returns a position in the world at a time, in a body's frame.
 Vec3 position_in(const MovingColliders& bodies, BodyId body, const StoredPosition& at) {
@@ -38,8 +39,8 @@ bool is_segment_free_of_rigid(const ParticleStep& step, const StoredPosition& fr
 
 /// Moves the stored position along a segment, if that is free.
 bool take_segment(ParticleStep& step, const StoredPosition& next) {
-    if (!is_segment_free(step, step.stored(), next)) return false;
-    step.store_by_segment(next, step.stored().time);
+    if (!is_segment_free(step, stored_of(step), next)) return false;
+    step.chain().add(next, stored_of(step).time, step.scratch());
     return true;
 }
 
@@ -48,13 +49,13 @@ bool take_segment(ParticleStep& step, const StoredPosition& next) {
 /// the keys of deforming meshes.
 template <class CarriedPosition>
 bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, double until, int depth) {
-    const double key = bodies_of(step).deforming().next_key(step.stored().time);
+    const double key = bodies_of(step).deforming().next_key(stored_of(step).time);
     if (key < until) {
         return carry_until(step, carried_position, key, depth) && carry_until(step, carried_position, until, depth);
     }
     if (take_segment(step, {carried_position(until), until})) return true;
-    const double middle = 0.5 * (step.stored().time + until);
-    if (depth == 0 || !(middle > step.stored().time) || !(middle < until)) return false;
+    const double middle = 0.5 * (stored_of(step).time + until);
+    if (depth == 0 || !(middle > stored_of(step).time) || !(middle < until)) return false;
     return carry_until(step, carried_position, middle, depth - 1) &&
            carry_until(step, carried_position, until, depth - 1);
 }
@@ -62,9 +63,9 @@ bool carry_until(ParticleStep& step, const CarriedPosition& carried_position, do
 /// Carries the particle with a body, or lets it stay in the world.
 bool carry_with_body(ParticleStep& step, BodyId body, double until) {
     const MovingColliders& bodies = bodies_of(step);
-    const Vec3 local_position = position_in(bodies, body, step.stored());
+    const Vec3 local_position = position_in(bodies, body, stored_of(step));
     const auto carried_position = [&](double time) {
-        if (body == kWorldBody) return step.stored().position;
+        if (body == kWorldBody) return stored_of(step).position;
         return flush_tiny(bodies.pose(body, time).point(local_position));
     };
     return carry_until(step, carried_position, until, kCarryDepth);
@@ -74,8 +75,8 @@ bool carry_with_body(ParticleStep& step, BodyId body, double until) {
 /// distance. A sphere that overlaps the triangle by rounding is moved off it.
 Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double until) {
     const DeformingColliders& deforming = bodies_of(step).deforming();
-    const Vec3& from = step.stored().position;
-    const auto [a, b, c] = deforming.corners_at(surface, step.stored().time);
+    const Vec3& from = stored_of(step).position;
+    const auto [a, b, c] = deforming.corners_at(surface, stored_of(step).time);
     const ClosestPointOnTriangle closest = closest_point_on_triangle(from, a, b, c);
     const Vec3 weights = barycentric_coordinates(closest, a, b, c);
     const std::array<Vec3, 3> later = deforming.corners_at(surface, until);
@@ -93,15 +94,15 @@ Vec3 carried_by_triangle(const ParticleStep& step, SurfaceId surface, double unt
 void carry_with_meshes(ParticleStep& step, double until) {
     const DeformingColliders& deforming = bodies_of(step).deforming();
     const double radius = radius_of(step);
-    const Vec3& position = step.stored().position;
+    const Vec3& position = stored_of(step).position;
     const double beside =
         2.0 * kEdgeOffsets * contact_offset(position) + 2.0 * sphere_tolerance(radius, max_abs(position));
     const Vec3 reach{radius + beside, radius + beside, radius + beside};
     std::vector<SurfaceId> near;
     deforming.near({position - reach, position + reach}, near);
     for (const SurfaceId surface : near) {
-        if (step.stored().time >= until) break;
-        const double distance = deforming.nearest(surface, step.stored().position, step.stored().time).distance;
+        if (stored_of(step).time >= until) break;
+        const double distance = deforming.nearest(surface, stored_of(step).position, stored_of(step).time).distance;
         if (distance > radius + std::max(beside, kEdgeOffsets * deforming.offset_of(surface))) continue;
         const auto carried_position = [&](double time) { return carried_by_triangle(step, surface, time); };
         static_cast<void>(carry_until(step, carried_position, until, kCarryDepth));
@@ -113,25 +114,25 @@ void carry_by_turns(ParticleStep& step, double until) {
     constexpr int kMostTurns = 8;
     const BodyId own = step.reference().body();
     for (int turn = 0; turn < kMostTurns; ++turn) {
-        const double before = step.stored().time;
+        const double before = stored_of(step).time;
         if (carry_with_body(step, own, until)) break;
         if (step.reference().is_moving() && carry_with_body(step, kWorldBody, until)) break;
-        for (BodyId body = 0; body < bodies_of(step).size() && step.stored().time < until; ++body) {
+        for (BodyId body = 0; body < bodies_of(step).size() && stored_of(step).time < until; ++body) {
             if (body != own) static_cast<void>(carry_with_body(step, body, until));
         }
-        if (step.stored().time < until) carry_with_meshes(step, until);
-        if (step.stored().time >= until || step.stored().time == before) break;
+        if (stored_of(step).time < until) carry_with_meshes(step, until);
+        if (stored_of(step).time >= until || stored_of(step).time == before) break;
     }
 }
 
 /// Bounds the rounding, in m, of stored positions in a frame until a time.
 double rounding_in(const ParticleStep& step, BodyId body, double until) {
     const MovingColliders& bodies = bodies_of(step);
-    double rounding = ulp(max_abs(step.stored().position));
+    double rounding = ulp(max_abs(stored_of(step).position));
     if (body == kWorldBody) return rounding;
-    const Vec3 local_position = position_in(bodies, body, step.stored());
+    const Vec3 local_position = position_in(bodies, body, stored_of(step));
     rounding = std::max(rounding, ulp(max_abs(local_position)));
-    for (const double time : {step.stored().time, until}) {
+    for (const double time : {stored_of(step).time, until}) {
         const MovingPose pose = bodies.pose(body, time);
         const Vec3 world = pose.point(local_position);
         const double largest = std::max(max_abs(world), max_abs(pose.world_from_frame.translation));
@@ -143,7 +144,7 @@ double rounding_in(const ParticleStep& step, BodyId body, double until) {
 /// Moves the particle in no time off the surfaces of a body that are nearer than the clearance, in m.
 bool step_aside(ParticleStep& step, BodyId body, double clearance) {
     const MovingColliders& bodies = bodies_of(step);
-    const StoredPosition& stored = step.stored();
+    const StoredPosition& stored = stored_of(step);
     const MovingPose pose = bodies.pose(body, stored.time);
     const Vec3 local_position = body == kWorldBody ? stored.position : pose.local_position(stored.position);
     const auto displacement = displacement_to_clear(bodies.world(body), local_position, radius_of(step), clearance);
@@ -160,13 +161,13 @@ bool step_aside(ParticleStep& step, BodyId body, double clearance) {
 void carry_with_clearance(ParticleStep& step, double until) {
     for (const double roundings : kCarryingClearances) {
         const auto try_body = [&](BodyId body) {
-            if (step.stored().time < until && step_aside(step, body, roundings * rounding_in(step, body, until))) {
+            if (stored_of(step).time < until && step_aside(step, body, roundings * rounding_in(step, body, until))) {
                 static_cast<void>(carry_with_body(step, body, until));
             }
         };
         try_body(kWorldBody);
         for (BodyId body = 0; body < bodies_of(step).size(); ++body) try_body(body);
-        if (step.stored().time >= until) return;
+        if (stored_of(step).time >= until) return;
     }
 }
 
@@ -175,18 +176,18 @@ void carry_with_clearance(ParticleStep& step, double until) {
 bool wait_until(ParticleStep& step, double until) {
     step.scratch().driven = true;
     carry_by_turns(step, until);
-    if (step.stored().time < until) carry_with_clearance(step, until);
-    step.state().position = position_in(bodies_of(step), step.reference().body(), step.stored());
-    return step.stored().time >= until;
+    if (stored_of(step).time < until) carry_with_clearance(step, until);
+    step.state().position = position_in(bodies_of(step), step.reference().body(), stored_of(step));
+    return stored_of(step).time >= until;
 }
 
 /// Moves a particle whose stored time stands still to a position at the present time, if a free segment leads there.
 bool take_late_segment(ParticleStep& step, const Vec3& position) {
     const StoredPosition next{flush_tiny(position), step.state().time};
-    const bool is_free = is_segment_free_of_rigid(step, step.stored(), next) &&
-                         bodies_of(step).deforming().is_late_segment_free(step.stored(), next, radius_of(step));
+    const bool is_free = is_segment_free_of_rigid(step, stored_of(step), next) &&
+                         bodies_of(step).deforming().is_late_segment_free(stored_of(step), next, radius_of(step));
     if (!is_free) return false;
-    step.store_by_segment(next, step.stored().time);
+    step.chain().add(next, stored_of(step).time, step.scratch());
     step.particle().attachment.reset();
     return true;
 }
@@ -199,13 +200,13 @@ bool catch_up_directly(ParticleStep& step) {
     const MovingColliders& bodies = bodies_of(step);
     if (bodies.deforming().empty()) return false;
     const double now = step.state().time;
-    if (take_late_segment(step, step.stored().position)) return true;
+    if (take_late_segment(step, stored_of(step).position)) return true;
     for (BodyId body = 0; body < bodies.size(); ++body) {
-        const Vec3 local_position = position_in(bodies, body, step.stored());
+        const Vec3 local_position = position_in(bodies, body, stored_of(step));
         if (take_late_segment(step, bodies.pose(body, now).point(local_position))) return true;
     }
     std::vector<SurfaceId> nearest;
-    bodies.deforming().nearest_to(step.stored().position, step.stored().time, kMostTriangles, nearest);
+    bodies.deforming().nearest_to(stored_of(step).position, stored_of(step).time, kMostTriangles, nearest);
     return std::any_of(nearest.begin(), nearest.end(), [&](SurfaceId surface) {
         return take_late_segment(step, carried_by_triangle(step, surface, now));
     });
@@ -225,12 +226,17 @@ bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& othe
 }
 
 void shift_to(ParticleStep& step, const Vec3& position) {
-    if (take_segment(step, {position, step.stored().time})) step.state().position = position;
+    if (take_segment(step, {position, stored_of(step).time})) step.state().position = position;
+}
+
+void keep_stored_position(ParticleStep& step) {
+    step.state().position = stored_of(step).position;
+    step.particle().stored_time = stored_of(step).time;
 }
 
 void stay_until(ParticleStep& step, double until) {
     if (step.rules().bodies == nullptr) return;
-    step.store_by_segment({step.stored().position, until}, step.stored().time);
+    step.chain().add({stored_of(step).position, until}, stored_of(step).time, step.scratch());
 }
 
 void give_up(ParticleStep& step) {
@@ -246,10 +252,10 @@ void give_up(ParticleStep& step) {
 
 bool catch_up(ParticleStep& step) {
     const double now = step.state().time;
-    if (!(step.stored().time < now)) return true;
+    if (!(stored_of(step).time < now)) return true;
     if (wait_until(step, now)) return true;
     if (catch_up_directly(step)) {
-        step.state().position = step.stored().position;
+        step.state().position = stored_of(step).position;
         return true;
     }
     step.outcome().unsimulated_time = step.remaining();

@@ -17,6 +17,9 @@ namespace ricochet {
 /// Moves the particle to a position in the world in no time, if a free segment leads there. Else it stays.
 void shift_to(ParticleStep& step, const Vec3& position);
 
+/// Makes the stored position the particle's, at the end of a move among moving colliders.
+void keep_stored_position(ParticleStep& step);
+
 /// Leaves the stored position as it is until a time, in s. No moving collider may come near it.
 void stay_until(ParticleStep& step, double until);
 

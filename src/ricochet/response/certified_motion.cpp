@@ -18,7 +18,7 @@ bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
     const PathPoint to = near.point_at(*position, 0.0);
     if (!near.is_free_after(state.position, to.position)) return false;
     if (near.other_frames() != nullptr && !near.other_frames()->are_free(near.start(), to)) return false;
-    step.store_by_segment({to.world, step.stored().time}, state.time);
+    step.chain().add({to.world, step.chain().stored().time}, state.time, step.scratch());
     state.position = to.position;
     return true;
 }
@@ -26,7 +26,7 @@ bool step_off_in_frame(ParticleStep& step, const NearSurfaces& near) {
 void leave_surface(ParticleStep& step, const NearSurfaces& near) {
     const bool is_off = step.rules().bodies == nullptr ? step_off_surface(near, step.state(), step.scratch())
                                                        : step_off_in_frame(step, near);
-    is_off ? step.begin_chain() : give_up(step);
+    is_off ? step.chain().begin(step.state().position, step.scratch()) : give_up(step);
 }
 
 /// Moves to a safe position at the contact. A surface that blocks the way there becomes the contact.
@@ -82,7 +82,7 @@ void record_chain(ParticleStep& step, const PathClock& clock) {
     const std::vector<PathPoint>& chain = scratch.contacts.chain;
     const bool is_timed = step.rules().bodies != nullptr;
     const auto time_of = [&](const PathPoint& p) { return is_timed ? clock.at(p.time) : 0.0; };
-    if (is_timed) step.store({chain.back().world, time_of(chain.back())});
+    if (is_timed) step.chain().store({chain.back().world, time_of(chain.back())});
     if (!scratch.record_segments) return;
     for (std::size_t k = 1; k < chain.size(); ++k) {
         scratch.segments.push_back(
@@ -123,14 +123,14 @@ double move_certified_within(ParticleStep& step, const ContactQuery& query, Cont
 }
 
 void return_to_start(ParticleStep& step) {
-    step.state().position = step.start();
-    step.store({step.start(), step.stored().time});
+    step.state().position = step.chain().start();
+    step.chain().store({step.chain().start(), step.chain().stored().time});
     std::vector<Segment>& segments = step.scratch().segments;
-    for (std::size_t k = segments.size(); k-- > step.first_segment();) {
+    for (std::size_t k = segments.size(); k-- > step.chain().first_segment();) {
         Segment back = segments[k];
         std::swap(back.from, back.to);
         back.time = step.state().time;
-        back.begin = back.end = step.stored().time;
+        back.begin = back.end = step.chain().stored().time;
         segments.push_back(back);
     }
 }

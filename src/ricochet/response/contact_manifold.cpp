@@ -62,20 +62,15 @@ void ContactManifold::set(std::size_t k, const ContactSurface& surface) {
 
 void ContactManifold::remember(std::span<const ContactSurface> surfaces) {
     for (const ContactSurface& surface : surfaces) {
-        if (geometry_.world().owns(surface.surface)) remember(surface.surface);
+        if (geometry_.world().owns(surface.surface)) recent_.add(surface.surface);
     }
-}
-
-void ContactManifold::remember(SurfaceId surface) {
-    const auto known = recent_.begin() + static_cast<std::ptrdiff_t>(std::min(recent_count_, kMostRecent));
-    if (std::find(recent_.begin(), known, surface) == known) recent_[recent_count_++ % kMostRecent] = surface;
 }
 
 void ContactManifold::replace(std::span<const ContactSurface> surfaces, const TouchRule& rule) {
     clear();
     for (const ContactSurface& surface : surfaces) add(surface);
-    for (std::size_t k = 0; k < std::min(recent_count_, kMostRecent); ++k) {
-        if (const auto surface = touched(recent_[k], rule)) add(*surface);
+    for (const SurfaceId recent : recent_.all()) {
+        if (const auto surface = touched(recent, rule)) add(*surface);
     }
 }
 
@@ -91,8 +86,8 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
         if (count < all.size()) all[count++] = surface;
     };
     for (const ContactSurface& surface : surfaces) consider(surface);
-    for (std::size_t k = 0; k < std::min(recent_count_, kMostRecent); ++k) {
-        if (const auto surface = touched(recent_[k], rule)) consider(*surface);
+    for (const SurfaceId recent : recent_.all()) {
+        if (const auto surface = touched(recent, rule)) consider(*surface);
     }
     const std::span<const ContactSurface> candidates = std::span(all).first(count);
     clear();
@@ -137,7 +132,7 @@ void ContactManifold::add_supports(std::span<const ContactSurface> candidates, c
 void ContactManifold::touch_again(const ContactState& contact_state, const TouchRule& rule) {
     clear();
     for (std::size_t k = 0; k < contact_state.count; ++k) {
-        remember(contact_state.surfaces[k]);
+        recent_.add(contact_state.surfaces[k]);
         if (const auto surface = touched(contact_state.surfaces[k], rule)) add(*surface);
     }
 }

@@ -31,6 +31,23 @@ struct TouchRule {
         std::numeric_limits<double>::infinity();  ///< m/s along the normal, above which it has left
 };
 
+/// The surfaces that a particle has touched last, at most six, in the order of their places in a ring.
+class RecentSurfaces {
+public:
+    /// Replaces the oldest one, unless the surface is known.
+    void add(SurfaceId surface) {
+        const std::span<const SurfaceId> known = all();
+        if (std::find(known.begin(), known.end(), surface) == known.end()) surfaces_[count_++ % kMost] = surface;
+    }
+    [[nodiscard]] std::span<const SurfaceId> all() const { return {surfaces_.data(), std::min(count_, kMost)}; }
+
+private:
+    static constexpr std::size_t kMost = 6;
+
+    std::array<SurfaceId, kMost> surfaces_{};
+    std::size_t count_ = 0;  // ever added
+};
+
 /// The contact points of one particle, at most three: more do not matter to where a pressed particle can go. An edge
 /// that lies within reach beside a face is that face's own seam and no contact point of its own: on a flat surface it
 /// must not be felt.
@@ -104,11 +121,9 @@ public:
 
 private:
     static constexpr std::size_t kMostPoints = kMostSupports;
-    static constexpr std::size_t kMostRecent = 6;
     static constexpr std::size_t kMostCandidates = 16;  // of contact points, before three are chosen
 
     void set(std::size_t k, const ContactSurface& surface);
-    void remember(SurfaceId surface);
     void add_supports(std::span<const ContactSurface> candidates, const Vec3& pull);
     [[nodiscard]] bool is_same_point(const ContactSurface& known, const ContactSurface& surface) const;
     [[nodiscard]] std::optional<ContactSurface> touched(SurfaceId surface, const TouchRule& rule) const;
@@ -119,9 +134,8 @@ private:
     std::array<SurfaceId, kMostPoints> surfaces_{};  // 0 beyond count_
     std::array<Vec3, kMostPoints> normals_;
     std::array<bool, kMostPoints> flat_{};
-    std::array<Vec3, kMostPoints> loads_{};        // m/s^2 with which each holds the particle
-    std::array<SurfaceId, kMostRecent> recent_{};  // a ring of the latest surfaces touched
-    std::size_t recent_count_ = 0;                 // ever touched
+    std::array<Vec3, kMostPoints> loads_{};  // m/s^2 with which each holds the particle
+    RecentSurfaces recent_;
 };
 
 /// The velocity turned along planes of the given normals, at the same speed; nothing where none of it is along them.

@@ -372,7 +372,7 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
 
 /// Rests for what is left of the step. held: until the forces change. Returns what comes to it before.
 std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
-    const Vec3& start = step_.start();
+    const Vec3& start = step_.chain().start();
     const bool is_back = length(state().position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
     // Landing again from one contact offset above, step after step, it would creep downhill.
     if (state().position != start && is_back && !step_.is_near_bodies()) return_to_start(step_);

@@ -1,19 +1,166 @@
-// The equations of a CoulombProblem, their derivatives, and the linear system of a step of Newton's method.
+#include "ricochet/response/coulomb_equations.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "ricochet/response/coulomb_problem.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
+namespace {
 
-double CoulombProblem::gain_of(std::size_t contact, const Compliance& compliance) const {
+/// Most steps of Newton's method, and halvings of a step. Four or five steps suffice as a rule, and more do not help an
+/// iteration that circles. Local: a limit of this search, whose result is checked.
+constexpr int kNewtonSteps = 14;
+constexpr int kHalvings = 4;
+/// Sweeps before the first comparison of changes, see kSteadyChange. Local: a search, whose result is checked.
+constexpr int kFirstComparison = 32;
+
+}  // namespace
+
+double CoulombEquations::set_up(double friction) {
+    friction_ = friction;
+    unknowns_ = 0;
+    const auto add_unknown = [&](const MotionVector& direction, double rate) {
+        direction_[unknowns_] = direction;
+        free_rate_[unknowns_] = rate;
+        force_[unknowns_++] = 0.0;
+    };
+    for (std::size_t k = 0; k < contact_count_; ++k) add_unknown(contacts_[k].direction, contacts_[k].rate);
+    for (std::size_t k = 0; k < resistance_count_; ++k) {
+        first_[k] = unknowns_;
+        const CoulombResistance& r = resistances_[k];
+        for (std::size_t d = 0; d < r.size; ++d) add_unknown(r.direction[d], r.rate[d]);
+    }
+    for (std::size_t i = 0; i < unknowns_; ++i) {
+        for (std::size_t j = 0; j <= i; ++j) delassus_[i][j] = delassus_[j][i] = dot(direction_[i], direction_[j]);
+    }
+    double scale = 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) scale = std::max(scale, std::fabs(free_rate_[i]));
+    for (std::size_t i = 0; i < unknowns_ && scale > 0.0; ++i) free_rate_[i] /= scale;
+    return scale;
+}
+
+std::array<double, 2> CoulombEquations::force_of(std::size_t resistance) const {
+    const std::size_t i = first_[resistance];
+    return {force_[i], resistances_[resistance].size == 2 ? force_[i + 1] : 0.0};
+}
+
+double CoulombEquations::largest_force() const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i]));
+    return largest;
+}
+
+double CoulombEquations::largest_change_from(const Unknowns& before) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < unknowns_; ++i) largest = std::max(largest, std::fabs(force_[i] - before[i]));
+    return largest;
+}
+
+MotionVector CoulombEquations::change() const {
+    MotionVector sum{};
+    for (std::size_t i = 0; i < unknowns_; ++i) {
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += force_[i] * direction_[i][c];
+    }
+    return sum;
+}
+
+void CoulombEquations::cut_to_bounds(double scale) {
+    for (std::size_t k = 0; k < contact_count_; ++k) force_[k] = std::max(0.0, force_[k]);
+    for (std::size_t k = 0; k < resistance_count_; ++k) {
+        const CoulombResistance& r = resistances_[k];
+        double* const force = &force_[first_[k]];
+        const double most = friction_ * r.bound * force_[r.contact];
+        const double size = r.size == 2 ? std::sqrt(force[0] * force[0] + force[1] * force[1]) : std::fabs(force[0]);
+        for (std::size_t d = 0; d < r.size && size > most; ++d) force[d] *= most / size;
+    }
+    for (std::size_t i = 0; i < unknowns_; ++i) force_[i] *= scale;
+}
+
+bool CoulombEquations::are_independent() const {
+    for (std::size_t i = 0; i < unknowns_; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (std::fabs(delassus_[i][j]) > kCoulombRounding * delassus_[j][j]) return false;
+        }
+    }
+    return true;
+}
+
+double CoulombEquations::solve_independent() {
+    for (std::size_t k = 0; k < contact_count_; ++k) force_[k] = std::max(0.0, -free_rate_[k] / delassus_[k][k]);
+    (void)find_defects({});
+    for (std::size_t k = 0; k < resistance_count_; ++k) {
+        const Wish wish = wish_of(k, {});
+        const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+        for (std::size_t d = 0; d < resistances_[k].size; ++d) force_[first_[k] + d] = part * wish.force[d];
+    }
+    return find_defects({});
+}
+
+bool CoulombEquations::newton(const Compliance& compliance, double enough) {
+    double defect = find_defects(compliance);
+    for (int step = 0; step < kNewtonSteps && defect > enough; ++step) {
+        find_matrix(compliance);
+        if (!eliminate()) return false;
+        const Unknowns before = force_;
+        const Unknowns change = defect_;
+        double part = 1.0;
+        double found = 0.0;
+        for (int halving = 0; halving < kHalvings; ++halving, part *= 0.5) {
+            for (std::size_t i = 0; i < unknowns_; ++i) force_[i] = before[i] - part * change[i];
+            found = find_defects(compliance);
+            if (found <= enough || found < (1.0 - 0.1 * part) * defect) break;
+        }
+        if (!(found < kHopelessResidual)) return false;
+        defect = found;
+    }
+    return defect <= enough;
+}
+
+bool CoulombEquations::relax(const Compliance& compliance, int sweeps) {
+    MotionVector all = change();
+    const auto find_rate = [&](std::size_t i) {
+        rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
+    };
+    const auto set = [&](std::size_t i, double value) {
+        for (std::size_t c = 0; c < all.size(); ++c) all[c] += (value - force_[i]) * direction_[i][c];
+        force_[i] = value;
+    };
+    int comparison = kFirstComparison;
+    Unknowns before;
+    double last_change = 0.0;
+    bool diverges = false;
+    sweeps_ += static_cast<std::size_t>(sweeps);
+    for (int sweep = 1; sweep <= sweeps; ++sweep) {
+        if (sweep == comparison) before = force_;
+        for (std::size_t k = 0; k < contact_count_; ++k) {
+            find_rate(k);
+            set(k, std::max(0.0, force_[k] - gain_of(k, compliance) * rate_[k]));
+        }
+        for (std::size_t k = 0; k < resistance_count_; ++k) {
+            const CoulombResistance& r = resistances_[k];
+            for (std::size_t d = 0; d < r.size; ++d) find_rate(first_[k] + d);
+            const Wish wish = wish_of(k, compliance);
+            const double part = wish.is_cut ? wish.most / wish.size : 1.0;
+            for (std::size_t d = 0; d < r.size; ++d) set(first_[k] + d, part * wish.force[d]);
+        }
+        if (sweep != comparison) continue;
+        const double now = largest_change_from(before);
+        diverges = now > kCoulombStage && std::fabs(now - last_change) <= kSteadyChange * now;
+        last_change = now;
+        comparison *= 2;
+    }
+    return diverges;
+}
+
+double CoulombEquations::gain_of(std::size_t contact, const Compliance& compliance) const {
     return 1.0 / (delassus_[contact][contact] + compliance.value);
 }
 
-/// The force that would take the rate away. One that is moving wants more against its heading than it may have.
-CoulombProblem::Wish CoulombProblem::wish_of(std::size_t resistance, const Compliance& compliance) const {
+/// Returns the force that would remove the rate. A moving resistance always acts with its bound.
+CoulombEquations::Wish CoulombEquations::wish_of(std::size_t resistance, const Compliance& compliance) const {
     const CoulombResistance& r = resistances_[resistance];
     const std::size_t i = first_[resistance];
     Wish wish;
@@ -33,8 +180,8 @@ CoulombProblem::Wish CoulombProblem::wish_of(std::size_t resistance, const Compl
     return wish;
 }
 
-/// Alart and Curnier's equations: N = max(0, N - gain rate), T = the wish, cut to the bound. The largest defect.
-double CoulombProblem::find_defects(const Compliance& compliance) {
+/// The equations of Alart and Curnier: N = max(0, N - gain rate), and T is the wish, cut to its bound.
+double CoulombEquations::find_defects(const Compliance& compliance) {
     const MotionVector all = change();
     for (std::size_t i = 0; i < unknowns_; ++i) {
         rate_[i] = free_rate_[i] + dot(direction_[i], all) + compliance.value * (force_[i] - compliance.anchor[i]);
@@ -54,8 +201,8 @@ double CoulombProblem::find_defects(const Compliance& compliance) {
     return largest;
 }
 
-/// Their derivatives by the forces.
-void CoulombProblem::find_matrix(const Compliance& compliance) {
+/// Finds the derivatives of the defects by the forces.
+void CoulombEquations::find_matrix(const Compliance& compliance) {
     for (std::size_t k = 0; k < contact_count_; ++k) {
         const double gain = gain_of(k, compliance);
         const bool is_closed = force_[k] > gain * rate_[k];
@@ -65,7 +212,7 @@ void CoulombProblem::find_matrix(const Compliance& compliance) {
     for (std::size_t k = 0; k < resistance_count_; ++k) find_rows_of(k, compliance);
 }
 
-void CoulombProblem::find_rows_of(std::size_t resistance, const Compliance& compliance) {
+void CoulombEquations::find_rows_of(std::size_t resistance, const Compliance& compliance) {
     const CoulombResistance& r = resistances_[resistance];
     const std::size_t i = first_[resistance];
     const Wish wish = wish_of(resistance, compliance);
@@ -74,7 +221,7 @@ void CoulombProblem::find_rows_of(std::size_t resistance, const Compliance& comp
     const std::array unit{cut ? wish.force[0] / wish.size : 0.0, cut ? wish.force[1] / wish.size : 0.0};
     for (std::size_t d = 0; d < r.size; ++d) {
         for (std::size_t j = 0; j < unknowns_; ++j) {
-            double of_wish = 0.0;  // derivative of what the bound leaves of the wish
+            double of_wish = 0.0;  // derivative of the wish, cut to its bound
             for (std::size_t e = 0; e < r.size && !r.is_moving; ++e) {
                 const double own = i + e == j ? 1.0 - wish.gain * compliance.value : 0.0;
                 const double turned = (d == e ? 1.0 : 0.0) - unit[d] * unit[e];
@@ -87,7 +234,7 @@ void CoulombProblem::find_rows_of(std::size_t resistance, const Compliance& comp
 }
 
 /// Gaussian elimination with partial pivoting.
-bool CoulombProblem::eliminate() {
+bool CoulombEquations::eliminate() {
     for (std::size_t c = 0; c < unknowns_; ++c) {
         std::size_t pivot = c;
         for (std::size_t i = c + 1; i < unknowns_; ++i) {

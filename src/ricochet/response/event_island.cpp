@@ -17,6 +17,17 @@ void append_to(std::vector<FlownPiece>& trajectory, const std::vector<FlownPiece
     trajectory.insert(trajectory.end(), more.begin(), more.end());
 }
 
+PairBody body_of(const IslandMember& member) {
+    const MovingParticle& moving = member.moving;
+    const double radius = member.radius();
+    const bool is_fixed = member.is_fixed || member.is_cut_off;
+    // A core turns faster, so that its surface moves as fast.
+    PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
+                              (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
+    body.material = member.material;
+    return body;
+}
+
 }  // namespace
 
 bool EventIsland::run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit) {
@@ -250,12 +261,6 @@ void EventIsland::commit(std::size_t m) {
     member.lists.append(prediction.lists);
 }
 
-/// m/s: an approach of rounding.
-double EventIsland::slow(std::size_t a, std::size_t b) const {
-    const auto speed = [&](std::size_t m) { return length((*members_)[m].moving.state.velocity); };
-    return kPairApproachRounding * (speed(a) + speed(b));
-}
-
 std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) const {
     if ((*members_)[a].is_fixed && (*members_)[b].is_fixed) return std::nullopt;
     // In one order, so that both find the same time.
@@ -263,7 +268,9 @@ std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) cons
     const std::vector<FlownPiece>& first = predictions_[a].flown;
     const std::vector<FlownPiece>& second = predictions_[b].flown;
     const double distance = (*members_)[a].radius() + (*members_)[b].radius();
-    return first_meeting(std::span(first), std::span(second), distance, slow(a, b));
+    const auto speed = [&](std::size_t m) { return length((*members_)[m].moving.state.velocity); };
+    const double rounding = kPairApproachRounding * (speed(a) + speed(b));
+    return first_meeting(std::span(first), std::span(second), distance, rounding);
 }
 
 /// Of the next meeting of a member, if it is that.
@@ -400,17 +407,6 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
         go_on(m);
     }
     predict_anew(changed);
-}
-
-PairBody EventIsland::body_of(const IslandMember& member) {
-    const MovingParticle& moving = member.moving;
-    const double radius = member.radius();
-    const bool is_fixed = member.is_fixed || member.is_cut_off;
-    // A core turns faster, so that its surface moves as fast.
-    PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
-                              (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
-    body.material = member.material;
-    return body;
 }
 
 /// A member takes the motion after an impact: what touched it is met anew.

@@ -114,7 +114,6 @@ private:
     [[nodiscard]] std::vector<PairContact> contacts_at(double time) const;
     void keep_fastest(std::vector<PairContact>& contacts, double time) const;
     void resolve(std::vector<PairContact>& contacts, double time);
-    [[nodiscard]] static PairBody body_of(const IslandMember& member);
     void write_back(std::size_t m, const PairBody& body);
     void go_on(std::size_t m);
     void resume(std::size_t m);
@@ -122,7 +121,6 @@ private:
                 const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
     void record_meeting(std::span<const PairContact> contacts, const std::vector<std::size_t>& changed,
                         const std::vector<PairBody>& before, const std::vector<PairBody>& after, double time);
-    [[nodiscard]] double slow(std::size_t a, std::size_t b) const;
     [[nodiscard]] bool exceeds(const ImpactLimit& limit) const;
     [[nodiscard]] bool sinks() const;
     [[nodiscard]] bool presses() const;

@@ -140,7 +140,7 @@ void ParticleMover::finish() {
     if (particle_.contact.count == 0) {
         particle_.contact = release_speed_ ? ContactState::release_at(*release_speed_) : ContactState{};
     }
-    if (frame_rules_ != nullptr) step_.write_stored_position();
+    if (frame_rules_ != nullptr) keep_stored_position(step_);
     ledger().close();
     step_.log().note_impact();
 }

@@ -26,6 +26,13 @@ void StepTime::end_substep(MovingParticle& particle) {
     substep_end_.reset();
 }
 
+void SegmentChain::add(const StoredPosition& next, double recorded_at, MoveScratch& scratch) {
+    if (scratch.record_segments) {
+        scratch.segments.push_back({stored_.position, next.position, recorded_at, stored_.time, next.time});
+    }
+    stored_ = next;
+}
+
 ParticleStep::ParticleStep(const ResponseRules& rules, MovingParticle& particle, double duration, MoveScratch& scratch)
     : rules_(&rules),
       particle_(particle),
@@ -34,9 +41,7 @@ ParticleStep::ParticleStep(const ResponseRules& rules, MovingParticle& particle,
       geometry_(rules.world, scratch.contacts.plane_cache),
       impact_(rules, particle, scratch, outcome_, reference_),
       log_(rules, particle, scratch, reference_),
-      start_(particle.state.position),
-      stored_{particle.state.position, particle.stored_time},
-      first_segment_(scratch.segments.size()),
+      chain_(particle, scratch),
       time_(duration),
       resting_speed_(rules.settings.resting_speed) {}
 
@@ -46,20 +51,21 @@ void ParticleStep::enter(BodyId body, const ResponseRules& rules, Contact* conta
     rules_ = &rules;
     const RecordedMotion motion = reference_.in_frame(
         before.in_world({state().position, state().velocity, particle_.spin}, state().time), state().time);
-    const MovingPose pose = reference_.bodies().pose(body, stored_.time);
-    state().position = pose.local_position(stored_.position);
+    const StoredPosition& stored = chain_.stored();
+    const MovingPose pose = reference_.bodies().pose(body, stored.time);
+    state().position = pose.local_position(stored.position);
     state().velocity = motion.velocity;
     particle_.spin = motion.spin;
     // Positions are stored in the world. So contact needs the offset for the rounding of the world's coordinates.
     const MotionBounds& bounds = reference_.bodies().bounds(body);
     const double path_length = remaining() * (bounds.origin[1] + bounds.rotation[1] * length(state().position));
-    const double reach = max_abs(stored_.position) + path_length + max_abs(pose.world_from_frame.translation);
+    const double reach = max_abs(stored.position) + path_length + max_abs(pose.world_from_frame.translation);
     double least_offset = contact_offset({reach, 0.0, 0.0});
     if (reference_.bodies().is_dynamic(body)) {
         least_offset = std::max(least_offset, offset_for_carrying(pose, state().position));
     }
     geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache, least_offset);
-    begin_chain();
+    chain_.begin(state().position, scratch_);
     turn_contact(contact, before, reference_);
 }
 
@@ -73,11 +79,11 @@ void ParticleStep::leave(const ResponseRules& rules, Contact* contact) {
     reference_.set(kWorldBody);
     scratch_.driven = true;  // the change of frames rounds the motion
     rules_ = &rules;
-    state().position = stored_.position;
+    state().position = chain_.stored().position;
     state().velocity = motion.velocity;
     particle_.spin = motion.spin;
     geometry_ = SurfaceGeometry(rules.world, scratch_.contacts.plane_cache);
-    begin_chain();
+    chain_.begin(state().position, scratch_);
     turn_contact(contact, before, reference_);
 }
 
@@ -89,28 +95,12 @@ void ParticleStep::turn_contact(Contact* contact, const ReferenceFrame& from, co
     }
 }
 
-void ParticleStep::store_by_segment(const StoredPosition& next, double recorded_at) {
-    if (scratch_.record_segments) {
-        scratch_.segments.push_back({stored_.position, next.position, recorded_at, stored_.time, next.time});
-    }
-    stored_ = next;
-}
-
-void ParticleStep::begin_chain() {
-    start_ = state().position;
-    first_segment_ = scratch_.segments.size();
-}
-
-void ParticleStep::write_stored_position() {
-    particle_.state.position = stored_.position;
-    particle_.stored_time = stored_.time;
-}
-
 PathClock ParticleStep::clock_of(const Path& path) const {
     const double now = particle_.state.time;
     const double end =
         path.duration >= remaining() ? particle_.step_end : std::min(now + path.duration, particle_.step_end);
-    return {stored_.time, std::max(end, stored_.time), now, 0.0, path.duration};
+    const double begin = chain_.stored().time;
+    return {begin, std::max(end, begin), now, 0.0, path.duration};
 }
 
 bool ParticleStep::is_among_bodies(const Path& path) const {

@@ -41,6 +41,36 @@ private:
     double whole_step_end_ = 0.0;
 };
 
+/// The chain of certified segments on which a particle moves. Segments are recorded if MoveScratch asks for that.
+class SegmentChain {
+public:
+    SegmentChain(const MovingParticle& particle, const MoveScratch& scratch)
+        : stored_{particle.state.position, particle.stored_time} {
+        begin(particle.state.position, scratch);
+    }
+
+    /// The position in the world, and its time. The time matters only if colliders move.
+    [[nodiscard]] const StoredPosition& stored() const { return stored_; }
+    void store(const StoredPosition& position) { stored_ = position; }
+    /// Adds a segment from the stored position to the next one, and stores that. recorded_at: Segment::time.
+    void add(const StoredPosition& next, double recorded_at, MoveScratch& scratch);
+    /// Begins a new chain at a position in the reference frame.
+    void begin(const Vec3& position, const MoveScratch& scratch) {
+        start_ = position;
+        first_segment_ = scratch.segments.size();
+    }
+    /// Start of the chain in the reference frame. If the particle was placed on a surface, this is its position beside
+    /// it.
+    [[nodiscard]] const Vec3& start() const { return start_; }
+    /// Number of the first segment in MoveScratch::segments.
+    [[nodiscard]] std::size_t first_segment() const { return first_segment_; }
+
+private:
+    StoredPosition stored_;
+    Vec3 start_;
+    std::size_t first_segment_ = 0;
+};
+
 /// One particle within a step. Its state is given in the reference frame: the world, or the frame of a body that it
 /// touches. The stored position is in the world. Stages read and change it:
 /// follow_path.h (fly, and find contacts), certified_motion.h (certify segments, and stop), carried_particle.h (wait
@@ -85,21 +115,8 @@ public:
     void begin_substep(double until) { time_.begin_substep(until, particle_); }
     void end_substep() { time_.end_substep(particle_); }
 
-    // The chain of certified segments.
-
-    /// The position in the world, and its time. The time matters only if colliders move.
-    [[nodiscard]] const StoredPosition& stored() const { return stored_; }
-    void store(const StoredPosition& position) { stored_ = position; }
-    /// Records a segment from the stored position to another one, if segments are recorded, and stores that.
-    void store_by_segment(const StoredPosition& next, double recorded_at);
-    /// Start of the chain in this frame. If the particle was placed on a surface, this is its position beside it.
-    [[nodiscard]] const Vec3& start() const { return start_; }
-    /// Number of the chain's first segment in MoveScratch::segments.
-    [[nodiscard]] std::size_t first_segment() const { return first_segment_; }
-    /// Begins a new chain at the present position.
-    void begin_chain();
-    /// Copies the stored position to the particle, at the end of the move.
-    void write_stored_position();
+    [[nodiscard]] SegmentChain& chain() { return chain_; }
+    [[nodiscard]] const SegmentChain& chain() const { return chain_; }
 
     // Whether a moving collider may come near.
 
@@ -141,9 +158,7 @@ private:
     MoveOutcome outcome_;
     ImpactResolver impact_;
     MotionLog log_;
-    Vec3 start_;
-    StoredPosition stored_;
-    std::size_t first_segment_;
+    SegmentChain chain_;
     StepTime time_;
     double resting_speed_;
     std::uint32_t intervals_ = 0;  // of contact

@@ -29,19 +29,19 @@ MovingView view_along(const ParticleStep& step, const Path& path) {
 
 std::optional<Contact> first_contact_among_bodies(ParticleStep& step, const ContactQuery& query) {
     const MovingView view = view_along(step, query.path);
-    const PathPoint start = view.stored(step.stored().position, 0.0);
+    const PathPoint start = view.stored(step.chain().stored().position, 0.0);
     return MovingSweep(view, step.geometry(), query, start, step.scratch().contacts).first_contact();
 }
 
 /// Follows a path among moving colliders, piece by piece, up to a contact.
 PathProgress follow_among_bodies(ParticleStep& step, const ContactQuery& query) {
     const MovingView view = view_along(step, query.path);
-    const PathPoint start = view.stored(step.stored().position, 0.0);
+    const PathPoint start = view.stored(step.chain().stored().position, 0.0);
     MovingSweep sweep(view, step.geometry(), query, start, step.scratch().contacts);
     PathProgress progress;
     while (!sweep.is_done() && !progress.contact) {
         const double begin = sweep.begin();
-        ContactQueryResult found = sweep.sweep(view.stored(step.stored().position, begin));
+        ContactQueryResult found = sweep.sweep(view.stored(step.chain().stored().position, begin));
         const ContactQuery of_piece{sweep.path(), query.radius, nullptr, {}, query.supports};
         const double elapsed = move_certified_within(step, of_piece, found, sweep.clock());
         if (found.contact) progress.contact = found.contact;
@@ -148,12 +148,12 @@ void follow_clear_path(ParticleStep& step, const Path& line) {
     ForceInput& state = step.state();
     MoveScratch& scratch = step.scratch();
     if (scratch.record_segments) {
-        scratch.segments.push_back({line.c[0], line.end, state.time, step.stored().time, end});
+        scratch.segments.push_back({line.c[0], line.end, state.time, step.chain().stored().time, end});
     }
     if (scratch.record_flown) {
         scratch.flown.push_back({line, state.time, line.duration, line.c[1], line.c[1], false});
     }
-    step.store({line.end, end});
+    step.chain().store({line.end, end});
     state.position = line.end;
     step.pass(line.duration);
 }

@@ -1,11 +1,11 @@
 #include "ricochet/response/shared_contact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/response/carried_particle.h"
-#include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/impact_problem.h"
 #include "ricochet/response/path_motion.h"
@@ -20,36 +20,37 @@ constexpr int kCorrections = 3;
 }  // namespace
 
 bool SharedContact::is_slow(const Contact& contact, const Motion& arriving) const {
+    const SurfaceKinematics& kinematics = step_.impact().surfaces();
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
-        const Material& material = surfaces().material_of(surface.surface);
-        const double approach = surfaces().surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
+        const Material& material = kinematics.material_of(surface.surface);
+        const double approach = kinematics.surface_normal_speed(surface) - dot(arriving.velocity, surface.normal);
         if (surface.is_support || !(approach > 0.0)) return true;
         return !material.is_random() && material.restitution_at(approach) * approach < step_.resting_speed();
     });
 }
 
-/// Loses what leads into the surfaces; false where they leave it no way out.
+/// Removes the velocity into the surfaces. Returns false if they leave the particle no way out.
 bool SharedContact::land() {
+    const SurfaceKinematics& kinematics = step_.impact().surfaces();
     const double before = fastest();
-    // What goes on along all of them has landed already.
-    const bool is_along = std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return separation_speed(one) >= -kStopRounding * before;
-    });
-    if (is_along) return true;
+    const bool has_landed = std::all_of(
+        surfaces_.all().begin(), surfaces_.all().end(),
+        [&](const SharedSurface& touched) { return surfaces_.separation_speed(touched) >= -kStopRounding * before; });
+    if (has_landed) return true;
     std::array<ImpactSurface, kMostSupports> landing;
-    for (std::size_t k = 0; k < count_; ++k) landing[k] = surfaces().landing_on(touched_[k].surface);
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) landing[k] = kinematics.landing_on(surfaces_[k].surface);
     const ImpactResult result =
-        solve_impact({state().velocity, particle().spin}, state().radius, std::span(landing).first(count_));
+        solve_impact({state().velocity, particle().spin}, state().radius, std::span(landing).first(surfaces_.size()));
     state().velocity = result.after.velocity;
     particle().spin = result.after.spin;
-    for (std::size_t k = 0; k < count_; ++k) {
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         if (result.velocity_change[k] != Vec3{}) {
-            ledger().record_impulse(touched_[k].surface.surface, result.velocity_change[k], false);
-        };
+            ledger().record_impulse(surfaces_[k].surface.surface, result.velocity_change[k], false);
+        }
     }
     const double scale = before + length(state().velocity);
-    return std::all_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        return surfaces().separation_speed(one.surface) >= -kSlowSlip * scale;
+    return std::all_of(surfaces_.all().begin(), surfaces_.all().end(), [&](const SharedSurface& touched) {
+        return kinematics.separation_speed(touched.surface) >= -kSlowSlip * scale;
     });
 }
 
@@ -57,44 +58,43 @@ bool SharedContact::land() {
 /// that another one has stopped there is rounded by the speed of that one.
 double SharedContact::fastest() const {
     double carried = 0.0;
-    for (const Touched& one : touched()) carried = std::max(carried, length(one.velocity));
+    for (const SharedSurface& touched : surfaces_.all()) carried = std::max(carried, length(touched.velocity));
     return length(state().velocity) + carried;
 }
 
-/// Plans without the slow departures that are left of bounces on what presses the particle on: they have died out. What
-/// does not press is left.
+/// Plans an interval without the slow departures that bounces have left on surfaces that press. Surfaces that do not
+/// press are dropped.
 SharedContact::SupportKind SharedContact::settle(double duration) {
     const Vec3 leaving = state().velocity;
     for (;;) {
         std::array<Vec3, kMostSupports> normals;
         std::array<double, kMostSupports> departures{};
-        for (std::size_t k = 0; k < count_; ++k) {
-            normals[k] = touched_[k].surface.normal;
-            departures[k] = -separation_speed(touched_[k]);
+        const std::size_t before = surfaces_.size();
+        for (std::size_t k = 0; k < before; ++k) {
+            normals[k] = surfaces_[k].surface.normal;
+            departures[k] = -surfaces_.separation_speed(surfaces_[k]);
         }
-        state().velocity += shift_by({normals.data(), count_}, {departures.data(), count_});
-        const std::size_t before = count_;
-        const SupportKind hold = plan(duration);
-        std::size_t contact_state = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const bool is_left = interval_.reaction[k] == Vec3{} && departures[k] < 0.0;
-            if (!is_left) touched_[contact_state++] = touched_[k];
-        }
-        if (contact_state == before || contact_state == 0 || hold != SupportKind::shared) {
-            // Surfaces of one frame answer the departure from them by themselves.
-            if (hold != SupportKind::shared) state().velocity = leaving;
-            if (hold == SupportKind::shared) {
-                ledger().record_impulse(touched_[0].surface.surface, state().velocity - leaving, false);
+        state().velocity += shift_by({normals.data(), before}, {departures.data(), before});
+        const SupportKind kind = plan(duration);
+        std::size_t left = 0;
+        const auto is_kept = [&](std::size_t k) { return interval_.reaction[k] != Vec3{} || !(departures[k] < 0.0); };
+        for (std::size_t k = 0; k < surfaces_.size(); ++k) left += is_kept(k) ? 1 : 0;
+        if (left == before || left == 0 || kind != SupportKind::shared) {
+            // The surfaces of one frame answer a departure by themselves.
+            if (kind != SupportKind::shared) state().velocity = leaving;
+            if (kind == SupportKind::shared) {
+                ledger().record_impulse(surfaces_[0].surface.surface, state().velocity - leaving, false);
             }
-            return hold;
+            return kind;
         }
-        count_ = contact_state;
+        surfaces_.keep_if(is_kept);
         state().velocity = leaving;
     }
 }
 
-/// Where it slips no faster than `most`, m/s: rounding of an impact that has stopped it. Where friction is just what
-/// holds it, nothing else would end that slip, whose direction turns at once.
+/// Marks surfaces on which the particle slips no faster than `most`, in m/s, as sticking. Such a slip is rounding of an
+/// impact that has stopped it. If friction just suffices to hold the particle, nothing else would end that slip, whose
+/// direction turns at once.
 StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const SupportSurface> surfaces,
                                       double most) const {
     StuckSurfaces stuck{};
@@ -104,50 +104,48 @@ StuckSurfaces SharedContact::sticking(const Motion& motion, std::span<const Supp
     return stuck;
 }
 
-/// Plans the next interval in the frame in which none of the surfaces advances.
+/// Plans the next interval in the frame in which no surface advances. Drops the surfaces of other frames if those of
+/// one frame alone support the particle.
 SharedContact::SupportKind SharedContact::plan(double duration) {
+    const std::size_t count = surfaces_.size();
     std::array<Vec3, kMostSupports> normals;
     std::array<double, kMostSupports> advances{};
-    std::array<SupportSurface, kMostSupports> surfaces;
-    for (std::size_t k = 0; k < count_; ++k) {
-        normals[k] = touched_[k].surface.normal;
-        advances[k] = dot(touched_[k].velocity, normals[k]);
+    for (std::size_t k = 0; k < count; ++k) {
+        normals[k] = surfaces_[k].surface.normal;
+        advances[k] = dot(surfaces_[k].velocity, normals[k]);
     }
-    shift_ = shift_by({normals.data(), count_}, {advances.data(), count_});
-    for (std::size_t k = 0; k < count_; ++k) surfaces[k] = supports(touched_[k], shift_);
+    shift_ = shift_by({normals.data(), count}, {advances.data(), count});
+    std::array<SupportSurface, kMostSupports> constraints;
+    for (std::size_t k = 0; k < count; ++k) constraints[k] = surfaces_.constraint(surfaces_[k], shift_);
+    const std::span<const SupportSurface> all(constraints.data(), count);
     const Vec3 forces = step_.rules().forces.acceleration(state());
     const double reach = kTouchingOffsets * contact_offset(state().position);
     const FrictionLimits grip{1.0, step_.duration() / kShortestIntervals, reach};
     const Motion motion{state().velocity - shift_, particle().spin};
-    const std::span<const SupportSurface> supporting_it(surfaces.data(), count_);
-    interval_ = plan_interval(motion, state().radius, forces, supporting_it, grip, duration,
-                              sticking(motion, supporting_it, kNegligibleSpeed * duration * length(forces)));
+    interval_ = plan_interval(motion, state().radius, forces, all, grip, duration,
+                              sticking(motion, all, kNegligibleSpeed * duration * length(forces)));
     std::optional<BodyId> holder;
     bool is_shared = false;
-    for (std::size_t k = 0; k < count_; ++k) {
+    for (std::size_t k = 0; k < count; ++k) {
         if (interval_.reaction[k] == Vec3{}) continue;
-        is_shared = is_shared || (holder && *holder != touched_[k].body) || deforms(touched_[k]);
-        holder = touched_[k].body;
+        is_shared = is_shared || (holder && *holder != surfaces_[k].body) || surfaces_.deforms(surfaces_[k]);
+        holder = surfaces_[k].body;
     }
     if (!holder) return SupportKind::none;
     if (is_shared) return SupportKind::shared;
-    // One frame's surfaces hold it; others are only touched.
-    std::size_t contact_state = 0;
-    for (std::size_t k = 0; k < count_; ++k) {
-        if (touched_[k].body == *holder) touched_[contact_state++] = touched_[k];
-    }
-    count_ = contact_state;
+    surfaces_.keep_if([&](std::size_t k) { return surfaces_[k].body == *holder; });
     return SupportKind::single;
 }
 
-/// A position at a time put at the contact offset from the surfaces that press on it, and not behind others.
+/// Returns a position at a time, moved to the contact offset from the surfaces that press on the particle, and out of
+/// the others.
 Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     for (int pass = 0; pass < kCorrections; ++pass) {
         std::array<Vec3, kMostSupports> normals;
         std::array<double, kMostSupports> lifts{};
         std::size_t count = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const Height height = height_above(touched_[k], end, time);
+        for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+            const SharedSurfaces::Height height = surfaces_.height_above(surfaces_[k], end, time);
             const double missing = state().radius + height.offset - height.above;
             if (interval_.reaction[k] == Vec3{} && !(missing > 0.0)) continue;
             normals[count] = height.normal;
@@ -158,36 +156,37 @@ Vec3 SharedContact::kept_off(Vec3 end, double time) const {
     return flush_tiny(end);
 }
 
-/// A path is certified to touch nothing that it goes along, but may end nearer to it than positions are rounded there.
-/// On which side of the surface it is would be rounding from then on: puts it at the contact offset.
+/// Moves the particle to the contact offset if it has come so near to a surface that rounding would decide its side. A
+/// path is certified not to touch the surfaces that it follows, but it may end nearer to them than positions are
+/// rounded.
 void SharedContact::lift() {
-    const bool is_low = std::any_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        const Height height = height_above(one, state().position, state().time);
+    const bool is_low = std::any_of(surfaces_.all().begin(), surfaces_.all().end(), [&](const SharedSurface& touched) {
+        const SharedSurfaces::Height height = surfaces_.height_above(touched, state().position, state().time);
         return height.above - state().radius < 0.25 * height.offset;
     });
     if (is_low) shift_to(step_, kept_off(state().position, state().time));
 }
 
-/// Between its ends the path of a point can be behind surfaces that turn, by the cubic's error, where it would be
-/// stopped: lifts it, by 4 s (1 - s) of a height over its duration. The lift turns with the surfaces, and is one for
-/// all of them: one off each surface by itself would lead into others that hold the particle as well.
+/// Lifts the middle of a path by 4 s (1 - s) of a height, over its duration. By the cubic's error, a point's path can
+/// lie behind surfaces that turn, where it would be stopped. The lift turns with the surfaces, and is the same for all:
+/// a lift off one surface alone would lead into another.
 void SharedContact::lift_middle(Path& path) const {
     std::array<Vec3, kMostSupports> normals;
     std::array<Vec3, kMostSupports> last_normals;
     std::array<double, kMostSupports> lifts{};
     std::size_t count = 0;
     bool is_behind = false;
-    for (std::size_t k = 0; k < count_; ++k) {
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
         const auto height_at = [&](double time) {
-            return height_above(touched_[k], path.position(time), state().time + time);
+            return surfaces_.height_above(surfaces_[k], path.position(time), state().time + time);
         };
         double behind = 0.0;
         for (const double part : {0.1, 0.25, 0.5, 0.75, 0.9}) {
-            const Height height = height_at(part * path.duration);
+            const SharedSurfaces::Height height = height_at(part * path.duration);
             const double missing = state().radius + height.offset - height.above;
             behind = std::max(behind, missing / (4.0 * part * (1.0 - part)));
         }
-        if (behind <= (deforms(touched_[k]) ? 0.0 : 0.5 * state().radius)) behind = 0.0;
+        if (behind <= (surfaces_.deforms(surfaces_[k]) ? 0.0 : 0.5 * state().radius)) behind = 0.0;
         if (interval_.reaction[k] == Vec3{} && behind == 0.0) continue;
         is_behind = is_behind || behind > 0.0;
         normals[count] = height_at(0.0).normal;
@@ -204,7 +203,7 @@ void SharedContact::lift_middle(Path& path) const {
     path.degree = std::max(path.degree, turn == Vec3{} ? 2 : 3);
 }
 
-/// Along the interval, to where the surfaces will be.
+/// Returns the path of an interval, which ends beside the surfaces at their later positions.
 Path SharedContact::interval_path(double duration) const {
     const Vec3 velocity = interval_.motion.velocity + shift_;
     const Vec3 last = velocity + duration * interval_.acceleration;
@@ -215,32 +214,7 @@ Path SharedContact::interval_path(double duration) const {
     return path;
 }
 
-/// m/s, what a surface has changed the velocity by in an interval: about an edge as much in its direction at the end as
-/// in that at the start.
-Vec3 SharedContact::velocity_change_of(std::size_t k, double elapsed, bool has_arrived) const {
-    const Touched& one = touched_[k];
-    const Vec3 reaction = elapsed * interval_.reaction[k];
-    if (reaction == Vec3{} || !has_arrived || !deforms(one) || one.surface.flat) return reaction;
-    const Vec3& n = one.surface.normal;
-    return reaction + 0.5 * dot(reaction, n) * (height_above(one, state().position, state().time).normal - n);
-}
-
-/// Relative to all that presses on it.
-bool SharedContact::rests() const {
-    bool is_held = false;
-    for (std::size_t k = 0; k < count_; ++k) {
-        if (interval_.reaction[k] == Vec3{}) continue;
-        const Touched& one = touched_[k];
-        const double rounding = kStopRounding * (length(state().velocity) + length(one.velocity));
-        if (length(state().velocity - one.velocity) > rounding) return false;
-        const Vec3 turning = surfaces().angular_velocity_of(one.surface.surface);
-        if (state().radius * length(particle().spin - turning) > rounding) return false;
-        is_held = true;
-    }
-    return is_held;
-}
-
-/// The same, to where a surface ends: `duration`, s, is shortened to that.
+/// Returns the same path, ended where a surface ends. `duration`, in s, is shortened to that.
 Path SharedContact::path_until_rim(double& duration) const {
     Path path = interval_path(duration);
     if (const double on = until_rim(path); on < duration) {
@@ -250,42 +224,89 @@ Path SharedContact::path_until_rim(double& duration) const {
     return path;
 }
 
-/// Follows the interval that is planned, of at most so long, s.
+/// Returns the time, in s, in which a path is over the faces of deforming meshes that support the particle. In the edge
+/// of two faces the path bulges off one of them and so beyond the rim of the other, so positions are put back first.
+double SharedContact::until_rim(const Path& path) const {
+    const auto position_at = [&](double at) {
+        return at < path.duration ? kept_off(path.position(at), state().time + at) : path.end;
+    };
+    double most = path.duration;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        const SharedSurface& touched = surfaces_[k];
+        if (interval_.reaction[k] == Vec3{} || !surfaces_.deforms(touched) || !touched.surface.flat) continue;
+        const DeformedContact contact{touched.surface, touched.others};
+        most = std::min(most, time_over(surfaces_.deforming(), contact, position_at, path.duration, state().time));
+    }
+    return most;
+}
+
+/// Returns the change of velocity, m/s, by a surface in an interval. About an edge, half of it has the edge's direction
+/// at the end of the interval.
+Vec3 SharedContact::velocity_change_of(std::size_t k, double elapsed, bool has_arrived) const {
+    const SharedSurface& touched = surfaces_[k];
+    const Vec3 reaction = elapsed * interval_.reaction[k];
+    if (reaction == Vec3{} || !has_arrived || !surfaces_.deforms(touched) || touched.surface.flat) return reaction;
+    const Vec3& n = touched.surface.normal;
+    const Vec3 last = surfaces_.height_above(touched, state().position, state().time).normal;
+    return reaction + 0.5 * dot(reaction, n) * (last - n);
+}
+
+/// Applies and records the reactions of an interval that has lasted for `elapsed` seconds.
+void SharedContact::take_reactions(double elapsed, bool has_arrived) {
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        const Vec3 change = velocity_change_of(k, elapsed, has_arrived);
+        if (has_arrived) state().velocity += change - elapsed * interval_.reaction[k];
+        if (change != Vec3{}) ledger().record_impulse(surfaces_[k].surface.surface, change, false);
+    }
+}
+
+/// Follows the planned interval, for at most a time in s.
 SharedContact::Followed SharedContact::follow_interval(double most) {
     step_.log().note_impact();
     const double before = step_.remaining();
     const Vec3 forces = step_.rules().forces.acceleration(state());
     const Vec3 velocity = interval_.motion.velocity + shift_;
-    // What ends at once has ended after the shortest interval.
+    // An interval that ends at once takes the shortest time.
     const double shortest = std::min(before, step_.duration() / kShortestIntervals);
-    Followed followed;
-    followed.duration = interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most);
+    Followed followed{interval_.duration > 0.0 ? interval_.duration : std::min(shortest, most)};
     const Path path = path_until_rim(followed.duration);
-    // Between its ends the path is beside surfaces that turn; up to a contact it ends on them as well.
-    RefinementBudget looks;
-    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+    // A path ends on the surfaces, but between its ends it lies beside surfaces that turn. Up to a contact it is
+    // planned anew.
+    RefinementBudget budget;
+    const auto refine = [&](double time, const Path& tried) -> std::optional<Path> {
         if (!(time > 0.0)) return {};
         Path next = interval_path(time);
-        if (!looks.may_improve(tried.position(time), next.end, contact_offset(next.end))) return {};
+        if (!budget.may_improve(tried.position(time), next.end, contact_offset(next.end))) return {};
         followed.duration = time;
         return next;
     };
-    const std::vector<SurfaceId> supported_by = supporting(path);
-    followed.contact = follow_path(step_, path, supported_by, closer);
+    const std::vector<SurfaceId> supports = surfaces_.supporting(path);
+    followed.contact = follow_path(step_, path, supports, refine);
     if (followed.contact) lift();
     const double elapsed = before - step_.remaining();
     const bool has_arrived = !followed.contact;
-    // The path also makes good what the particle stands off, which in a short interval is no velocity of its own.
-    if (has_arrived || is_on_deforming()) state().velocity = velocity + elapsed * interval_.acceleration;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const Vec3 reaction = velocity_change_of(k, elapsed, has_arrived);
-        if (has_arrived) state().velocity += reaction - elapsed * interval_.reaction[k];
-        if (reaction != Vec3{}) ledger().record_impulse(touched_[k].surface.surface, reaction, false);
-    }
+    // The path also corrects the distance from the surfaces. In a short interval that would be a wrong velocity.
+    if (has_arrived || surfaces_.is_any_deforming()) state().velocity = velocity + elapsed * interval_.acceleration;
+    take_reactions(elapsed, has_arrived);
     particle().spin = interval_.motion.spin + elapsed * interval_.spin_acceleration;
     ledger().note_driven();
-    step_.log().note_contact(forces, path, true, supported_by);
+    step_.log().note_contact(forces, path, true, supports);
     return followed;
+}
+
+/// Returns true if the particle is at rest relative to all surfaces that press on it.
+bool SharedContact::rests() const {
+    bool is_supported = false;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+        if (interval_.reaction[k] == Vec3{}) continue;
+        const SharedSurface& touched = surfaces_[k];
+        const double rounding = kStopRounding * (length(state().velocity) + length(touched.velocity));
+        if (length(state().velocity - touched.velocity) > rounding) return false;
+        const Vec3 turning = step_.impact().surfaces().angular_velocity_of(touched.surface.surface);
+        if (state().radius * length(particle().spin - turning) > rounding) return false;
+        is_supported = true;
+    }
+    return is_supported;
 }
 
 std::optional<Contact> SharedContact::follow() {
@@ -294,31 +315,31 @@ std::optional<Contact> SharedContact::follow() {
     for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         step_.note_interval();
         ledger().note_driven();
-        gather();
-        if (count_ == 0) return std::nullopt;
+        surfaces_.gather();
+        if (surfaces_.size() == 0) return std::nullopt;
         if (!land()) {
             step_.log().note_impact();
             give_up(step_);
             return std::nullopt;
         }
-        const std::optional<double> jump = next_jump();
-        double most = std::min(step_.remaining(), longest());
+        const std::optional<double> jump = surfaces_.next_jump();
+        double most = std::min(step_.remaining(), surfaces_.longest_interval());
         if (jump) most = std::clamp(*jump - state().time, 0.0, most);
-        const SupportKind hold = settle(most);
-        if (hold == SupportKind::single) particle().contact = contact_state();
-        if (hold != SupportKind::shared) return std::nullopt;
+        const SupportKind kind = settle(most);
+        if (kind == SupportKind::single) particle().contact = surfaces_.contact_state();
+        if (kind != SupportKind::shared) return std::nullopt;
         const double begin = state().time;
         Followed followed = follow_interval(most);
         if (followed.contact) {
-            join_impact(*followed.contact);
+            surfaces_.join_impact(*followed.contact);
             return followed.contact;
         }
         has_jumped = jump && followed.duration >= *jump - begin;
         if (has_jumped) break;
     }
-    // At a jump a body goes on with another velocity, and the particle with its own.
+    // At a jump the body gets another velocity, and the particle keeps its own.
     if (step_.remaining() <= 0.0 && !has_jumped) {
-        particle().contact = contact_state();
+        particle().contact = surfaces_.contact_state();
         if (rests()) step_.outcome().end = MoveEnd::resting;
     }
     return std::nullopt;

@@ -1,139 +1,134 @@
-// What a SharedContact touches: which surfaces of which frames, how they hold the particle, and where they are.
+#include "ricochet/response/shared_surfaces.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <span>
 
 #include "ricochet/core/tolerances.h"
+#include "ricochet/response/contact_manifold.h"
 #include "ricochet/response/curved_contact.h"
 #include "ricochet/response/deformed_surface.h"
 #include "ricochet/response/nearby_surfaces.h"
-#include "ricochet/response/shared_contact.h"
 
 namespace ricochet {
+namespace {
 
-MovingView SharedContact::view_at(double time) const {
-    return {*step_.rules().bodies, kWorldBody, {time, time, time, 0.0, 0.0}};
+/// Returns the nearest point of a triangle.
+Vec3 rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position) {
+    const CollisionWorld::Nearest nearest = world.nearest(triangle, position);
+    return position - nearest.distance * nearest.normal;
 }
 
-/// All that is touched, of all frames, but what is left.
-void SharedContact::gather() {
-    const double margin = state().radius + kEdgeOffsets * contact_offset(state().position);
+}  // namespace
+
+MovingView SharedSurfaces::view_at(double time) const { return {bodies(), kWorldBody, {time, time, time, 0.0, 0.0}}; }
+
+void SharedSurfaces::gather() {
+    const Vec3& position = step_.state().position;
+    const double margin = step_.state().radius + kEdgeOffsets * contact_offset(position);
     const Vec3 by{margin, margin, margin};
     std::vector<BodyId> near{kWorldBody};
-    step_.rules().bodies->near({state().position - by, state().position + by}, kWorldBody, near);
+    bodies().near({position - by, position + by}, kWorldBody, near);
     count_ = 0;
     for (const BodyId body : near) gather_in(body);
     gather_deforming();
 }
 
-void SharedContact::gather_deforming() {
-    const MovingColliders& bodies = *step_.rules().bodies;
-    const double separation_speed = step_.resting_speed();
-    for (const DeformedContact& contact : touched_surfaces(deforming(), state(), separation_speed)) {
+void SharedSurfaces::gather_deforming() {
+    const ForceInput& state = step_.state();
+    for (const DeformedContact& contact : touched_surfaces(deforming(), state, step_.resting_speed())) {
         if (count_ == kMostSupports) return;
-        Touched& touched = touched_[count_++];
-        const ContactSurface& surface = contact.surface;
-        touched.surface = surface;
-        touched.all = contact.all;
-        touched.body = bodies.body_of(surface.surface);
-        touched.velocity = surfaces().velocity_of(surface);
-        touched.turning = deforming().motion_at(surface.surface, state().position, state().time).turning;
+        SharedSurface& touched = surfaces_[count_++];
+        touched.surface = contact.surface;
+        touched.others = contact.all;
+        touched.body = bodies().body_of(contact.surface.surface);
+        touched.velocity = kinematics().velocity_of(contact.surface);
+        touched.turning = deforming().motion_at(contact.surface.surface, state.position, state.time).turning;
     }
 }
 
-void SharedContact::gather_in(BodyId body) {
-    const MovingView view = view_at(state().time);
-    const CollisionWorld& world = view.bodies().world(body);
+void SharedSurfaces::gather_in(BodyId body) {
+    const ForceInput& state = step_.state();
+    const MovingView view = view_at(state.time);
+    const CollisionWorld& world = bodies().world(body);
     if (world.empty()) return;
-    ForceInput seen = state();
-    seen.position = view.local_position(body, state().position, 0.0);
-    seen.velocity = view.velocity_in(body, {state().position, 0.0, state().position}, state().velocity);
+    ForceInput seen = state;
+    seen.position = view.local_position(body, state.position, 0.0);
+    seen.velocity = view.velocity_in(body, {state.position, 0.0, state.position}, state.velocity);
     TrianglePlaneCache planes;
     const SurfaceGeometry geometry(world, planes);
     ContactManifold manifold(geometry, seen);
-    const double offset = std::max(contact_offset(seen.position), contact_offset(state().position));
+    const double offset = std::max(contact_offset(seen.position), contact_offset(state.position));
     const double reach = kTouchingOffsets * offset;
     const TouchRule rule{reach, reach, reach, step_.resting_speed()};
     visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId surface) { manifold.touch(surface, rule); });
     for (std::size_t k = 0; k < manifold.size() && count_ < kMostSupports; ++k) {
-        Touched& touched = touched_[count_++];
+        SharedSurface& touched = surfaces_[count_++];
         touched.surface = manifold[k];
-        touched.all.clear();
+        touched.others.clear();
         if (!manifold[k].flat && !world.is_shape(manifold[k].surface)) {
             const Vec3 rim = rim_of(world, manifold[k].surface, seen.position);
             visit_near_in(step_, geometry, seen.position, reach, [&](SurfaceId other) {
                 if (other == manifold[k].surface || !world.triangle_of(other)) return;
-                if (length(rim_of(world, other, seen.position) - rim) <= reach) touched.all.push_back(other);
+                if (length(rim_of(world, other, seen.position) - rim) <= reach) touched.others.push_back(other);
             });
         }
         touched.surface.normal = view.direction_from(body, manifold[k].normal, 0.0);
         touched.body = body;
-        touched.velocity = surfaces().velocity_of(touched.surface);
-        touched.turning = view.bodies().pose(body, state().time).angular_velocity;
+        touched.velocity = kinematics().velocity_of(touched.surface);
+        touched.turning = bodies().pose(body, state.time).angular_velocity;
     }
 }
 
-/// The point of a triangle that is nearest.
-Vec3 SharedContact::rim_of(const CollisionWorld& world, SurfaceId triangle, const Vec3& position) {
-    const CollisionWorld::Nearest nearest = world.nearest(triangle, position);
-    return position - nearest.distance * nearest.normal;
+bool SharedSurfaces::is_any_deforming() const {
+    return std::any_of(all().begin(), all().end(), [&](const SharedSurface& touched) { return deforms(touched); });
 }
 
-bool SharedContact::is_on_deforming() const {
-    return std::any_of(touched().begin(), touched().end(), [&](const Touched& one) { return deforms(one); });
-}
-
-double SharedContact::separation_speed(const Touched& touched) const {
-    return dot(state().velocity - touched.velocity, touched.surface.normal);
-}
-
-/// As it holds the particle, seen from what moves with `shift`: the gap to a rigid surface grows by n . (a - a_s) + 2
-/// (omega x n) . (v - w), and by what its curvature adds; a_s: of its own point there.
-SupportSurface SharedContact::supports(const Touched& touched, const Vec3& shift) const {
-    const Material& material = surfaces().material_of(touched.surface.surface);
+SupportSurface SharedSurfaces::constraint(const SharedSurface& touched, const Vec3& shift) const {
+    const ForceInput& state = step_.state();
+    const Material& material = kinematics().material_of(touched.surface.surface);
     const Vec3& n = touched.surface.normal;
     const Vec3 relative = touched.velocity - shift;
-    SupportSurface held{n,
-                        material.friction,
-                        material.rolling_friction,
-                        material.spinning_friction,
-                        relative - dot(relative, n) * n,
-                        surfaces().angular_velocity_of(touched.surface.surface)};
+    SupportSurface result{n,
+                          material.friction,
+                          material.rolling_friction,
+                          material.spinning_friction,
+                          relative - dot(relative, n) * n,
+                          kinematics().angular_velocity_of(touched.surface.surface)};
     if (deforms(touched)) {
-        const CurvatureTerms bent = curvature_of(deforming(), state(), touched.surface);
-        held.curvature = bent.curvature;
-        held.slip_curvature = bent.slip_curvature;
-        return held;
+        const CurvatureTerms terms = curvature_of(deforming(), state, touched.surface);
+        result.curvature = terms.curvature;
+        result.slip_curvature = terms.slip_curvature;
+        return result;
     }
-    const MovingView view = view_at(state().time);
-    const MovingPose pose = view.bodies().pose(touched.body, state().time);
-    const Vec3 arm = state().position - pose.world_from_frame.translation;
+    const MovingPose pose = bodies().pose(touched.body, state.time);
+    const Vec3 arm = state.position - pose.world_from_frame.translation;
     const Vec3& turning = pose.angular_velocity;
     const Vec3 carried = cross(turning, arm);
     const Vec3 of_surface = pose.acceleration + cross(pose.angular_acceleration, arm) + cross(turning, carried);
-    const Vec3 slip = state().velocity - pose.velocity - carried;
-    held.curvature = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
+    const Vec3 slip = state.velocity - pose.velocity - carried;
+    result.curvature = 2.0 * dot(cross(turning, n), slip) - dot(of_surface, n);
     const Vec3 change = of_surface + cross(turning, slip);
-    held.slip_curvature = dot(change, n) * n - change;
-    if (touched.surface.flat) return held;
-    ForceInput seen = state();
-    seen.position = view.local_position(touched.body, state().position, 0.0);
+    result.slip_curvature = dot(change, n) * n - change;
+    if (touched.surface.flat) return result;
+    ForceInput seen = state;
+    seen.position = view_at(state.time).local_position(touched.body, state.position, 0.0);
     TrianglePlaneCache planes;
-    const SurfaceGeometry geometry(view.bodies().world(touched.body), planes);
+    const SurfaceGeometry geometry(bodies().world(touched.body), planes);
     const ContactSurface in_frame{touched.surface.surface, pose.local_direction(n), false};
-    held.curvature += CurvedContact::curvature_of(geometry, seen, in_frame, pose.local_direction(slip));
-    return held;
+    result.curvature += CurvedContact::curvature_of(geometry, seen, in_frame, pose.local_direction(slip));
+    return result;
 }
 
-SharedContact::Height SharedContact::height_above(const Touched& touched, const Vec3& position, double time) const {
+SharedSurfaces::Height SharedSurfaces::height_above(const SharedSurface& touched, const Vec3& position,
+                                                    double time) const {
     if (deforms(touched)) {
         const auto [normal, above] =
-            ricochet::height_above(deforming(), {touched.surface, touched.all}, position, time);
+            ricochet::height_above(deforming(), {touched.surface, touched.others}, position, time);
         return {normal, above, 2.0 * deforming().offset_of(touched.surface.surface)};
     }
     const MovingView view = view_at(time);
-    const CollisionWorld& world = view.bodies().world(touched.body);
+    const CollisionWorld& world = bodies().world(touched.body);
     const SurfaceId surface = touched.surface.surface;
     const Vec3 local_position = view.local_position(touched.body, position, 0.0);
     Vec3 normal = world.unit_normal_of(surface, local_position);
@@ -148,96 +143,80 @@ SharedContact::Height SharedContact::height_above(const Touched& touched, const 
     return {side * normal, side * height, 2.0 * std::max(contact_offset(position), contact_offset(local_position))};
 }
 
-/// s, in which surfaces turn little, and bend little under the particle.
-double SharedContact::longest() const {
+double SharedSurfaces::longest_interval() const {
+    const ForceInput& state = step_.state();
     double rate = 0.0;
-    for (const Touched& one : touched()) {
-        rate = std::max(rate, length(one.turning));
-        if (one.surface.flat) continue;
-        const SurfaceId surface = one.surface.surface;
-        // A sphere turns about an edge, however large the triangle.
-        const double own = deforms(one) ? 0.0 : step_.rules().bodies->world(one.body).size_of(surface);
-        const double size = std::max(state().radius, own);
-        rate = std::max(rate, length(state().velocity - one.velocity) / size);
+    for (const SharedSurface& touched : all()) {
+        rate = std::max(rate, length(touched.turning));
+        if (touched.surface.flat) continue;
+        // A sphere turns about an edge, whatever the triangle's size.
+        const SurfaceId surface = touched.surface.surface;
+        const double size = deforms(touched) ? 0.0 : bodies().world(touched.body).size_of(surface);
+        rate = std::max(rate, length(state.velocity - touched.velocity) / std::max(state.radius, size));
     }
     return rate > 0.0 ? kMostSharedTurn / rate : step_.remaining();
 }
 
-/// s, when one of the bodies goes on with another velocity, in this step.
-std::optional<double> SharedContact::next_jump() const {
+std::optional<double> SharedSurfaces::next_jump() const {
     std::optional<double> first;
-    for (const Touched& one : touched()) {
-        const auto jump = step_.rules().bodies->next_jump(one.body, state().time, particle().step_end);
+    for (const SharedSurface& touched : all()) {
+        const auto jump = bodies().next_jump(touched.body, step_.state().time, step_.particle().step_end);
         if (jump && (!first || *jump < *first)) first = jump;
     }
     return first;
 }
 
-/// s, in which it is over the faces of meshes that deform that hold it. What the path bulges off one face in the edge
-/// of two leads beyond the rim of the other: it counts as put back.
-double SharedContact::until_rim(const Path& path) const {
-    const auto position_at = [&](double at) {
-        return at < path.duration ? kept_off(path.position(at), state().time + at) : path.end;
-    };
-    double most = path.duration;
-    for (std::size_t k = 0; k < count_; ++k) {
-        const Touched& one = touched_[k];
-        if (interval_.reaction[k] == Vec3{} || !deforms(one) || !one.surface.flat) continue;
-        most = std::min(most, time_over(deforming(), {one.surface, one.all}, position_at, path.duration, state().time));
-    }
-    return most;
-}
-
-/// Those that a path goes along. At a rim others end there too: they are nothing else to it where it ends off them.
-std::vector<SurfaceId> SharedContact::supporting(const Path& path) const {
-    const double end = path.duration >= step_.remaining() ? particle().step_end : state().time + path.duration;
+std::vector<SurfaceId> SharedSurfaces::supporting(const Path& path) const {
+    const double end =
+        path.duration >= step_.remaining() ? step_.particle().step_end : step_.state().time + path.duration;
     std::vector<SurfaceId> list;
-    for (const Touched& one : touched()) {
-        if (deforms(one)) {
-            list.insert(list.end(), one.all.begin(), one.all.end());
+    for (const SharedSurface& touched : all()) {
+        if (deforms(touched)) {
+            list.insert(list.end(), touched.others.begin(), touched.others.end());
             continue;
         }
-        list.push_back(one.surface.surface);
-        const MovingView view = view_at(end);
-        const Vec3 local_position = view.local_position(one.body, path.end, 0.0);
-        std::copy_if(one.all.begin(), one.all.end(), std::back_inserter(list), [&](SurfaceId other) {
-            return view.bodies().world(one.body).nearest(other, local_position).distance >= state().radius;
+        list.push_back(touched.surface.surface);
+        const CollisionWorld& world = bodies().world(touched.body);
+        const Vec3 local_position = view_at(end).local_position(touched.body, path.end, 0.0);
+        std::copy_if(touched.others.begin(), touched.others.end(), std::back_inserter(list), [&](SurfaceId other) {
+            return world.nearest(other, local_position).distance >= step_.state().radius;
         });
     }
     std::sort(list.begin(), list.end());
     return list;
 }
 
-/// True where a surface is one of those touched, or goes on where one of them ends: in its plane, and with its body.
-bool SharedContact::goes_on(const ContactSurface& surface) const {
-    return std::any_of(touched().begin(), touched().end(), [&](const Touched& one) {
-        if (one.surface.surface == surface.surface) return true;
-        if (std::find(one.all.begin(), one.all.end(), surface.surface) != one.all.end()) return true;
-        return step_.rules().bodies->body_of(surface.surface) == one.body &&
-               length(surface.normal - one.surface.normal) <= kSameDirection;
+/// Returns true for one of the surfaces, and for a surface that continues one in its plane on the same body.
+bool SharedSurfaces::continues_one(const ContactSurface& surface) const {
+    return std::any_of(all().begin(), all().end(), [&](const SharedSurface& touched) {
+        if (touched.surface.surface == surface.surface) return true;
+        if (std::find(touched.others.begin(), touched.others.end(), surface.surface) != touched.others.end()) {
+            return true;
+        }
+        return bodies().body_of(surface.surface) == touched.body &&
+               length(surface.normal - touched.surface.normal) <= kSameDirection;
     });
 }
 
-/// What holds it takes part in its impact on something else.
-void SharedContact::join_impact(Contact& contact) const {
+void SharedSurfaces::join_impact(Contact& contact) const {
     for (ContactSurface& surface : std::span(contact.surfaces).first(static_cast<std::size_t>(contact.count))) {
-        surface.is_support = surface.is_support || goes_on(surface);
+        surface.is_support = surface.is_support || continues_one(surface);
     }
-    for (const Touched& one : touched()) {
+    for (const SharedSurface& touched : all()) {
         const bool is_there = std::any_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& other) {
-            return other.surface == one.surface.surface;
+            return other.surface == touched.surface.surface;
         });
         if (is_there || contact.count == Contact::kMostSurfaces) continue;
         ContactSurface& added = contact.surfaces[static_cast<std::size_t>(contact.count++)];
-        added = one.surface;
+        added = touched.surface;
         added.is_support = true;
     }
 }
 
-ContactState SharedContact::contact_state() const {
-    ContactState contact_state;
-    for (const Touched& one : touched()) contact_state.surfaces[contact_state.count++] = one.surface.surface;
-    return contact_state;
+ContactState SharedSurfaces::contact_state() const {
+    ContactState state;
+    for (const SharedSurface& touched : all()) state.surfaces[state.count++] = touched.surface.surface;
+    return state;
 }
 
 }  // namespace ricochet

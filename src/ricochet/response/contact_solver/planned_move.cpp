@@ -68,7 +68,7 @@ MoveOutcome PlannedMove::run() {
     particle_.spin = plan_.spin;
     particle_.state.velocity = plan_.velocity;
     if (rules_.bodies == nullptr || catch_up(step_)) follow();
-    if (rules_.bodies != nullptr) step_.write_stored_position();
+    if (rules_.bodies != nullptr) keep_stored_position(step_);
     scratch_.driven = true;
     step_.log().note_impact();
     scratch_.driven = false;

@@ -1,0 +1,138 @@
+/// \file
+/// Private to the responses: the equations of rigid contact with Coulomb friction for one sphere or point, and Newton's
+/// method and Gauss-Seidel sweeps on them.
+///
+/// A motion has six coordinates: the velocity v and the turning sqrt(2/5) r omega of a solid sphere, so that all have
+/// the same inertia. A contact has a force N >= 0 along one direction of that space. Its resistances (to sliding,
+/// rolling and spinning) have forces of at most `bound` N along one or two more. Forces may be accelerations, which
+/// change accelerations, or impulses, which change velocities: the equations are the same.
+///
+/// Sources: D. E. Stewart, "Rigid-body dynamics with friction and impact", SIAM Review 42 (2000), for the problem;
+/// P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
+/// Computer Methods in Applied Mechanics and Engineering 92 (1991), for the equations and Newton's method on them;
+/// J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", CISM 302 (1988), for Gauss-Seidel
+/// sweeps over contacts.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace ricochet {
+
+/// A direction in the space of motions: three components of the velocity and three of sqrt(2/5) r omega.
+using MotionVector = std::array<double, 6>;
+
+/// Returns the sum of the products of the coordinates.
+[[nodiscard]] inline double dot(const MotionVector& a, const MotionVector& b) {
+    double sum = 0.0;
+    for (std::size_t c = 0; c < a.size(); ++c) sum += a[c] * b[c];
+    return sum;
+}
+
+/// One contact: 0 <= N, 0 <= rate, N rate = 0.
+struct CoulombContact {
+    MotionVector direction{};  ///< the surface's normal
+    double rate = 0.0;         ///< along it, of the motion without forces
+};
+
+/// One resistance at a contact: |T| <= bound N, opposite to the rate if there is one.
+struct CoulombResistance {
+    std::uint32_t contact = 0;  ///< number of its contact, in the order of addition
+    std::uint32_t size = 2;     ///< 1 or 2 directions
+    double bound = 0.0;         ///< >= 0: a coefficient of friction, or a length over the radius
+    std::array<MotionVector, 2> direction{};
+    std::array<double, 2> rate{};     ///< along them, of the motion without forces
+    bool is_moving = false;           ///< it acts against `heading`, whatever the rates
+    std::array<double, 2> heading{};  ///< unit; used if it is moving
+};
+
+/// The equations, their unknown forces, and iterations on these. Rates and forces are scaled: the largest free rate
+/// is 1. Large: keep it where it is.
+class CoulombEquations {
+public:
+    static constexpr std::size_t kMostContacts = 8;
+    static constexpr std::size_t kMostResistances = 3 * kMostContacts;
+    static constexpr std::size_t kMostUnknowns = kMostContacts + 2 * kMostResistances;
+    using Unknowns = std::array<double, kMostUnknowns>;
+
+    /// Contacts that yield by compliance times (force - anchor).
+    struct Compliance {
+        double value = 0.0;
+        Unknowns anchor{};
+    };
+
+    /// Removes all contacts and resistances.
+    void clear() { contact_count_ = resistance_count_ = sweeps_ = 0; }
+    void add(const CoulombContact& contact) { contacts_[contact_count_++] = contact; }
+    void add(const CoulombResistance& resistance) { resistances_[resistance_count_++] = resistance; }
+    [[nodiscard]] std::size_t contacts() const { return contact_count_; }
+    /// Number of Gauss-Seidel sweeps since clear().
+    [[nodiscard]] std::size_t sweeps() const { return sweeps_; }
+
+    /// Sets all forces to 0 and scales the rates. friction: factor on all bounds. Returns the scale, 0 if all rates are
+    /// 0.
+    [[nodiscard]] double set_up(double friction);
+    [[nodiscard]] double friction() const { return friction_; }
+    void set_friction(double factor) { friction_ = factor; }
+
+    /// The forces: of the contacts, then of the resistances.
+    [[nodiscard]] const Unknowns& forces() const { return force_; }
+    void set_forces(const Unknowns& forces) { force_ = forces; }
+    /// Returns the forces of a resistance along its directions.
+    [[nodiscard]] std::array<double, 2> force_of(std::size_t resistance) const;
+    [[nodiscard]] double largest_force() const;
+    [[nodiscard]] double largest_change_from(const Unknowns& before) const;
+    /// Returns the change of the motion by all forces together.
+    [[nodiscard]] MotionVector change() const;
+    /// Removes forces that exceed their bounds by rounding, and the scale.
+    void cut_to_bounds(double scale);
+
+    /// Returns true if no force changes another's rate, for example on one surface without resistance to rolling.
+    [[nodiscard]] bool are_independent() const;
+    /// Solves independent equations. Returns the largest defect.
+    [[nodiscard]] double solve_independent();
+    /// Returns the largest defect of the equations.
+    double find_defects(const Compliance& compliance);
+    /// Newton's method. It halves a step while the largest defect does not shrink. Returns true if that is at most
+    /// `enough` in the end.
+    [[nodiscard]] bool newton(const Compliance& compliance, double enough);
+    /// Gauss-Seidel sweeps: every contact and resistance in turn answers the others. Returns true if forces diverge, as
+    /// in a wedge that friction jams: each sweep adds as much as the sweeps long before it.
+    [[nodiscard]] bool relax(const Compliance& compliance, int sweeps);
+
+private:
+    /// The force of a resistance that would remove its rate, and the bound.
+    struct Wish {
+        std::array<double, 2> force{};
+        double size = 0.0;
+        double most = 0.0;
+        double gain = 0.0;
+        bool is_cut = false;  ///< to `most`
+    };
+
+    void find_matrix(const Compliance& compliance);
+    void find_rows_of(std::size_t resistance, const Compliance& compliance);
+    bool eliminate();
+    [[nodiscard]] double gain_of(std::size_t contact, const Compliance& compliance) const;
+    [[nodiscard]] Wish wish_of(std::size_t resistance, const Compliance& compliance) const;
+
+    std::array<CoulombContact, kMostContacts> contacts_;
+    std::array<CoulombResistance, kMostResistances> resistances_;
+    std::size_t contact_count_ = 0;
+    std::size_t resistance_count_ = 0;
+    std::size_t sweeps_ = 0;
+    double friction_ = 1.0;
+
+    std::size_t unknowns_ = 0;
+    std::array<std::size_t, kMostResistances> first_;  // first unknown of each resistance
+    std::array<MotionVector, kMostUnknowns> direction_;
+    std::array<Unknowns, kMostUnknowns> delassus_;  // products of the directions
+    Unknowns free_rate_;
+    Unknowns force_;
+    Unknowns rate_;
+    Unknowns defect_;  // after eliminate(): the step that would remove it
+    std::array<Unknowns, kMostUnknowns> matrix_;
+};
+
+}  // namespace ricochet

@@ -59,7 +59,7 @@ std::optional<Contact> ParticleMover::resume_contact() {
 /// Flies until the step's end or the contact that is returned. flight: in, the last flight; out, the new one.
 std::optional<Contact> ParticleMover::advance_flight(Flight& flight, bool is_first) {
     const double remaining = planned_duration(is_first);
-    const Integrator integrator = is_without_kick_ ? IntegratorKind::ballistic : rules_.settings.integrator;
+    const Integrator integrator = is_without_impulse_ ? IntegratorKind::ballistic : rules_.settings.integrator;
     flight = is_first ? first_flight(rules_, particle_, remaining, integrator)
                       : resume_flight(integrator, rules_.forces, particle_.state, flight, remaining);
     if (particle_.beyond > 0.0) cut(flight, step_.remaining(), integrator, rules_.forces);
@@ -176,13 +176,13 @@ void ParticleMover::retract_kick(const Flight& flight) {
         particle_.state.velocity -= step_.remaining() * flight.acceleration;
         step_.log().note_flight();  // a change by the integrator, not by surfaces
     }
-    flies_anew_ = is_without_kick_ = true;
+    flies_anew_ = is_without_impulse_ = true;
 }
 
 /// Notes that contact on a body has ended the flight: the next one does not continue it.
 void ParticleMover::leave_flight() {
     flies_anew_ = true;
-    is_without_kick_ = kicks_first(rules_.settings.integrator.kind);
+    is_without_impulse_ = kicks_first(rules_.settings.integrator.kind);
 }
 
 /// Returns the horizon of the last flight of a step: as far as its path is known. That requires uniform acceleration

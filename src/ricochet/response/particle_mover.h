@@ -102,7 +102,7 @@ private:
     bool has_met_moving_ = false;  // a surface of a body, in this step
     bool flies_anew_ = false;      // the next flight does not continue the last one: it begins after contact on a body
     /// For the rest of the step. Another kick would lead a particle that leaves a surface back onto it at once.
-    bool is_without_kick_ = false;
+    bool is_without_impulse_ = false;
     /// Set in flight after a velocity jump of a body has released the particle. See ContactState::release_speed().
     std::optional<double> release_speed_;
 };

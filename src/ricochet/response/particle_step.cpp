@@ -1,7 +1,6 @@
 #include "ricochet/response/particle_step.h"
 
 #include <cmath>
-#include <utility>
 
 #include "ricochet/collision/moving_sweep.h"
 #include "ricochet/collision/surfaces_in_other_frames.h"
@@ -9,13 +8,17 @@
 namespace ricochet {
 
 void StepTime::begin_substep(double until, MovingParticle& particle) {
+    if (!substep_end_) {
+        whole_step_end_ = particle.step_end;
+        rest_after_substep_ = 0.0;
+    }
     // Beyond the step's end, dynamic bodies can still get other paths.
     until = std::min(until, particle.step_end);
     substep_end_ = until;
     const double part = std::clamp(until - particle.state.time, 0.0, remaining_);
-    rest_after_substep_ = remaining_ - part;
+    rest_after_substep_ += remaining_ - part;
     remaining_ = part;
-    whole_step_end_ = std::exchange(particle.step_end, until);
+    particle.step_end = until;
 }
 
 void StepTime::end_substep(MovingParticle& particle) {

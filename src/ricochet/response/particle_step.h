@@ -28,7 +28,8 @@ public:
 
     void pass(double duration) { remaining_ = std::max(0.0, remaining_ - duration); }
     void end() { remaining_ = 0.0; }
-    /// Begins a substep that ends at a time, or with the step. MovingParticle::step_end becomes its end.
+    /// Begins a substep that ends at a time, or with the step. MovingParticle::step_end becomes its end. Within a
+    /// substep it shortens that one, and both end together.
     void begin_substep(double until, MovingParticle& particle);
     /// Ends the substep, if there is one. If its time is used up, the particle's time becomes its end.
     void end_substep(MovingParticle& particle);

@@ -1,4 +1,4 @@
-// A running simulation as bytes and back.
+// Saving and restoring a running simulation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,11 +26,11 @@ namespace {
 /// Begins every saved state; its last digits change with the layout.
 constexpr std::uint64_t kStateFormat = 0x5249434f5354000dULL;
 
-/// Slices of time in which emitters go through what they have emitted, so that no long list of births is held.
+/// Number of slices of time in which emitters repeat their births, so that no list of births becomes long.
 constexpr std::uint64_t kReplaySlices = 1000;
 
-/// As it lies in memory, so that no counter can be forgotten; the gap behind its one short counter is made zero, since
-/// what it holds is nobody's.
+/// Archives the statistics with their layout in memory, so that no counter can be forgotten. The gap behind its only
+/// short counter becomes zero.
 template <class Archive>
 void archive_statistics(Archive& a, SimulationStatistics& statistics) {
     static_assert(std::is_trivially_copyable_v<SimulationStatistics>);
@@ -43,7 +43,7 @@ void archive_statistics(Archive& a, SimulationStatistics& statistics) {
     std::memcpy(&statistics, bytes.data(), sizeof(statistics));
 }
 
-/// Reading only: what is read must be what is expected.
+/// Archives an expected value. When reading, throws InputError if another value is found.
 template <class Archive, class T>
 void expect(Archive& a, const T& expected, const char* complaint) {
     T value = expected;
@@ -68,7 +68,7 @@ void add_settings(StateHash& hash, const auto& object, const auto& table) {
 
 }  // namespace
 
-// Colliders in the coordinates of their frames, and how those move; a changed mesh file is a changed setup.
+// Hashes the colliders in their frames, and the motion of these. A changed mesh file is a changed setup.
 std::uint64_t Simulation::Impl::collider_hash() const {
     StateHash hash;
     const auto add = [&](const CollisionWorld& of) {
@@ -101,7 +101,7 @@ std::uint64_t Simulation::Impl::collider_hash() const {
     return hash.value();
 }
 
-/// The settings that results depend on; a run may be made longer.
+/// Hashes the settings on which results depend. The duration is not one of them.
 std::uint64_t Simulation::Impl::settings_hash() const {
     StateHash hash;
     const auto add = [&hash](auto... values) { (hash.add(static_cast<double>(values)), ...); };
@@ -164,14 +164,16 @@ void Simulation::Impl::archive(Archive& a) {
     if (pairs) pairs->archive(a);
     expect(a, static_cast<std::uint64_t>(driven.bodies().size()), "the state belongs to other bodies");
     driven.archive(a);
+    modules.each([&](Module& module) { module.archive(a); });
 }
 
-/// What the lists cannot say of themselves: numbers that lead nowhere would be followed.
+/// Throws InputError if a restored state contains values that no run produces, such as indices out of range.
 void Simulation::Impl::require_sound_state() const {
     const Particles& p = particles();
     const auto require = [](bool sound, const char* what) {
         if (!sound) throw InputError(fmt::format("the state is damaged: it has {}", what));
     };
+    const auto require_none = [&](const char* fault) { require(fault == nullptr, fault); };
     const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestCoordinate; };
     require(p.size() < kNoSupport, "more particles than there can be");
     require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
@@ -189,14 +191,13 @@ void Simulation::Impl::require_sound_state() const {
                 "a particle that moves and is nowhere");
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
                 "a mass or a radius that none can have");
-        require(!pairs || pairs->has_material(i), "a particle of no material");
+        modules.each([&](const Module& module) { require_none(module.fault_of(i)); });
         const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
         require(!is_released || bodies, "a particle that a body has let go, without bodies");
         require(store.is_sound(i), "a particle with a history that none can have");
-        require(!clouds || clouds->is_sound(i, store.next_id()), "a particle of a cloud that there is not");
     }
-    require(!pairs || pairs->is_sound(store.next_id()), "contacts or sleepers that there cannot be");
-    require(driven.is_sound(clock.time_at(recorder.statistics().steps)), "a body with a path that none can have");
+    const double now = clock.time_at(recorder.statistics().steps);
+    modules.each([&](const Module& module) { require_none(module.fault(now)); });
     for (const DrivenBody& body : driven.bodies()) {
         require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),
                 "a body that is nowhere");
@@ -206,7 +207,7 @@ void Simulation::Impl::require_sound_state() const {
     }
 }
 
-// What emitters have emitted does not depend on how time was cut, so they are simply run again.
+// Repeats the births of the emitters. They do not depend on the division of time.
 void Simulation::Impl::replay_emitters() {
     const std::uint64_t steps = recorder.statistics().steps;
     const double now = clock.time_at(steps);
@@ -221,7 +222,7 @@ void Simulation::Impl::replay_emitters() {
     }
 }
 
-// What is known of queries serves speed only.
+// Knowledge about queries affects only speed.
 void Simulation::Impl::forget_queries() {
     schedule.reset(store.size());
     for (std::size_t i = 0; i < store.size(); ++i) {
@@ -259,7 +260,7 @@ void Simulation::Impl::read_state(const ByteSource& source) {
     for (std::size_t i = 0; i < store.size(); ++i) note_speed(i);
 }
 
-// What slept where the state was saved may not sleep here: until now it has pressed on what holds it.
+// A particle that slept when the state was saved may not sleep in this run. Until now it has pressed on its support.
 void Simulation::Impl::wake_all_sleepers() {
     store.set_may_sleep(true);
     add_weights_of_sleepers(1.0);
@@ -282,10 +283,10 @@ void Simulation::restore(const ByteSource& source) {
     impl().forget_queries();
     for (const double radius : impl().particles().radius) impl().prepare_radius(radius);
     impl().replay_emitters();
-    if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
+    impl().bind_modules();
     if (!impl().share.is_alone()) impl().keep_share();
     if (!impl().store.may_sleep()) impl().wake_all_sleepers();
-    if (impl().check) impl().check->restart(impl().store, time());
+    impl().modules.each([&](Module& module) { module.restart(time()); });
     impl().inside_step = false;
 }
 

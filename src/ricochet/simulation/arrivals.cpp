@@ -1,4 +1,4 @@
-// How particles are taken in: what is found out about each beforehand, by all threads, and what is noted of it.
+// Adding particles: all threads examine them first, then they are inserted one by one.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -11,16 +11,16 @@
 namespace ricochet {
 namespace {
 
-/// Particles that a thread looks at at a time: some hundred microseconds.
+/// Number of particles that a thread examines at a time, in some hundred microseconds.
 constexpr std::size_t kArrivalBlock = 64;
-/// Arrivals that are held at a time: what is known of one takes as much memory as itself.
+/// Number of arrivals in memory at a time. An arrival takes as much memory as a particle.
 constexpr std::size_t kArrivals = 16384;
 
 bool is_in_range(const Vec3& position) { return is_finite(position) && max_abs(position) <= kLargestCoordinate; }
 
 }  // namespace
 
-/// Of a sphere at the position at which it would be taken in.
+/// Returns the overlap of a sphere at its position in the simulation.
 std::optional<Overlap> Simulation::Impl::overlap_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_in_range(position)) return std::nullopt;
@@ -32,13 +32,14 @@ void Simulation::Impl::prepare_radius(double radius) {
     if (bodies) bodies->prepare_radius(radius);
 }
 
-/// Forces may not bring particles beyond the speed of light; those that are there from the begin may hit others.
+/// Notes the first particle that is born faster than light. Such a particle is allowed, and can hit others. Forces
+/// must not accelerate particles beyond that speed.
 void Simulation::Impl::note_speed(std::size_t i) {
     const double speed = length(particles().velocity[i]);
     if (!faster_than_light && speed > kMaxSpeed) faster_than_light = {particles().id[i], speed};
 }
 
-/// Points only: a sphere whose centre lies there is in overlap.
+/// Returns true for a point on a surface. A sphere whose centre lies on a surface is in overlap.
 bool Simulation::Impl::starts_on_surface(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (particle.radius > 0.0 || !is_in_range(position)) return false;
@@ -48,8 +49,8 @@ bool Simulation::Impl::starts_on_surface(const Particle& particle) const {
     return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
 }
 
-/// Puts it off the surfaces of bodies that it lies on. Else it depends on where surfaces are, and on nothing that
-/// taking others in changes: any thread may ask.
+/// Examines a particle, and moves it off surfaces of bodies on which it lies. The result depends only on surfaces, not
+/// on other arrivals, so any thread can call it.
 Arrival Simulation::Impl::arrival_of(Particle& particle) const {
     Arrival arrival;
     if (bodies && is_in_range(particle.position)) {
@@ -63,7 +64,7 @@ Arrival Simulation::Impl::arrival_of(Particle& particle) const {
     return arrival;
 }
 
-/// What is born touching a surface begins in contact with it.
+/// Returns the contact of a particle that touches surfaces at its birth.
 ContactState Simulation::Impl::contact_of(const Particle& particle) const {
     const Vec3 position = flush_tiny(particle.position);
     if (!is_in_range(position) || particle.pinned) return {};
@@ -77,13 +78,14 @@ ContactState Simulation::Impl::contact_of(const Particle& particle) const {
     return {};
 }
 
-/// With surfaces that stand in one frame, where the particle is at a position; nothing where it touches none of them.
+/// Returns the contact with the surfaces of one frame, in which the particle is at a position. Nothing if it touches
+/// none.
 std::optional<ContactState> Simulation::Impl::contact_in(const CollisionWorld& of_frame, const Particle& particle,
                                                          const Vec3& position) const {
     ContactState contact;
     const double reach = kTouchingOffsets * contact_offset(position);
     for (const SurfaceId surface : surfaces_touched(of_frame, position, particle.radius, reach)) {
-        // What chance answers, answers each touch.
+        // A random reflection answers each touch.
         if (materials[world.material_of(surface)].is_random()) return ContactState{};
         contact.surfaces[0] = surface;
         contact.count = 1;
@@ -121,7 +123,7 @@ void Simulation::Impl::insert(Particle&& particle, const Arrival& arrival) {
     free_flights.append();
     store.set_next_id(particle.id);
     store.append(std::move(particle));
-    if (clouds) clouds->append();
+    modules.each([](Module& module) { module.append(); });
     const std::size_t i = store.size() - 1;
     note_speed(i);
     if (offspring && inside_step) birth_records.push_back({particles().id[i], particles().origin[i]});

@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 /// Islands per unit of parallel work.
-constexpr std::size_t kBlock = 16;
+constexpr std::size_t kIslandBlock = 16;
 
 /// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
 constexpr std::size_t kPrefetchDistance = 6;
@@ -85,7 +85,7 @@ std::vector<IslandBuilder::Island> IslandBuilder::islands_of(const std::vector<s
 }
 
 void IslandBuilder::run(const TimeSpan& step) {
-    parallel_for_blocks(islands_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    parallel_for_blocks(islands_.size(), kIslandBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         MoveScratch scratch;
         parts_.mover.prepare(scratch);
         EventIsland worker(parts_.response, parts_.materials, parts_.settings.impact_budget);
@@ -176,7 +176,7 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
 std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsMembers& off) {
     std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
     const auto for_each = [&](const auto& body) {
-        parallel_for_blocks(met.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        parallel_for_blocks(met.size(), kIslandBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n) body(*off.members[n], off.swept[n], met[n]);
         });
     };

@@ -1,4 +1,4 @@
-// How the particles of a simulation change in number: emitted, spawned by particles, added and removed by the user.
+// Changes of the number of particles: by emitters, by particles that spawn others, and by the user.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,11 +34,10 @@ void Simulation::Impl::emit_particles(const TimeSpan& step) {
     add_all(births.here());
     store.set_next_id(limits.first_id + births.count());
     share.add_births(births.count());
-    if (births.count() > 0 && coupled.is_active()) coupled.bind(particles());
-    if (check) check->add_spawned(store.size());
+    if (births.count() > 0) bind_modules();
 }
 
-/// Returns the children that live here; nothing where none is born, not on other ranks either.
+/// Returns the children on this rank, or nothing if no rank has any.
 std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& step) {
     if (!offspring) return std::nullopt;
     const std::size_t first = store.size();
@@ -64,12 +63,11 @@ std::optional<ParticleRange> Simulation::Impl::spawn_children(const TimeSpan& st
         statistics.births_refused_by_depth += counts.refused_by_depth;
         statistics.births_refused_by_population += counts.refused_by_population;
     }
-    if (counts.children > 0 && coupled.is_active()) coupled.bind(particles());
-    if (check) check->add_spawned(store.size());
+    if (counts.children > 0) bind_modules();
     return counts.children > 0 ? std::optional(ParticleRange{first, store.size(), true}) : std::nullopt;
 }
 
-/// A child belongs to the sides that its parent belongs to, on whichever it begins.
+/// A child belongs to its parent's sides of surfaces, whatever sides it begins on.
 void Simulation::Impl::inherit_sides(std::size_t i, const Child& child) {
     if (!is_finite(particles().position[i])) return;
     std::copy(child.parent_sides.begin(), child.parent_sides.end(), store.sides_of(i).begin());
@@ -83,8 +81,8 @@ void Simulation::Impl::reserve(std::size_t more) {
     free_flights.reserve(more);
 }
 
-/// Whether an emitter may give birth to a particle: a sphere only where it overlaps no surface, and no other sphere
-/// that it can meet. Empty where there is nothing to overlap.
+/// Returns the tests of an emitter's births: a sphere must overlap no surface, and no other sphere that it can meet. A
+/// test is empty if nothing can be overlapped.
 BirthTests Simulation::Impl::birth_tests(std::optional<SpawnOccupancy>& room, const TimeSpan& step) const {
     BirthTests tests;
     if (pairs || world.surface_count() > 0) {
@@ -108,7 +106,7 @@ BirthTests Simulation::Impl::birth_tests(std::optional<SpawnOccupancy>& room, co
     return tests;
 }
 
-/// As the spheres that are there go on from the step's begin.
+/// Returns the occupancy of the spheres present, which continue their motion from the start of the step.
 SpawnOccupancy Simulation::Impl::spawn_occupancy(const TimeSpan& step) const {
     SpawnOccupancy room(step.end);
     for (std::size_t i = 0; i < store.size(); ++i) {
@@ -133,7 +131,7 @@ const CollisionWorld& Simulation::Impl::world_of(std::size_t collider) const {
     return is_framed ? bodies->world(bodies->body_of_collider(collider)) : world;
 }
 
-// What users change between two steps.
+// Changes by users between two steps.
 
 std::uint64_t Simulation::add_particle(Particle particle) { return add_particles(std::span(&particle, 1)).front(); }
 
@@ -164,8 +162,7 @@ std::vector<std::uint64_t> Simulation::add_particles(std::span<const Particle> p
         impl().add(std::move(particle));
         ids.push_back(impl().particles().id.back());
     }
-    if (impl().coupled.is_active()) impl().coupled.bind(impl().particles());
-    if (impl().check) impl().check->add_spawned(impl().store.size());
+    impl().bind_modules();
     return ids;
 }
 
@@ -199,7 +196,7 @@ std::size_t Simulation::remove_particles(std::span<const std::uint64_t> ids) {
     return removed;
 }
 
-// What was known of free flights, and what has let particles sleep, was known for the forces until now.
+// Free flights and sleep were decided for the forces until now.
 void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
     impl().require_between_steps();
     impl().return_point.invalidate();
@@ -207,7 +204,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
         throw InputError(
             fmt::format("set_forces: found {} forces, expected none: a flow carries the particles", forces.size()));
     }
-    ForceField field(std::move(forces));  // refuses null pointers before anything has changed
+    ForceField field(std::move(forces));  // refuses null pointers before anything changes
     if (field.needs_temperature() && !particles().attributes.find(kTemperatureAttribute)) {
         throw InputError(
             "set_forces: found thermal buoyancy, expected the attribute \"temperature\" to be declared for it");
@@ -219,7 +216,7 @@ void Simulation::set_forces(std::vector<std::unique_ptr<Force>> forces) {
         impl().store.wake(i);
     }
     statistics.asleep = 0;
-    if (impl().pairs) impl().pairs->wake_all(time());
+    impl().modules.each([&](Module& module) { module.wake_all(time()); });
     impl().forces = std::move(field);
     impl().store.set_may_sleep(impl().acceleration.sleeping && impl().forces.is_steady() &&
                                !(impl().bodies && options().verify));
@@ -241,7 +238,7 @@ void Simulation::Impl::require_between_steps() const {
 
 void Simulation::Impl::report_contacts() {
     if (!callback || recorder.contact_records().empty()) return;
-    // The callback may put another in its place, and must not be destroyed by that while it runs.
+    // The callback can replace itself, and must not be destroyed by that while it runs.
     ContactCallback running = std::exchange(callback, {});
     is_reporting = true;
     has_new_callback = false;
@@ -258,7 +255,7 @@ void Simulation::Impl::report_contacts() {
     end();
 }
 
-// A free flight ends before the particle's life does.
+// A free flight ends before the particle's life.
 RemovalReason Retirement::removal_reason(std::size_t i, double time) const {
     const RemovalReason by_bounds = is_outside(i) ? RemovalReason::out_of_bounds : RemovalReason::none;
     if (schedule_.is_in_free_flight(i)) return by_bounds;

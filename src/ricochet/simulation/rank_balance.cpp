@@ -150,7 +150,7 @@ void Simulation::Impl::insert_particles(std::vector<std::vector<std::byte>> part
         if (particles().id[i] == here[next]) from[i] = next++;
     }
     schedule.rearrange(from);
-    if (coupled.is_active()) coupled.bind(particles());
+    bind_modules();
     for (std::size_t i = 0; i < from.size(); ++i) {
         if (from[i] != QuerySchedule::kNew) continue;
         prepare_radius(particles().radius[i]);

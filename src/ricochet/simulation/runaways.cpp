@@ -1,4 +1,4 @@
-// The end of a run in which a particle has come beyond the speed of light.
+// Ends a run in which a particle exceeds the speed of light.
 #include <fmt/format.h>
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace ricochet {
 
-/// The pushes without which it would not be as fast, if there are such. Surfaces at rest give no speed, unless the
-/// response has springs, which may diverge.
+/// Returns the impulses without which the particle would be slower than light, if there are any. Surfaces at rest give
+/// no speed, unless the response has springs, which can diverge.
 RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
     const Particles& particles = parts_.store.particles();
     const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
@@ -24,7 +24,7 @@ RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impul
     return parts_.coupled.holds(i) ? RunawayCause::others : RunawayCause::forces;
 }
 
-// Where ranks share the run, it ends on all of them in the same step, by the particle that would have ended it.
+// If ranks share the run, all of them end in the same step, with the same message as a single process.
 void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {
     const std::optional<Runaway> runaway = first_runaway(blocks);
     if (!runaway && share.is_alone()) return;
@@ -57,7 +57,7 @@ std::string Simulation::Impl::runaway_message(const Runaway& runaway, double tim
         return told("another sphere has thrown particle", "at",
                     ": use a shorter time step, slower spheres or weaker forces");
     }
-    // A method that chooses its own steps has found none that is short enough.
+    // A method that chooses its own steps has found no step that is short enough.
     const bool is_adaptive = options.integrator.kind == IntegratorKind::dormand_prince;
     const std::string advice = fmt::format(": the motion has diverged; use {}{}or weaker forces",
                                            is_adaptive ? "softening, " : "a shorter time step, ",

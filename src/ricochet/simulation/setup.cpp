@@ -1,4 +1,4 @@
-// How a simulation is made.
+// Construction of a simulation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,7 +48,7 @@ double least_restitution(const SimulationSetup& setup) {
     return least;
 }
 
-/// The sub-step against the stability bound of the lightest particle on the dampest of the surfaces.
+/// Compares the substep with the stability bound of the lightest particle on the surface with the most damping.
 std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     const double mass = lightest_particle(setup);
@@ -69,7 +69,7 @@ std::vector<std::string> penalty_warnings(const SimulationSetup& setup) {
                     substep, bound, spring.stiffness, mass, restitution, advice)};
 }
 
-/// By how much paths may leave their chords: more where the look-ahead follows parabolas.
+/// Returns the distance that paths may lie beside their chords. It is larger if the look-ahead follows parabolas.
 double chord_margin(const AccelerationSwitches& acceleration, const ForceField& forces) {
     const bool is_straight = forces.common_acceleration() == std::optional(Vec3{});
     return acceleration.look_ahead && forces.is_uniform() && !is_straight ? kLookAheadMargin : kChordMargin;
@@ -90,19 +90,19 @@ std::vector<Emitter> make_emitters(SimulationSetup& setup) {
     return emitters;
 }
 
-/// Paths of bodies are this simulation's own.
+/// Copies the frames, because the paths of bodies belong to this simulation.
 std::shared_ptr<FrameTree> own_frames(const SimulationSetup& setup) {
     return setup.frames ? std::make_shared<FrameTree>(*setup.frames) : nullptr;
 }
 
-/// How many colliders have loads that are recorded: all or none.
+/// Returns the number of colliders with recorded loads: all or none.
 std::size_t count_with_loads(const MovingColliders* bodies, const std::vector<Material>& materials,
                              const ColliderList& colliders) {
     const bool drives = std::any_of(materials.begin(), materials.end(), [](const Material& m) { return m.drives(); });
     return bodies != nullptr || drives ? colliders.all().size() : 0;
 }
 
-/// Null where no collider moves.
+/// Returns null if no collider moves.
 std::unique_ptr<MovingColliders> make_bodies(const CollisionWorld& world,
                                              const std::shared_ptr<ColliderList>& colliders,
                                              const std::shared_ptr<const FrameTree>& frames) {
@@ -111,14 +111,14 @@ std::unique_ptr<MovingColliders> make_bodies(const CollisionWorld& world,
     return bodies;
 }
 
-/// Null where no emitter has a parent.
+/// Returns null if no emitter has a parent.
 std::unique_ptr<Offspring> make_offspring(const std::vector<Emitter>& emitters, const SimulationOptions& options) {
     auto offspring = std::make_unique<Offspring>(emitters, OffspringLimits{options.max_depth, options.most_particles});
     if (offspring->empty()) offspring.reset();
     return offspring;
 }
 
-/// Null where no particles go with others.
+/// Returns null without clouds.
 std::unique_ptr<CloudMotion> make_clouds(const std::vector<Emitter>& emitters, const MoverParts& parts,
                                          ActiveMover& mover) {
     if (std::none_of(emitters.begin(), emitters.end(), [](const Emitter& e) { return is_cloud(e.description()); })) {
@@ -127,7 +127,7 @@ std::unique_ptr<CloudMotion> make_clouds(const std::vector<Emitter>& emitters, c
     return std::make_unique<CloudMotion>(emitters, parts, mover);
 }
 
-/// Null where spheres do not meet.
+/// Returns null if spheres do not meet.
 std::unique_ptr<PairMotion> make_pairs(const SimulationOptions& options, ParticleStore& store, QuerySchedule& schedule,
                                        ActiveMover& mover, const Response& response, const CoupledMotion& coupled) {
     if (!options.particle_contacts) return nullptr;
@@ -137,7 +137,7 @@ std::unique_ptr<PairMotion> make_pairs(const SimulationOptions& options, Particl
     return std::make_unique<PairMotion>(parts);
 }
 
-/// Null where nothing changes temperatures.
+/// Returns null if temperatures do not change.
 std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const ParticleStore& store,
                                      const ForceField& forces, const MovingColliders* bodies) {
     if (!heat) return nullptr;
@@ -157,7 +157,7 @@ std::string named(const ColliderDescription& collider, std::size_t number) {
     return collider.name.empty() ? fmt::format("colliders[{}]", number) : fmt::format("'{}'", collider.name);
 }
 
-/// What the machine can hold decides only whether a run goes on, never what it does.
+/// The memory of the machine decides only whether a run continues, never its results.
 std::uint64_t particles_that_fit(double bytes_each) {
     return static_cast<std::uint64_t>(std::min(memory_limit().bytes / bytes_each, 0x1p63));
 }
@@ -190,7 +190,7 @@ std::optional<std::string> Simulation::Impl::overlap_warning() const {
         named(world.colliders()[collider], collider), deepest);
 }
 
-/// Counts those, too. Spheres that touch are not in each other.
+/// Spheres that only touch do not overlap.
 std::optional<std::string> Simulation::Impl::sphere_overlap_warning() {
     if (!pairs) return std::nullopt;
     std::vector<Box3> boxes;
@@ -298,9 +298,12 @@ Simulation::Impl::Impl(SimulationSetup setup)
       retirement(store, schedule, bounds) {
     connect();
     if (!share.is_alone()) keep_springs_together();
+    modules =
+        make_modules({store, recorder, mover, clock, world, materials, options, bounds, retirement, share, bodies.get(),
+                      offspring.get(), heat.get(), clouds.get(), driven, coupled, pairs.get(), check.get()});
     add_first(setup.particles);
     if (!share.is_alone()) keep_share();
-    if (coupled.is_active()) coupled.bind(particles());
+    bind_modules();
     most_that_fit = store.size() + particles_that_fit(particle_bytes);
     if (offspring) offspring->set_memory(most_that_fit, particle_bytes);
 }

@@ -75,8 +75,7 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
 }
 
 bool Simulation::Impl::may_defer() const {
-    return acceleration.look_ahead && acceleration.deferred_steps && !check && !offspring && !bounds &&
-           !coupled.is_active() && !pairs && !heat;
+    return acceleration.look_ahead && acceleration.deferred_steps && !bounds && modules.allow_deferred_steps();
 }
 
 // Moves all particles over the step. Newly spawned children are moved from their birth time to the end of the step.
@@ -93,8 +92,7 @@ void Simulation::Impl::step() {
         generation = spawn_children(step);
     } while (generation);
     retire_particles(step.end);
-    check_spheres(step.begin, step.end);
-    check_end(step.end);
+    modules.each([&](Module& module) { module.verify(step); });
     end_step();
     report_contacts();
 }
@@ -113,10 +111,8 @@ TimeSpan Simulation::Impl::begin_step() {
     recorder.begin_step();
     birth_records.clear();
     schedule.begin_step(recorder.statistics().steps);
-    if (clouds) clouds->begin_step();
     const TimeSpan step = clock.span_of(recorder.statistics().steps);
-    if (driven.is_active()) driven.begin_step();
-    if (driven.is_active()) driven.plan(step.begin, step.end, oldest_position());
+    modules.each([&](Module& module) { module.begin_step(step); });
     if (bodies) bodies->begin_step(step.begin, step.end);
     return step;
 }
@@ -125,72 +121,19 @@ TimeSpan Simulation::Impl::begin_step() {
 // events of a particle stay in the order of time.
 void Simulation::Impl::move_generation(const ParticleRange& generation, const TimeSpan& step) {
     recorder.begin_generation();
-    if ((driven.is_active() || coupled.is_active()) && !generation.are_children) mover.begin_step();
-    if (offspring) offspring->before_move(particles(), generation.begin, store.sides_from(generation.begin));
-    if (heat) heat->before_move(particles(), generation, step);
-    if (clouds) clouds->before_move(generation);
-    std::vector<HeatGain> gains;
+    modules.each([&](Module& module) { module.before_generation(generation, step); });
     for (double now = step.begin; now < step.end;) {
         stop.poll();
-        const TimeSpan part = plan_substep(generation, {now, step.end});
+        const TimeSpan part = modules.plan(generation, {now, step.end});
         std::vector<BlockRecord> blocks;
         wake_sleepers(part);
         move_substep(generation, part, blocks);
-        if (coupled.is_active() && !generation.are_children) {
-            const CoupledMotion::Correction correction = coupled.correct_velocities(store.particles());
-            mover.apply_correction(correction.corrections, part, blocks);
-            if (correction.runaway) {
-                blocks.emplace_back().note({*correction.runaway, correction.runaway_speed, RunawayCause::others});
-            }
-        }
         stop_runaways(blocks, step.end);
         record_part(generation, blocks);
-        for (const BlockRecord& block : blocks) gains.insert(gains.end(), block.heat.begin(), block.heat.end());
         now = part.end;
     }
-    if (coupled.is_active() && !generation.are_children) coupled.settle(particles());
-    if (heat) heat->after_move(store.particles(), generation, step, std::move(gains));
+    modules.each([&](Module& module) { module.after_generation(generation, step); });
     recorder.end_generation(generation.size());
-}
-
-TimeSpan Simulation::Impl::plan_substep(const ParticleRange& generation, const TimeSpan& rest) {
-    return driven.is_active() ? plan_driven_motion(generation, rest) : plan_coupled_motion(generation, rest);
-}
-
-// Plans the next substep of the bodies. Children repeat the substeps that the other particles have already taken, with
-// the bodies on the same paths.
-TimeSpan Simulation::Impl::plan_driven_motion(const ParticleRange& generation, const TimeSpan& rest) {
-    TimeSpan part = rest;
-    if (!generation.are_children) {
-        part.end = driven.next_substep_end(part.begin, part.end);
-        driven.plan(part.begin, part.end, oldest_position());
-        if (bodies) part.end = settle_driven_motion(generation, part);
-    } else {
-        part.end = driven.repeat_substep(part.begin);
-    }
-    if (bodies) bodies->begin_step(part.begin, part.end);
-    return part;
-}
-
-// Plans a substep until the planned loads agree with the loads that the particles exert in it. Returns the end of the
-// substep, in s.
-double Simulation::Impl::settle_driven_motion(const ParticleRange& generation, TimeSpan part) {
-    for (int round = 0;; ++round) {
-        bodies->begin_step(part.begin, part.end);
-        const std::vector<ColliderLoad> preview = mover.preview(generation, part);
-        const bool goes_on = driven.plan_again(preview, driven.cut_by(preview), round);
-        part.end = driven.planned_end();
-        if (!goes_on) return part.end;
-    }
-}
-
-// Returns the earliest time, in s, at which any particle's position is stored. It is at most the start of the step,
-// because children may start there.
-double Simulation::Impl::oldest_position() const {
-    const double now = clock.time_at(recorder.statistics().steps);
-    double oldest = now;
-    for (std::size_t i = 0; i < store.size(); ++i) oldest = std::min(oldest, store.stored_time(i, now));
-    return oldest;
 }
 
 void Simulation::Impl::record_part(const ParticleRange& generation, const std::vector<BlockRecord>& blocks) {
@@ -198,40 +141,8 @@ void Simulation::Impl::record_part(const ParticleRange& generation, const std::v
     if (!share.is_alone()) share.note(blocks, particles().id);
     std::vector<ColliderLoad> loads;
     for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
-    if (!driven.is_active()) {
-        recorder.add_loads(loads, *colliders);
-        return;
-    }
-    std::vector<ColliderLoad> with_dynamic = loads;
-    for (ColliderLoad& load : with_dynamic) load.work += driven.became_dynamic(load);
-    recorder.add_loads(with_dynamic, *colliders);
-    if (!generation.are_children) {
-        driven.follow(loads);
-        ++recorder.statistics().body_parts;
-    } else {
-        driven.take(loads);
-    }
-}
-
-// Plans the coupled motion and returns the substep that is planned. Children join the coupled motion in the next step.
-TimeSpan Simulation::Impl::plan_coupled_motion(const ParticleRange& generation, const TimeSpan& rest) {
-    if (generation.are_children) return rest;
-    const double whole = rest.end - rest.begin;
-    const double planned = share.keeps_together() ? plan_on_first_rank(rest) : plan_coupled(rest);
-    return {rest.begin, planned < whole ? rest.begin + planned : rest.end};
-}
-
-// Plans the coupled motion of this process's particles. Returns the planned duration, in s.
-double Simulation::Impl::plan_coupled(const TimeSpan& rest) {
-    const double whole = rest.end - rest.begin;
-    if (!coupled.is_active()) return whole;
-    // A particle under load from other spheres is assumed to keep its velocity, like one supported by a wall.
-    const std::vector<std::uint8_t> pressing = pairs ? pairs->pressing() : std::vector<std::uint8_t>();
-    const auto hold = [&](std::size_t i, const Vec3& pull) {
-        if (!pressing.empty() && pressing[i] != 0) return Vec3{};
-        return mover.supported_acceleration(i, rest.begin, pull);
-    };
-    return coupled.plan(particles(), rest.begin, whole, {world, materials, options.resting_speed}, hold);
+    modules.each([&](Module& module) { module.record(generation, blocks, loads); });
+    recorder.add_loads(loads, *colliders);
 }
 
 /// Wakes sleeping particles near moving colliders. Other sleeping particles stay asleep, because their supports are at
@@ -253,24 +164,16 @@ void Simulation::Impl::wake_sleepers(const TimeSpan& part) {
 
 void Simulation::Impl::move_substep(const ParticleRange& generation, const TimeSpan& part,
                                     std::vector<BlockRecord>& blocks) {
+    modules.each([&](Module& module) { module.before_substep(generation, part); });
     if (options.response == ResponseKind::rollback && options.rollback.global) {
         mover.move_as_system(generation, part, blocks);
-        return;
+    } else {
+        ActiveSet active = free_flights.advance(generation, part, blocks);
+        order_active_set(active);
+        mover.move(active, part, blocks);
+        if (!share.is_alone()) balancer.note(work_of(generation, active.size(), blocks));
     }
-    if (pairs) pairs->solve(generation, part);
-    ActiveSet active = free_flights.advance(generation, part, blocks);
-    order_active_set(active);
-    mover.move(active, part, blocks);
-    if (clouds) clouds->move(generation, part, blocks);
-    if (!share.is_alone()) balancer.note(work_of(generation, active.size(), blocks));
-    if (!pairs) return;
-    pairs->write_back(part, blocks);
-    SimulationStatistics& statistics = recorder.statistics();
-    statistics.pair_impacts += pairs->counts().impacts;
-    statistics.overlap_largest = std::max(statistics.overlap_largest, pairs->counts().largest_overlap);
-    recorder.add_pair_impacts(pairs->impacts());
-    if (!check) return;
-    recorder.add_pair_violations(RunCheck::check_meetings(pairs->meetings(), pairs->books()));
+    modules.each([&](Module& module) { module.after_substep(generation, part, blocks); });
 }
 
 WorkCounts Simulation::Impl::work_of(const ParticleRange& generation, std::size_t queried,
@@ -281,21 +184,6 @@ WorkCounts Simulation::Impl::work_of(const ParticleRange& generation, std::size_
     counts.flying = generation.size() - std::min(generation.size(), counts.queried + counts.idle);
     for (const BlockRecord& block : blocks) counts.contacts += block.counts.contacts;
     return counts;
-}
-
-void Simulation::Impl::check_spheres(double begin, double end) {
-    if (!check || !pairs) return;
-    const bool may_be_planned = options.particle_contacts->method != PairMethod::events;
-    recorder.add_pair_violations(
-        check->check_spheres(particles(), {begin, end}, may_be_planned ? kMostPlannedOverlap : kMostMetOverlap));
-    SimulationStatistics& statistics = recorder.statistics();
-    statistics.overlap_verified = std::max(statistics.overlap_verified, check->largest_overlap());
-}
-
-// Checks the final state in the last step of the run.
-void Simulation::Impl::check_end(double time) {
-    if (!check || recorder.statistics().steps + 1 < clock.steps()) return;
-    recorder.add_violations(check->check_end(particles(), time));
 }
 
 // Divides and sorts the active set for speed. Only the sums of penetration depths depend on the blocks of the active
@@ -309,7 +197,7 @@ void Simulation::Impl::order_active_set(ActiveSet& active) const {
 }
 
 void Simulation::Impl::retire_particles(double time) {
-    if (clouds && bounds) clouds->part_from_leavers(retirement, time);
+    modules.each([&](Module& module) { module.before_removal(time); });
     const EndOfStepCounts counts = retirement.count(time);
     if (counts.leaving > 0) remove_leavers(time);
     SimulationStatistics& statistics = recorder.statistics();
@@ -338,19 +226,15 @@ void Simulation::Impl::compact(const std::vector<std::uint8_t>& keep) {
     schedule.compact(keep);
     free_flights.compact(keep);
     store.compact(keep);
-    if (clouds) clouds->compact(keep);
-    if (check) check->compact(keep);
-    if (coupled.is_active()) coupled.bind(particles());
+    modules.each([&](Module& module) { module.compact(keep); });
+    bind_modules();
 }
 
 void Simulation::Impl::end_step() {
     recorder.end_step();
     SimulationStatistics& statistics = recorder.statistics();
-    if (coupled.is_active()) {
-        statistics.springs_broken = coupled.springs().broken();
-        statistics.springs_lost = coupled.springs().lost();
-    }
-    statistics.unsolved_steps = (coupled.is_active() ? coupled.unsolved_steps() : 0) + (pairs ? pairs->unsolved() : 0);
+    statistics.unsolved_steps = 0;
+    modules.each([&](const Module& module) { module.count(statistics); });
     ++statistics.steps;
     if (!share.is_alone()) share.end_step(store.size(), *colliders);
     inside_step = false;

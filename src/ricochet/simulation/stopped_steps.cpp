@@ -1,4 +1,4 @@
-// Steps that may be stopped, and how the simulation goes back to the last whole step.
+// Steps that can be stopped, and the return to the last whole step.
 #include <atomic>
 #include <chrono>
 #include <utility>
@@ -7,7 +7,7 @@
 
 namespace ricochet {
 
-/// Makes a step; where it is stopped, the state is that before it when StoppedError comes out.
+/// Makes a step. If it is stopped, restores the state before it and throws StoppedError.
 void Simulation::Impl::step_unless_stopped(const std::function<bool()>& goes_on) {
     if (return_point.is_due() && !inside_step) keep_return_point();
     std::atomic<bool> is_stopped = false;
@@ -40,14 +40,15 @@ void Simulation::Impl::keep_return_point() {
     if (was_deferring) free_flights.begin_deferring();
 }
 
-/// The steps that were made since the state was kept are made again, unseen.
+/// Restores the kept state, and repeats the steps since then without callbacks.
 void Simulation::Impl::go_back() {
     free_flights.drop_deferred();
     read_state(return_point.source());
     forget_queries();
     emitters = return_point.beside().emitters;
-    if (coupled.is_active()) coupled.bind(particles());
-    if (check) check->restart(store, clock.time_at(recorder.statistics().steps));
+    bind_modules();
+    const double now = clock.time_at(recorder.statistics().steps);
+    modules.each([&](Module& module) { module.restart(now); });
     recorder.forget_step(return_point.beside().violations);
     birth_records.clear();
     inside_step = false;

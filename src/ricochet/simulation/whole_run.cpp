@@ -1,4 +1,4 @@
-// A run that ranks share, put together on the first of them.
+// Puts a run that ranks share together on the first rank.
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -26,7 +26,7 @@ std::vector<std::byte> archived(Archived& what) {
     return bytes;
 }
 
-/// On the first rank.
+/// Returns the sums over all ranks on the first one.
 SurfaceTotals gather_totals(Ranks& ranks, SurfaceTotals& own) {
     SurfaceTotals all(own.size());
     for (const std::vector<std::byte>& part : ranks.gather(archived(own))) {
@@ -51,19 +51,6 @@ void Simulation::Impl::keep_springs_together() {
     for (const Spring& spring : coupled.springs().springs()) ids.insert(ids.end(), {spring.first, spring.second});
     share.keep_together(std::move(ids));
     if (!share.is_first()) coupled.disable();
-}
-
-// All ranks go as far as the first one has planned, or end with what it has come to.
-double Simulation::Impl::plan_on_first_rank(const TimeSpan& rest) {
-    double planned = rest.end - rest.begin;
-    std::optional<std::string> message;
-    try {
-        planned = plan_coupled(rest);
-    } catch (const DivergedError& error) {
-        message = error.what();
-    }
-    if (const auto first = share.first_message(message, 0)) throw DivergedError(*first);
-    return share.shortest(planned);
 }
 
 void Simulation::Impl::have_meshes_in_common() {
@@ -114,8 +101,7 @@ WholeRun Simulation::Impl::gather(Shown what) {
 void Simulation::Impl::exchange(WholeRun& whole) {
     if (whole.contacts) std::swap(recorder.contact_records(), *whole.contacts);
     if (whole.store) std::swap(store, *whole.store);
-    // Nothing is asked of springs where no particles are.
-    if (whole.store && store.size() > 0 && coupled.is_active()) coupled.bind(particles());
+    if (whole.store && store.size() > 0) bind_modules();
     if (whole.statistics) std::swap(recorder.statistics(), *whole.statistics);
     if (whole.loads) std::swap(recorder.loads(), *whole.loads);
     if (whole.totals) std::swap(recorder.totals(), *whole.totals);

@@ -1,0 +1,105 @@
+/// \file
+/// Private to the simulation: an optional capability of a run, called at the stages of a step.
+///
+/// A module keeps its own state and reaches the particles through the objects that it was made with. The stages call
+/// it once for all particles of a generation or a block, never for a single particle. The list in modules.cpp has all
+/// modules in the order of their calls. A new module needs its class, a line in that list, and tests.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "ricochet/core/binary_archive.h"
+#include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/query_schedule.h"
+#include "ricochet/simulation/run_recorder.h"
+
+namespace ricochet {
+
+/// See the top of this file. Every function does nothing unless a module overrides it. A step calls them in the order
+/// of declaration; before_generation() to after_generation() once for each spawn generation, and before_substep() to
+/// record() once for each of its substeps.
+class Module {
+public:
+    Module() = default;
+    virtual ~Module() = default;
+    Module(const Module&) = delete;
+    Module& operator=(const Module&) = delete;
+
+    // Stages of a step.
+
+    virtual void begin_step(const TimeSpan& /*step*/) {}
+    virtual void before_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
+    /// Plans the next substep and returns its end, in s, at most rest.end. rest: time left of the step, or the substep
+    /// that an earlier module has planned.
+    virtual double plan(const ParticleRange& /*generation*/, const TimeSpan& rest) { return rest.end; }
+    virtual void before_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/) {}
+    /// All other particles of the generation have been moved. blocks: records of the substep so far.
+    virtual void after_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
+                               std::vector<BlockRecord>& /*blocks*/) {}
+    /// Takes the records of the substep. loads: of all blocks; modules can complete them before they are recorded.
+    virtual void record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& /*blocks*/,
+                        std::vector<ColliderLoad>& /*loads*/) {}
+    virtual void after_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
+    /// Particles are about to be removed, at the end of a step.
+    virtual void before_removal(double /*time*/) {}
+    /// Checks the state at the end of a step.
+    virtual void verify(const TimeSpan& /*step*/) {}
+    /// Writes the module's counts into the statistics of the run.
+    virtual void count(SimulationStatistics& /*statistics*/) const {}
+
+    // Changes of the population. The store has changed already.
+
+    /// One particle was appended.
+    virtual void append() {}
+    /// The particles whose flag is not 0 were kept.
+    virtual void compact(const std::vector<std::uint8_t>& /*keep*/) {}
+    /// Particles were added, removed or replaced: indices and arrays are new.
+    virtual void bind() {}
+    /// The run continues from a restored state at a time, in s.
+    virtual void restart(double /*time*/) {}
+    /// The forces have changed, at a time in s. Sleeping particles wake.
+    virtual void wake_all(double /*time*/) {}
+
+    // State.
+
+    /// Returns true if the module does not need the positions of particles in free flight in every step.
+    [[nodiscard]] virtual bool allows_deferred_steps() const { return false; }
+    /// Returns the reason why no run can leave particle i in its restored state, or null.
+    [[nodiscard]] virtual const char* fault_of(std::size_t /*i*/) const { return nullptr; }
+    /// Returns the reason why no run can leave the module in its restored state at a time, in s, or null.
+    [[nodiscard]] virtual const char* fault(double /*time*/) const { return nullptr; }
+    /// Saves or restores the module's state.
+    virtual void archive(BinaryWriter& /*a*/) {}
+    virtual void archive(BinaryReader& /*a*/) {}
+};
+
+/// The modules of a run, in the order of their calls.
+class ModuleList {
+public:
+    void add(std::unique_ptr<Module> module) { modules_.push_back(std::move(module)); }
+    /// Calls call(module) for each module.
+    template <class Call>
+    void each(const Call& call) const {
+        for (const std::unique_ptr<Module>& module : modules_) call(*module);
+    }
+    /// Returns true if no module needs the positions of particles in free flight in every step.
+    [[nodiscard]] bool allow_deferred_steps() const {
+        return std::all_of(modules_.begin(), modules_.end(),
+                           [](const auto& module) { return module->allows_deferred_steps(); });
+    }
+    /// Plans a substep of a generation: each module can shorten it.
+    [[nodiscard]] TimeSpan plan(const ParticleRange& generation, TimeSpan rest) const {
+        for (const std::unique_ptr<Module>& module : modules_) rest.end = module->plan(generation, rest);
+        return rest;
+    }
+
+private:
+    std::vector<std::unique_ptr<Module>> modules_;
+};
+
+}  // namespace ricochet

@@ -14,8 +14,8 @@
 namespace ricochet {
 namespace {
 
-/// Most halvings of a path that dips into a surface that the flow leaves. Local: a limit of this search, whose result
-/// is checked.
+/// Largest number of halvings of a path that dips into a surface that the flow leaves. Local: a limit of this search,
+/// whose result is checked.
 constexpr int kMostHalvings = 40;
 
 /// One particle that a flow carries through one step.
@@ -40,7 +40,8 @@ private:
     [[nodiscard]] bool is_stopped() const {
         return is_stuck_ || (rules_.settings.walls == WallRule::stop && flow_.leads_in(state_.time));
     }
-    /// Pressed onto a surface with no time left to go anywhere along it, as after a landing at the end of the step.
+    /// Returns true if the particle is pressed onto a surface and no time is left to move along it. This happens after
+    /// a landing at the end of the step.
     [[nodiscard]] bool is_over() const {
         return flow_.is_negligible_path(step_.remaining()) && flow_.leads_in(state_.time);
     }
@@ -54,14 +55,14 @@ private:
     ContactManifold manifold_;
     ConstrainedFlow flow_;
     std::uint32_t surface_segments_ = 0;  // paths along surfaces; they share the budget with the impacts
-    std::uint32_t quick_contacts_ = 0;    // impacts in a row with next to no time between them
-    double remaining_at_contact_ = 0.0;   // s, at the latest
+    std::uint32_t quick_contacts_ = 0;    // consecutive impacts with almost no time between them
+    double remaining_at_contact_ = 0.0;   // s, at the last impact
     double widening_ = 1.0;               // of reach()
-    std::uint32_t contacts_here_ = 0;     // impacts in a row without getting anywhere, at `here_`
+    std::uint32_t contacts_here_ = 0;     // consecutive impacts without progress, near `here_`
     Vec3 here_;
     double remaining_here_ = 0.0;
-    bool is_stuck_ = false;                                     // in a pit, until the step's end
-    double longest_ = std::numeric_limits<double>::infinity();  // s, of the next path
+    bool is_stuck_ = false;                                     // in a pit, until the end of the step
+    double longest_ = std::numeric_limits<double>::infinity();  // s, limit of the next path
 };
 
 MoveOutcome Advector::run() {
@@ -87,7 +88,7 @@ MoveOutcome Advector::run() {
     return outcome;
 }
 
-/// One path: to the end of the step or of the surfaces that hold the particle, or to the next contact.
+/// Follows one path: to the end of the step, to the end of the surfaces that hold the particle, or to the next contact.
 void Advector::advance() {
     const Path path = flow_.next_path(std::min(step_.remaining(), longest_), reach());
     surface_segments_ += flow_.is_held() ? 1 : 0;
@@ -107,7 +108,7 @@ void Advector::advance() {
     if (contact) resolve(*contact);
 }
 
-/// Counts an impact; its surfaces come first in the manifold.
+/// Counts an impact. Its surfaces come first in the manifold.
 void Advector::resolve(const Contact& contact) {
     ++step_.outcome().bounces;
     manifold_.remember(contact.all());
@@ -121,8 +122,9 @@ void Advector::resolve(const Contact& contact) {
     }
 }
 
-/// In a blunt valley the other face is reached far beyond the rim of the first: a particle that is passed to and fro
-/// looks further, until both hold it. What is passed round all the same stays where it is to the end of the step.
+/// Widens reach(), or marks the particle as stuck, after many quick impacts. In a blunt valley a path meets the other
+/// face far beyond the rim of the first face. If a particle alternates between both, its reach grows until both hold
+/// it. If it still alternates at the largest reach, it stays in place until the end of the step.
 void Advector::watch_progress() {
     const double elapsed = remaining_at_contact_ - step_.remaining();
     const bool is_quick = quick_contacts_ > 0 && elapsed <= kQuickContact * step_.duration();
@@ -130,7 +132,7 @@ void Advector::watch_progress() {
     remaining_at_contact_ = step_.remaining();
     if (!is_quick) widening_ = 1.0;
     if (quick_contacts_ % kContactsToWiden == 0) widening_ = std::min(2.0 * widening_, kMostWidening);
-    // Next to the origin positions are rounded by less and less: what the flow does in a step counts, too.
+    // Positions near the origin are rounded very finely, so the distance that the flow covers in a step counts, too.
     const double next_to_nothing = std::max(kEdgeOffsets * contact_offset(state_.position),
                                             kNoProgress * step_.duration() * length(flow_.free_velocity()));
     const bool is_here = contacts_here_ > 0 && max_abs(state_.position - here_) <= next_to_nothing &&
@@ -143,7 +145,7 @@ void Advector::watch_progress() {
     is_stuck_ = ++contacts_here_ > kMaxSlowContacts && widening_ == kMostWidening;
 }
 
-/// The velocity that the particle goes on with, and what it is pressed onto.
+/// Sets the velocity with which the particle continues, and its contact state.
 void Advector::finish() {
     MoveOutcome& outcome = step_.outcome();
     const bool is_pressed = is_stuck_ || flow_.leads_in(state_.time);
@@ -151,12 +153,13 @@ void Advector::finish() {
     if (!is_pressed) return;
     particle_.contact = manifold_.contact_state();
     if (state_.velocity != Vec3{}) return;
-    // In a steady flow what does not move never will.
+    // In a steady flow a particle that does not move stays at rest.
     const bool stays = rules_.settings.flow->is_steady() && outcome.unsimulated_time == 0.0;
     outcome.end = stays ? MoveEnd::held : MoveEnd::resting;
 }
 
-/// Beside a rim half of what a path goes beyond it, so that at its end the surface is surely left.
+/// Returns a rule that ends a surface at half of reach() beyond its rim. A path goes the whole reach beyond the rim, so
+/// at its end it has certainly left the surface.
 TouchRule Advector::touch_rule() const {
     TouchRule rule = TouchRule::at(step_.geometry(), state_.position);
     rule.beyond_rim = 0.5 * reach();

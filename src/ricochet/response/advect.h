@@ -1,28 +1,31 @@
 /// \file
 /// First-order motion: a flow carries the particles, x' = g(x, t), and walls stop them or let them slide.
 ///
-/// The path of a step is that of flow_path(). The first contact on it is found and answered inside the step, as in the
-/// exact response, and every segment that is travelled is certified to intersect no surface: nothing leaks, exactly.
+/// The path of a step comes from flow_path(). Its first contact is found and resolved within the step, as in the exact
+/// response. Every segment of the trajectory is certified to intersect no surface: nothing leaks, exactly.
 ///
-/// A particle that slides follows g without its part into the surfaces that it touches (the closest velocity that
-/// enters none of them; at most three count), by the same integrator, for as long as they are under it and g presses it
-/// onto them. Over an edge it goes on with the flow until that presses it onto something again. On a curved surface it
-/// goes in straight segments of kMaxChordAngle. A particle that stops stays where it has hit a wall while the flow
-/// presses it on or would bring it back within kShortestRelease of a step. In a pit of more than three faces it stays
-/// to the end of the step.
+/// A sliding particle follows g without its component into the touched surfaces: the closest velocity that enters none
+/// of them. At most three surfaces count. The same integrator follows that velocity while the surfaces are below the
+/// particle and g presses it onto them. Beyond an edge the particle moves with the flow until the flow presses it onto
+/// a surface again. Along the side of a ball or a cylinder it moves on arcs of at most kMaxArcAngle, round edges on
+/// straight segments of kMaxChordAngle. A stopped particle keeps its position while the flow presses it onto the wall,
+/// or would bring it back within kShortestRelease of a step. In a pit of more than three faces it stays until the end
+/// of the step.
 ///
-/// The velocity stored is the one that it goes on with: zero where it is stopped. Materials, mass and spin play no
-/// role; impacts are counted and recorded, without impulses. Particles have no momentum here.
+/// The stored velocity is the one with which the particle continues; it is zero for a stopped particle. Materials, mass
+/// and spin have no effect. Impacts are counted and recorded without impulses, since particles have no momentum here.
 ///
-/// What it does not guarantee: that a flow which turns away from a wall and back within one step is noticed; that a
-/// particle whose budget of impacts and paths along surfaces is spent uses the whole step (the rest is counted).
+/// Limits:
+/// - A flow that turns away from a wall and back within one step may go unnoticed.
+/// - A particle that has spent its budget of impacts and paths along surfaces does not use the whole step. The rest is
+///   counted.
 #pragma once
 
 #include "ricochet/response/response.h"
 
 namespace ricochet {
 
-/// See the top of this file. settings.flow must be there.
+/// See the top of this file. Requires settings.flow.
 class AdvectResponse final : public Response {
 public:
     explicit AdvectResponse(const ResponseRules& rules) : Response(rules) {}

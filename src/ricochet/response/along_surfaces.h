@@ -1,5 +1,6 @@
 /// \file
-/// Private to the responses: the surfaces that hold a particle, and what they leave of its motion. Pure functions.
+/// Private to the responses: the surfaces that hold a particle, and projections of its motion along them. Pure
+/// functions.
 #pragma once
 
 #include <array>
@@ -11,7 +12,7 @@
 
 namespace ricochet {
 
-/// Surfaces that hold a particle at one time, at most.
+/// Largest number of surfaces that hold a particle at one time.
 inline constexpr std::size_t kMostSupports = 3;
 
 struct SurfaceMotion;
@@ -22,21 +23,22 @@ struct SupportSurface {
     double friction = 0.0;           ///< Coulomb coefficient
     double rolling_friction = 0.0;   ///< see Material
     double spinning_friction = 0.0;  ///< m, see Material
-    /// Of the surface's own material, at the contact and along the surface, m/s: slip is relative to it; and of its
-    /// turning, rad/s: so are rolling and spinning. 0 where the surface does not grip.
+    /// Velocity of the surface's material at the contact, along the surface, in m/s, and its angular velocity, in
+    /// rad/s. Slip is relative to the velocity; rolling and spinning are relative to the angular velocity. 0 if the
+    /// surface does not grip.
     Vec3 velocity{};
     Vec3 angular_velocity{};
-    const SurfaceMotion* motion = nullptr;  ///< what says the velocity elsewhere; null where it is 0 everywhere
-    /// What the surface's curvature adds to the rates, m/s^2: of the distance, and of the slip; and to those of radius
-    /// times angular velocity, along the surface and about its normal, since the normal turns. The change of `velocity`
-    /// is part of that of the slip.
+    const SurfaceMotion* motion = nullptr;  ///< velocity at other positions; null if it is 0 everywhere
+    /// Rates that the surface's curvature adds because the normal turns, in m/s^2: of the distance, of the slip, and of
+    /// radius times angular velocity, along the surface and about its normal. The slip's rate contains the change of
+    /// `velocity`.
     double curvature = 0.0;
     Vec3 slip_curvature{};
     Vec3 turning_curvature{};
     double spinning_curvature = 0.0;
 };
 
-/// What does not move at a surface.
+/// Motions that are stuck at a surface.
 struct Stuck {
     bool to_slip = false;
     bool to_turning = false;   ///< resistance to rolling holds it
@@ -44,32 +46,34 @@ struct Stuck {
 };
 using StuckSurfaces = std::array<Stuck, kMostSupports>;
 
-/// The slip of a motion on a surface, see slip_velocity(): relative to the surface's material.
+/// Returns the slip of a motion relative to the surface's material, see slip_velocity().
 [[nodiscard]] inline Vec3 slip_on(const SupportSurface& surface, const Motion& motion, double radius) {
     return slip_velocity(motion, radius, surface.normal) - surface.velocity;
 }
 
-/// The speeds that slips, rolling and spinning on these surfaces are made of, m/s: what is small next to it is none.
+/// Returns the sum of the speeds that contribute to slip, rolling and spinning on these surfaces, in m/s. A rate that
+/// is small next to it counts as zero.
 [[nodiscard]] double speed_scale(const Motion& motion, double radius, std::span<const SupportSurface> surfaces);
 
-/// The vector nearest to v that is at right angles to all normals.
+/// Returns the vector nearest to v that is perpendicular to all normals.
 [[nodiscard]] Vec3 along_all(const Vec3& v, std::span<const Vec3> normals);
 
-/// The shortest vector d with d . n = distance for every normal and its distance; normals that depend on those before
-/// them do not count.
+/// Returns the shortest vector d with d . n = distance for every normal and its distance. Normals that depend on
+/// earlier ones are ignored.
 [[nodiscard]] Vec3 shift_by(std::span<const Vec3> normals, std::span<const double> distances);
 
-/// The motion nearest to the given one (in energy) that is along all surfaces, and slips and turns on none where
-/// `stuck` says so.
-/// braked_from: m/s, a speed that the motion had before, whose rounding is no motion.
+/// Returns the motion along all surfaces that is nearest to the given one (in energy). It neither slips nor turns on
+/// surfaces marked in `stuck`. braked_from: an earlier speed of the motion, in m/s; a result within its rounding is
+/// zero.
 [[nodiscard]] Motion along_surfaces(const Motion& motion, double radius, std::span<const SupportSurface> surfaces,
                                     const StuckSurfaces& stuck, double braked_from = 0.0);
 
-/// Twice the kinetic energy over the mass of a solid sphere, or a point (radius 0), m^2/s^2.
+/// Returns twice the kinetic energy over the mass of a solid sphere, or a point (radius 0), in m^2/s^2.
 [[nodiscard]] double twice_kinetic(const Motion& motion, double radius);
 
-/// Surfaces give no energy, whatever the error of a method: slows a motion that has more than `most` of it (twice, over
-/// the mass). What positions are rounded by says nothing: offset is what forces do over a contact offset, m^2/s^2.
+/// Slows a motion that has more than `most` of energy (twice, over the mass), because surfaces give no energy, whatever
+/// the error of a method. An excess within the rounding of positions is ignored. offset: work of the forces over a
+/// contact offset, in m^2/s^2.
 void limit_energy(Motion& motion, double radius, double most, double offset);
 
 }  // namespace ricochet

@@ -8,9 +8,9 @@
 
 namespace ricochet {
 
-/// Returns true if a segment is free in the frames of all colliders. Exact. Only where colliders move.
+/// Returns true if a segment is free in the frames of all colliders. Exact. Only for scenes with moving colliders.
 [[nodiscard]] bool is_segment_free(const ParticleStep& step, const StoredPosition& from, const StoredPosition& to);
-/// Returns the same for a segment between two points of a path. others: surfaces of other frames near the path.
+/// As above, for a segment between two points of a path. others: surfaces of other frames near the path.
 [[nodiscard]] bool is_segment_free(const ParticleStep& step, const SurfacesInOtherFrames& others, const PathPoint& from,
                                    const PathPoint& to);
 
@@ -20,7 +20,7 @@ void shift_to(ParticleStep& step, const Vec3& position);
 /// Makes the stored position the particle's, at the end of a move among moving colliders.
 void keep_stored_position(ParticleStep& step);
 
-/// Leaves the stored position as it is until a time, in s. No moving collider may come near it.
+/// Keeps the stored position until a time, in s. No moving collider may come near it.
 void stay_until(ParticleStep& step, double until);
 
 /// Gives up the time that is left of the step: it counts as unsimulated. The particle waits.

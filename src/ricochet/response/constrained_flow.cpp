@@ -18,20 +18,20 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in search of the time at which the flow turns away from a wall, down to the last bit of the time. Local: it
+/// Halvings in the search for the time at which the flow turns away from a wall, to the last bit of the time. Local: it
 /// ends below the rounding of the result.
 constexpr int kReleaseHalvings = 60;
 
-/// The normal of a round shape at a position, on the side that one of its normals says.
+/// Returns the normal of a round shape at a position, on the same side as the contact's normal.
 Vec3 round_normal(const SurfaceGeometry& geometry, const ContactSurface& surface, const Vec3& position) {
     const Vec3 normal = geometry.unit_normal_of(surface.surface, position);
     return dot(normal, surface.normal) < 0.0 ? -normal : normal;
 }
 
-/// A flow without its part along the normals of surfaces, as they are at each position: those of round ones turn.
+/// A flow without its components along the normals of surfaces. Normals of round shapes are taken at each position.
 class FlowAlong final : public FlowField {
 public:
-    /// particle: its id, for messages.
+    /// particle: its id, for error messages.
     FlowAlong(const FlowField& flow, const SurfaceGeometry& geometry, std::span<const ContactSurface> surfaces,
               std::uint64_t particle)
         : flow_(flow), geometry_(geometry), surfaces_(surfaces), particle_(particle) {}
@@ -42,7 +42,7 @@ public:
         return surfaces_.empty() ? free : along_all(free, normals_at(position, normals));
     }
     [[nodiscard]] bool is_steady() const override { return flow_.is_steady(); }
-    /// Shifted onto the surfaces, so that it keeps this distance from each.
+    /// Returns the position moved to the given distance from each surface, in m.
     [[nodiscard]] Vec3 put_on(Vec3 position, double distance) const {
         constexpr int kCorrections = 3;
         for (int k = 0; k < kCorrections; ++k) {
@@ -60,7 +60,7 @@ public:
     }
 
 private:
-    /// A method may try positions that are out of range.
+    /// Throws a RunError if the position is in range. A method may also try positions out of range.
     void refuse_if_in_range(const Vec3& g, const Vec3& x, double time) const {
         if (!is_finite(x) || max_abs(x) > kLargestJudged) return;
         throw RunError(
@@ -82,8 +82,9 @@ private:
     std::uint64_t particle_;
 };
 
-/// Of the next chord along a curved surface, rad, after so many in the step. Spheres that roll round many edges in one
-/// step would spend their budget with the finest ones: 500 of 0.01 rad are 5 rad, and these 50.
+/// Returns the angle of the next chord along a curved surface, in rad, after a number of chords in the step. With only
+/// the finest chords, spheres that roll round many edges in one step would spend their budget: 500 chords of 0.01 rad
+/// are 5 rad, and these 50.
 double chord_angle(int chords) {
     return kMaxChordAngle * static_cast<double>(1 << std::min(chords / kChordsToDouble, kMostChordDoublings));
 }
@@ -154,7 +155,7 @@ Path ConstrainedFlow::next_path(double duration, double reach) {
             continue;
         }
         const Part part = until_rim(held.path, reach);
-        if (is_no_progress(part.path.duration, part.path.c[1])) {  // it is past that surface's end
+        if (is_no_progress(part.path.duration, part.path.c[1])) {  // the particle is past that surface's end
             manifold_.remove(holders_.point(part.ended_by));
             holders_ = holders_now();
             continue;
@@ -182,7 +183,7 @@ bool ConstrainedFlow::dips(const Path& path, double time) const {
     return false;
 }
 
-/// Those whose reaction to the flow is not zero.
+/// Returns the contact points with a positive reaction to the flow.
 SupportSet ConstrainedFlow::holders_now() const {
     const auto normals = manifold_.normals();
     const auto loads = normal_accelerations(free_velocity(), normals);
@@ -204,7 +205,7 @@ Path ConstrainedFlow::free_path(double duration) {
     return free.path;
 }
 
-/// The holders as a path goes along them: what is not followed on an arc counts as flat.
+/// Returns the holders' surfaces for the next path. A surface that is not followed on an arc counts as flat.
 std::span<const ContactSurface> ConstrainedFlow::supports(Surfaces& surfaces) const {
     for (std::size_t k = 0; k < holders_.size(); ++k) {
         surfaces[k] = manifold_[holders_.point(k)];
@@ -213,7 +214,8 @@ std::span<const ContactSurface> ConstrainedFlow::supports(Surfaces& surfaces) co
     return std::span(surfaces).first(holders_.size());
 }
 
-/// Arcs are for round shapes, off their rims, with nothing else but flat surfaces.
+/// Finds the round shapes that an arc can follow. There is no arc if a shape touches at its rim, or if another curved
+/// surface holds the particle.
 void ConstrainedFlow::find_followed() {
     followed_count_ = 0;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -228,7 +230,7 @@ void ConstrainedFlow::find_followed() {
     }
 }
 
-/// An arc up to where a holder lets go, or ends.
+/// Returns an arc up to the time at which a holder releases the particle, or ends.
 ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const {
     Part part{path, 0};
     const auto release_at = released_by(part.path.end, state_.time + part.path.duration);
@@ -244,7 +246,7 @@ ConstrainedFlow::Part ConstrainedFlow::arc_until_release(const Path& path) const
     return part;
 }
 
-/// The way of so many seconds along the holders, as the cubic through its ends.
+/// Returns the path along the holders for a duration, in s, as the cubic through its ends.
 Path ConstrainedFlow::arc(double duration) const {
     Surfaces surfaces;
     const FlowAlong along(flow_, geometry_, supports(surfaces), state_.id);
@@ -258,7 +260,7 @@ Path ConstrainedFlow::arc(double duration) const {
     return path;
 }
 
-/// The holder that the flow no longer presses the particle onto there, or whose rim it has come to.
+/// Returns the first holder that the flow does not press on at a position, or whose rim is there.
 std::optional<std::size_t> ConstrainedFlow::released_by(const Vec3& position, double time) const {
     std::array<Vec3, kMostSupports> normals;
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -273,7 +275,8 @@ std::optional<std::size_t> ConstrainedFlow::released_by(const Vec3& position, do
     return std::nullopt;
 }
 
-/// s, until a holder's normal has turned by kMaxArcAngle; about, where the flow is about to be faster.
+/// Returns the time, in s, in which a holder's normal turns by kMaxArcAngle, at most `duration`. If the flow along the
+/// surface is nearly at rest, a lower bound of its speed is used, because it may soon be faster.
 double ConstrainedFlow::longest_arc(double duration) const {
     const Vec3 free = free_velocity();
     const Vec3 along = along_all(free, holders_.normals());
@@ -288,15 +291,15 @@ double ConstrainedFlow::longest_arc(double duration) const {
     return duration;
 }
 
-/// The holder that a flow presses on least.
+/// Returns the number of the holder on which a flow presses least.
 std::size_t ConstrainedFlow::weakest(const Vec3& g) const {
     const auto loads = normal_accelerations(g, holders_.normals());
     return static_cast<std::size_t>(
         std::min_element(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(holders_.size())) - loads.begin());
 }
 
-/// A path up to where the flow turns away from a holder. The cubic through both ends would dip into the surface before
-/// an end that leaves it; up to there it has no part along the normal.
+/// Returns a path up to the time at which the flow turns away from a holder, without components along the normals. A
+/// cubic to an end at which the flow leaves the surface would dip into the surface before.
 ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
     const auto flow_at = [&](double s) { return flow_.velocity(path.position(s), state_.time + s); };
     const auto holds = [&](double s) {
@@ -319,7 +322,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_release(const Path& path) const {
     return part;
 }
 
-/// A path up to the first rim of the flat holders.
+/// Returns a path up to the first rim of the flat holders.
 ConstrainedFlow::Part ConstrainedFlow::until_rim(const Path& path, double reach) const {
     Part part{path, 0};
     for (std::size_t k = 0; k < holders_.size(); ++k) {
@@ -334,7 +337,7 @@ ConstrainedFlow::Part ConstrainedFlow::until_rim(const Path& path, double reach)
     return part;
 }
 
-/// A path along flat surfaces whose end keeps the contact offset from them.
+/// Returns a path along flat surfaces whose end keeps the contact offset from them.
 Path ConstrainedFlow::lifted(Path path) const {
     const CollisionWorld& world = rules_.world;
     const double offset = contact_offset(path.end);
@@ -345,8 +348,8 @@ Path ConstrainedFlow::lifted(Path path) const {
         const double side = dot(world.unit_normal_of(support.surface, path.end), support.normal) < 0.0 ? -1.0 : 1.0;
         const double height = side * world.signed_distance_from(support.surface, path.end) - state_.radius;
         const double lift = offset - height;
-        // Where the flow has turned away the particle is above the surface by more than rounding. Next to the origin a
-        // height above a large triangle can be all rounding.
+        // If the flow has turned away, the particle is above the surface by more than rounding. Near the origin, a
+        // height above a large triangle can be pure rounding.
         const bool is_rounding =
             std::fabs(lift) <= 0.5 * kCandidateSlack * max_abs(path.end) && height <= 2.0 * kTouchingOffsets * offset;
         if (!is_rounding) continue;
@@ -361,8 +364,9 @@ Path ConstrainedFlow::lifted(Path path) const {
     return path;
 }
 
-/// A straight part of a path round an edge or a rim that turns by at most kMaxChordAngle: a tangent where the surface
-/// bends away, from whose end the flow presses the particle on again; a chord where it bends towards the particle.
+/// Returns a straight part of a path round an edge or a rim, over which the normal turns by at most chord_angle(). If
+/// the surface bends away, it is a tangent, and the flow presses the particle on again from its end. If the surface
+/// bends towards the particle, it is a chord.
 Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     const CollisionWorld::Nearest here = geometry_.nearest(support.surface, state_.position);
     const double turning =
@@ -374,7 +378,7 @@ Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     const double lift = state_.radius + offset - side * there.distance;
     if (!(lift > 0.0)) return path;
     const Vec3 end = flush_tiny(path.end + (side * lift) * there.normal);
-    // Over the seam of a flat surface the height differs by rounding only.
+    // Over the seam of a flat surface the height differs only by rounding.
     if (lift > kTouchingOffsets * offset) {
         path = line_path(state_.position, (end - state_.position) / path.duration, path.duration);
     }
@@ -382,7 +386,8 @@ Path ConstrainedFlow::along_curved(const ContactSurface& support, Path path) {
     return path;
 }
 
-/// Too short to change anything: neither a noticeable part of the step nor of what positions are rounded by.
+/// Returns true if a path is too short to change anything: it takes no noticeable part of the step, and is shorter than
+/// the rounding of positions.
 bool ConstrainedFlow::is_no_progress(double duration, const Vec3& velocity) const {
     return !(duration > kNoProgress * step_) && !(length(velocity) * duration > 0.25 * contact_offset(state_.position));
 }

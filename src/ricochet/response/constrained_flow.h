@@ -1,11 +1,13 @@
 /// \file
 /// Private to the responses: the paths on which a flow carries a particle that touches surfaces.
 ///
-/// Of the surfaces touched those hold the particle that the flow presses it onto (see normal_accelerations()). A path
-/// follows the flow without its part along their normals and ends where the flow turns away from one of them, where
-/// the first of them ends, or where a curved one has turned: by kMaxArcAngle along the side of a ball or a cylinder,
-/// where it is an arc with the method's order; by kMaxChordAngle round edges, and by more where the step has seen many
-/// such chords already.
+/// A touched surface holds the particle if the flow presses the particle onto it (see normal_accelerations()). A path
+/// follows the flow without its components along the normals of these surfaces. It ends when:
+/// - the flow turns away from one of the surfaces,
+/// - the particle reaches the end of one of them,
+/// - a curved one has turned enough. Along the side of a ball or a cylinder the limit is kMaxArcAngle, and the path is
+///   an arc with the order of the method. Round edges it is kMaxChordAngle, and more after many such chords in the
+///   step.
 #pragma once
 
 #include <array>
@@ -19,7 +21,7 @@
 
 namespace ricochet {
 
-/// The contact points that hold a particle, by their numbers in the manifold.
+/// The contact points that hold a particle, as numbers in the manifold.
 class SupportSet {
 public:
     void add(std::size_t point, const Vec3& normal);
@@ -37,10 +39,10 @@ private:
     std::size_t count_ = 0;
 };
 
-/// The flow for one particle in one step. The particle's state and its manifold are read as they are at each call.
+/// The flow for one particle in one step. Each call reads the current state of the particle and its manifold.
 class ConstrainedFlow {
 public:
-    /// All must outlive it. step: duration of the whole step, s.
+    /// All must outlive it. step: duration of the whole step, in s.
     ConstrainedFlow(const ResponseRules& rules, const SurfaceGeometry& geometry, const ForceInput& state,
                     ContactManifold& manifold, double step)
         : rules_(rules),
@@ -50,36 +52,37 @@ public:
           manifold_(manifold),
           step_(step) {}
 
-    /// The flow's velocity where the particle is, m/s.
+    /// Returns the velocity of the flow at the particle, in m/s.
     [[nodiscard]] Vec3 free_velocity() const { return flow_.velocity(state_.position, state_.time); }
-    /// The flow's velocity without its part into the surfaces touched, m/s.
+    /// Returns the velocity of the flow without its component into the touched surfaces, in m/s.
     [[nodiscard]] Vec3 velocity() const;
-    /// True when the flow presses the particle onto a surface, or would lead it into one within kShortestRelease of the
-    /// step, from where it is at this time.
+    /// Returns true if the flow at a time, in s, presses the particle onto a surface, at its present position. Also
+    /// true if it would carry the particle into a surface within kShortestRelease of the step.
     [[nodiscard]] bool leads_in(double time) const;
-    /// s, at most `remaining`: how long it does.
+    /// Returns the time, in s, until leads_in() becomes false, at most `remaining`.
     [[nodiscard]] double time_to_release(double remaining) const;
 
-    /// True when it leads so little along surfaces in that time, s, that a path is not worth making, see kNoProgress.
+    /// Returns true if the flow carries the particle so little along surfaces in a duration, in s, that a path is of no
+    /// use. See kNoProgress.
     [[nodiscard]] bool is_negligible_path(double duration) const;
 
-    /// The next path, at most `duration` long, s, and at most `reach`, m, beyond the rim of a flat surface. Contact
-    /// points that the particle is past are removed.
+    /// Returns the next path. It lasts at most `duration`, in s, and ends at most `reach`, in m, beyond the rim of a
+    /// flat surface. Removes contact points that the particle has passed.
     [[nodiscard]] Path next_path(double duration, double reach);
-    /// True when an adaptive method has made all sub-steps that a step may have.
+    /// Returns true if an adaptive method has made all sub-steps that a step may have.
     [[nodiscard]] bool has_spent_substeps() const { return substeps_ >= kMostSubsteps; }
-    /// True when it could not keep its tolerance.
+    /// Returns true if an adaptive method could not keep its tolerance.
     [[nodiscard]] bool is_coarse() const { return is_coarse_; }
-    /// True when the last path was along surfaces.
+    /// Returns true if the last path was along surfaces.
     [[nodiscard]] bool is_held() const { return !holders_.empty(); }
-    /// The round shapes along which the last path bends: it does not hit those, see ContactQuery::supports.
+    /// Returns the round shapes along which the last path bends. It cannot hit them, see ContactQuery::supports.
     [[nodiscard]] std::span<const SurfaceId> followed() const { return {followed_.data(), followed_count_}; }
-    /// True when a path is back, after this time along it, at a flat surface that the particle has just left: the
-    /// cubic dips into the surface where the flow does not.
+    /// Returns true if a path, after this time along it, in s, is back at a flat surface that the particle has just
+    /// left. The cubic dips into the surface although the flow does not.
     [[nodiscard]] bool dips(const Path& path, double time) const;
 
 private:
-    /// What a path ends at, and the holder that ends it.
+    /// A path, and the number of the holder that ends it.
     struct Part {
         Path path;
         std::size_t ended_by = 0;
@@ -109,12 +112,12 @@ private:
     ContactManifold& manifold_;
     double step_;
     double next_duration_ = 0.0;  // s, of an adaptive method
-    std::uint32_t substeps_ = 0;  // paths that have been asked of the integrator
+    std::uint32_t substeps_ = 0;  // paths requested from the integrator
     bool is_coarse_ = false;
-    SupportSet holders_;  // of the last path
+    SupportSet holders_;  // holders of the last path
     std::array<SurfaceId, kMostSupports> followed_{};
     std::size_t followed_count_ = 0;
-    int chords_ = 0;  // round edges so far
+    int chords_ = 0;  // chords round edges in this step
 };
 
 }  // namespace ricochet

@@ -14,15 +14,16 @@ namespace ricochet {
 
 namespace {
 
-/// Estimates of the time at which an arc reaches the next part of a surface. Each squares a small error. Three left
-/// 1e-11 of the radius for a fast sphere on a long arc. Local: it ends below the rounding of the result.
+/// Largest number of estimates of the time at which an arc reaches the next part of a surface. Each estimate squares a
+/// small error. Three left 1e-11 of the radius for a fast sphere on a long arc. Local: it ends below the rounding of
+/// the result.
 constexpr int kMostTurningPoints = 8;
 
-/// Most times that an interval is shortened until its middle is the planned one, each by at least a fifth. Local,
-/// because kSameMiddle decides.
+/// Largest number of times that an interval is shortened until its middle is the planned one, each time by at least a
+/// fifth. Local, because kSameMiddle decides.
 constexpr int kMostCuts = 16;
 
-/// Methods of second order and more; the others hold forces over a step.
+/// Returns true for methods of second order or higher. The others hold forces constant over a step.
 bool follows_varying_forces(IntegratorKind kind) {
     return kind == IntegratorKind::midpoint || kind == IntegratorKind::velocity_verlet || kind == IntegratorKind::rk4 ||
            kind == IntegratorKind::dormand_prince;
@@ -82,8 +83,9 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
     return follow_arc(pull, duration);
 }
 
-/// One interval after the other takes less time than the clock can tell, and what it does in them is nothing beside
-/// what its forces would do: next to a vertex at the origin, where coordinates have no end, from one face to the next.
+/// Returns true if many consecutive intervals take less time than the clock resolves, at a speed negligible next to the
+/// effect of the forces. This happens from face to face next to a vertex at the origin, where coordinates have no
+/// smallest unit.
 bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
     timeless_ = state().time > clock_ ? 0 : timeless_ + 1;
     clock_ = state().time;
@@ -92,8 +94,9 @@ bool ContactFollower::goes_nowhere(const Pull& pull, double duration) {
     return speed <= kNegligibleSpeed * length(pull.forces) * duration;
 }
 
-/// An interval of forces that vary, by those in its middle. Where these end it long before those of its start would,
-/// the middle lies elsewhere: between springs that swing within the step the forces there may have the other sign.
+/// Plans an interval under varying forces by the forces in its middle. If these end it much earlier than the forces at
+/// its start would, its middle is elsewhere, and it is planned again. Between springs that oscillate within the step,
+/// the forces in the assumed middle may have the opposite sign.
 FlatInterval ContactFollower::plan_by_middle(PlannedInterval begin, double pressure, double duration) {
     for (int cut = 0;; ++cut) {
         const Vec3 forces = forces_in_middle(begin.interval);
@@ -105,7 +108,8 @@ FlatInterval ContactFollower::plan_by_middle(PlannedInterval begin, double press
     }
 }
 
-/// The forces, over the mass, in the middle of an interval that was planned with those at its start.
+/// Returns the forces over the mass, in m/s^2, in the middle of an interval that was planned with the forces at its
+/// start.
 Vec3 ContactFollower::forces_in_middle(const ContactInterval& interval) const {
     const double half = 0.5 * interval.duration;
     ForceInput middle = state();
@@ -144,7 +148,8 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
         limit_energy(motion, state().radius, most + 2.0 * work,
                      length(forces) * step_.geometry().contact_offset(state().position));
     }
-    // Also what surfaces take of a slip that ends: friction turns while it does, and not all of it ends by itself.
+    // Includes the velocity of a slip that ends. Friction turns while a slip ends, so the accelerations do not remove
+    // all of it.
     const Vec3 stopped = motion.velocity - state().velocity;
     manifold_.record_impulse(turned + elapsed * (interval.acceleration - forces) + stopped, elapsed, ledger());
     state().velocity = motion.velocity;
@@ -154,7 +159,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     return stop;
 }
 
-/// The way of an interval, up to where a surface ends; its end keeps the contact offset.
+/// Returns the path of an interval, up to the end of a surface. The path's end keeps the contact offset.
 ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval) const {
     Path path = interval.path(state().position, interval.duration());
     if (!is_finite(path.end)) return {path, false};
@@ -171,8 +176,8 @@ ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interv
     return {path, leaves};
 }
 
-/// Puts the end of a path along flat surfaces at the contact offset above the planes of those that hold it, and not
-/// nearer to the others, also where the end lies a little beyond a rim.
+/// Moves the end of a path along flat surfaces to the contact offset above the planes that hold the particle. It comes
+/// no nearer than that to the other planes. Planes also count a little beyond their rims.
 void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) const {
     const SurfaceGeometry& geometry = step_.geometry();
     std::array<Vec3, kMostSupports> normals;
@@ -189,12 +194,12 @@ void ContactFollower::keep_offset(Path& path, const FlatInterval& interval) cons
         lifts[count++] = lift;
         largest = std::max(largest, std::fabs(lift));
     }
-    // Next to the origin a height above a large triangle can be all rounding.
+    // Near the origin, a height above a large triangle can be pure rounding.
     if (largest > 0.5 * kCandidateSlack * max_abs(path.end)) return;
     path.end = flush_tiny(path.end + shift_by({normals.data(), count}, {lifts.data(), count}));
 }
 
-/// Follows one arc.
+/// Follows one curved contact.
 ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double duration) {
     held_.find();
     const ContactManifold::SupportList materials = manifold_.supports(surfaces());
@@ -231,8 +236,8 @@ ContactFollower::Stop ContactFollower::follow_arc(const Pull& pull, double durat
     return stop;
 }
 
-/// The way of an arc, up to where nothing holds it any more or another part of a surface begins; none where that is
-/// at once.
+/// Returns the path of an arc, up to the time at which nothing holds the particle, or another part of a surface begins.
+/// Returns std::nullopt if that happens at once.
 std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const CurvedContact& arc) const {
     if (!arc.is_supported()) return std::nullopt;
     CurvedPath trajectory;
@@ -242,15 +247,16 @@ std::optional<ContactFollower::CurvedPath> ContactFollower::path_along(const Cur
     if (!(end.time > 0.0) && !trajectory.jams) return std::nullopt;
     lead_to(end.state, end.time, arc, trajectory);
     if (end.time > 0.0) keep_to_pieces(arc, trajectory);  // else it jams at once, and has no path
-    // In 1e-46 s and less the cubic between two places that are one but for rounding has no coefficients.
+    // In 1e-46 s and less, the cubic between two positions that differ only by rounding has no finite coefficients.
     if (!trajectory.jams && !can_be_followed(trajectory.path)) return std::nullopt;
     return trajectory;
 }
 
-/// Shortens the way to where another part of a surface begins.
+/// Shortens a trajectory to the start of another part of a surface.
 void ContactFollower::keep_to_pieces(const CurvedContact& arc, CurvedPath& trajectory) const {
     trajectory.turning_point = trajectory.path.end;
-    // A long path is next to its arc between its ends, where one piece may end so late that the next is overlapped.
+    // Between its ends, a long path only approximates its arc. A part of a surface may end so late there that the next
+    // part is overlapped.
     for (int k = 0; k < kMostTurningPoints && (k == 0 || held_.overlaps(trajectory.path.end)); ++k) {
         const double on = time_on_pieces(trajectory.path);
         if (!(on < trajectory.path.duration)) break;
@@ -270,7 +276,7 @@ void ContactFollower::lead_to(const CurvedContact::State& end, double time, cons
     lift_middle(step_.geometry(), manifold_, state().radius, trajectory.path);
 }
 
-/// The time on the path, s, from which another part of a surface is touched, if only for a while.
+/// Returns the first time on the path, in s, at which the particle touches another part of a surface, even briefly.
 double ContactFollower::time_on_pieces(const Path& path) const {
     // Local: samples and halvings of a search that only shortens the path.
     constexpr int kLooks = 4;
@@ -283,7 +289,7 @@ double ContactFollower::time_on_pieces(const Path& path) const {
     return path.duration;
 }
 
-/// Moves it along the way. Where that comes to a contact, the arc up to there is looked at closely.
+/// Moves the particle along a trajectory. If that leads to a contact, the arc up to the contact is refined.
 std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const CurvedContact& arc) {
     RefinementBudget looks;
     const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
@@ -302,20 +308,21 @@ std::optional<Contact> ContactFollower::move_along(CurvedPath& trajectory, const
     return contact;
 }
 
-/// The forces do in a step, and the integrator is of second order or more.
+/// Returns true if forces vary within a step, and the integrator is of second order or higher.
 bool ContactFollower::forces_vary() const {
     if (rules().frame != nullptr) return true;
-    const bool is_coupled = state().coupling != nullptr && state().coupling->varies();  // ballistic follows that too
+    const bool is_coupled = state().coupling != nullptr && state().coupling->varies();  // `ballistic` follows that, too
     const bool follows = follows_varying_forces(rules().settings.integrator.kind) || is_coupled;
     return follows && !rules().forces.is_uniform_for(state());
 }
 
-/// Forces that vary ask for an arc, for its energy or its tolerance; a frame that moves, for what it does to spins.
+/// Returns true if varying forces require an integrated arc, for its energy or its tolerance. A moving frame requires
+/// it for its effect on spins.
 bool ContactFollower::needs_arc() const {
     return rules().frame != nullptr || tolerance() || rules().forces.is_conservative_for(state());
 }
 
-/// What an arc may be wrong by, where the integrator chooses its own steps.
+/// Returns the error tolerance of an arc, if the integrator chooses its own steps.
 std::optional<ErrorTolerance> ContactFollower::tolerance() const {
     const Integrator& integrator = rules().settings.integrator;
     if (integrator.kind != IntegratorKind::dormand_prince) return std::nullopt;

@@ -1,6 +1,5 @@
 /// \file
-/// Private to the exact response: the way of a particle along surfaces that hold it, one contact interval or arc at a
-/// time.
+/// Private to the exact response: motion of a particle along surfaces that hold it, one contact interval at a time.
 #pragma once
 
 #include <limits>
@@ -17,46 +16,46 @@
 
 namespace ricochet {
 
-/// Moves a particle along the surfaces of its contact manifold, and keeps the manifold to what is touched.
+/// Moves a particle along the surfaces of its contact manifold, and keeps the manifold up to date.
 class ContactFollower {
 public:
-    /// Forces on it in an interval.
+    /// Forces on the particle in an interval.
     struct Pull {
         Vec3 forces;            ///< over the mass, m/s^2
-        bool acts = true;       ///< false: they have been in the velocity from the step's start on
+        bool acts = true;       ///< false: the velocity contains them since the start of the step
         double pressure = 1.0;  ///< as FrictionLimits::pressure
     };
-    /// Why an interval, or several, have ended before their time.
+    /// Reason for which one or several intervals have ended early.
     struct Stop {
-        std::optional<Contact> contact;  ///< it has come to another contact
-        bool left_surface = false;       ///< the surface has ended, or holds it no more
-        bool rests = false;              ///< nothing moves; no time has passed
+        std::optional<Contact> contact;  ///< the particle has reached another contact
+        bool left_surface = false;       ///< the surface has ended, or holds it no longer
+        bool rests = false;              ///< the particle rests; no time has passed
         [[nodiscard]] bool is_early() const { return contact || left_surface; }
     };
 
-    /// At the start of the step. Both must outlive it.
+    /// Construct it at the start of the step. Both must outlive it.
     ContactFollower(ParticleStep& step, ContactManifold& manifold);
 
-    /// One interval of at most `duration` seconds on all that is touched.
+    /// Follows one interval of at most `duration`, in s, on all touched surfaces.
     [[nodiscard]] Stop advance(const Pull& pull, double duration);
-    /// The interval that it would be if all that is touched were flat. It loads the manifold.
+    /// Plans an interval as if all touched surfaces were flat, and loads the manifold.
     [[nodiscard]] ContactInterval plan(const Pull& pull, double duration);
-    /// What holds it takes part in an impact on something else.
+    /// Adds the surfaces that hold the particle to an impact on another surface.
     void join_impact(Contact& contact) const { held_.join_impact(contact); }
 
 private:
-    /// What a particle follows in one contact interval on flat surfaces.
+    /// Path of a contact interval on flat surfaces.
     struct FlatPath {
         Path path;
-        bool leaves_surface = false;  ///< the surface ends at its end, before the interval does
+        bool leaves_surface = false;  ///< the surface ends at the path's end, before the interval does
     };
-    /// What it follows on an arc.
+    /// Path of a curved contact.
     struct CurvedPath {
-        Path path;  ///< a cubic that is no more than near the arc between its ends
+        Path path;  ///< a cubic; between its ends it only approximates the arc
         CurvedContact::State end;
-        Vec3 turning_point;           ///< on the way, where another part of a surface begins; else its end
-        bool leaves_surface = false;  ///< nothing holds it any more at its end
-        bool jams = false;            ///< it is stuck at its end
+        Vec3 turning_point;           ///< start of another part of a surface on the path, else its end
+        bool leaves_surface = false;  ///< nothing holds the particle at the end
+        bool jams = false;            ///< the particle is stuck at the end
     };
 
     [[nodiscard]] bool goes_nowhere(const Pull& pull, double duration);
@@ -84,8 +83,8 @@ private:
     ParticleStep& step_;
     ContactManifold& manifold_;
     ManifoldSurfaces held_;
-    double clock_ = -std::numeric_limits<double>::infinity();  // s, at the last look
-    int timeless_ = 0;                                         // intervals in a row in which it stood still
+    double clock_ = -std::numeric_limits<double>::infinity();  // s, at the last call
+    int timeless_ = 0;                                         // consecutive intervals without progress of the clock
 };
 
 }  // namespace ricochet

@@ -18,19 +18,19 @@ constexpr double kStageLimit = 2.5;
 /// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
 constexpr double kSlipAcceleration = 3.5;
 
-/// Most plans in a row that end at once before the last one counts. Local, because the next interval starts from its
-/// end.
+/// Largest number of consecutive plans that end at once. Then the last one counts. Local, because the next interval
+/// starts from its end.
 constexpr int kMostPlans = 4;
 
-/// Something that resists, and how it is going.
+/// A resistance at a surface, and the motion that it resists.
 struct Resistance {
     enum class Kind { slip, turning, spinning };
 
     std::size_t surface = 0;
     Kind kind = Kind::slip;
     Vec3 rate;           ///< slip, or radius times angular velocity along the surface or about its normal, m/s
-    double speed = 0.0;  ///< 0 where it is stuck
-    Vec3 heading;        ///< unit, of what it resists; where the speed is above 0
+    double speed = 0.0;  ///< 0 if it is stuck
+    Vec3 heading;        ///< unit, direction of the resisted motion; only if the speed is above 0
 };
 
 bool& is_stuck(Stuck& stuck, Resistance::Kind kind) {
@@ -38,22 +38,22 @@ bool& is_stuck(Stuck& stuck, Resistance::Kind kind) {
     return kind == Resistance::Kind::turning ? stuck.to_turning : stuck.to_spinning;
 }
 
-/// A vector turned as one unit vector is turned into another, by the shortest way.
+/// Returns a vector after the shortest rotation that turns one unit vector into another.
 Vec3 turned_with(const Vec3& v, const Vec3& from, const Vec3& to) {
     if (from == to) return v;
     const Vec3 sum = from + to;
     return v - (dot(sum, v) / (1.0 + dot(from, to))) * sum + (2.0 * dot(from, v)) * to;
 }
 
-/// What moving surfaces draw in has no slip to stop: they go on.
+/// Returns true if no surface moves. Between moving surfaces a particle may be drawn in, and its slip need not stop.
 bool are_at_rest(std::span<const SupportSurface> surfaces) {
     return std::all_of(surfaces.begin(), surfaces.end(), [](const SupportSurface& surface) {
         return surface.velocity == Vec3{} && surface.angular_velocity == Vec3{} && surface.motion == nullptr;
     });
 }
 
-/// One plan: the forces on a motion, and how long they stay. seen: the surfaces that the motion is along; those that
-/// hold it may have turned since.
+/// One plan: the forces on a motion, and the time for which they are constant. seen: the surfaces along which the
+/// motion is; the surfaces that hold it may have turned since.
 class Plan {
 public:
     Plan(const Motion& motion, double radius, const Vec3& a, std::span<const SupportSurface> seen,
@@ -82,7 +82,8 @@ public:
         return interval;
     }
 
-    /// Something sticks that has not quite stopped: what holds it must not do work on that.
+    /// Returns true if a motion sticks that has not quite stopped. The resistance that holds it must not do work on
+    /// that rest.
     [[nodiscard]] bool drags(const ContactInterval& interval) const {
         return std::any_of(resistances_.begin(), resistances_.begin() + count_, [&](const Resistance& r) {
             StuckSurfaces stuck = interval.stuck;
@@ -97,10 +98,11 @@ private:
     [[nodiscard]] bool is_sphere() const { return radius_ > 0.0; }
     [[nodiscard]] std::span<Resistance> resistances() { return {resistances_.data(), count_}; }
 
-    /// At the start, or in the middle of the interval.
+    /// Returns true if the particle jams at the start, or in the middle of the interval.
     [[nodiscard]] bool jams() const { return jams_ || jams_in_middle_; }
 
-    /// What slips stops at once: no force is the one that its friction asks for, only an impulse is (Stewart 2000).
+    /// Returns an interval in which all slip stops at once. No force satisfies the law of friction, only an impulse
+    /// does (Stewart 2000).
     [[nodiscard]] ContactInterval jammed() const {
         ContactInterval interval{motion_, acceleration_, spin_acceleration_, 0.0, false, 0.0, false, reactions_, {}};
         for (const Resistance& r : std::span(resistances_).first(count_))
@@ -148,7 +150,7 @@ private:
         return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
     }
 
-    /// Returns the closed form for one surface without friction, or with friction that slips; else nothing.
+    /// Returns the closed form for one surface without friction, or with friction that slips; else std::nullopt.
     [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
         if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
         if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
@@ -162,7 +164,7 @@ private:
         CoulombProblem problem;
         for (const SupportSurface& surface : surfaces_) problem.add(contact(surface));
         for (const Resistance& r : resistances()) problem.add(resistance(r));
-        // What slides can jam; what is at rest has an answer.
+        // A sliding particle can jam. For one at rest, a solution exists.
         const bool slides =
             std::any_of(resistances().begin(), resistances().end(), [](const Resistance& r) { return r.speed > 0.0; });
         const auto effort = slides ? CoulombProblem::Effort::some : CoulombProblem::Effort::all;
@@ -181,13 +183,13 @@ private:
         accept(change);
     }
 
-    /// Sets the accelerations by a change of the motion. One that is rounding does not start a particle at rest.
+    /// Sets the accelerations from a change of the motion. A change within rounding does not start a particle at rest.
     void accept(const MotionVector& change) {
         if (motion_.velocity == Vec3{} && length(acceleration_) <= kHoldRounding * scale()) acceleration_ = {};
         if (is_sphere()) spin_acceleration_ = (kTurning / radius_) * turning_of(change);
     }
 
-    /// Where forces are not what they have to be, at least none of them leads into a surface.
+    /// Removes accelerations into the surfaces, if the forces are no solution.
     void stay_on_surfaces() {
         std::array<Vec3, kMostSupports> normals;
         std::array<double, kMostSupports> lifts{};
@@ -201,8 +203,8 @@ private:
         acceleration_ += shift_by({normals.data(), count}, {lifts.data(), count});
     }
 
-    /// What is braked against its heading, or against its rate in the middle of the interval; else against what the
-    /// forces and the surfaces' curvature would make of it.
+    /// Returns the resistance against the heading of its motion, or against its rate in the middle of the interval.
+    /// Without motion, it is against the rate that the forces and the surfaces' curvature would cause.
     [[nodiscard]] CoulombResistance resistance(const Resistance& r) const {
         CoulombResistance result = at_rest(r);
         const bool is_implicit = weight_ > 0.0 && r.speed > 0.0;
@@ -232,13 +234,13 @@ private:
         return sliding_friction(contact, surface.normal, surface.friction, is_sphere(), a_ + surface.slip_curvature);
     }
 
-    /// Its place stays: its centre does not move, and nothing changes its motion.
+    /// Returns true if the particle rests: its centre does not move, and nothing changes its motion.
     [[nodiscard]] bool rests() const {
         if (motion_.velocity != Vec3{}) return false;
         return length(acceleration_) + radius_ * length(spin_acceleration_) <= kHoldRounding * scale();
     }
 
-    /// The largest of what the accelerations are made of, m/s^2.
+    /// Returns the largest contribution to the accelerations, in m/s^2.
     [[nodiscard]] double scale() const {
         double largest = length(a_);
         for (const SupportSurface& surface : surfaces_) {
@@ -248,7 +250,7 @@ private:
         return largest;
     }
 
-    /// What the forces change the rate of a resistance by, m/s^2.
+    /// Returns the rate at which the forces change the motion against a resistance, in m/s^2.
     [[nodiscard]] Vec3 change_of(const Resistance& r) const {
         const SupportSurface& surface = surfaces_[r.surface];
         const Vec3& n = surface.normal;
@@ -261,7 +263,7 @@ private:
         return (dot(turning, n) + surface.spinning_curvature) * n;
     }
 
-    /// s, until some friction has turned by kMaxHeadingTurn; by more where that is soon.
+    /// Returns the time, in s, until some friction has turned by kMaxHeadingTurn, or by more if that is very soon.
     [[nodiscard]] double time_to_turn() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -270,7 +272,7 @@ private:
             const double braking = -dot(change, r.heading);
             const double turning = length(change + braking * r.heading);
             const auto until = [&](double angle) {
-                const double rate = turning + angle * braking;  // what is braked turns ever faster
+                const double rate = turning + angle * braking;  // a braked motion turns ever faster
                 return rate > 0.0 ? angle * r.speed / rate : duration_;
             };
             const bool is_straight = turning <= kStraightHeading * std::max(braking, 0.0);
@@ -281,7 +283,7 @@ private:
         return duration;
     }
 
-    /// s, until some slip has changed by kMaxSlipChange; not less than FrictionLimits::shortest.
+    /// Returns the time, in s, until some slip has changed by kMaxSlipChange, at least FrictionLimits::shortest.
     [[nodiscard]] double time_to_change() {
         double duration = duration_;
         for (const Resistance& r : resistances()) {
@@ -291,7 +293,8 @@ private:
         return std::max(duration, grip_.shortest);
     }
 
-    /// rad, by which some friction turns; not more than is left of it where it is braked to a stop.
+    /// Returns the angle, in rad, by which some friction turns. If its motion is braked to a stop, only the time until
+    /// then counts.
     [[nodiscard]] double turn_in(double duration) {
         double turn = 0.0;
         for (const Resistance& r : resistances()) {
@@ -304,7 +307,7 @@ private:
         return turn;
     }
 
-    /// Methods with stages do not follow what friction turns against faster than a step.
+    /// Returns true if friction turns a motion faster than a step. Methods with stages cannot follow that.
     [[nodiscard]] bool is_stiff(double duration) {
         return std::any_of(resistances().begin(), resistances().end(), [&](const Resistance& r) {
             const SupportSurface& surface = surfaces_[r.surface];
@@ -317,8 +320,9 @@ private:
         });
     }
 
-    /// Gives friction the directions of the middle of the interval, which it has part in: the implicit midpoint rule,
-    /// since a slow slip turns at once. Where something would stop before, as it is braked until then.
+    /// Gives friction its directions in the middle of the interval, which depend on friction itself: the implicit
+    /// midpoint rule, because a slow slip turns at once. If a motion would stop before the end, the middle is that of
+    /// its braking.
     void solve_for_middle(double duration) {
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
@@ -330,12 +334,12 @@ private:
         weight_ = 0.0;
         for (Resistance& r : resistances()) {
             const Vec3 middle = r.rate + (0.5 * duration) * change_of(r);
-            // What has stopped by the middle has no direction there: it was braked along the one that it had.
+            // A motion that has stopped by the middle has no direction there. It was braked along its first direction.
             if (r.speed > 0.0 && length(middle) > kSlowSlip * r.speed) r.heading = normalized(middle);
         }
     }
 
-    /// Ends the interval where something comes to a stop, which then sticks.
+    /// Ends the interval when a motion stops, and marks that motion as stuck.
     void stop(ContactInterval& interval) {
         for (const Resistance& r : resistances()) {
             if (r.speed == 0.0) continue;
@@ -351,13 +355,14 @@ private:
                 continue;
             }
             const double left = length(r.rate + interval.duration * change);
-            // On a slope next to the angle of friction what brakes is a small difference of large forces, and rounded
-            // as these are.
+            // On a slope near the angle of friction, the braking force is a small difference of large forces, and has
+            // their rounding.
             const double rounding = kHoldRounding * scale() * interval.duration;
             const bool is_soon_over = left < kMostHeadingTurn * r.speed &&
                                       (left <= rounding || left * interval.duration <= grip_.negligible_path);
             sticks = left <= kStopRounding * r.speed || is_soon_over;
-            // Whatever else moves on: what slips no further than that only hides who holds it afterwards.
+            // This holds whatever else moves on: a slip this short only hides which surfaces hold the particle
+            // afterwards.
             if (sticks && r.speed * interval.duration <= grip_.negligible_path) interval.ends_at_once = true;
         }
     }
@@ -374,13 +379,15 @@ private:
     std::array<Vec3, kMostSupports> reactions_{};
     Vec3 acceleration_;
     Vec3 spin_acceleration_;
-    bool jams_ = false;  // what slides does so with less than all of its friction only
+    bool jams_ = false;  // the sliding motion has a solution only with less than full friction
     bool jams_in_middle_ = false;
-    double weight_ = 0.0;  // 1/s, of the present rates in those that friction is against; 0: their directions count
+    double weight_ = 0.0;  // 1/s, weight of the present rates in the rates that friction is against; 0: their
+                           // directions count
 };
 
-/// What its forces would do in the time is so much more that where it would rest if it stood still, it does: friction
-/// that jams takes a part of what is left, and a part of that, for ever.
+/// Returns true if the motion is negligible next to the effect of the forces in the duration, in s. If the particle
+/// would rest without it, it counts as at rest. Friction that jams would forever take a fraction of the remaining
+/// motion.
 bool hardly_moves(const Motion& motion, double radius, const Vec3& a, double duration) {
     const double speed = length(motion.velocity) + radius * length(motion.spin);
     return motion.velocity != Vec3{} && speed <= kNegligibleSpeed * length(a) * duration;

@@ -12,7 +12,8 @@
 namespace ricochet {
 namespace {
 
-/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
+/// Returns one minus the cosine of the largest angle between the normals of an edge and of a face that a particle
+/// touches at once.
 double seam_turn(const SurfaceGeometry& geometry, const ForceInput& particle) {
     if (particle.radius == 0.0) return kSameNormal;
     return kSeamTurn + 2.0 * kTouchingOffsets * geometry.contact_offset(particle.position) / particle.radius;
@@ -95,7 +96,7 @@ void ContactManifold::replace(std::span<const ContactSurface> surfaces, const To
     for (const ContactSurface& surface : candidates) add(surface);
 }
 
-/// The first one, two or three that leave nothing of a pull into any of the others.
+/// Adds the first one, two or three candidates that leave no component of a pull into any of the others.
 void ContactManifold::add_supports(std::span<const ContactSurface> candidates, const Vec3& pull) {
     const double rounding = kProjectionRounding * length(pull);
     std::array<Vec3, kMostPoints> normals;
@@ -154,7 +155,7 @@ void ContactManifold::touch(SurfaceId surface, const TouchRule& rule) {
     if (const auto point = touched(surface, rule)) add(*point);
 }
 
-/// The surface as the particle touches it now; nothing when it does not.
+/// Returns the contact with a surface at present, if the particle touches it.
 std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const TouchRule& rule) const {
     const Vec3& p = particle_.position;
     const CollisionWorld& world = geometry_.world();
@@ -165,7 +166,7 @@ std::optional<ContactSurface> ContactManifold::touched(SurfaceId surface, const 
     if (above > (is_beside_rim ? rule.beyond_rim : rule.above) || above < -rule.overlap) return std::nullopt;
     if (dot(particle_.velocity, nearest.normal) > rule.separation_speed) return std::nullopt;
     if (!is_beside_rim) return ContactSurface{surface, nearest.normal, nearest.flat};
-    // A point next to a rim: the direction from the rim is rounding, the plane's normal counts.
+    // For a point next to a rim, the direction from the rim is mere rounding, so the plane's normal is used.
     const double distance = geometry_.signed_distance_from(surface, p);
     if (rule.beyond_rim > rule.above && std::fabs(distance) > rule.above) return std::nullopt;
     const Vec3 normal = geometry_.unit_normal_of(surface, p);

@@ -18,12 +18,12 @@ bool approaches_none(const Vec3& w, std::span<const Vec3> normals, double scale)
                        [&](const Vec3& n) { return dot(w, n) >= -kProjectionRounding * scale; });
 }
 
-/// Solid sphere: the tangential impulse that stops the slip is 2/7 of the slip momentum; spin changes by 5/2 of the
-/// velocity change over the radius. Mathematical constants.
+/// Constants of a solid sphere. The tangential impulse that stops the slip is 2/7 of the slip momentum. The spin
+/// changes by 5/2 of the velocity change over the radius. Mathematical constants.
 constexpr double kSphereStick = 2.0 / 7.0;
 constexpr double kSphereSpinUp = 5.0 / 2.0;
 
-/// Exponential variate of mean 1.
+/// Returns an exponential variate of mean 1.
 double exponential(RandomSequence& random) {
     for (double whole = 0.0;; whole += 1.0) {
         const double first = random.uniform();
@@ -38,7 +38,8 @@ double exponential(RandomSequence& random) {
     }
 }
 
-/// The weights of the vectors whose bits in `chosen` are set, whose sum is nearest to r (at most three, not parallel).
+/// Returns the weights of the vectors whose bits in `chosen` are set. Their weighted sum is nearest to r. At most three
+/// vectors, not parallel.
 std::array<double, 3> weights_of(const Vec3& r, std::span<const Vec3> n, unsigned chosen) {
     std::array<std::size_t, 3> at{};
     std::size_t count = 0;
@@ -92,8 +93,8 @@ Motion bounce(const Motion& motion, double radius, const Vec3& n, double restitu
             if (radius > 0.0) after.spin -= (kSphereSpinUp / radius) * cross(n, change);
         }
     } else if (restitution == 1.0) {
-        // The rounded normal is not exactly of unit length; without this its error would add up over many bounces. The
-        // correction itself must not lean to one side, hence the exact products.
+        // The rounded normal is not exactly of unit length, and its error would add up over many bounces. The products
+        // are exact, so that the correction itself is not biased to one side.
         const DoubleDouble gained = squared_length(motion.velocity) - squared_length(after.velocity);
         after.velocity += (0.5 * gained.hi / length_squared(after.velocity)) * after.velocity;
     }
@@ -121,7 +122,7 @@ Vec3 thermal_velocity(const Vec3& n, double thermal_speed, RandomSequence& rando
 }
 
 // The closest point of a cone of up to three half spaces lies on one of its faces: in space, on a plane, on the line of
-// two planes, or at the apex. Each is tried, the closest feasible one wins.
+// two planes, or at the apex. Tries all of them; the closest feasible one wins.
 Vec3 project_off(const Vec3& v, std::span<const Vec3> normals) {
     normals = normals.first(std::min<std::size_t>(normals.size(), 3));
     const double scale = length(v);
@@ -146,7 +147,8 @@ Vec3 project_off(const Vec3& v, std::span<const Vec3> normals) {
     return best;
 }
 
-// r lies in the cone of the normals; of the faces of the cone that hold it, to rounding, the one with fewest normals.
+// r lies in the cone of the normals. If several faces of the cone contain r, to rounding, the one with the fewest
+// normals wins.
 std::array<double, 3> normal_accelerations(const Vec3& a, std::span<const Vec3> normals) {
     normals = normals.first(std::min<std::size_t>(normals.size(), 3));
     const Vec3 r = project_off(a, normals) - a;

@@ -23,8 +23,8 @@ namespace {
 
 bool is_kicked(const Flight& flight) { return flight.kick_duration > 0.0; }
 
-/// Returns the part of a velocity along a plane. Projects twice: once leaves the rounding of the part that was removed,
-/// which can be faster than the part that stays and would count as a departure from the plane.
+/// Returns the component of a velocity along a plane. Projects twice: a single projection leaves the rounding of the
+/// removed component. It can be faster than the remaining one, and would count as a departure from the plane.
 Vec3 along_plane(const Vec3& velocity, const Vec3& normal) {
     const Vec3 once = velocity - dot(velocity, normal) * normal;
     return once - dot(once, normal) * normal;
@@ -51,7 +51,7 @@ std::optional<Contact> ContactPhase::resume(double rounding) {
     const auto support = support_.hardest_pressed(forces);
     if (!support || lands()) return std::nullopt;
     if (kicks_first(rules().settings.integrator.kind) && rules().frame == nullptr) {
-        // A kick ends every other contact: it is part of the step, and landing answers it.
+        // Every other contact is ended by a kick: it is part of the step, and the next landing resolves it.
         if (!began_still_ || !is_finite(forces)) return std::nullopt;
         const ContactInterval interval = follower_.plan({forces}, step_.remaining());
         if (!interval.at_rest) return std::nullopt;
@@ -110,26 +110,27 @@ std::optional<Contact> ContactPhase::stay(const Contact& contact) {
     return met;
 }
 
-/// What will hold it, of all that is touched at an impact.
+/// Returns the surface that will hold the particle, out of all surfaces that it touches at an impact.
 std::optional<ContactSurface> ContactPhase::find_support(const Flight& flight, const Contact& contact) {
     manifold_.replace(contact.all(), TouchRule::at(step_.geometry(), state().position));
     gather();
-    // What the step's own kick put into the velocity is not the speed of a departure.
+    // The velocity from the step's own kick does not count as a departure.
     const double fastest = is_kicked(flight) ? std::numeric_limits<double>::infinity() : step_.resting_speed();
     const auto support = support_.after_rebounds(forces_now(flight), fastest);
     if (support || !is_kicked(flight)) return support;
-    // Its force has acted already: what pulls it off here does not, and a surface that bends towards its way holds.
+    // The kick has already applied its force. So a force that pulls the particle off does not act here, and a surface
+    // that bends towards its path holds it.
     return support_.after_rebounds(Vec3{}, fastest);
 }
 
-/// Returns the impact on surfaces that are touched too, and that the particle moves into: the edge of two walls may be
-/// reached on one of them first. Surfaces that begin to hold it take part. Their own rebounds end here, because a
-/// surface holds a particle only if that does not leave it.
+/// Returns an impact on further surfaces that the particle touches and moves into, if there are some: it may have
+/// reached the edge of two walls on one of them first. Surfaces that begin to hold the particle take part. Their own
+/// rebounds end here, because a surface holds a particle only if the particle does not leave it.
 std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support) {
     const double rounding = kSlowSlip * length(state().velocity);
     const double slow = std::max(step_.resting_speed(), rounding);
-    // A body that yields answers its surfaces one after the other, which does not end in a narrow wedge of them. There,
-    // contact takes the approach.
+    // Impacts on the surfaces of a dynamic body are resolved one after another, which does not end in a narrow wedge.
+    // There, contact removes the approach.
     const MovingColliders* const bodies = rules().bodies;
     if (bodies != nullptr && bodies->is_dynamic(bodies->body_of(manifold_[0].surface))) return std::nullopt;
     std::array<double, kMostSupports> departures{};
@@ -152,9 +153,9 @@ std::optional<Contact> ContactPhase::impact_beside(const ContactSurface& support
     return contact;
 }
 
-/// Landing on all that is touched without a rebound: the approach is lost, friction answers the impulse.
+/// Lands on all touched surfaces without a rebound. The approach is lost, and friction follows from the impulse.
 void ContactPhase::land(const Motion& arriving) {
-    const Vec3 before = state().velocity;  // with the rebound, whose impulse is recorded already
+    const Vec3 before = state().velocity;  // with the rebound; its impulse is recorded already
     std::array<ImpactSurface, kMostSupports> landing;
     for (std::size_t k = 0; k < manifold_.size(); ++k) landing[k] = surfaces().landing_on(manifold_[k]);
     Motion after = solve_impact(arriving, state().radius, std::span(landing).first(manifold_.size())).after;
@@ -162,7 +163,7 @@ void ContactPhase::land(const Motion& arriving) {
         return length(motion.velocity) + state().radius * length(motion.spin);
     };
     if (speed(after) <= kStopRounding * speed(arriving)) after = {};
-    // Rounding of a fast spin, too, is no speed.
+    // A speed within the rounding of a fast spin counts as zero, too.
     if (length(after.velocity) <= kStopRounding * speed(arriving)) after.velocity = {};
     state().velocity = project_off(after.velocity, manifold_.normals());
     particle().spin = after.spin;
@@ -170,8 +171,9 @@ void ContactPhase::land(const Motion& arriving) {
     manifold_.record_impulse(state().velocity - before, 1.0, ledger());
 }
 
-/// Where flights are straight until the forces act at their end, they lead back at once onto a surface that bends
-/// towards them and that the forces pull off: it goes along the surface instead, and the forces act at the end of that.
+/// Moves the particle along a surface that bends towards it, although forces pull it off. With forward Euler, flights
+/// are straight until the forces act at their end, so a flight would lead back onto the surface at once. The forces act
+/// at the end of the motion along the surface instead.
 std::optional<Contact> ContactPhase::drift(const Flight& flight) {
     if (rules().settings.integrator.kind != IntegratorKind::forward_euler) return std::nullopt;
     const auto support = support_.after_rebounds(Vec3{}, step_.resting_speed());
@@ -189,14 +191,14 @@ std::optional<Contact> ContactPhase::drift(const Flight& flight) {
     return contact;
 }
 
-/// The rest of the bounce cascade, summed.
+/// Replaces the rest of the bounce cascade by its sum.
 ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     const double rebound = std::max(0.0, dot(state().velocity, support.normal));
     const Vec3 forces = rules().forces.acceleration(state());
     const double pressing = support_.pressing_on(support, forces);
     const Vec3 before = state().velocity;
     if (const auto landed = support_.landing_on_all(forces)) {
-        // Rattling between several surfaces that hold it would not end.
+        // Otherwise the particle could rattle forever between several surfaces that hold it.
         state().velocity = project_off(landed->velocity, manifold_.normals());
         particle().spin = landed->spin;
     } else {
@@ -216,11 +218,11 @@ ContactPhase::Stop ContactPhase::finish_cascade(const ContactSurface& support) {
     return spend_cascade(support, cascade_duration(rebound, pressing, restitution));
 }
 
-/// Lets the time of a cascade pass, s; on average it presses with (1 + e) / 2 of the full force. What the step's end
-/// cuts off goes on in the next step.
+/// Lets the time of a cascade pass, in s. On average, the particle presses with (1 + e) / 2 of the full force. The rest
+/// of a cascade that the step's end interrupts continues in the next step.
 ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, double left) {
     const double pressure = 0.5 * (1.0 + slow_restitution(support.surface));
-    // What is shorter than the clock, or the rest of the step, can tell never passes.
+    // A time below the resolution of the clock, or of the rest of the step, never passes.
     const auto passes = [&](double time) {
         return state().time + time > state().time && step_.remaining() - time < step_.remaining();
     };
@@ -241,7 +243,7 @@ ContactPhase::Stop ContactPhase::spend_cascade(const ContactSurface& support, do
     return {};
 }
 
-/// Slides, rolls or rests. A kicked particle has had its force already.
+/// Slides, rolls or rests. Forces no longer act on a kicked particle.
 std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     for (int count = 0; count < kMostContactIntervals && step_.has_intervals() && step_.remaining() > 0.0; ++count) {
         const Vec3 forces = kicked ? Vec3{} : rules().forces.acceleration(state());
@@ -264,7 +266,7 @@ std::optional<Contact> ContactPhase::follow_surface(bool kicked) {
     return std::nullopt;
 }
 
-/// Removes what rounding has put into a motion that goes on in contact: speed along the normals, or all of it.
+/// Removes rounding from a motion that continues in contact: the speed along the normals, or all of it.
 void ContactPhase::drop_rounding(double rounding) {
     const auto is_rounding = [&](const Vec3& normal) { return std::fabs(dot(state().velocity, normal)) <= rounding; };
     const std::span<const Vec3> normals = manifold_.normals();
@@ -276,27 +278,29 @@ void ContactPhase::drop_rounding(double rounding) {
     particle().spin = {};
 }
 
-/// Adds to the manifold all that is touched.
+/// Adds all touched surfaces to the manifold.
 void ContactPhase::gather() {
     const TouchRule rule = TouchRule::at(step_.geometry(), state().position);
     visit_near(step_, [&](SurfaceId surface) { manifold_.touch(surface, rule); });
 }
 
-/// Where a surface has ended: what holds it from there on, beside it or around its edge.
+/// Finds the surfaces that hold the particle at the end of a surface: beside it, or around its edge.
 void ContactPhase::find_next_surfaces() {
     manifold_.touch_again(TouchRule::at(step_.geometry(), state().position));
     gather();
     manifold_.drop_left(kTurningAway);
 }
 
-/// True when it moves into one of the surfaces: an impact, as of what is born there.
+/// Returns true if the particle moves into one of the surfaces. That is an impact, for example of a particle spawned
+/// there.
 bool ContactPhase::lands() const {
     return std::any_of(manifold_.normals().begin(), manifold_.normals().end(), [&](const Vec3& normal) {
         return -dot(state().velocity, normal) > kSlowSlip * length(state().velocity);
     });
 }
 
-/// What rests keeps off its surfaces by what the world's coordinates are rounded by, which may grow as it is carried.
+/// Lifts a particle at rest to the contact offset. The offset is the rounding of world coordinates, which may grow
+/// while a body carries the particle.
 void ContactPhase::lift() {
     std::array<Vec3, kMostSupports> normals;
     std::array<double, kMostSupports> lifts{};
@@ -313,7 +317,8 @@ void ContactPhase::lift() {
     state().position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
 }
 
-/// How long a body that moves holds it, s: its forces change meanwhile. At most what is left of the step.
+/// Returns the time, in s, for which the particle rests, at most the rest of the step. Forces in the frame of a moving
+/// body change with time.
 double ContactPhase::time_at_rest() {
     // Local: samples and halvings of a search for a time, to its last bit.
     constexpr int kLooks = 8;
@@ -331,7 +336,7 @@ double ContactPhase::time_at_rest() {
     return rest.low < left ? rest.high : left;
 }
 
-/// True where it would rest at a time, s from now.
+/// Returns true if the particle would rest at a time, in s from now.
 bool ContactPhase::rests_on(double time) {
     ForceInput later = state();
     later.velocity = {};
@@ -340,7 +345,8 @@ bool ContactPhase::rests_on(double time) {
     return support_.is_pressed(forces) && follower_.plan({forces}, step_.remaining()).at_rest;
 }
 
-/// Time passes at rest; the surfaces carry the weight. Returns what comes to it there.
+/// Lets time pass at rest while the surfaces carry the weight. Returns a contact with a collider that moves to the
+/// particle.
 std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     const Vec3 before = state().velocity;
     const ContactState contact_state = manifold_.contact_state();
@@ -370,14 +376,16 @@ std::optional<Contact> ContactPhase::wait(double duration, const Vec3& forces) {
     return contact;
 }
 
-/// Rests for what is left of the step. held: until the forces change. Returns what comes to it before.
+/// Rests until the end of the step. held: the rest lasts until the forces change. Returns an earlier contact, if there
+/// is one.
 std::optional<Contact> ContactPhase::rest(const Vec3& forces, bool held) {
     const Vec3& start = step_.chain().start();
     const bool is_back = length(state().position - start) <= kTouchingOffsets * step_.geometry().contact_offset(start);
-    // Landing again from one contact offset above, step after step, it would creep downhill.
+    // If it landed again one contact offset above in each step, it would creep downhill.
     if (state().position != start && is_back && !step_.is_near_bodies()) return_to_start(step_);
     if (const auto contact = wait(step_.remaining(), forces)) return contact;
-    // Steady forces repeat a step that begins as it ends; one that only comes to rest has still to show that it holds.
+    // Under steady forces, a step that ends as it begins repeats. A particle that has only just come to rest must first
+    // show that it holds.
     const bool stays = held && began_still_ && began_spin_ == particle().spin && state().position == start &&
                        began_ == manifold_.contact_state();
     step_.outcome().end = stays ? MoveEnd::held : MoveEnd::resting;
@@ -389,7 +397,7 @@ Vec3 ContactPhase::forces_now(const Flight& flight) const {
     return is_kicked(flight) ? flight.acceleration : rules().forces.acceleration(state());
 }
 
-/// Restitution of the bounces of a cascade.
+/// Returns the restitution of the bounces of a cascade.
 double ContactPhase::slow_restitution(SurfaceId surface) const {
     return surfaces().material_of(surface).restitution_at(step_.resting_speed());
 }

@@ -13,28 +13,28 @@
 
 namespace ricochet {
 
-/// Contact that lasts, of one particle in one step. It is made of contact intervals of constant acceleration, and arcs,
-/// and ends with the step, where nothing presses the particle on any more, where the surface ends, or at another
-/// contact.
+/// Lasting contact of one particle in one step. It consists of contact intervals with constant acceleration, and of
+/// curved-contact integration. It ends with the step, or if nothing presses the particle on, or at the end of the
+/// surface, or at another contact.
 class ContactPhase {
 public:
-    /// At the start of the step, which must outlive it.
+    /// Construct it at the start of the step, which must outlive it.
     explicit ContactPhase(ParticleStep& step);
     ContactPhase(const ContactPhase&) = delete;
     ContactPhase& operator=(const ContactPhase&) = delete;
 
-    /// Contact that lasted to the end of the last step goes on without a new landing. Returns the next contact when the
-    /// particle slides into one; without time left it is done, else it flies on.
-    /// rounding: m/s, of the velocity and of the surface of a sphere, by which they are rounded in a body's frame.
+    /// Continues contact that lasted until the end of the last step, without a new landing. Returns the next contact if
+    /// the particle slides into one. Otherwise the particle flies on if time is left.
+    /// rounding: rounding of the velocity, and of the speed of a sphere's surface, in a body's frame, in m/s.
     std::optional<Contact> resume(double rounding = 0.0);
-    /// An impact, before and after it is answered: where all its rebounds are slow and something presses the particle
-    /// on, contact begins. arriving: the motion before. Returns as resume().
+    /// Call both at an impact, the first one before it is resolved. begin() begins contact if all rebounds are slow and
+    /// something presses the particle on. arriving: the motion before the impact. Returns the same as resume().
     void remember(const Contact& contact) { manifold_.remember(contact.all()); }
     std::optional<Contact> begin(const Flight& flight, const Contact& contact, const Motion& arriving);
     /// Records the weight of a particle at rest for the whole step.
     void record_weight();
-    /// Lets what is left of the step pass where it is, next to what it touches, which does nothing to it. Returns what
-    /// comes to it there.
+    /// Lets the rest of the step pass at the particle's position. The surfaces that it touches do not act on it.
+    /// Returns a contact with a collider that moves to it.
     std::optional<Contact> stay(const Contact& contact);
 
 private:
@@ -70,10 +70,10 @@ private:
     ContactSupport support_;
     ContactFollower follower_;
     ContactState began_;                  // contact at the start of the step
-    bool began_still_;                    // its place stayed then
+    bool began_still_;                    // it had no velocity then
     Vec3 began_spin_;                     // rad/s
-    int slow_contacts_ = 0;               // in a row, all slower than the resting speed or without time between them
-    double remaining_at_contact_ = -1.0;  // s, at the last one
+    int slow_contacts_ = 0;               // consecutive slow contacts, or without time between them
+    double remaining_at_contact_ = -1.0;  // s, at the last contact
 };
 
 }  // namespace ricochet

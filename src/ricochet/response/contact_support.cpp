@@ -18,24 +18,24 @@ bool ContactSupport::rebounds_slowly(const Contact& contact, const Motion& arriv
     };
     return std::all_of(contact.all().begin(), contact.all().end(), [&](const ContactSurface& surface) {
         const Material& material = surfaces().material_of(surface.surface);
-        // What the step's own kick put into the velocity is not the speed of an impact.
+        // The velocity from the step's own kick does not count as impact speed.
         const double kicked = std::max(0.0, -dot(forces, surface.normal)) * kick_duration;
         const double approach = -dot(arriving.velocity, surface.normal) - kicked;
         if (surface.is_support || !(approach > 0.0)) return true;
         const double rebound = std::max(0.0, material.restitution_at(approach) * approach);
-        if (rebound >= step_.resting_speed()) return false;  // no slow rebound is as fast
+        if (rebound >= step_.resting_speed()) return false;  // no limit of slow rebounds is higher
         return !(rebound >= slow_rebound(surface, forces, kick_duration > 0.0, dies_out()));
     });
 }
 
-/// True when bounces on the surface die out.
+/// Returns true if bounces on the surface die out.
 bool ContactSupport::has_losses(const ContactSurface& surface) const {
     return surfaces().material_of(surface.surface).can_hold(step_.resting_speed());
 }
 
-/// The speed of rebounds, m/s, below which bounces on a surface are contact. Without losses they die out between it and
-/// another surface that has some (`dies_out`); alone they never end, but are none where they rise no higher than what
-/// is touched. kicked: a kick's bounces stay as they are.
+/// Returns the speed of rebounds, in m/s, below which bounces on a surface count as contact. On a surface without
+/// losses, bounces die out only if another surface has losses (`dies_out`). Otherwise they never end, but count as
+/// contact if they rise no higher than the touching distance. kicked: bounces after a kick are kept.
 double ContactSupport::slow_rebound(const ContactSurface& surface, const Vec3& forces, bool kicked,
                                     bool dies_out) const {
     const double resting_speed = step_.resting_speed();
@@ -84,8 +84,9 @@ Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
     return along_all(state().velocity, std::span(normals).first(count));
 }
 
-/// The forces over the mass, m/s^2, with which the surfaces of the manifold will hold it together, once it moves along
-/// those that it leaves more slowly than `fastest`, m/s: a wall may press only because another slopes towards it.
+/// Returns the forces over the mass, in m/s^2, with which the surfaces of the manifold will hold the particle together.
+/// The particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s. A wall may press only
+/// because another one slopes towards it.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest) const {
     bool has_lossless = false;
     for (std::size_t k = 0; k < manifold_.size(); ++k) has_lossless = has_lossless || !has_losses(manifold_[k]);
@@ -97,7 +98,7 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     return combined_accelerations(forces, fastest, false);
 }
 
-/// The same. die_out: bounces on surfaces without losses do, between them and others.
+/// As above. die_out: bounces on surfaces without losses die out, between these and others.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest,
                                                                           bool die_out) const {
     const ContactManifold::SupportList supports = manifold_.supports(surfaces());
@@ -129,7 +130,7 @@ ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const 
     return accelerations;
 }
 
-/// The speed, m/s, up to which it may leave a surface that will hold it.
+/// Returns the largest speed, in m/s, at which the particle may leave a surface that will hold it.
 double ContactSupport::fastest_separation(const ContactSurface& surface, const Vec3& forces, double fastest,
                                           bool die_out) const {
     if (has_losses(surface)) return fastest;
@@ -137,7 +138,8 @@ double ContactSupport::fastest_separation(const ContactSurface& surface, const V
     return slow > 0.0 ? slow : -std::numeric_limits<double>::infinity();
 }
 
-/// Where it does not slip: what a slow departure from another surface makes of that is no slip either.
+/// Returns the surfaces on which the particle does not slip. A slip caused by a slow departure from another surface
+/// does not count.
 StuckSurfaces ContactSupport::sticking(std::span<const SupportSurface> surfaces) const {
     StuckSurfaces stuck{};
     const Motion motion{state().velocity, particle().spin};

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: which surfaces press on a particle, and which of them will hold it after an impact.
+/// Private to the exact response: which surfaces press on a particle, and which will hold it after an impact.
 #pragma once
 
 #include <array>
@@ -14,37 +14,39 @@
 
 namespace ricochet {
 
-/// What the contact manifold does to the particle, as both are at present. Forces are given over the mass, m/s^2.
+/// Effect of the contact manifold on the particle, in their present states. Forces are given over the mass, in m/s^2.
 class ContactSupport {
 public:
     /// Both must outlive it.
     ContactSupport(const ParticleStep& step, const ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
-    /// True when all rebounds of an impact are so slow that the cascade of bounces becomes contact, if something
-    /// presses on. arriving: the motion before it, into which the forces of so many seconds have been kicked.
+    /// Returns true if all rebounds of an impact are so slow that the bounce cascade becomes contact, if something
+    /// presses the particle on. arriving: the motion before the impact; it contains a kick by the forces for a
+    /// duration, in s.
     [[nodiscard]] bool rebounds_slowly(const Contact& contact, const Motion& arriving, const Vec3& forces,
                                        double kick_duration) const;
-    /// The surface that holds it hardest when the rebounds are over; nothing when it flies on. It moves along those
-    /// that it leaves more slowly than `fastest`, m/s.
+    /// Returns the surface that presses hardest on the particle after the rebounds, or std::nullopt if the particle
+    /// flies on. The particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s.
     [[nodiscard]] std::optional<ContactSurface> after_rebounds(const Vec3& forces, double fastest) const;
-    /// Where several surfaces will hold it, its motion once it has landed on all; nothing when one does. To be asked as
-    /// it leaves the impact: without one of the rebounds it slips another way, and others would hold.
+    /// Returns the motion after a landing on all surfaces that will hold the particle, or std::nullopt if only one
+    /// will. Call it with the motion just after the impact: without one of the rebounds the particle would slip in
+    /// another direction, and other surfaces would hold it.
     [[nodiscard]] std::optional<Motion> landing_on_all(const Vec3& forces) const;
 
-    /// Returns the velocity, m/s, once the slow rebounds off all surfaces that will hold it are over. Surfaces that it
-    /// moves into keep their approach.
+    /// Returns the velocity, in m/s, after the slow rebounds off all surfaces that will hold the particle. An approach
+    /// to other surfaces stays.
     [[nodiscard]] Vec3 velocity_after_rebounds(const Vec3& forces) const;
 
-    /// The surface that it is pressed onto most.
+    /// Returns the surface onto which the particle is pressed hardest, if any.
     [[nodiscard]] std::optional<ContactSurface> hardest_pressed(const Vec3& forces) const;
-    /// True when something presses it onto one of the surfaces, or nothing pulls it off.
+    /// Returns true if the particle is pressed onto one of the surfaces, or not pulled off.
     [[nodiscard]] bool is_pressed(const Vec3& forces) const;
-    /// The acceleration with which a surface is pressed on, m/s^2: by forces, and where it bends by the motion along
-    /// it.
+    /// Returns the acceleration that presses onto a surface, in m/s^2: by forces, and on a curved surface by the motion
+    /// along it.
     [[nodiscard]] double pressing_on(const ContactSurface& surface, const Vec3& forces) const;
 
 private:
-    /// By the number of the contact point.
+    /// Indexed by the number of the contact point.
     using PointAccelerations = std::array<Vec3, kMostSupports>;
 
     [[nodiscard]] bool has_losses(const ContactSurface& surface) const;

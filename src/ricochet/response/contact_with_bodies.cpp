@@ -8,7 +8,7 @@
 namespace ricochet {
 namespace {
 
-/// Of a surface that it touches, which is one of the body's.
+/// Returns the normal, in the world, of a body's surface that the particle touches.
 Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle, BodyId body, SurfaceId surface) {
     const MovingPose pose = rules.bodies->pose(body, particle.state.time);
     const Vec3 seen = pose.local_position(particle.state.position);
@@ -16,7 +16,7 @@ Vec3 normal_in_world(const ResponseRules& rules, const MovingParticle& particle,
     return pose.world_from_frame.direction(along);
 }
 
-/// A particle as it is seen from a body's frame, and the forces on it there over its mass, m/s^2.
+/// A particle in a body's frame, and the forces on it there over its mass, in m/s^2.
 struct SeenFromBody {
     SeenFromBody(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle, BodyId body)
         : frame(rules.bodies), state(particle.state) {

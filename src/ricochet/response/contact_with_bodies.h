@@ -1,6 +1,5 @@
 /// \file
-/// Private to the exact response: a particle in contact with a body that impulses move, which goes on with another
-/// velocity after each part of a step.
+/// Private to the exact response: a particle in contact with a dynamic body, whose velocity changes after each substep.
 #pragma once
 
 #include <optional>
@@ -10,22 +9,25 @@
 
 namespace ricochet {
 
-/// True where a body that holds a particle at rest jumps too fast, m/s, for that to go along: with the resting speed,
-/// or by so much less as the particle is heavier than the body, which it pays for.
+/// Returns true if the velocity of a body that holds a particle at rest jumps so fast that the body releases the
+/// particle: by more than slowest_rebound(). For a particle heavier than the body, the limit is smaller by the ratio of
+/// their masses. A particle that follows the jump changes the body's velocity by that ratio as much.
 [[nodiscard]] bool releases(const ResponseRules& rules, const FrameRules& frame_rules, const MovingParticle& particle,
                             BodyId body);
 
-/// The slowest rebound of a particle, given in the world, that is one, m/s: that of the scene. A rebound from a body
-/// that yields, that is over before a part of a step can end, cannot be told from contact.
+/// Returns the speed, in m/s, of the slowest rebound that does not count as contact: the scene's resting speed, or more
+/// for a dynamic body. A rebound from a dynamic body that ends before a substep can end cannot be told from contact.
+/// The particle is given in the world.
 [[nodiscard]] double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules,
                                      const MovingParticle& particle, const Contact& contact);
 
-/// Surfaces of an impact that hold the particle.
+/// Returns the surfaces of an impact that hold the particle.
 [[nodiscard]] Contact supporting_part(const Contact& contact);
 
-/// m/s, at which a particle leaves a surface of a body that yields, after a jump of the body's velocity has let it go.
-/// Nothing where the jump is larger than the forces of a time step make it: loads of contact act on a body at the end
-/// of a step, and their jump is the step's doing, while an impact has thrown off the particle otherwise.
+/// Returns the speed, in m/s, at which a particle leaves a dynamic body whose velocity jump has released it from a
+/// surface. Returns std::nullopt if the jump is larger than the forces of a time step can cause. Contact loads act on a
+/// body at the end of a step, so a smaller jump is an effect of the time step. A larger one means that an impact has
+/// thrown off the particle.
 [[nodiscard]] std::optional<double> speed_let_go(const ResponseRules& rules, const FrameRules& frame_rules,
                                                  const MovingParticle& particle, SurfaceId surface);
 

@@ -54,7 +54,7 @@ CurvedContact::State CurvedContact::at(double t) const {
     state.turned = std::max(surfaces_.turned_at(state.position), surfaces_.turned_at(straight_on));
     put_on_surfaces(state);
     if (keeps_energy_) restore_energy(state, t);
-    // Where the surface is narrower than the sphere, being put on it leads to its other side.
+    // If the surface is narrower than the sphere, the projection onto it leads to its other side.
     state.turned = std::max(state.turned, surfaces_.turned_at(state.position));
     if (is_driven_) return state;
     const double most = twice_kinetic(plan_.motion, particle_.radius) + 2.0 * work_until(state);
@@ -63,14 +63,14 @@ CurvedContact::State CurvedContact::at(double t) const {
     return state;
 }
 
-/// The implicit midpoint rule for what friction and resistance do, with the surfaces as they are in the middle: slip
-/// that soon ends, or has just begun, turns faster than the stages of an explicit method follow.
+/// Integrates by the implicit midpoint rule for friction and resistance, with the surfaces in the middle of the
+/// interval. A slip that soon ends, or has just begun, turns faster than the stages of an explicit method can follow.
 CurvedContact::State CurvedContact::by_midpoint_rule(double t) const {
-    // Local: a jammed particle, which stops in every part, stays for the rest.
+    // Local: a particle that is jammed between surfaces stops again in every part, and then stays for the rest of the
+    // time.
     constexpr int kMostParts = 8;
     State state = start();
     double elapsed = 0.0;
-    // What stops again and again, jammed between surfaces, stays for the rest.
     for (int part = 1; part <= kMostParts && elapsed < t; ++part) {
         const double left = t - elapsed;
         const ContactInterval rough = plan_at(state, elapsed, left);
@@ -96,18 +96,18 @@ CurvedContact::State CurvedContact::by_midpoint_rule(double t) const {
     return state;
 }
 
-/// rad/s^2, by which the frame's motion changes the spin.
+/// Returns the change of the spin by the frame's motion, in rad/s^2.
 Vec3 CurvedContact::spin_change(const State& state, double t) const {
     if (start_.frame == nullptr || particle_.radius == 0.0) return {};
     return start_.frame->spin_change(state.motion.spin, particle_.time + t);
 }
 
-/// What that does in a second, over the mass, m^2/s^3.
+/// Returns the power of that change over the mass, in m^2/s^3.
 double CurvedContact::spin_power(const State& state, const Vec3& change) const {
     return 0.4 * particle_.radius * particle_.radius * dot(state.motion.spin, change);
 }
 
-/// With what the frame's motion adds to the rates of slip and turning.
+/// Returns the surfaces with the contributions of the frame's motion to the rates of slip and rotation.
 CurvedContact::SupportList CurvedContact::supports(const State& state, double t) const {
     SupportList result = supports(state);
     const Vec3 change = spin_change(state, t);
@@ -123,7 +123,7 @@ CurvedContact::SupportList CurvedContact::supports(const State& state, double t)
     return result;
 }
 
-/// The classical Runge-Kutta method.
+/// Integrates by the classical Runge-Kutta method.
 CurvedContact::State CurvedContact::by_stages(double t) const {
     const State begin = start();
     const auto moved = [&](const Rate& r, double s) {
@@ -146,7 +146,8 @@ CurvedContact::State CurvedContact::by_stages(double t) const {
         t);
 }
 
-/// Parts of what is tolerated: the difference between the method and the midpoint rule, which is of second order.
+/// Returns the error over the tolerance: the difference between the method and the midpoint rule, which is of second
+/// order.
 double CurvedContact::error_of(double t) const {
     const State begin = start();
     if (!(particle_.time + 0.5 * t > particle_.time)) return 0.0;
@@ -164,9 +165,9 @@ double CurvedContact::error_of(double t) const {
                     displacement / start_.tolerance->position);
 }
 
-/// A time, s, of at most `duration`, in which the error is tolerated. That grows with the cube of the time; as in all
-/// control of steps (E. Hairer, S. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer
-/// 1993, section II.4) the next one is tried a little shorter than that says.
+/// Returns a time, in s, of at most `duration`, in which the error is within the tolerance. The error grows with the
+/// cube of the time. As in all step control, the next trial is a little shorter than that law gives (E. Hairer, S.
+/// Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed., Springer 1993, section II.4).
 double CurvedContact::longest_within_tolerance(double duration) const {
     // Local: a rule of this step control. error_of() decides.
     constexpr double kSafety = 0.9;
@@ -202,7 +203,7 @@ bool CurvedContact::jumps(const State& before, const State& after) const {
            displacement > kJump * radius + kTouchingOffsets * geometry_.contact_offset(before.position);
 }
 
-/// True where slip or turning comes to a stop at its end, and friction has no direction there.
+/// Returns true if slip or rotation stops at the end of the arc. Friction has no direction there.
 bool CurvedContact::ends_a_slip() const {
     for (std::size_t k = 0; k < materials_.count; ++k) {
         const Stuck& before = stuck_[k];
@@ -224,8 +225,8 @@ double CurvedContact::longest() const {
     for (std::size_t k = 0; k < materials_.count; ++k) {
         if (has_load_[k]) normals[supports++] = surfaces_.nearest(k, begin.position).normal;
     }
-    double turning = 0.0;    // by metre, along the velocity
-    double curvature = 0.0;  // by metre, in the direction that bends most
+    double turning = 0.0;    // 1/m, along the velocity
+    double curvature = 0.0;  // 1/m, in the direction of largest curvature
     for (std::size_t k = 0; k < materials_.count; ++k) {
         if (const SurfaceMotion* motion = materials_.surfaces[k].motion) {
             const double rate = length(motion->angular_velocity);
@@ -245,15 +246,15 @@ double CurvedContact::longest() const {
     return varies ? longest_within_tolerance(duration) : duration;
 }
 
-/// s, in which forces turn it by little from where it goes, along surfaces that turn by so much in a metre.
+/// Returns the time, in s, in which forces turn the motion only a little, along surfaces of a curvature, in 1/m.
 double CurvedContact::longest_swing(double curvature) const {
     const double acceleration = length(rate_at_start().acceleration);
-    // Forces that press on a surface come to pull along it as it turns, up to all of them.
+    // As a surface turns, forces that press on it come to pull along it, in the end with their full size.
     const double frequency = std::sqrt(curvature * length(forces_at_start_));
     return std::min(std::sqrt(2.0 * kMaxArcAngle / (curvature * acceleration)), kMaxArcPhase / frequency);
 }
 
-/// The surfaces as they are touched there.
+/// Returns the surfaces as the particle touches them in a state.
 CurvedContact::SupportList CurvedContact::supports(const State& state) const {
     SupportList result = materials_;
     for (std::size_t k = 0; k < result.count; ++k) {
@@ -309,7 +310,7 @@ const CurvedContact::Rate& CurvedContact::rate_at_start() const {
     return *rate_at_start_;
 }
 
-/// At the contact offset from what holds it, along the normals, and moving along them.
+/// Moves the state to the contact offset from the surfaces with load, along their normals, and its motion along them.
 void CurvedContact::put_on_surfaces(State& state) const {
     for (int k = 0; k < kCorrections; ++k) {
         std::array<Vec3, kMostSupports> normals;
@@ -336,7 +337,7 @@ void CurvedContact::put_on_surfaces(State& state) const {
     state.position = flush_tiny(state.position);
 }
 
-/// It slips against friction, or rolls against resistance.
+/// Returns true if the particle slips against friction, or rolls or spins against resistance.
 bool CurvedContact::dissipates() const {
     for (std::size_t k = 0; k < materials_.count; ++k) {
         const SupportSurface& surface = materials_.surfaces[k];
@@ -348,8 +349,8 @@ bool CurvedContact::dissipates() const {
     return false;
 }
 
-/// It turns against resistance between several surfaces, which can brake it by as much as they press against each
-/// other: the stages of one arc would find it braked and not.
+/// Returns true if the particle turns against resistance between several surfaces. They may brake it by as much as they
+/// press against each other. The stages of one arc would find it braked in one stage and free in another.
 bool CurvedContact::may_jam() const {
     if (particle_.radius == 0.0 || std::count(has_load_.begin(), has_load_.end(), true) < 2) return false;
     for (std::size_t k = 0; k < materials_.count; ++k) {
@@ -361,7 +362,7 @@ bool CurvedContact::may_jam() const {
     return false;
 }
 
-/// Slip, rolling or spinning is about to begin somewhere against what resists it.
+/// Returns true if slip, rolling or spinning is about to begin against a resistance.
 bool CurvedContact::begins_to_slip(const ContactInterval& now) const {
     const double radius = particle_.radius;
     const double slow = kSlowSlip * speed_scale(now.motion, radius, materials_.all());
@@ -381,7 +382,7 @@ bool CurvedContact::begins_to_slip(const ContactInterval& now) const {
     return false;
 }
 
-/// That of the forces since the start, over the mass.
+/// Returns the work of the forces over the mass since the start, in m^2/s^2.
 double CurvedContact::work_until(const State& state) const {
     if (!start_.has_forces) return 0.0;
     if (!has_potential_) return dot(forces_at_start_, state.position - particle_.position) + state.work;
@@ -392,7 +393,8 @@ double CurvedContact::work_until(const State& state) const {
     return (before - forces_.potential_energy(there).value_or(0.0)) / particle_.mass;
 }
 
-/// To the nearest state of the energy at the start; along the path where it moves slowly, in speed where it does not.
+/// Moves a state to the nearest one with the energy at the start: along the path if the particle is slow, in speed
+/// otherwise.
 void CurvedContact::restore_energy(State& state, double t) const {
     const Vec3 a = forces(state, 0.0);
     for (int k = 0; k < kCorrections; ++k) {

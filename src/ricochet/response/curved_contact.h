@@ -1,8 +1,8 @@
 /// \file
-/// Private to the exact response: the motion of a particle along curved surfaces that hold it, as an ordinary
-/// differential equation: around edges and vertices, on and in balls and cylinders, and any mix with flat surfaces.
-/// Source: integration with projection onto the invariants, E. Hairer, C. Lubich, G. Wanner, "Geometric Numerical
-/// Integration", 2nd ed., Springer 2006, section IV.4.
+/// Private to the exact response: motion of a particle along curved surfaces that hold it, as an ordinary differential
+/// equation. It covers edges and vertices, the inside and outside of balls and cylinders, and any mix with flat
+/// surfaces. Source: integration with projection onto the invariants, E. Hairer, C. Lubich, G. Wanner, "Geometric
+/// Numerical Integration", 2nd ed., Springer 2006, section IV.4.
 #pragma once
 
 #include <algorithm>
@@ -21,54 +21,54 @@
 
 namespace ricochet {
 
-/// What an arc starts from, besides the particle.
+/// Start of an arc, besides the particle.
 struct CurvedStart {
-    Vec3 spin;                   ///< rad/s
-    double pressure = 1.0;       ///< as FrictionLimits::pressure
-    bool has_forces = true;      ///< false: the forces have been in the velocity from the step's start on
-    double shortest = 0.0;       ///< s, as FrictionLimits::shortest
-    double negligible_path = 0;  ///< m, as FrictionLimits::negligible_path
-    double duration = 0.0;       ///< s, that it may last at most
-    std::optional<ErrorTolerance> tolerance{};  ///< of a method that chooses its own steps
-    const FrameForces* frame = nullptr;         ///< that all is seen from; null in the world
+    Vec3 spin;                                  ///< rad/s
+    double pressure = 1.0;                      ///< as FrictionLimits::pressure
+    bool has_forces = true;                     ///< false: the velocity contains the forces since the start of the step
+    double shortest = 0.0;                      ///< s, as FrictionLimits::shortest
+    double negligible_path = 0;                 ///< m, as FrictionLimits::negligible_path
+    double duration = 0.0;                      ///< s, largest duration of the arc
+    std::optional<ErrorTolerance> tolerance{};  ///< for a method that chooses its own steps
+    const FrameForces* frame = nullptr;         ///< reference frame; null in the world
 };
 
-/// One arc, at most kMaxArcAngle long. Everything it is given but the particle must outlive it.
+/// One arc of at most kMaxArcAngle. All arguments except the particle must outlive it.
 class CurvedContact {
 public:
     struct State {
         Vec3 position;
         Motion motion;
-        double work = 0.0;    ///< over the mass, m^2/s^2, of what the forces have changed by since the start
-        double turned = 0.0;  ///< rad, by which shapes have turned under a sphere since the start, at most
+        double work = 0.0;    ///< over the mass, m^2/s^2, by the change of the forces since the start
+        double turned = 0.0;  ///< rad, upper bound of the turn of shapes under a sphere since the start
     };
 
     CurvedContact(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,
                   const ContactManifold& manifold, const ContactManifold::SupportList& materials,
                   const CurvedStart& start);
 
-    /// What it starts with, as if the surfaces were flat: whether it rests, and the forces.
+    /// Returns the plan at the start, as if the surfaces were flat: whether the particle rests, and the forces.
     [[nodiscard]] const ContactInterval& plan() const { return plan_; }
-    /// The state after t seconds, by the classical Runge-Kutta method, or the midpoint rule: on the surfaces that hold,
-    /// along them, and with the energy that it has to have.
+    /// Returns the state after t, in s, by the classical Runge-Kutta method or the midpoint rule. It is on the surfaces
+    /// that hold the particle, moves along them, and has the right energy.
     [[nodiscard]] State at(double t) const;
-    /// How it is held there: as at the start; or something that stuck there slips; or what slips there jams; or a
-    /// surface has turned further than it does in an arc; or by nothing any more.
+    /// Change of the support since the start: none; a stuck contact slips; a slipping contact jams; a surface has
+    /// turned further than an arc allows; or nothing holds the particle.
     enum class SupportChange { as_before, slipping, jammed, turned, none };
     [[nodiscard]] SupportChange support_at(const State& state, double t) const;
-    /// Between two times of which one is hardly later than the other: where a surface is too narrow for a sphere, the
-    /// nearest point jumps to another side, and takes the sphere with it.
+    /// Returns true if the particle jumps between two states at almost the same time. If a surface is too narrow for a
+    /// sphere, the nearest point jumps to another side, and the sphere with it.
     [[nodiscard]] bool jumps(const State& before, const State& after) const;
-    /// The particle, moving along the surfaces.
+    /// Returns the state at the start, with the motion along the surfaces.
     [[nodiscard]] State start() const { return {particle_.position, plan_.motion}; }
-    /// True if a surface carries load at the start.
+    /// Returns true if a surface carries load at the start.
     [[nodiscard]] bool is_supported() const {
         return std::any_of(has_load_.begin(), has_load_.end(), [](bool has_load) { return has_load; });
     }
-    /// s, until it has turned by kMaxArcAngle, or something is about to stick.
+    /// Returns the time, in s, until the particle has turned by kMaxArcAngle, or a motion is about to stick.
     [[nodiscard]] double longest() const;
 
-    /// What a surface's curvature takes from the distance to it at this velocity, m/s^2.
+    /// Returns the acceleration, in m/s^2, that a surface's curvature adds to the distance from it at this velocity.
     [[nodiscard]] static double curvature_of(const SurfaceGeometry& geometry, const ForceInput& particle,
                                              const ContactSurface& surface, const Vec3& velocity);
 
@@ -107,7 +107,7 @@ private:
 
     const SurfaceGeometry& geometry_;
     const ForceField& forces_;
-    ForceInput particle_;  // at the start, wherever it has got to since
+    ForceInput particle_;  // at the start of the arc
     const SupportList& materials_;
     CurvedStart start_;
     CurvedContactSurfaces surfaces_;
@@ -116,11 +116,11 @@ private:
     std::array<bool, kMostSupports> has_load_{};  // at the start
     StuckSurfaces stuck_{};                       // from the start on
     bool jams_ = false;                           // at the start
-    bool has_potential_ = false;                  // of forces that vary
-    bool is_driven_ = false;                      // by a surface that moves
+    bool has_potential_ = false;                  // of varying forces
+    bool is_driven_ = false;                      // a surface moves
     bool keeps_energy_ = false;
     bool friction_turns_fast_ = false;
-    mutable std::optional<Rate> rate_at_start_;  // computed when it is first needed
+    mutable std::optional<Rate> rate_at_start_;  // computed on first use
 };
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// The surfaces that hold a particle on an arc, as they are seen from where it starts.
+/// The surfaces that hold a particle on an arc, as seen from the start of the arc.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@ namespace ricochet {
 
 class CurvedContactSurfaces {
 public:
-    /// particle: at the start, touching what the manifold lists.
+    /// particle: at the start of the arc, in contact with the surfaces of the manifold.
     CurvedContactSurfaces(const SurfaceGeometry& geometry, const ForceInput& particle, const ContactManifold& manifold);
 
     [[nodiscard]] SurfaceId id(std::size_t k) const { return of_[k].surface; }
-    /// Surface k from the side of the start, all along: within an arc a point may come behind it by the arc's own
-    /// error. Whatever it is on the face or the side of, goes on beyond its rim.
+    /// Returns the nearest point of surface k, on the particle's side at the start. Within an arc a point may get
+    /// behind the surface by the arc's own error. A face or side continues beyond its rim.
     [[nodiscard]] CollisionWorld::Nearest nearest(std::size_t k, const Vec3& position) const;
-    /// The largest change of a shape's normal that a sphere sees from the start to a position. Of its outward normal:
-    /// the way straight on comes out of a large shape behind a small sphere, where the direction to it turns round.
+    /// Returns the largest change of a shape's normal under a sphere between the start and a position. It uses outward
+    /// normals: a position straight ahead may lie behind a large shape's surface, where the direction to the surface is
+    /// reversed.
     [[nodiscard]] double turned_at(const Vec3& position) const;
-    /// m, of a sphere with curved surface k at the start, where it was born so deep in it that being put on it were a
-    /// jump: it goes along as deep. Less is taken back.
+    /// Returns the overlap, in m, that a sphere keeps with curved surface k: the one at the start, if the sphere was
+    /// spawned so deep in the surface that placing it on the surface would be a jump. Smaller overlaps are removed.
     [[nodiscard]] double overlap(std::size_t k) const { return of_[k].overlap; }
 
 private:
@@ -33,8 +34,8 @@ private:
         bool is_flat = false;
         bool is_on_rim = false;
         bool is_narrow = false;
-        double side = 1.0;     // -1: the particle is behind it
-        Vec3 normal_at_start;  // outward, or, on a rim, towards the particle
+        double side = 1.0;     // -1: the particle is behind the surface
+        Vec3 normal_at_start;  // outward, or on a rim towards the particle
         double overlap = 0.0;
     };
     [[nodiscard]] double side_of(const Surface& surface, const Vec3& normal, const Vec3& position) const;

@@ -13,18 +13,18 @@
 namespace ricochet {
 namespace {
 
-/// Halvings of the time in the search for the rim. Local: it ends below the rounding of the result.
+/// Halvings in the search for the time at the rim. Local: it ends below the rounding of the result.
 constexpr int kRimHalvings = 48;
 
-/// A triangle within reach.
+/// A triangle within touching distance.
 struct Candidate {
     DeformedContact contact;
-    bool is_over = true;  ///< a sphere always is
+    bool is_over = true;  ///< always true for a sphere
     bool is_left = false;
 };
 
-/// m, as far as the foot of a position lies beside a triangle: along its plane, since the difference of the distances
-/// to the rim and to the plane would be rounding of a few offsets.
+/// Returns the distance, in m, by which the foot of a position lies beside a triangle. It is measured along the
+/// triangle's plane: the difference of the distances to the rim and to the plane would be rounding of a few offsets.
 double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const Vec3& p, double time) {
     if (!deforming.nearest(surface, p, time).rim) return 0.0;
     const auto [a, b, c] = deforming.corners_at(surface, time);
@@ -33,8 +33,8 @@ double beyond_rim(const DeformingColliders& deforming, SurfaceId surface, const 
     return length(offset - dot(offset, normal) * normal);
 }
 
-/// True where a point that touches a triangle has it below, or stands on its rim and goes no further beyond: above a
-/// convex edge it is over neither face, by its height.
+/// Returns true if a point touches a triangle from above, or stands on its rim and moves no further beyond it. A point
+/// above a convex edge is over neither face, because of its height.
 bool is_point_over(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                    const Vec3& velocity, const Vec3& normal, double separation_speed) {
     const double offset = deforming.offset_of(surface);
@@ -48,7 +48,7 @@ bool is_point_over(const DeformingColliders& deforming, const ForceInput& partic
     return beyond_rim(deforming, surface, next, particle.time) <= beyond + kOverRim * offset;
 }
 
-/// The surface as the particle touches it now; nothing when it does not.
+/// Returns the contact of the particle with a surface at its present time, if there is one.
 std::optional<Candidate> touched(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                                  double separation_speed) {
     const double reach = kTouchingOffsets * deforming.offset_of(surface);
@@ -59,7 +59,7 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
     const Vec3 velocity = particle.velocity - deforming.motion_at(surface, p, particle.time).velocity;
     if (particle.radius == 0.0) {
         if (nearest.rim) {
-            // The direction from the rim is rounding, the plane's normal counts.
+            // The direction from the rim is mere rounding, so the plane's normal is used.
             const double height = deforming.signed_distance_from(surface, p, particle.time);
             const Vec3 normal = deforming.unit_normal_of(surface, particle.time);
             found.contact.surface = {surface, height < 0.0 ? -normal : normal, true};
@@ -71,7 +71,8 @@ std::optional<Candidate> touched(const DeformingColliders& deforming, const Forc
     return found;
 }
 
-/// True where a triangle lies behind the plane of another one that the particle is over: it cannot be met before that.
+/// Returns true if a triangle lies behind the plane of another triangle below the particle. The particle would meet
+/// that one first.
 bool is_behind(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                const ContactSurface& over) {
     const std::array<Vec3, 3> corners = deforming.corners_at(surface, particle.time);
@@ -83,13 +84,14 @@ bool is_behind(const DeformingColliders& deforming, const ForceInput& particle, 
     });
 }
 
-/// One plane, whose inner edge is not felt.
+/// Returns true if two triangles lie in one plane. Their common edge is not felt.
 bool are_coplanar(const Candidate& one, const Candidate& other) {
     return 1.0 - dot(one.contact.surface.normal, other.contact.surface.normal) <= kSameNormal;
 }
 
-/// What a point is not over counts where it is in front of all that it is over, as the other side of a blunt valley, or
-/// in one plane with it: rounding says on which side of their edge it is.
+/// Removes triangles beyond convex edges from the contacts of a point. A triangle beside the point stays if it is in
+/// front of all triangles below the point, like the other side of a blunt valley. It also stays if it is in one plane
+/// with them: rounding decides on which side of their edge the point is.
 void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceInput& particle,
                               std::vector<Candidate>& found) {
     std::stable_partition(found.begin(), found.end(), [&](const Candidate& one) {
@@ -110,18 +112,19 @@ void drop_beyond_convex_edges(const DeformingColliders& deforming, const ForceIn
     found = std::move(kept);
 }
 
-/// One minus the cosine by which an edge's normal can differ from the face's while both are within reach.
+/// Returns one minus the cosine of the largest angle between the normals of an edge and of a face that a particle
+/// touches at once.
 double seam_turn(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface) {
     if (particle.radius == 0.0) return kSameNormal;
     return kSeamTurn + 2.0 * kTouchingOffsets * deforming.offset_of(surface) / particle.radius;
 }
 
-/// m/s, by which the normal of a triangle changes, at the radius.
+/// Returns the rate of a triangle's normal times the radius, in m/s.
 Vec3 turning_of_normal(const DeformingColliders::Motion& motion, const Vec3& normal, double radius) {
     return radius * cross(motion.turning, normal);
 }
 
-/// True where a triangle beside a sphere is in one plane with a face that holds it, and stays there until the next key.
+/// Returns true if a triangle beside a sphere lies in the plane of a face that holds the sphere, until the next key.
 bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput& particle, SurfaceId surface,
                           const ContactSurface& face) {
     const Vec3& p = particle.position;
@@ -138,7 +141,8 @@ bool goes_on_as_one_plane(const DeformingColliders& deforming, const ForceInput&
     return length(turn_there - turn_here) <= kSameVelocity * scale;
 }
 
-/// A sphere that rolls over the edge of a face comes to what lies in one plane with it: neither is an obstacle there.
+/// Adds triangles that continue the plane of a contact. A sphere that rolls over the edge of a face reaches them, and
+/// they are no obstacle.
 void add_rest_of_planes(const DeformingColliders& deforming, const ForceInput& particle,
                         const std::vector<SurfaceId>& near, std::vector<DeformedContact>& all) {
     for (DeformedContact& contact : all) {
@@ -247,7 +251,7 @@ double time_over(const DeformingColliders& deforming, const DeformedContact& con
     const auto is_over = [&](double at) { return beyond_all(at) <= most; };
     if (is_over(duration)) return duration;
     const double off = bisect(0.0, duration, kRimHalvings, is_over).high;
-    // What is shorter than the clock can tell does not lead off it.
+    // A time below the resolution of the clock would not lead off the triangle.
     return std::min(off + std::max(kPastRim * duration, kSimultaneousUlps * ulp(begin)), duration);
 }
 

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: a mesh that deforms, as contact that lasts sees it.
+/// Private to the exact response: deforming meshes in lasting contact.
 #pragma once
 
 #include <functional>
@@ -12,24 +12,27 @@
 
 namespace ricochet {
 
-/// One place at which a particle touches a mesh that deforms.
+/// One contact of a particle with a deforming mesh.
 struct DeformedContact {
     ContactSurface surface;
-    /// All triangles that are touched there with this normal, with that one: an edge is not felt beside them.
+    /// All triangles that the particle touches with this normal, including `surface`. An edge beside them is not felt.
     std::vector<SurfaceId> all;
 };
 
-/// What a particle touches of meshes that deform, at its present time: faces first, no normal twice. departure: m/s
-/// along the normal, relative to the surface, above which it has left. A point is held by the triangles that it is
-/// over, and next to their rims by those only that do not lie behind one of them: beyond a convex edge is nothing.
+/// Returns the contacts of a particle with deforming meshes at its present time. Faces come first, and no normal occurs
+/// twice. separation_speed: speed along the normal relative to the surface, in m/s, above which the particle has left.
+/// A point is held by the triangles below it. Next to their rims, a further triangle holds it only if it does not lie
+/// behind one of them: there is nothing beyond a convex edge.
 [[nodiscard]] std::vector<DeformedContact> touched_surfaces(const DeformingColliders& deforming,
                                                             const ForceInput& particle, double separation_speed);
 
-/// What the turning of a triangle, or its rim, adds to the rates of contact, m/s^2: of the distance, and of the slip
-/// (SupportSurface::curvature and slip_curvature). Its points are not accelerated between keys. With the normal n,
-/// which changes by n' = omega x n, the gap n . (x - q) - r to its point q below a particle with the velocity v - q' =
-/// s relative to that changes by n . a + 2 n' . s - r |n'|^2; that to a corner by n . a + |s|^2 / r, and that to an
-/// edge of the direction e by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
+/// Rates of contact, in m/s^2, that the turning of a triangle, or its rim, adds: to the distance and to the slip
+/// (SupportSurface::curvature and slip_curvature). Points of the triangle have no acceleration between keys. Let n be
+/// the normal and n' = omega x n its rate. Let q be the surface point below a particle at x, and s = v - q' the
+/// velocity relative to q. Then
+/// - the gap n . (x - q) - r changes by n . a + 2 n' . s - r |n'|^2,
+/// - the gap to a corner changes by n . a + |s|^2 / r,
+/// - the gap to an edge of direction e changes by n . a + (|s|^2 - (s . e + r n . e')^2) / r.
 struct CurvatureTerms {
     double curvature = 0.0;
     Vec3 slip_curvature;
@@ -37,7 +40,8 @@ struct CurvatureTerms {
 [[nodiscard]] CurvatureTerms curvature_of(const DeformingColliders& deforming, const ForceInput& particle,
                                           const ContactSurface& surface);
 
-/// How far a position is from the nearest of a contact's triangles at a time, on the side that its normal points to.
+/// Distance of a position from the nearest triangle of a contact at one time. Positive on the side of the contact's
+/// normal.
 struct SurfaceHeight {
     Vec3 normal;         ///< unit
     double above = 0.0;  ///< m
@@ -45,9 +49,10 @@ struct SurfaceHeight {
 [[nodiscard]] SurfaceHeight height_above(const DeformingColliders& deforming, const DeformedContact& contact,
                                          const Vec3& position, double time);
 
-/// s along a way that begins at a time and lasts so long, until which it is over one of the triangles of a contact,
-/// with a face, or no further beyond all of their rims than it begins, or its duration: a little later than that where
-/// it leaves them. position_at: m, by s since it began.
+/// Returns the time since the start of a trajectory, in s, until which it stays over a triangle of a contact with a
+/// face. At the most it may go as far beyond all their rims as it is at its start. Returns `duration` if it stays over
+/// them. The result is a little later than the time at which it leaves them. begin: time at the start, in s.
+/// position_at: position, in m, at a time since the start, in s.
 [[nodiscard]] double time_over(const DeformingColliders& deforming, const DeformedContact& contact,
                                const std::function<Vec3(double)>& position_at, double duration, double begin);
 

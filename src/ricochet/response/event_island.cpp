@@ -21,7 +21,7 @@ PairBody body_of(const IslandMember& member) {
     const MovingParticle& moving = member.moving;
     const double radius = member.radius();
     const bool is_fixed = member.is_fixed || member.is_cut_off;
-    // A core turns faster, so that its surface moves as fast.
+    // A core has a higher angular velocity, so that its surface moves as fast.
     PairBody body = pair_body(moving.state.position, is_fixed ? Vec3{} : moving.state.velocity,
                               (moving.state.radius / radius) * moving.spin, moving.state.mass, radius, is_fixed);
     body.material = member.material;
@@ -68,7 +68,8 @@ bool EventIsland::exceeds(const ImpactLimit& limit) const {
     return impacts_.size() > limit.in_all || most_of_one_ > limit.of_each;
 }
 
-/// At the ends of the paths of those that are there for all of the step. is: what else holds of the pair.
+/// Returns true if two members that last for the whole step overlap at the ends of their paths. is: a further condition
+/// on the pair.
 template <class Is>
 bool EventIsland::any_sinks(const Is& is) const {
     const auto is_there = [](const IslandMember& member) { return !member.is_gone() && !member.is_cut_off; };
@@ -92,8 +93,8 @@ bool EventIsland::sinks() const {
     return any_sinks([](std::size_t, std::size_t) { return true; });
 }
 
-/// Before anybody has met: by impacts without rebound two that press on each other never get through the step. What a
-/// wall throws into another one does rebound.
+/// Returns true if two members press on each other, before any impact. Impacts without rebound would never complete the
+/// step for them. A member that a wall throws into another one does rebound.
 bool EventIsland::presses() const {
     const double resting = response_.rules().settings.resting_speed;
     return any_sinks([&](std::size_t m, std::size_t other) {
@@ -109,7 +110,7 @@ bool EventIsland::presses() const {
     });
 }
 
-/// The path of a member to the end of its part of the step.
+/// Predicts the path of a member to the end of its part of the step.
 void EventIsland::predict(std::size_t m) {
     IslandMember& member = (*members_)[m];
     Prediction& prediction = predictions_[m];
@@ -137,12 +138,12 @@ void EventIsland::predict(std::size_t m) {
     prediction.outcome = response_.move(prediction.moved, duration, *scratch_);
     prediction.lists.take(*scratch_);
     prediction.flown.swap(scratch_->flown);
-    // Where nothing has been flown it stays: what cannot be followed, or has no time left.
+    // Without flight, the member stays: it cannot be followed, or no time is left.
     if (prediction.flown.empty()) {
         stay(m);
         return;
     }
-    // What has spent its bounces on walls waits there, and others may come. Walls that move take it along.
+    // A member that has spent its bounces on walls waits there, and others may reach it. Moving walls carry it along.
     if (const double left = prediction.outcome.unsimulated_time; left > 0.0 && !prediction.outcome.is_absorbed()) {
         const FlownPiece& last = prediction.flown.back();
         const double begin = last.begin + last.duration;
@@ -167,8 +168,8 @@ void EventIsland::stay(std::size_t m) {
     boxes_[m] = grown({state.position, state.position}, member.radius());
 }
 
-/// Moves a member to a time along the path that is predicted. What bounces off a wall just then, as one that lies on a
-/// floor does when it is hit, has met the other on its way back: so it bounces first.
+/// Moves a member to a time along its predicted path. If it bounces off a wall just then, it bounces first: the other
+/// member has met it on its way back. An example is a member on a floor that is hit.
 void EventIsland::bring(std::size_t m, double time) {
     const IslandMember& member = (*members_)[m];
     if (is_still(m)) return;
@@ -177,8 +178,8 @@ void EventIsland::bring(std::size_t m, double time) {
     if (!member.is_gone() && just_after < member.end && bounces_at(m, time)) go_to(m, just_after);
 }
 
-/// True if two do not meet after all: one is gone, or has lost time on the way, or its way along a wall that turns fast
-/// differs from the one that was predicted.
+/// Returns true if two members do not meet after all: one is gone, has lost time on its path, or its path along a wall
+/// that turns fast differs from the predicted one.
 bool EventIsland::is_missed(const PairContact& contact, double time) const {
     const IslandMember& a = (*members_)[contact.first];
     const IslandMember& b = (*members_)[contact.second];
@@ -234,7 +235,7 @@ void EventIsland::go_to(std::size_t m, double time) {
     member.swept.include(grown(box, member.radius()));
 }
 
-/// What response_.move() does where it is known to meet no wall, without the certificate.
+/// Moves a member that is known to meet no wall, like response_.move(), but without the certificate.
 void EventIsland::fly_freely(IslandMember& member, double duration) {
     const ResponseRules& rules = response_.rules();
     ForceInput& state = member.moving.state;
@@ -246,7 +247,7 @@ void EventIsland::fly_freely(IslandMember& member, double duration) {
     scratch_->flown.push_back({flight.path, begin, duration, separation_speed, state.velocity, true});
 }
 
-/// What is predicted has come true.
+/// Makes the prediction of a member its result.
 void EventIsland::commit(std::size_t m) {
     IslandMember& member = (*members_)[m];
     Prediction& prediction = predictions_[m];
@@ -263,7 +264,7 @@ void EventIsland::commit(std::size_t m) {
 
 std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) const {
     if ((*members_)[a].is_fixed && (*members_)[b].is_fixed) return std::nullopt;
-    // In one order, so that both find the same time.
+    // The order is fixed, so that both find the same time.
     if ((*members_)[a].particle > (*members_)[b].particle) std::swap(a, b);
     const std::vector<FlownPiece>& first = predictions_[a].flown;
     const std::vector<FlownPiece>& second = predictions_[b].flown;
@@ -273,14 +274,14 @@ std::optional<double> EventIsland::meeting_of(std::size_t a, std::size_t b) cons
     return first_meeting(std::span(first), std::span(second), distance, rounding);
 }
 
-/// Of the next meeting of a member, if it is that.
+/// Notes a contact of a member if it is earlier than its next one.
 void EventIsland::note(std::size_t m, double time, std::size_t partner) {
     if (!(time < times_.time_of(m))) return;
     times_.set(m, time);
     partners_[m] = partner;
 }
 
-/// Who meets whom next, of all.
+/// Finds the next contact of every member.
 void EventIsland::find_all() {
     for (std::size_t m = 0; m < members_->size(); ++m) {
         const std::vector<std::uint32_t>& near = neighbours_.of(m);
@@ -300,10 +301,10 @@ void EventIsland::find_next(std::size_t m) {
     }
 }
 
-/// Of members that have been changed: their paths, and who meets whom next.
+/// Predicts new paths of changed members, and finds the next contacts with them.
 void EventIsland::predict_anew(const std::vector<std::size_t>& changed) {
     const auto is_changed = [&](std::size_t m) { return std::binary_search(changed.begin(), changed.end(), m); };
-    std::vector<std::size_t> left;  // by their partners
+    std::vector<std::size_t> left;  // members whose partners have changed
     for (const std::size_t m : changed) {
         for (const std::uint32_t other : neighbours_.of(m)) {
             const bool is_left = partners_[other] == m && std::isfinite(times_.time_of(other));
@@ -333,7 +334,7 @@ PhaseState EventIsland::state_of(std::size_t m, double time) const {
     return {piece.path.position(s), piece.path.velocity(s)};
 }
 
-/// All that meet at a time, as members, ascending.
+/// Returns all contacts at a time, with members in ascending order.
 std::vector<PairContact> EventIsland::contacts_at(double time) const {
     const double until = time + kSameImpactUlps * ulp(time);
     std::vector<PairContact> contacts;
@@ -341,7 +342,7 @@ std::vector<PairContact> EventIsland::contacts_at(double time) const {
     times_.collect(until, first);
     for (const std::size_t m : first) {
         for (const std::uint32_t other : neighbours_.of(m)) {
-            const bool is_known = other < m && times_.time_of(other) <= until;  // found from there
+            const bool is_known = other < m && times_.time_of(other) <= until;  // found from the other member
             if (is_known) continue;
             const auto meeting = meeting_of(m, other);
             if (meeting && *meeting <= until) {
@@ -352,7 +353,7 @@ std::vector<PairContact> EventIsland::contacts_at(double time) const {
     return contacts;
 }
 
-/// The fastest first, and with it what is as fast, so that no order of members matters.
+/// Keeps the fastest contact, and those as fast, so that the order of members does not matter.
 void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) const {
     if (contacts.size() < 2) return;
     double fastest = -std::numeric_limits<double>::infinity();
@@ -362,19 +363,19 @@ void EventIsland::keep_fastest(std::vector<PairContact>& contacts, double time) 
         contact.approach = approach_of({a.position, a.velocity, {}}, {b.position, b.velocity, {}});
         fastest = std::max(fastest, contact.approach);
     }
-    // By rounding all may part: one is left, so that it counts as an impact, and its members go on.
+    // By rounding, all may separate. One contact is kept, counts as an impact, and lets its members continue.
     const double least = fastest > 0.0 ? fastest * (1.0 - kSameApproach) : fastest;
     std::erase_if(contacts, [&](const PairContact& contact) { return contact.approach < least; });
 }
 
-/// Moves those that meet to the time, lets them answer, and moves them on.
+/// Moves the members of contacts to the time, resolves their impacts, and lets them continue.
 void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     std::vector<std::size_t> changed;
     for (const PairContact& contact : contacts) changed.push_back(contact.first), changed.push_back(contact.second);
     std::sort(changed.begin(), changed.end());
     changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
     for (const std::size_t m : changed) bring(m, time);
-    // Missed ones count too, so that every step ends.
+    // Missed contacts count, too, so that every step ends.
     for (const PairContact& contact : contacts) {
         for (const std::size_t m : {contact.first, contact.second}) {
             most_of_one_ = std::max(most_of_one_, ++(*members_)[m].impacts);
@@ -392,7 +393,7 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
         contact.first = number(contact.first), contact.second = number(contact.second);
         is_hit[contact.first] = is_hit[contact.second] = 1;
     }
-    // No direction parts those of one centre, as children of one place are.
+    // Members with the same centre, such as children spawned at one position, have no normal.
     std::erase_if(contacts,
                   [&](const PairContact& c) { return before[c.first].position == before[c.second].position; });
     if (!contacts.empty()) {
@@ -409,10 +410,10 @@ void EventIsland::resolve(std::vector<PairContact>& contacts, double time) {
     predict_anew(changed);
 }
 
-/// A member takes the motion after an impact: what touched it is met anew.
+/// Sets a member's motion after an impact. Its contacts with surfaces are found again.
 void EventIsland::write_back(std::size_t m, const PairBody& body) {
     IslandMember& member = (*members_)[m];
-    member.is_free = false;  // also where it is hit at the begin of the step, and has not been brought anywhere
+    member.is_free = false;  // also if it is hit at the start of the step, without a move
     MovingParticle& moving = member.moving;
     const RecordedMotion before{moving.state.position, moving.state.velocity, moving.spin};
     member.pair_velocity_change += body.velocity - moving.state.velocity;
@@ -433,7 +434,7 @@ void EventIsland::write_back(std::size_t m, const PairBody& body) {
     }
 }
 
-/// A member goes on from where it has been brought, unless it has spent its impacts.
+/// Lets a member continue from its present position, unless it has spent its impact budget.
 void EventIsland::go_on(std::size_t m) {
     IslandMember& member = (*members_)[m];
     resume(m);
@@ -443,7 +444,7 @@ void EventIsland::go_on(std::size_t m) {
     member.moving.step_end = member.end;
 }
 
-/// Where forces act by a kick at the begin they have acted already.
+/// Plans the rest of a step in which forces have already acted by a kick at the start.
 void EventIsland::resume(std::size_t m) {
     const ResponseRules& rules = response_.rules();
     MovingParticle& moving = (*members_)[m].moving;

@@ -1,9 +1,11 @@
 /// \file
-/// An island: spheres that may meet each other in a step, and no others. Its impacts are solved in order of time.
+/// An event-driven island: spheres that can touch each other in a step, and no others. Its impacts are solved in order
+/// of time.
 ///
-/// Every member has its true path to the end of the step, as if it met none of the others: the polynomial pieces that
-/// the response has moved it along, bounces off walls and contact with them included. The first meeting of two of those
-/// paths is an impact: both are moved to that time along the same paths, exchange impulses, and are moved on anew.
+/// Every member has its true path to the end of the step, as if it met no other member. The path consists of the
+/// polynomial pieces along which the response has moved it, including bounces off walls and contact with them. The
+/// first contact between two of those paths is an impact. Both members are moved to that time along the same paths,
+/// exchange impulses, and get new paths.
 /// Source: B. D. Lubachevsky, "How to simulate billiards and similar systems", J. Comput. Phys. 94 (1991).
 #pragma once
 
@@ -26,66 +28,67 @@
 
 namespace ricochet {
 
-/// A member of an island. Inputs hold for the start of the step, outputs for its end.
+/// A member of an island. Inputs are given at the start of the step, outputs at its end.
 struct IslandMember {
-    std::size_t particle = 0;    ///< its number in the particles' arrays
+    std::size_t particle = 0;    ///< index in the particles' arrays
     MovingParticle moving;       ///< at the time moving.state.time
-    double end = 0.0;            ///< s, of its part of the step
-    bool is_fixed = false;       ///< nothing moves it
-    bool is_free = false;        ///< as long as it meets none of the others it certainly touches no wall
-    std::uint32_t material = 0;  ///< its number among PairMaterials
-    // Out:
+    double end = 0.0;            ///< s, end of its part of the step
+    bool is_fixed = false;       ///< it is fixed
+    bool is_free = false;        ///< it certainly touches no wall unless it meets another member
+    std::uint32_t material = 0;  ///< its number in PairMaterials
+    // Output:
     MoveOutcome outcome{};
     MoveLists lists{};
-    std::uint32_t impacts = 0;    ///< on other members
-    Vec3 pair_velocity_change{};  ///< m/s, that others have given it by impacts and contact
-    bool is_planned = false;      ///< by the problem of all contacts of its island
-    double contact_path = 0.0;    ///< m, of its way that was along walls, in arcs
-    bool is_cut_off = false;      ///< it has spent its budget
-    Box3 swept{};                 ///< of the whole sphere on all of its way
-    /// All of its way, where it has met others, or others act on it from afar.
+    std::uint32_t impacts = 0;    ///< number of impacts on other members
+    Vec3 pair_velocity_change{};  ///< m/s, by impacts and contact with other members
+    bool is_planned = false;      ///< its motion was planned by a contact island
+    double contact_path = 0.0;    ///< m, length of its trajectory along walls, on arcs
+    bool is_cut_off = false;      ///< it has spent its impact budget
+    Box3 swept{};                 ///< bounding box of the whole sphere on its whole trajectory
+    /// Its whole trajectory, if it has met other members, or if others act on it from a distance.
     std::vector<FlownPiece> trajectory{};
 
-    /// It has ended before the step.
+    /// Returns true if the member no longer moves: it is absorbed or frozen.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
-    /// s, that its part of the step has left: as long as its planned flight to the last bit, where it sets out on that.
+    /// Returns the rest of its part of the step, in s. At the start of its planned flight, this is the exact duration
+    /// of that.
     [[nodiscard]] double time_left() const {
         const bool begins_flight = moving.planned != nullptr && moving.planned->start.time == moving.state.time;
         return begins_flight ? moving.planned->path.duration : end - moving.state.time;
     }
-    /// m, as others meet it: that of the whole sphere also where it collides with walls as a core.
+    /// Returns the radius for other members, in m: that of the whole sphere, even if only a core collides with walls.
     [[nodiscard]] double radius() const {
         return moving.state.whole_radius > 0.0 ? moving.state.whole_radius : moving.state.radius;
     }
 };
 
-/// Impacts of members of an island on each other in a step beyond which it is given up.
+/// Limits on the impacts between members of an island in a step. The island is given up if they are exceeded.
 struct ImpactLimit {
     std::size_t in_all = std::numeric_limits<std::size_t>::max();
-    std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< of one member
-    bool may_sink = true;   ///< false: it is also given up where forces drive members into each other
-    bool may_press = true;  ///< false: at once where they do so with two that touch and would not rebound
+    std::uint32_t of_each = std::numeric_limits<std::uint32_t>::max();  ///< impacts of one member
+    bool may_sink = true;   ///< false: the island is also given up if forces drive members into each other
+    bool may_press = true;  ///< false: given up at once if that holds for two that touch and would not rebound
 };
 
-/// Works islands off; keeps its memory for the next one. For one thread.
+/// Solves event-driven islands, one after another, and reuses its memory. For one thread.
 class EventIsland {
 public:
     /// Both must outlive it.
     EventIsland(const Response& response, const PairMaterials& materials, std::uint32_t impact_budget)
         : response_(response), materials_(materials), impact_budget_(impact_budget) {}
 
-    /// Moves the members to the end of the step. The result does not depend on their order, but for the last bits of
-    /// impacts that several of them share. scratch: says what is to be recorded; its lists are used. False where there
-    /// are more impacts than the limit: the members are anywhere then.
+    /// Moves the members to the end of the step. The result does not depend on their order, except for the last bits of
+    /// impacts that share members. scratch: selects the records; its lists are used. Returns false if there are more
+    /// impacts than the limit. The positions of the members are then undefined.
     bool run(std::vector<IslandMember>& members, MoveScratch& scratch, const ImpactLimit& limit = {});
 
-    /// Impacts of the last run, in the order of time.
+    /// Returns the impacts of the last run, in order of time.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
-    /// The same for the verifier, where motions are recorded.
+    /// Returns the impacts for the verifier, if motions are recorded.
     [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
 
 private:
-    /// What a member does until the step's end if it meets none of the others.
+    /// Motion of a member until the end of the step if it meets no other member.
     struct Prediction {
         MovingParticle moved;
         MoveOutcome outcome;
@@ -129,17 +132,17 @@ private:
 
     const Response& response_;
     const PairMaterials& materials_;
-    std::uint32_t impact_budget_ = 0;  // of a member in a step
+    std::uint32_t impact_budget_ = 0;  // per member and step
     std::vector<IslandMember>* members_ = nullptr;
     MoveScratch* scratch_ = nullptr;
     std::vector<Prediction> predictions_;
-    std::vector<Vec3> begin_;  // m, of the members
-    std::vector<Box3> boxes_;  // of the predictions
+    std::vector<Vec3> begin_;  // m, of the members at the start
+    std::vector<Box3> boxes_;  // bounding boxes of the predictions
     IslandNeighbours neighbours_;
-    EarliestTime times_;                 // s, of each member's first meeting; infinite: it meets nobody
-    std::vector<std::size_t> partners_;  // in it
-    std::uint32_t most_of_one_ = 0;      // impacts
-    std::vector<Flight> resumed_;        // of each member, where it has been kicked in this step
+    EarliestTime times_;                 // s, first contact of each member; infinite without one
+    std::vector<std::size_t> partners_;  // of the members at that time
+    std::uint32_t most_of_one_ = 0;      // largest number of impacts of one member
+    std::vector<Flight> resumed_;        // one per member, if a kick has acted in this step
     std::vector<PairImpactRecord> impacts_;
     std::vector<PairMeeting> meetings_;
 };

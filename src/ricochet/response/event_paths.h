@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: the ways of two spheres in a step, and whether they meet on them.
+/// Private to the responses: paths of two spheres in a step, and their first contact.
 #pragma once
 
 #include <optional>
@@ -10,15 +10,16 @@
 
 namespace ricochet {
 
-/// The way of a sphere that certainly touches no wall and meets no other one, until `end`, s.
+/// Returns the path of a sphere until `end`, in s. The sphere must certainly touch no wall and no other sphere until
+/// then.
 [[nodiscard]] FlownPiece free_way(const ResponseRules& rules, const ForceInput& state, double end);
-/// When spheres on two ways first meet, s; nothing where they do not. distance: of their centres then, m; slow: m/s, an
-/// approach that does not count.
+/// Returns the time, in s, at which spheres on two paths first touch, or std::nullopt if they do not. distance: of
+/// their centres at contact, in m. slow: approach speed, in m/s, that does not count.
 [[nodiscard]] std::optional<double> first_meeting(std::span<const FlownPiece> first, std::span<const FlownPiece> second,
                                                   double distance, double slow);
 
-/// Two that are so much nearer at the end of a step than at its begin that they press on each other. distance: of the
-/// centres where they touch, m.
+/// Returns true if two spheres press on each other: after a step they overlap by more than kPressedOverlap times the
+/// smaller radius, and are nearer than before. distance: of their centres at contact, in m.
 [[nodiscard]] bool has_sunk(double distance, double smaller_radius, const Vec3& apart_before, const Vec3& apart_after);
 
 }  // namespace ricochet

@@ -1,14 +1,19 @@
 /// \file
-/// The exact response: predict the time of impact on the particle's own path and reflect inside the step, as often as
-/// needed.
+/// The exact response: computes the time of impact on the particle's own path, and reflects within the step, as often
+/// as needed.
 ///
 /// Source: continuous collision detection against static surfaces with exact predicates, see ARCHITECTURE.md.
-/// What it guarantees: the chain of positions a particle is moved through crosses no surface, exactly; spheres overlap
-/// nothing by more than sphere_tolerance(); the time of impact is accurate to rounding on the path.
-/// What it does not guarantee: that a bounce cascade below the resting speed is resolved impact by impact (it is summed
-/// in closed form), that slow circling in a pit is followed to its end (it becomes rest, kMaxSlowContacts), nor that a
-/// particle whose bounce budget is spent uses the whole step (the rest is counted). Contact that lasts is exact on flat
-/// surfaces under constant forces while slip keeps its direction, else of second order or better (docs/responses.md).
+///
+/// Guarantees: the chain of a particle's positions crosses no surface, exactly. Spheres overlap nothing by more than
+/// sphere_tolerance(). The time of impact is accurate to rounding on the path.
+///
+/// Limits:
+/// - A bounce cascade below the resting speed is not resolved impact by impact, but summed in closed form.
+/// - Slow circling in a pit is not followed to its end: it becomes rest (kMaxSlowContacts).
+/// - A particle that has spent its bounce budget does not use the whole step. The rest is counted.
+///
+/// Lasting contact is exact on flat surfaces under constant forces while slip keeps its direction. Otherwise it is of
+/// second order or better (docs/responses.md).
 #pragma once
 
 #include <memory>
@@ -35,7 +40,7 @@ public:
                                                                const Vec3& pull) const override;
 
 private:
-    std::unique_ptr<FrameRules> frame_rules_;  ///< null where nothing moves
+    std::unique_ptr<FrameRules> frame_rules_;  ///< null if no collider moves
 };
 
 }  // namespace ricochet

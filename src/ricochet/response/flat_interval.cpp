@@ -25,7 +25,7 @@ PlannedInterval FlatInterval::mean_until(double time) const {
 
 double FlatInterval::work_until(double time, const Vec3& displacement) const {
     const PlannedInterval mean = mean_until(time);
-    // What is faster later is pushed on for longer by what the forces are later.
+    // The mean force over the displacement misses that changes of force and of velocity are correlated.
     const double later = time * time / 6.0 * dot(mean.forces - begin_.forces, mean.interval.acceleration);
     return dot(mean.forces, displacement) + later;
 }

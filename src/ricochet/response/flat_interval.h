@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: one contact interval on flat surfaces under forces that may vary in it.
+/// Private to the exact response: a contact interval on flat surfaces, under forces that may vary in it.
 #pragma once
 
 #include "ricochet/geometry/sweep/path.h"
@@ -7,30 +7,31 @@
 
 namespace ricochet {
 
-/// A contact interval and the forces that it was planned with, over the mass, m/s^2.
+/// A contact interval, and the forces over the mass with which it was planned, in m/s^2.
 struct PlannedInterval {
     ContactInterval interval;
     Vec3 forces;
 };
 
-/// A contact interval along flat surfaces, as planned with the forces of its start and of its middle. In between
-/// accelerations change evenly: the midpoint rule at its end, and of second order wherever something else ends it.
+/// A contact interval along flat surfaces, planned with the forces at its start and in its middle. Accelerations change
+/// linearly between them. This is the midpoint rule if the interval is completed, and of second order if it ends
+/// earlier.
 class FlatInterval {
 public:
-    /// Under forces that stay as they are.
+    /// For constant forces.
     explicit FlatInterval(const PlannedInterval& plan) : begin_(plan), middle_(plan), varies_(false) {}
     FlatInterval(const PlannedInterval& begin, const PlannedInterval& middle)
         : begin_(begin), middle_(middle), varies_(true) {}
 
     [[nodiscard]] double duration() const { return middle_.interval.duration; }
     [[nodiscard]] const Motion& motion() const { return middle_.interval.motion; }
-    /// Whether a surface holds it in its middle.
+    /// Returns true if surface k presses on the particle in the middle of the interval.
     [[nodiscard]] bool is_held_by(std::size_t k) const { return middle_.interval.reaction[k] != Vec3{}; }
-    /// The way from x, as far as it goes in `time` seconds.
+    /// Returns the path from x in the first `time` seconds.
     [[nodiscard]] Path path(const Vec3& x, double time) const;
-    /// The same motion after `time` seconds, with accelerations and forces that stay.
+    /// Returns the same motion after `time` seconds, but with constant accelerations and forces.
     [[nodiscard]] PlannedInterval mean_until(double time) const;
-    /// Work of the forces over the mass, m^2/s^2, in the first `time` seconds, which lead this way.
+    /// Returns the work of the forces over the mass, in m^2/s^2, in the first `time` seconds, with this displacement.
     [[nodiscard]] double work_until(double time, const Vec3& displacement) const;
 
 private:

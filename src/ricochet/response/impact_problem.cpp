@@ -29,7 +29,8 @@ public:
     }
 
 private:
-    /// Of surfaces with the same normal the first counts, or one that is approached faster by more than rounding.
+    /// Adds a surface. If several have the same normal, the first one counts, or one with a faster approach by more
+    /// than rounding.
     void add(std::size_t surface) {
         const ImpactSurface& added = surfaces_[surface];
         if (!added.is_support && separation_speed(added) < 0.0)
@@ -45,7 +46,7 @@ private:
         surface_of_[count_++] = surface;
     }
 
-    /// m/s, along the normal, before.
+    /// Returns the speed, in m/s, at which the particle separates along the normal before the impact.
     [[nodiscard]] double separation_speed(const ImpactSurface& surface) const {
         return dot(before_.velocity, surface.normal) - surface.advance;
     }
@@ -82,14 +83,14 @@ private:
         }
     }
 
-    /// The answer, with as much friction as there is one for.
+    /// Returns the solution with the largest friction for which one exists.
     ImpactResult whole(double restitution) {
         set_up(restitution);
         problem_.solve_with_most(CoulombProblem::Effort::all);
         return solution();
     }
 
-    /// Compression without rebound, and the part e of its impulses once more.
+    /// Returns the impact with the impulses of `result`, which has no rebound, and their part e once more.
     [[nodiscard]] ImpactResult repeated(ImpactResult result) const {
         result.after.velocity += restitution_ * (result.after.velocity - before_.velocity);
         result.after.spin += restitution_ * (result.after.spin - before_.spin);
@@ -98,8 +99,8 @@ private:
         return result;
     }
 
-    /// The normal speed on a surface that holds is rounding, and impulses that are repeated turn it around: no approach
-    /// to such a surface is left.
+    /// Removes the approach to surfaces that hold the particle. Its normal speed there is rounding, and repeated
+    /// impulses would reverse it.
     void keep_supported_only(ImpactResult& result) const {
         std::array<Vec3, ImpactResult::kMostSurfaces> normals;
         std::array<double, ImpactResult::kMostSurfaces> lifts{};
@@ -119,7 +120,7 @@ private:
         result.velocity_change[last] += shift;
     }
 
-    /// With all friction, where that is found quickly.
+    /// Returns the solution with full friction, if it is found quickly.
     [[nodiscard]] std::optional<ImpactResult> find(double restitution) {
         set_up(restitution);
         if (!problem_.solve(CoulombProblem::Effort::some)) return std::nullopt;
@@ -143,7 +144,8 @@ private:
         return result;
     }
 
-    /// What rounding may do to twice the energy over the mass: more where surfaces press against each other.
+    /// Returns the rounding of twice the energy over the mass, in m^2/s^2. It is larger if surfaces press against each
+    /// other.
     [[nodiscard]] double rounding(const ImpactResult& result) const {
         double squared_pushes = twice_kinetic(before_, radius_);
         for (const Vec3& velocity_change : result.velocity_change) squared_pushes += length_squared(velocity_change);
@@ -154,7 +156,7 @@ private:
         return twice_kinetic(result.after, radius_) > most_allowed(result) + rounding(result);
     }
 
-    /// Twice the energy over the mass before the impact, and what moving surfaces have added to it.
+    /// Returns twice the energy over the mass before the impact, with the work of moving surfaces.
     [[nodiscard]] double most_allowed(const ImpactResult& result) const {
         double sum = twice_kinetic(before_, radius_);
         for (std::size_t k = 0; k < surfaces_.size(); ++k) {
@@ -163,7 +165,7 @@ private:
         return sum;
     }
 
-    /// Without the energy that rounding has let in; without losses with all of it.
+    /// Scales the motion so that rounding adds no energy. After an impact without losses, the energy is exactly kept.
     [[nodiscard]] ImpactResult kept(ImpactResult result) const {
         if (is_driven_) return result;
         const double is = twice_kinetic(result.after, radius_);
@@ -183,8 +185,8 @@ private:
     double radius_;
     std::span<const ImpactSurface> surfaces_;
     double restitution_ = 1.0;
-    bool is_driven_ = false;  // by a surface that moves
-    std::size_t count_ = 0;   // different normals
+    bool is_driven_ = false;  // a surface moves
+    std::size_t count_ = 0;   // number of different normals
     std::array<std::size_t, ImpactResult::kMostSurfaces> surface_of_{};
     CoulombProblem problem_;
 };

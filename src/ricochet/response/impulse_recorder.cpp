@@ -71,14 +71,15 @@ double ImpulseRecorder::kinetic_energy() const {
            (dot(motion.velocity, motion.velocity) + 0.4 * radius * radius * dot(motion.spin, motion.spin));
 }
 
-/// N m s, that the surface is given where the spin of the particle, a solid sphere, changes.
+/// Returns the couple on a surface, in N m s, by a change of the spin of the particle, a solid sphere.
 Vec3 ImpulseRecorder::couple_of(const Vec3& spin_change) const {
     const double radius = particle_.state.radius;
     return (-0.4 * particle_.state.mass * radius * radius) * spin_change;
 }
 
-/// J, of a load by what is no motion of the body, as it is at a moment: a belt's. An impulse works on where it acts;
-/// what is left of the couple without the impulse's lever, a resistance to rolling or spinning, on how the belt turns.
+/// Returns the work, in J, of a load by the surface's own motion (a conveyor belt), at one moment. The impulse works on
+/// the velocity at the contact. The couple without the impulse's lever is a resistance to rolling or spinning. That
+/// works on the angular velocity of the material.
 double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const Material& material = rules_.materials[rules_.world.material_of(load.surface)];
     if (!material.drives()) return 0.0;
@@ -92,15 +93,15 @@ double ImpulseRecorder::work_on_material(const ColliderLoad& load, BodyId body, 
     return dot(load.impulse, in_world(along)) + dot(resistance, in_world(material.motion.angular_velocity));
 }
 
-/// In the body's frame, where a place is seen.
+/// Returns the surface's normal, in the body's frame, at a position in that frame.
 Vec3 ImpulseRecorder::normal_at(SurfaceId surface, BodyId body, const Vec3& seen, double time) const {
     if (rules_.bodies == nullptr) return rules_.world.nearest(surface, seen).normal;
     return rules_.bodies->is_deforming(body) ? rules_.bodies->deforming().nearest(surface, seen, time).normal
                                              : rules_.bodies->world(body).nearest(surface, seen).normal;
 }
 
-/// s, at which a body moves as while it has pushed: contact that lasts is entered at the end of its interval, which may
-/// be a key, after which the body moves otherwise.
+/// Returns a time, in s, at which a body moves as it did while it pushed. Lasting contact is recorded at the end of its
+/// interval. That may be a key, after which the body moves differently.
 double ImpulseRecorder::time_of_push(BodyId body, double time, bool impact) const {
     if (impact || body == kWorldBody || rules_.bodies->is_dynamic(body)) return time;
     const double rounding = kKeyUlps * ulp(time);
@@ -139,12 +140,13 @@ void ImpulseRecorder::enter(const SurfaceHit& hit, const Vec3& couple) {
     scratch_.loads.push_back(load);
 }
 
-/// What lasts has pushed all the time, while both moved on: by the means of both ends of its interval, to second order.
+/// Corrects a load of lasting contact, which has acted over its whole interval while both moved. Uses the means of both
+/// ends of the interval: second order.
 void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     if (body == kWorldBody) {
         load.moment = cross(0.5 * (since_.particle_center + load.particle_center), load.impulse) + load.couple;
     } else if (rules_.bodies->is_dynamic(body) || rules_.bodies->is_deforming(body)) {
-        return;  // whose path is planned otherwise, and whose place on the surface is not known
+        return;  // its path is planned differently, and the position on the surface is not known
     }
     load.work = 0.5 * (load.work + work_at(load, body, since_));
     if (body == kWorldBody) return;
@@ -152,8 +154,8 @@ void ImpulseRecorder::enter_lasting(ColliderLoad& load, BodyId body) const {
     load.moment += cross(0.5 * (origin(until_.time) - origin(since_.time)), load.impulse);
 }
 
-/// J, by a load when it was begun. The moment stays that of its end: on what moves a couple is entered for what it
-/// lacks of the angular momentum that the particle has lost.
+/// Returns the work, in J, of a load at the start of its interval. The moment is that of the interval's end: for moving
+/// surfaces, a couple is recorded for the difference to the angular momentum that the particle has lost.
 double ImpulseRecorder::work_at(const ColliderLoad& load, BodyId body, const Moment& at) const {
     const MovingPose pose = body == kWorldBody ? MovingPose{} : rules_.bodies->pose(body, at.time);
     const Vec3 moment = cross(load.particle_center - pose.world_from_frame.translation, load.impulse) + load.couple;

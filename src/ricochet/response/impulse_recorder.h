@@ -1,8 +1,9 @@
 /// \file
-/// Private to the responses: what one particle does in one move to colliders that move, or whose material does.
+/// Private to the responses: records the impulses and moments that one particle gives in one move to moving colliders,
+/// or to colliders with moving material.
 ///
-/// The moment about any point is what the particle's own angular momentum, with that of its spin, loses: so the sums
-/// close, whatever the law of an impact. What changes the spin is booked with the impulse that comes next to it.
+/// The moment about any point is the loss of the particle's angular momentum, spin included. So the sums balance under
+/// any law of impact. A change of spin is recorded with the next impulse.
 #pragma once
 
 #include <cstddef>
@@ -26,21 +27,21 @@ public:
         if (scratch.record_loads) since_ = until_ = moment_of_time();
     }
 
-    /// Enters an impulse on a surface, and the change of the spin that is made with it, rad/s; without it all that has
-    /// changed since the last entry.
+    /// Records an impulse on a surface, and the change of spin with it, in rad/s. Without the latter, it is the whole
+    /// change since the last record.
     void add(const SurfaceHit& hit, const std::optional<Vec3>& spin_change);
-    /// The entries between these two belong to one impact. approach: its largest speed, m/s.
+    /// Impulses recorded between these two calls belong to one impact. approach: its largest speed, in m/s.
     void begin_impact(double approach);
     void end_impact();
-    /// Enters a couple on a surface, N m s: what its impulses in contact that lasts lack of the moment they have had.
+    /// Records a couple on a surface, in N m s: the part of its moment in lasting contact that its impulses lack.
     void add_couple(SurfaceId surface, const Vec3& couple);
-    /// Enters what has changed the spin since, with the last surface.
+    /// Records the change of spin since the last record, on the last surface.
     void close();
 
 private:
     struct Moment {
         double time = 0.0;     // s
-        Vec3 particle_center;  // m, in the world, of the particle's centre
+        Vec3 particle_center;  // m, in the world
     };
 
     [[nodiscard]] bool is_entered(SurfaceId surface) const;
@@ -59,13 +60,13 @@ private:
     const MovingParticle& particle_;
     MoveScratch& scratch_;
     const ReferenceFrame& reference_;
-    Moment since_;       // the interval of contact in which entries are made: its begin
-    Moment until_;       // and its end
-    Vec3 spin_;          // rad/s, in the world, as the entries leave it
-    std::size_t first_;  // entry of this move
+    Moment since_;       // start of the contact interval of the records
+    Moment until_;       // its end
+    Vec3 spin_;          // rad/s, in the world, after the last record
+    std::size_t first_;  // first record of this move
     std::size_t first_of_impact_ = 0;
-    double energy_before_ = 0.0;  // J, the impact
-    double approach_ = 0.0;       // m/s, of it
+    double energy_before_ = 0.0;  // J, before the impact
+    double approach_ = 0.0;       // m/s, of the impact
 };
 
 }  // namespace ricochet

@@ -8,9 +8,10 @@
 namespace ricochet {
 namespace {
 
-/// So few are looked at one after the other.
+/// Up to this number of boxes, each search tests all boxes.
 constexpr std::size_t kFew = 48;
-/// One of so many may have changed before the grid is made anew: looking at those that have costs as much then.
+/// The grid is rebuilt after a change of more than one in this number of boxes, because each search also tests all
+/// changed boxes.
 constexpr std::size_t kChangedShare = 8;
 
 }  // namespace
@@ -56,7 +57,7 @@ void IslandNeighbours::begin(const std::vector<Box3>& boxes) {
     }
 }
 
-/// Puts the boxes into a grid, where there are many.
+/// Sorts the boxes into a grid if there are many.
 void IslandNeighbours::sort_all() {
     if (boxes_->size() <= kFew) return;
     has_changed_.assign(boxes_->size(), 0);

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: what the members of an island look at when they look for who meets whom next.
+/// Private to the responses: neighbours and times of next contact of an island's members.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +13,15 @@
 
 namespace ricochet {
 
-/// The earliest of times that change one by one: a tree of minima.
+/// The earliest of many times that change one by one, as a tree of minima.
 class EarliestTime {
 public:
-    /// All are infinite.
+    /// Sets all times to infinity.
     void reset(std::size_t count);
     void set(std::size_t index, double time);
     [[nodiscard]] double time_of(std::size_t index) const { return minima_[leaves_ + index]; }
     [[nodiscard]] double earliest() const { return minima_[1]; }
-    /// Appends those up to a time, ascending.
+    /// Appends the indices of all times up to `until`, in ascending order.
     void collect(double until, std::vector<std::size_t>& found) const { collect(1, until, found); }
 
 private:
@@ -31,12 +31,12 @@ private:
     std::vector<double> minima_{0.0, std::numeric_limits<double>::infinity()};
 };
 
-/// Whose boxes overlap, while boxes change one by one. Numbers of neighbours are ascending.
+/// Pairs of overlapping boxes, while boxes change one by one. Neighbours are listed in ascending order.
 class IslandNeighbours {
 public:
-    /// boxes: empty ones have no neighbours. They must outlive it, and are as they are when they are looked at.
+    /// boxes: empty ones have no neighbours. They must outlive it. Each call reads their present values.
     void begin(const std::vector<Box3>& boxes);
-    /// The boxes of some have changed; ascending.
+    /// Updates the neighbours of changed boxes. changed: their indices, in ascending order.
     void update(std::span<const std::size_t> changed);
     [[nodiscard]] const std::vector<std::uint32_t>& of(std::size_t index) const { return near_[index]; }
 
@@ -46,9 +46,9 @@ private:
 
     const std::vector<Box3>* boxes_ = nullptr;
     std::vector<std::vector<std::uint32_t>> near_;
-    NeighbourGrid grid_;                     // of the boxes as they were when it was made
-    std::vector<std::uint8_t> has_changed_;  // since then
-    std::vector<std::uint32_t> changed_;     // those
+    NeighbourGrid grid_;                     // of the boxes at the time when it was built
+    std::vector<std::uint8_t> has_changed_;  // 1 for each box that has changed since then
+    std::vector<std::uint32_t> changed_;     // indices of those boxes
 };
 
 }  // namespace ricochet

@@ -1,5 +1,6 @@
 /// \file
-/// Private to the exact response: how much a surface turns at most under what moves along several surfaces.
+/// Private to the exact response: the largest curvature of a surface under a particle that moves along several
+/// surfaces.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 
 namespace ricochet {
 
-/// Two unit vectors that span the directions along all surfaces of these normals, of which there is at least one. Two
-/// surfaces leave one direction; the second vector is zero then.
+/// Returns two unit vectors that span the directions along all surfaces with these normals, at least one. Two surfaces
+/// leave one direction, and the second vector is zero.
 [[nodiscard]] inline std::array<Vec3, 2> directions_along(std::span<const Vec3> normals) {
     for (const Vec3& normal : normals) {
         const Vec3 line = cross(normals.front(), normal);
@@ -22,8 +23,8 @@ namespace ricochet {
     return tangent_frame(normals.front());
 }
 
-/// The longest vector that a linear map makes of a unit vector along the surfaces of these normals: the largest
-/// singular value of the map. 0 without normals.
+/// Returns the largest length of a linear map's value for unit vectors along the surfaces with these normals: the
+/// largest singular value of the map. 0 without normals.
 template <class Map>
 [[nodiscard]] double largest_curvature(std::span<const Vec3> normals, const Map& map) {
     if (normals.empty()) return 0.0;

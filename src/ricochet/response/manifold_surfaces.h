@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the surfaces that hold a particle on its way along them, and the seams between them.
+/// Private to the exact response: the surfaces that hold a particle on a path along them, and the seams between them.
 #pragma once
 
 #include <cstddef>
@@ -13,37 +13,39 @@
 
 namespace ricochet {
 
-/// The surfaces of the contact manifold and, at a seam or where one of them bends, all others that are touched at its
-/// points: the triangles around an edge or a vertex.
+/// The surfaces of the contact manifold. At a seam, or if one of them is curved, also all others that touch the
+/// particle at the same contact points: the triangles around an edge or a vertex.
 class ManifoldSurfaces {
 public:
     /// Both must outlive it.
     ManifoldSurfaces(const ParticleStep& step, ContactManifold& manifold) : step_(step), manifold_(manifold) {}
 
-    /// Looks for them where the particle is, for a way that begins there.
+    /// Finds the surfaces at the particle's position, for a path that begins there.
     void find();
-    /// For paths along them.
+    /// Returns the surfaces along which a path leads.
     [[nodiscard]] std::span<const SurfaceId> all() const { return surfaces_; }
 
-    /// True where, on the way, another part of a surface is touched, or another surface where this one is.
+    /// Returns true if the particle, at a position on the path, touches another part of a surface than at the start.
+    /// Also true for another surface in its place.
     [[nodiscard]] bool touches_next_piece(const Vec3& position) const;
-    /// True where it overlaps surfaces that are touched beside those of the manifold.
+    /// Returns true if the particle overlaps one of the touched surfaces that are not in the manifold.
     [[nodiscard]] bool overlaps(const Vec3& position) const;
-    /// True where a face of the manifold has ended.
+    /// Returns true if the particle is beyond the end of one of the manifold's faces.
     [[nodiscard]] bool has_left_face(const Vec3& position) const;
 
-    /// A contact at the end of the way. With what continues the surfaces, such as the next triangle of a plane, it is
-    /// none, and that holds the particle too from now on; in an impact on something else they take part.
+    /// Handles a contact at the end of a path. A contact with a continuation of the surfaces, such as the next triangle
+    /// of a plane, is removed. The continuation then holds the particle, too. In an impact on any other surface, the
+    /// manifold's surfaces take part.
     void meet(std::optional<Contact>& contact);
-    /// Adds the surfaces of the manifold to an impact on something else, where they are touched. They and their
-    /// continuations are marked as holding the particle.
+    /// Adds the manifold's touched surfaces to an impact on another surface. These and their continuations are marked
+    /// as supports.
     void join_impact(Contact& contact) const;
-    /// The manifold as it is touched now, of what was touched before; and at a point on the way where another part
-    /// began.
+    /// Updates the manifold to the surfaces that still touch the particle. Adds those at a turning point of the path,
+    /// where another part of a surface begins.
     void touch_again(const Vec3& turning_point);
 
 private:
-    /// A surface that is touched at a contact point of the manifold.
+    /// A surface that touches the particle at a contact point of the manifold.
     struct Beside {
         SurfaceId surface = 0;
         std::size_t point = 0;
@@ -61,13 +63,13 @@ private:
     ContactManifold& manifold_;
     std::vector<SurfaceId> surfaces_;
     std::vector<Beside> beside_;
-    bool crosses_seam_ = false;  // the next way begins there
-    int seams_ = 0;              // at which the step has met the next part of a surface
+    bool crosses_seam_ = false;  // the next path begins at a seam
+    int seams_ = 0;              // parts of surfaces that the step has reached over a seam
 };
 
-/// Between its ends the path of a point, or of a sphere that is small next to what it touches, can be behind curved
-/// surfaces by the cubic's error, where it would be stopped: lifts it, by 3 s (1 - s) of a height over the path's
-/// duration, where the error is 16 s^2 (1 - s)^2.
+/// Lifts the middle of a path that lies behind curved surfaces, where the particle would be stopped. By the cubic's
+/// error, this happens to the path of a point, or of a sphere that is small next to the surface. Over the path's
+/// duration, the lift is 4 s (1 - s) of a height, and the error 16 s^2 (1 - s)^2.
 void lift_middle(const SurfaceGeometry& geometry, const ContactManifold& manifold, double radius, Path& path);
 
 }  // namespace ricochet

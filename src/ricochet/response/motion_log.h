@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: the parts of a step, recorded one after the other.
+/// Private to the exact response: records the parts of a step, one after another.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace ricochet {
 
-/// Records what has become of a particle since the last call, where that is asked for (MoveScratch::record_motions).
-/// What it is given must outlive it.
+/// Records the motion of a particle since the last call, if MoveScratch::record_motions is set. All arguments must
+/// outlive it.
 class MotionLog {
 public:
     MotionLog(const ResponseRules& rules, const MovingParticle& particle, MoveScratch& scratch,
@@ -26,21 +26,22 @@ public:
         last_ = motion(), time_ = particle.state.time;
     }
 
-    /// It has flown.
+    /// Records a flight.
     void note_flight() {
         if (!scratch_.record_motions) return;
         if (particle_.state.time > time_) scratch_.supported_by.clear();
         add(MotionPart::Kind::flight, {}, true);
     }
-    /// It has met surfaces, or has been let go by them, or nothing has happened; without time.
+    /// Records a change of motion without duration: surfaces have been hit or have released the particle. Records
+    /// nothing if the motion has not changed.
     void note_impact() {
         if (!scratch_.record_motions) return;
         const bool is_driven = std::exchange(scratch_.driven, false) || reference_.is_moving();
         if (motion() == last_) return;
         add(is_driven ? MotionPart::Kind::driven : MotionPart::Kind::impact, {}, true);
     }
-    /// Surfaces have held it while it has followed the beginning of a path. force: over the mass at the begin, m/s^2;
-    /// acts: false where forces have been in the velocity from the step's start on. supported_by: those surfaces.
+    /// Records contact along the beginning of a path. force: over the mass at the start, in m/s^2. acts: false if the
+    /// velocity contains the forces since the start of the step. supported_by: the surfaces that held the particle.
     void note_contact(const Vec3& force, const Path& path, bool acts, std::span<const SurfaceId> supported_by) {
         if (!acts) return note_stay(supported_by);
         if (!scratch_.record_motions) return;
@@ -53,7 +54,7 @@ public:
         const Vec3 half_way = is_steady ? force : rules_.forces.acceleration(middle);
         add_contact({force, half_way, rules_.forces.acceleration(particle_.state)}, is_steady, supported_by);
     }
-    /// Surfaces have held it, and no force has done work.
+    /// Records contact in which no force has done work.
     void note_stay(std::span<const SurfaceId> supported_by) {
         if (scratch_.record_motions) add_contact({}, true, supported_by);
     }

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: what moves leave behind, besides the particle.
+/// Private to the responses: lists of the records that moves produce.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace ricochet {
 
-/// What moves have left behind, besides the particle: the lists of MoveScratch.
+/// Records that moves produce: the lists of MoveScratch.
 struct MoveLists {
     std::vector<SurfaceHit> hits;
     std::vector<ContactRecord> records;
@@ -18,12 +18,12 @@ struct MoveLists {
     std::vector<ColliderLoad> loads;
 
     void clear();
-    /// Takes what a move has left in the scratch memory.
+    /// Moves the records of a move out of the scratch memory.
     void take(MoveScratch& scratch);
     void append(const MoveLists& more);
 };
 
-/// Adds what a further move of the same particle has come to.
+/// Adds the outcome of a further move of the same particle.
 void add(MoveOutcome& sum, const MoveOutcome& next);
 
 }  // namespace ricochet

@@ -9,11 +9,12 @@ namespace {
 /// of an arc.
 constexpr double kCurvatureStep = 1e-4;
 
-/// Smallest scale of that step for a sphere away from rims, as a part of the shape's size. Over shorter steps the
+/// Smallest scale of that step for a sphere away from rims, as a fraction of the shape's size. Over shorter steps the
 /// normals of a large shape differ only by rounding. Local: a step of a numerical derivative.
 constexpr double kSmallestScale = 1e-3;
 
-/// Derivative of a shape's normal: by the difference of its normals along the motion. A side goes on beyond its rim.
+/// Returns the derivative of a shape's normal, in 1/s, as a difference of its normals along the motion. A side is
+/// continued beyond its rim.
 Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId surface,
                        const CollisionWorld::Nearest& nearest, const Vec3& position, const Vec3& velocity) {
     const double speed = length(velocity);
@@ -23,7 +24,7 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
     if (radius > 0.0) scale = std::clamp(radius, nearest.rim ? 0.0 : kSmallestScale * size, size);
     const double step = kCurvatureStep * scale;
     const Vec3 heading = velocity / speed;
-    // A tangent soon comes out on the other side of a surface that bends towards it.
+    // A tangent soon gets to the other side of a surface that bends towards it.
     const auto normal_at = [&](double distance) {
         const Vec3 beside = position + distance * heading;
         const Vec3 there =
@@ -32,7 +33,7 @@ Vec3 shape_normal_rate(const SurfaceGeometry& geometry, double radius, SurfaceId
     };
     const Vec3 ahead = normal_at(step) - nearest.normal;
     const Vec3 behind = nearest.normal - normal_at(-step);
-    // Next to a rim one of the two reaches over it.
+    // Next to a rim, one of the two positions lies beyond it.
     const double difference = length(ahead - behind);
     if (difference > 0.5 * std::max(length(ahead), length(behind))) {
         return (speed / step) * (length(ahead) < length(behind) ? ahead : behind);

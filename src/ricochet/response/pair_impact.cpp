@@ -19,18 +19,18 @@ void apply_impulse(PairBody& a, PairBody& b, const Vec3& normal, const Vec3& imp
     b.spin -= (b.inverse_inertia * b.radius) * moment;
 }
 
-/// m/s, of the second's surface relative to the first's where they touch.
+/// Returns the velocity of the second surface relative to the first at their contact, in m/s.
 Vec3 relative_velocity(const PairBody& a, const PairBody& b, const Vec3& normal) {
     return (b.velocity - a.velocity) - cross(a.radius * a.spin + b.radius * b.spin, normal);
 }
 
-/// The rebound, m/s, that a contact of this approach has at least.
+/// Returns the smallest rebound speed of a contact with this approach, in m/s.
 double rebound_of(const PairMaterial& law, double resting_speed, double approach) {
     const double rebound = law.restitution * approach;
     return law.restitution < 1.0 && rebound < resting_speed ? 0.0 : rebound;
 }
 
-/// Stops turning relative to each other, as far as the moment reaches.
+/// Stops the relative rotation across the normal, as far as the rolling moment suffices.
 void resist_rolling(const PairMaterial& law, PairBody& a, PairBody& b, const Vec3& normal, double impulse) {
     if (law.rolling_friction == 0.0) return;
     const Vec3 relative = b.spin - a.spin;
@@ -45,7 +45,7 @@ void resist_rolling(const PairMaterial& law, PairBody& a, PairBody& b, const Vec
     b.spin -= b.inverse_inertia * given;
 }
 
-/// N s on the second, along the surface.
+/// Returns the friction impulse on the second body, in N s, along the surface.
 Vec3 friction_of(const PairMaterial& law, const PairBody& a, const PairBody& b, const Vec3& normal, double impulse,
                  double share) {
     if (law.friction == 0.0) return {};
@@ -81,7 +81,7 @@ public:
             iterate();
         }
         bodies_ = before;
-        // All of them from the same state, so that their order does not matter.
+        // All frictions start from the same state, so the order of contacts does not matter.
         for (std::size_t k = 0; k < contacts_.size(); ++k) {
             PairContact& contact = contacts_[k];
             const double share = 1.0 / static_cast<double>(std::max(counts[contact.first], counts[contact.second]));
@@ -116,8 +116,8 @@ private:
         return counts;
     }
 
-    /// So much of it that it gives no energy to what the normal impulses leave: what they and the frictions of other
-    /// contacts do to a slip may turn it round.
+    /// Returns the fraction of all frictions that adds no energy to the state after the normal impulses. Other contacts
+    /// may reverse a slip, so full friction could add energy.
     [[nodiscard]] double part_of_friction() {
         const std::vector<PairBody> before = bodies_;
         const auto power = [&] {
@@ -145,7 +145,7 @@ private:
         return curvature > 0.0 ? std::clamp(-2.0 * at_first / curvature, 0.0, 1.0) : 1.0;
     }
 
-    /// N s more along the normal for the rebound.
+    /// Returns the additional normal impulse for the rebound, in N s.
     [[nodiscard]] double needed(std::size_t k) {
         const PairContact& contact = contacts_[k];
         const double inverse = effective_inverse_mass(first(contact), second(contact));
@@ -174,7 +174,7 @@ private:
     std::vector<PairBody>& bodies_;
     std::span<PairContact> contacts_;
     std::vector<double> impulses_;  // N s, along the normals
-    std::vector<double> targets_;   // m/s, of parting
+    std::vector<double> targets_;   // m/s, separation speeds
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: what spheres of any two materials do to each other, by the numbers of the materials.
+/// Private to the responses: contacts between spheres of any two materials, by the numbers of the materials.
 #pragma once
 
 #include <cmath>
@@ -16,25 +16,25 @@
 
 namespace ricochet {
 
-/// A value of kMaterialAttribute that is the number of one of so many materials.
+/// Returns true if a value of kMaterialAttribute is the number of one of the given count of materials.
 [[nodiscard]] inline bool is_material(const AttributeValue& value, std::size_t materials) {
     return value.x >= 0.0 && value.x < static_cast<double>(materials) && value.x == std::floor(value.x);
 }
 
-/// Returns the contact of the pairs of spheres that have none of their own.
+/// Returns the contact of all pairs of spheres without a contact of their own.
 [[nodiscard]] inline PairMaterial material_of_all(const PairContactSettings& settings) {
     return {settings.restitution, settings.friction, settings.rolling_friction};
 }
 
-/// The numbers of materials by their names; pairs of a thousand of them look up a million.
+/// Numbers of materials by name, for fast look-ups: the pairs of a thousand materials need a million.
 class MaterialNumbers {
 public:
-    /// The names must outlive it. Of equal ones the first counts.
+    /// The names must outlive it. If names are equal, the first one counts.
     explicit MaterialNumbers(const std::vector<std::string>& names) {
         for (std::size_t k = 0; k < names.size(); ++k) numbers_.try_emplace(names[k], k);
     }
 
-    /// Nothing for a name that is none of them.
+    /// Returns std::nullopt for an unknown name.
     [[nodiscard]] std::optional<std::size_t> of(std::string_view name) const {
         const auto found = numbers_.find(name);
         return found == numbers_.end() ? std::nullopt : std::optional(found->second);
@@ -44,17 +44,17 @@ private:
     std::map<std::string_view, std::size_t> numbers_;
 };
 
-/// A table for all pairs; of one entry where there are no materials.
+/// Contacts of all pairs of materials. The table has one entry if there are no materials.
 class PairMaterials {
 public:
-    /// Names of pairs that are none of the materials are InputErrors.
+    /// Throws an InputError if a pair has a name that is no material.
     explicit PairMaterials(const PairContactSettings& settings);
 
-    /// Of two numbers below count().
+    /// Returns the contact of two materials. Both numbers must be below count().
     [[nodiscard]] const PairMaterial& of(std::uint32_t a, std::uint32_t b) const { return table_[a * count_ + b]; }
-    /// Materials; 1 where all spheres are of one.
+    /// Returns the number of materials; 1 if all spheres have the same one.
     [[nodiscard]] std::size_t count() const { return count_; }
-    /// Some impacts take energy along the normal.
+    /// Returns true if some impacts lose energy along the normal.
     [[nodiscard]] bool loses_energy() const { return loses_energy_; }
 
 private:

@@ -1,5 +1,5 @@
 /// \file
-/// Impacts of spheres on each other as they are recorded.
+/// Records of impacts between spheres.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace ricochet {
 
-/// An impact of two spheres. Of several at the same time that share spheres each is one, all with the velocities before
-/// and after them together.
+/// An impact of two spheres. If several impacts at the same time share spheres, each one has a record, with the
+/// velocities before and after all of them.
 struct PairImpactRecord {
     double time = 0.0;         ///< s
     std::uint64_t first = 0;   ///< id, the lower one
     std::uint64_t second = 0;  ///< id
-    Vec3 position;             ///< m, of the first's centre
+    Vec3 position;             ///< m, centre of the first
     Vec3 normal;               ///< unit, from the second to the first
     Vec3 velocity_before;      ///< m/s, of the first
     Vec3 velocity_after;       ///< m/s, of the first

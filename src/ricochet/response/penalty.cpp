@@ -20,20 +20,20 @@ constexpr int kHalvings = 64;
 /// Damping ratio above that of every restitution in use. Local: the upper end of a bracket.
 constexpr double kLargestRatio = 16.0;
 
-/// Effective mass of slip at a sphere's contact, over its mass: 1 / (1 + 5 / 2), because half of the slip is spin. A
-/// mathematical constant.
+/// Effective mass of slip at a sphere's contact, over its mass: 1 / (1 + 5 / 2), because an impulse changes the slip by
+/// the spin 5/2 times as much as by the velocity. A mathematical constant.
 constexpr double kSlipShare = 2.0 / 7.0;
 
 /// Moment of inertia of a solid sphere over m r^2. A mathematical constant.
 constexpr double kSphereInertia = 0.4;
 
-/// The brake on a motion v: `most` against it, growing linearly up to the speed, and never more than `stopping` times
-/// v.
+/// Returns the brake on a motion v: a vector of length `most` against v. It grows linearly with v up to the speed, and
+/// is never more than `stopping` times v.
 Vec3 brake(const Vec3& v, double most, double speed, double stopping) {
     return -std::min(most / std::max(length(v), speed), stopping) * v;
 }
 
-/// What contacts do to a particle.
+/// Accelerations of a particle by forces and contacts.
 struct ContactForces {
     Vec3 acceleration;       ///< m/s^2
     Vec3 spin_acceleration;  ///< rad/s^2
@@ -45,7 +45,7 @@ struct BodyState {
     Motion motion;
 };
 
-/// Lists of one thread.
+/// Scratch lists of one thread.
 struct PenaltyScratch {
     SideScratch sides;
     std::vector<Proximity> stage;
@@ -67,7 +67,7 @@ public:
           stage_(lists.stage) {}
 
     MoveOutcome run(double duration);
-    /// What contacts add to a pull where it is now.
+    /// Returns a pull, in m/s^2, with the accelerations of the contacts at the present position.
     [[nodiscard]] SupportedAcceleration supported_acceleration(const Vec3& pull);
 
 private:
@@ -91,11 +91,11 @@ private:
     ImpactResolver impact_;
     SideWatch watch_;
     double substep_ = 0.0;           // s
-    std::vector<Proximity>& seen_;   // contacts where the particle is
-    std::vector<Proximity>& stage_;  // contacts where the integrator tries
+    std::vector<Proximity>& seen_;   // contacts at the particle's position
+    std::vector<Proximity>& stage_;  // contacts at a stage of the integrator
 };
 
-/// Sub-step after sub-step with whatever pushes it.
+/// Takes all sub-steps.
 MoveOutcome PenaltyMover::run(double duration) {
     const double h = duration / rules_.settings.penalty.substeps;
     substep_ = h;
@@ -122,7 +122,7 @@ SupportedAcceleration PenaltyMover::supported_acceleration(const Vec3& pull) {
     return {pull + (contact_force.acceleration - rules_.forces.acceleration(state_)), contact_force.spin_acceleration};
 }
 
-/// One wide query instead of one a sub-step, as long as nothing is near.
+/// Makes one wide query instead of one per sub-step. It suffices while nothing is near.
 void PenaltyMover::survey(double duration) {
     const double pull = length(rules_.forces.acceleration(state_));
     const double distance = duration * (length(state_.velocity) + duration * pull);
@@ -131,7 +131,7 @@ void PenaltyMover::survey(double duration) {
         watch_.survey(state_.position, distance + substep_distance + state_.radius);
 }
 
-/// False when the state leaves what can be followed; it is left as it was then.
+/// Takes one sub-step. Returns false if the state cannot be followed; it is then unchanged.
 bool PenaltyMover::substep(double h) {
     const Vec3 from = state_.position;
     auto next = stepped({from, {state_.velocity, particle_.spin}}, h);
@@ -170,8 +170,8 @@ std::optional<BodyState> PenaltyMover::stepped(const BodyState& now, double h) {
     return BodyState{now.position + h * (drifts_first ? now.motion.velocity : motion.velocity), motion};
 }
 
-/// Velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982); forces that depend on
-/// the velocity see the one predicted with the first force.
+/// Takes a step of velocity Verlet (L. Verlet 1967; velocity form: W. C. Swope et al., J. Chem. Phys. 76, 1982). Forces
+/// that depend on the velocity use the one predicted with the first force.
 std::optional<BodyState> PenaltyMover::verlet(const BodyState& now, double h) {
     const ContactForces k0 = force_at(now, state_.time, seen_, 0.5 * h);
     BodyState next;
@@ -242,7 +242,8 @@ PenaltyContact PenaltyMover::contact_of(const Proximity& view, const Vec3& cente
     return contact;
 }
 
-/// What the forces and the contacts do to a body. weight: s of it that the integrator takes, for the surfaces' totals.
+/// Returns the accelerations by forces and contacts. weight: duration, in s, for which the integrator uses them, for
+/// the surfaces' totals.
 ContactForces PenaltyMover::force_at(const BodyState& body, double time, const std::vector<Proximity>& contacts,
                                      double weight) {
     ForceInput input = state_;
@@ -262,7 +263,8 @@ ContactForces PenaltyMover::force_at(const BodyState& body, double time, const s
     return contact_force;
 }
 
-/// Contacts that begin where the particle is now: counted, recorded, and answered at once by surfaces of chance.
+/// Counts and records the contacts that begin at the particle's position. Surfaces with random reflection resolve them
+/// at once.
 void PenaltyMover::begin_contacts() {
     for (const Proximity& view : seen_) {
         if (watch_.memory(view.collider).touching) continue;
@@ -274,7 +276,7 @@ void PenaltyMover::begin_contacts() {
         } else {
             impact_.ledger().record_impulse(view.surface, Vec3{}, true);
             impact_.ledger().log_contact(surface, state_.velocity);
-            // The contact's impulse is yet to come; what arrives along the normal stands for it.
+            // The contact has no impulse yet. The approach along the normal is used instead.
             impact_.shatter_by(std::min(0.0, dot(state_.velocity, view.normal)) * view.normal);
             if (outcome_.is_absorbed()) return;
         }
@@ -283,7 +285,7 @@ void PenaltyMover::begin_contacts() {
 
 }  // namespace
 
-// With zeta = sin(phi) the published formula's cases, below and above critical damping, are one analytic function:
+// With zeta = sin(phi), the published formula's cases below and above critical damping are one analytic function:
 // ln e = -2 zeta arccos(zeta) / sqrt(1 - zeta^2).
 double restitution_of_damping(double ratio) {
     const double rest = 1.0 - ratio * ratio;

@@ -8,20 +8,25 @@
 /// begin to pull. Stability: T. Belytschko, W. K. Liu, B. Moran, "Nonlinear Finite Elements for Continua and
 /// Structures", section 6.2 (central differences with lagging damping).
 ///
-/// The force on a particle at depth d: max(0, k d + c d') along the normal, and friction mu N against the slip, which
-/// grows linearly up to PenaltySettings::friction_speed. What brakes is at most what stops its motion in one sub-step.
-/// It is part of the acceleration that the scene's integrator steps with, in sub-steps; `ballistic`, which holds forces
-/// over a step, becomes velocity Verlet, the same parabola wherever the force is constant. Surfaces that absorb or
-/// reflect diffusely answer the beginning of a contact at once.
+/// The force on a particle at depth d is max(0, k d + c d') along the normal. Friction mu N acts against the slip; it
+/// grows linearly up to PenaltySettings::friction_speed. No braking force exceeds the one that stops its motion in one
+/// sub-step. The force is part of the acceleration that the scene's integrator uses, in sub-steps. The integrator
+/// `ballistic`, which holds forces over a step, becomes velocity Verlet: the same parabola under a constant force.
+/// Surfaces that absorb or reflect diffusely resolve the beginning of a contact at once.
 ///
-/// What it does not guarantee: that particles stay out (the depth under weight is m g / k, in an impact v sqrt(m / k));
-/// that a wall holds that is thinner than twice that (what is deeper than its middle is pushed out on the far side) or
-/// than a sub-step is long; that restitution falls below a threshold (Material::restitution_threshold is not used);
-/// restitution and friction to better than the first order in sub-steps per contact, which without a stiffness do not
-/// grow as steps shrink; stability beyond longest_stable_step(), for `midpoint`, which feeds springs without damping,
-/// none at all; rest without creep on slopes (friction needs slip, and shakes where a sub-step's friction, mu g h,
-/// exceeds 2 friction_speed); restitution below kMinPenaltyRestitution; that walls of one collider are felt together
-/// (each collider pushes from its nearest point only).
+/// Limits:
+/// - Particles enter surfaces. The depth under weight is m g / k, in an impact v sqrt(m / k).
+/// - A wall may not hold if it is thinner than twice that depth, or than a sub-step is long. A particle deeper than its
+///   middle is pushed out on the far side.
+/// - Restitution does not fall below a threshold: Material::restitution_threshold is not used.
+/// - Restitution and friction are of first order in the sub-steps per contact. Without a stiffness, that number does
+///   not grow as steps shrink.
+/// - Sub-steps beyond longest_stable_step() are not stable. `midpoint` is never stable, since it feeds springs without
+///   damping.
+/// - Particles at rest on slopes creep, because friction needs slip. Friction oscillates if that of a sub-step, mu g h,
+///   exceeds 2 friction_speed.
+/// - Restitution is at least kMinPenaltyRestitution.
+/// - Walls of one collider do not act together. Each collider pushes only from its nearest point.
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"
@@ -36,21 +41,22 @@ struct ContactSpring {
     double damping = 0.0;    ///< kg/s
 };
 
-/// Damping over 2 sqrt(k m) with which a contact that ends when the force would begin to pull has the restitution e
-/// (Schwager and Poeschel 2007). e in [0, 1]; below kMinPenaltyRestitution that value counts.
+/// Returns the damping over 2 sqrt(k m) of a contact with the restitution e. The contact ends when its force would
+/// begin to pull (Schwager and Poeschel 2007). e in [0, 1]; values below kMinPenaltyRestitution count as that.
 [[nodiscard]] double damping_ratio(double restitution);
-/// The inverse: restitution of a damping ratio >= 0.
+/// Returns the restitution of a damping ratio >= 0: the inverse of damping_ratio().
 [[nodiscard]] double restitution_of_damping(double ratio);
 
-/// Spring constant, N/m, for a particle of mass m, kg: the scene's, or that of PenaltySettings::contact_steps.
+/// Returns the spring constant, in N/m, for a particle of mass m, in kg: the scene's, or the one of
+/// PenaltySettings::contact_steps.
 [[nodiscard]] double contact_stiffness(const ResponseSettings& settings, double mass);
-/// The spring and damper of a particle of mass m, kg, on a surface of restitution e.
+/// Returns the spring and damper for a particle of mass m, in kg, on a surface of restitution e.
 [[nodiscard]] ContactSpring contact_spring(const ResponseSettings& settings, double mass, double restitution);
 
-/// Longest stable sub-step, s, of a spring and damper on mass m: 2 / omega (sqrt(1 + zeta^2) - zeta).
+/// Returns the longest stable sub-step, in s, of a spring and damper on mass m: 2 / omega (sqrt(1 + zeta^2) - zeta).
 [[nodiscard]] double longest_stable_step(const ContactSpring& spring, double mass);
 
-/// A contact as a force sees it.
+/// A contact as input of its force.
 struct PenaltyContact {
     double depth = 0.0;  ///< m, > 0
     Vec3 normal;         ///< unit, outwards
@@ -60,25 +66,25 @@ struct PenaltyContact {
     double rolling_friction = 0.0;
     double spinning_friction = 0.0;  ///< m
     double mass = 1.0;               ///< kg, of the particle
-    Vec3 velocity{};                 ///< m/s, of the surface's own material, see SurfaceMotion
-    Vec3 angular_velocity{};         ///< rad/s, of the same
+    Vec3 velocity{};                 ///< m/s, of the surface's material, see SurfaceMotion
+    Vec3 angular_velocity{};         ///< rad/s, of the surface's material
 };
 
-/// Force of one contact, N, on the particle.
+/// Force of one contact on the particle, in N.
 struct ContactForce {
     Vec3 force;
     Vec3 torque;  ///< N m
 };
 
-/// Where the laws are cut off.
+/// Limits of the force laws.
 struct ContactLimits {
     double friction_speed = 1e-3;  ///< m/s, up to which friction grows linearly
-    double step = 0.0;             ///< s that the integrator takes the force for
+    double step = 0.0;             ///< s, duration for which the integrator uses the force
 };
 
-/// max(0, k d + c d') along the normal, friction against the slip, moments against rolling and spinning. What brakes
-/// (the damper, friction, the moments) is at most what stops its motion within the step: an explicit step would turn it
-/// round, and make energy.
+/// Returns the force of a contact: max(0, k d + c d') along the normal, friction against the slip, moments against
+/// rolling and spinning. The braking parts (the damper, friction, the moments) are at most as large as needed to stop
+/// their motion within the step. Without this limit, an explicit step would reverse the motion and add energy.
 [[nodiscard]] ContactForce force_of(const PenaltyContact& contact, const Motion& motion, double radius,
                                     const ContactLimits& limits);
 
@@ -96,7 +102,7 @@ public:
 
 private:
     SignedDistance distance_;
-    std::vector<double> damping_ratios_;  ///< one a material
+    std::vector<double> damping_ratios_;  ///< one per material
 };
 
 }  // namespace ricochet

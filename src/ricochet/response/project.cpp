@@ -29,7 +29,8 @@ public:
         contacts_.clear();
     }
 
-    /// What it touches where it is: nearer than twice the offset that it is put at.
+    /// Returns the surfaces that the particle touches at its position: nearer than twice the offset at which it is
+    /// placed.
     std::span<const ContactSurface> touched() {
         watch_.find_near(from_, from_, 2.0 * offset(), seen_);
         for (const Proximity& view : seen_) touch(view);
@@ -49,7 +50,7 @@ public:
     }
 
 private:
-    /// The whole step, in as many flights as the method cuts it into. False when the state cannot be followed.
+    /// Flies the whole step, in as many flights as the method needs. Returns false if the state cannot be followed.
     bool fly(double duration) {
         const double end = state_.time + duration;
         Flight flight;
@@ -77,8 +78,8 @@ private:
         return std::max(rules_.settings.project.offset, contact_offset(state_.position));
     }
 
-    /// Out of what the position is behind, the deepest first, again and again; where that does not end, back to the
-    /// start.
+    /// Returns a position that is behind no surface. Each pass projects out of the deepest surface. Returns the
+    /// position at the start if kMaxProjections passes do not suffice.
     Vec3 put_back(Vec3 position) {
         for (int pass = 0; pass < kMaxProjections; ++pass) {
             watch_.find_near(position, from_, offset(), seen_);
@@ -103,7 +104,7 @@ private:
         if (!known) contacts_.push_back({view.surface, view.normal, true});
     }
 
-    /// The velocity check and the bounce.
+    /// Checks whether the particle approaches the surfaces, and resolves the impact.
     void resolve(double duration) {
         const bool approaches = std::any_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
             return dot(state_.velocity, contact.normal) < 0.0;
@@ -118,8 +119,8 @@ private:
         if (state_.velocity == Vec3{} && !outcome_.is_absorbed()) outcome_.end = MoveEnd::resting;
     }
 
-    /// True when what would rebound is slower than the resting speed. What the forces have added in this step is not
-    /// the speed of an impact.
+    /// Returns true if all rebounds are slower than the resting speed. The velocity that forces have added in this step
+    /// does not count as impact speed.
     [[nodiscard]] bool is_slow(double duration) const {
         return std::all_of(contacts_.begin(), contacts_.end(), [&](const ContactSurface& contact) {
             const double towards = -dot(state_.velocity, contact.normal);
@@ -140,7 +141,7 @@ private:
     ImpactResolver impact_;
     SideWatch watch_;
     Vec3 from_;
-    Vec3 pull_;  // the forces' acceleration at the start
+    Vec3 pull_;  // acceleration by forces at the start
     std::vector<Proximity>& seen_;
     std::vector<ContactSurface>& contacts_;
 };

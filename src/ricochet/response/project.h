@@ -1,21 +1,24 @@
 /// \file
-/// The project response: take the whole step, test where it has led to, put a particle that is behind a surface back
-/// onto it and turn its velocity ("pretend that we are in contact now").
+/// The project response. It takes the whole step and then tests the new position. A particle behind a surface is put
+/// back onto it, and its velocity is reversed ("pretend that we are in contact now").
 ///
 /// Source: A. Witkin, D. Baraff, "Physically Based Modeling", SIGGRAPH 2001 course notes, part C (a particle within an
 /// epsilon of a plane that moves towards it is in contact; velocity check); projection onto the surface as in T.
 /// Jakobsen, "Advanced character physics", GDC 2001. Sides of meshes: angle-weighted pseudonormals (signed_distance.h).
 ///
-/// A particle within ProjectSettings::offset of a surface, or behind it, is in contact. One that has come behind (a
-/// sphere: that overlaps) is moved along the shortest path to the offset above the surface. If it moves towards the
-/// surface its velocity is reflected with the material's restitution and friction. A rebound slower than the resting
-/// speed, not counting what the forces have added in this step, is none.
+/// A particle behind a surface, or within ProjectSettings::offset of it, is in contact. If it is behind (a sphere: if
+/// it overlaps), it moves along the shortest path to the offset above the surface. If it moves towards the surface, the
+/// material's restitution and friction reflect its velocity. A rebound slower than the resting speed is suppressed. The
+/// velocity that forces have added in this step does not count for that.
 ///
-/// What it does not guarantee: that a wall is noticed at all that is thinner than a step is long (what ends on the far
-/// side of a plate is projected to the far side, what ends beyond it is not seen); that an impact happens where and
-/// when it does (both are of first order in the step); energy (an elastic bounce gains m g (depth + offset), the lift);
-/// rest without creep (a particle held by friction on a slope creeps by the forces' half step squared, with the
-/// symplectic Euler step by the whole); that a corner of several colliders is solved (kMaxProjections passes).
+/// Limits:
+/// - Walls thinner than a step is long may be missed. A particle that ends on the far side of a plate is projected to
+///   the far side. A particle that ends beyond the plate is not noticed.
+/// - Position and time of an impact are of first order in the step.
+/// - An elastic bounce gains the energy m g (depth + offset) by the lift.
+/// - A particle that friction holds on a slope creeps by the forces' half step squared. With the symplectic Euler step,
+///   it creeps by the whole.
+/// - Corners of several colliders may stay unsolved after kMaxProjections passes.
 #pragma once
 
 #include "ricochet/collision/signed_distance.h"

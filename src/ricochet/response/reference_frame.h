@@ -1,5 +1,5 @@
 /// \file
-/// Private to the exact response: how a particle in contact with a body that moves is seen from the body's frame.
+/// Private to the exact response: reference frames of bodies, for particles in contact with them.
 #pragma once
 
 #include <memory>
@@ -12,12 +12,12 @@
 
 namespace ricochet {
 
-/// The frame that a particle is given in: the world, or that of a body.
+/// The frame in which a particle's motion is given: the world, or a body's.
 class ReferenceFrame {
 public:
-    /// bodies: null where nothing moves.
+    /// bodies: null if no collider moves.
     explicit ReferenceFrame(const MovingColliders* bodies) : bodies_(bodies) {}
-    /// That of a scene in which nothing moves.
+    /// Returns the world's frame in a scene in which no collider moves.
     [[nodiscard]] static const ReferenceFrame& world() {
         static const ReferenceFrame frame(nullptr);
         return frame;
@@ -26,14 +26,14 @@ public:
     [[nodiscard]] BodyId body() const { return body_; }
     [[nodiscard]] bool is_moving() const { return body_ != kWorldBody; }
     void set(BodyId body) { body_ = body; }
-    /// Only where something moves.
+    /// Only if colliders move.
     [[nodiscard]] const MovingColliders& bodies() const { return *bodies_; }
 
-    /// A motion in the frame as the world sees it at a time, s.
+    /// Transforms a motion from the frame into the world at a time, in s.
     [[nodiscard]] RecordedMotion in_world(const RecordedMotion& motion, double time) const;
-    /// The other way round.
+    /// Transforms a motion from the world into the frame at a time, in s.
     [[nodiscard]] RecordedMotion in_frame(const RecordedMotion& motion, double time) const;
-    /// A vector, such as an impulse.
+    /// Transforms a vector, such as an impulse, from the frame into the world, or from the world into the frame.
     [[nodiscard]] Vec3 direction_in_world(const Vec3& d, double time) const;
     [[nodiscard]] Vec3 direction_in_frame(const Vec3& d, double time) const;
 
@@ -42,8 +42,8 @@ private:
     BodyId body_ = kWorldBody;
 };
 
-/// The forces of a scene as they are seen from a body's frame: with those that its motion adds, and what that adds to a
-/// spin. Source: H. Goldstein, C. Poole, J. Safko, "Classical Mechanics", 3rd ed., section 4.10.
+/// The forces of a scene in a body's frame, with the inertial forces and the change of spin that the frame's motion
+/// adds. Source: H. Goldstein, C. Poole, J. Safko, "Classical Mechanics", 3rd ed., section 4.10.
 class FrameForces final : public Force {
 public:
     /// Both must outlive it.
@@ -55,7 +55,8 @@ public:
         return std::nullopt;
     }
     [[nodiscard]] bool is_steady() const override { return false; }
-    /// rad/s^2, by which a spin (relative to the frame, in its axes) changes where nothing touches the particle.
+    /// Returns the rate, in rad/s^2, at which the spin of a particle changes without contact. The spin is relative to
+    /// the frame and in its axes.
     [[nodiscard]] Vec3 spin_change(const Vec3& spin, double time) const;
 
 private:
@@ -64,7 +65,7 @@ private:
     BodyId body_;
 };
 
-/// The rules of a run as they hold in the frame of each body.
+/// The rules of a run in the frame of each body.
 class FrameRules {
 public:
     explicit FrameRules(const ResponseRules& rules);

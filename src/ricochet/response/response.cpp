@@ -41,7 +41,8 @@ void check(const ResponseSettings& settings) {
     require(settings.integrator.tolerance, kToleranceTable, "tolerance.");
 }
 
-/// What steps together, or in sub-steps of its own, cannot let each particle choose its steps.
+/// Refuses adaptive methods if particles step together, or in sub-steps: then a particle cannot choose its steps.
+/// Refuses implicit methods for sub-steps.
 void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     const bool together = kind == ResponseKind::rollback && settings.rollback.global;
     const bool is_adaptive = settings.integrator.kind == IntegratorKind::dormand_prince;
@@ -56,7 +57,7 @@ void check_integrator(ResponseKind kind, const ResponseSettings& settings) {
     }
 }
 
-/// First-order motion has integrators of its own, one response, and nothing that accelerates.
+/// Checks the rules of first-order motion. It has its own integrators, one response, and no forces.
 void check_flow(ResponseKind kind, const ResponseRules& rules) {
     if (kind != ResponseKind::exact) {
         throw InputError(
@@ -103,7 +104,7 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
     const bool is_carried = rules_.bodies != nullptr && particle.contact.count > 0 &&
                             rules_.bodies->body_of(particle.contact.surfaces[0]) != kWorldBody;
     if (is_carried) {
-        // It goes with its body, which takes what comes so late.
+        // The particle moves with its body, which takes the late correction.
         impact.ledger().record_impulse(particle.contact.surfaces[0], -corrections, false, Vec3{});
         impact.ledger().close();
         return;
@@ -114,7 +115,7 @@ void Response::apply_correction(MovingParticle& particle, const Vec3& change, do
     if (after.count > 0) {
         const Vec3 kept = duration * (after.acceleration - before.acceleration);
         const Vec3 by_surfaces = kept - change;
-        // What each gives more than before; rounding goes with the first.
+        // Records the increase of each reaction. The first surface also gets the rounding.
         Vec3 left = by_surfaces;
         for (std::size_t k = 1; k < after.count; ++k) {
             Vec3 given = duration * after.reaction[k];
@@ -139,7 +140,7 @@ void Response::first_sides(const Vec3& /*position*/, std::span<SideMemory> sides
     std::fill(sides.begin(), sides.end(), SideMemory{});
 }
 
-void Response::inherit_sides(const ChildStart& /*place*/, std::span<SideMemory> /*sides*/) const {}
+void Response::inherit_sides(const ChildStart& /*start*/, std::span<SideMemory> /*sides*/) const {}
 
 Flight first_flight(const ResponseRules& rules, const MovingParticle& particle, double duration,
                     const Integrator& integrator) {

@@ -12,14 +12,14 @@ namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// What a particle would do without the system.
+/// Next event of a particle without the rest of the system.
 struct Event {
-    double elapsed = 0.0;  ///< s it can go
-    double time = kNever;  ///< s, when it collides or its contact changes; kNever: not in this step
+    double elapsed = 0.0;  ///< s, time for which it can move
+    double time = kNever;  ///< s, time of a collision or of a change of contact; kNever: not in this step
     bool collides = false;
 };
 
-/// The classic variant, one step of the whole system.
+/// The classic variant: one step of the whole system.
 class SystemRollback {
 public:
     SystemRollback(const ResponseRules& rules, std::span<SystemParticle> particles, std::span<MoveScratch> blocks,
@@ -59,12 +59,13 @@ private:
         return p.is_out || p.outcome.is_frozen() || p.outcome.is_absorbed();
     }
 
-    /// Where the particle stands in time: a tolerance ahead of the system after a collision.
+    /// Returns the time, in s, at which the particle continues. After a collision, it may be ahead of the system by a
+    /// tolerance.
     [[nodiscard]] static double begin_of(const SystemParticle& p, double now) {
         return std::max({now, p.start, p.particle.state.time});
     }
 
-    /// How far the particle can go on from `now`, tried out on a copy.
+    /// Returns the next event of the particle after `now`, found on a copy.
     [[nodiscard]] Event next_event(SystemParticle& p, double now, MoveScratch& scratch) const {
         const double begin = begin_of(p, now);
         const double duration = p.stop - begin;
@@ -77,11 +78,12 @@ private:
         return {found.free, changes ? begin + found.free : kNever, found.blocked};
     }
 
-    /// Goes with the system to `next`, and answers what it has hit by then. A shorter step may be blocked, or a
-    /// interval of contact may end, where the longer one did not: then it goes on in pieces.
+    /// Moves a particle with the system to `next`, and resolves its collisions until then. A shorter step may be
+    /// blocked, or its contact interval may end, although the longer step was free. The particle then moves in several
+    /// pieces.
     void go(SystemParticle& p, const Event& event, double now, double next, MoveScratch& scratch) const {
         const double end = std::min(next, p.stop);
-        // What is due is done again as it was tried out, also when it takes less time than the clock can tell.
+        // A due event is repeated exactly as in its trial, even if it takes less time than the clock can resolve.
         bool needs_query = event.time <= next + (event.collides ? rules_.settings.rollback.time_tolerance : 0.0);
         for (double at = begin_of(p, now); !is_out(p) && (needs_query || at < end); needs_query = false) {
             RollbackMover mover(rules_, p.particle, scratch, p.outcome, RollbackMover::Trial::own_step);
@@ -101,7 +103,7 @@ private:
         }
     }
 
-    /// As in RollbackMover::run(): contact without progress is rest.
+    /// Ends contact without progress as rest, as RollbackMover::run() does.
     static void rest_in_pit(SystemParticle& p, RollbackMover& mover, double elapsed, double at) {
         const bool idles = mover.in_contact() && elapsed < kLeastProgress * (p.stop - p.start);
         p.idle = idles ? p.idle + 1 : 0;

@@ -11,7 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// How long an interval stays over its face, s; on curved surfaces as long as it takes to turn by a small angle.
+/// Returns the time, in s, for which an interval stays over its face. On a curved surface it is the time in which the
+/// normal turns by a small angle.
 double time_on(const ContactSurface& support, const ContactInterval& interval, const CollisionWorld& world,
                const ForceInput& state) {
     const Vec3& v = interval.motion.velocity;
@@ -29,8 +30,8 @@ double time_on(const ContactSurface& support, const ContactInterval& interval, c
         {duration, speed > 0.0 ? longest / speed : duration, pull > 0.0 ? std::sqrt(2.0 * longest / pull) : duration});
 }
 
-/// By how much the end of a path along a curved surface must be lifted to be as far off as its start; zero where the
-/// surface does not bend towards the particle.
+/// Returns the displacement that lifts the end of a path along a curved surface to the distance of its start. Zero if
+/// the surface does not bend towards the particle.
 Vec3 lift_to_surface(const ContactSurface& support, const Path& path, const CollisionWorld& world) {
     if (!is_finite(path.end)) return {};
     const CollisionWorld::Nearest here = world.nearest(support.surface, path.c[0]);
@@ -65,7 +66,7 @@ RollbackMover::RollbackMover(const ResponseRules& rules, MovingParticle& particl
     particle.contact = {};
 }
 
-/// Takes all the time that is left, goes back to what blocked it, answers, and goes on.
+/// Takes all the remaining time, goes back to the first contact, resolves it, and repeats that.
 void RollbackMover::run(double duration) {
     double remaining = duration;
     int idle = 0;
@@ -90,7 +91,7 @@ void RollbackMover::run(double duration) {
     keep_contact();
 }
 
-/// Rests for the time given: what circles into a pit gets there in infinitely many ever shorter intervals.
+/// Rests for a duration, in s. A particle that circles into a pit would need infinitely many, ever shorter intervals.
 void RollbackMover::rest(double duration) {
     pull_ = is_kicked() ? Vec3{} : rules_.forces.acceleration(state_);
     manifold_.load(pull_);
@@ -128,7 +129,7 @@ PhaseState RollbackMover::state_at(double elapsed) const {
     return ricochet::state_at(rules_.settings.integrator, rules_.forces, flight_, elapsed);
 }
 
-/// Bisection: free at one end, blocked at the other, until the bracket is as small as asked for.
+/// Brackets the time of contact by bisection, with one end free and the other one blocked, to the tolerance.
 CollisionBracket RollbackMover::bracket() {
     const double whole = flight_.path.duration;
     if (interval_ && interval_->at_rest) return {whole, false};
@@ -193,7 +194,8 @@ void RollbackMover::follow_interval(double elapsed) {
     if (turns_) turn_along();
 }
 
-/// Bounces, or stays on what it has hit when all rebounds are slow and something presses it on.
+/// Resolves the collision. The particle bounces, or stays in contact if all rebounds are slow and something presses it
+/// on.
 void RollbackMover::resolve() {
     ++outcome_.bounces;
     outcome_.end = MoveEnd::moving;
@@ -214,22 +216,23 @@ void RollbackMover::resolve() {
     }
 }
 
-/// A centre that was put exactly on a surface has no side yet: it gets the one that the normal points to.
+/// Moves a centre that lies exactly on a surface to the side of the normal. It has no side yet.
 void RollbackMover::leave_surface() {
     const Path path = line_path(state_.position, state_.velocity, flight_.path.duration);
     const ContactQueryResult found = find_first_contact(geometry_, {path, state_.radius}, scratch_.contacts);
     if (!step_off_surface(found.near, state_, scratch_)) ++outcome_.stayed;
 }
 
-/// True when every rebound is slower than the resting speed, on surfaces that can hold, and something presses it on.
+/// Returns true if all surfaces can hold the particle, all rebounds are slower than the resting speed, and something
+/// presses it on.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
-    // What is in contact already holds its part; what is left may press onto the next surface.
+    // Surfaces in contact already take their part. The rest may press onto the next surface.
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& hit : hit_) {
         const Material& material = impact_.surfaces().material_of(hit.surface);
-        // What the step's own kick put into the velocity is not the speed of an impact.
+        // The velocity from the step's own kick does not count as impact speed.
         const double approach = -dot(state_.velocity, hit.normal) - std::max(0.0, -dot(kick_velocity_, hit.normal));
         const bool can_rest = material.can_hold(rules_.settings.resting_speed);
         const double rebound = approach > 0.0 ? material.restitution_at(approach) * approach : 0.0;
@@ -240,14 +243,15 @@ bool RollbackMover::will_stay() const {
 }
 
 TouchRule RollbackMover::touch_rule() const {
-    // What rests under symplectic Euler has come down at the speed of a step's kick.
+    // Under symplectic Euler, a resting particle approaches its support with the speed of one kick.
     const bool is_kicked_down = kicks_first(rules_.settings.integrator.kind) && trial_ == Trial::same_flight;
     const double force_velocity =
         is_kicked_down ? rules_.settings.time_step * length(rules_.forces.acceleration(state_)) : 0.0;
     return rollback_touch(rules_, state_, force_velocity);
 }
 
-/// Plans an interval on what is in contact; none when nothing presses the particle on, or the surface ends here.
+/// Plans an interval on the touched surfaces. There is none if nothing presses the particle on, or the surface ends
+/// here.
 void RollbackMover::plan_contact(double duration) {
     const bool kicked = is_kicked();
     pull_ = kicked ? Vec3{} : rules_.forces.acceleration(state_);
@@ -263,7 +267,7 @@ void RollbackMover::plan_contact(double duration) {
     limit_interval();
 }
 
-/// An interval ends where its face does. One that is too short for the clock would be planned again for ever.
+/// Ends an interval at the end of its face. Drops one that is too short for the clock: it would be planned forever.
 void RollbackMover::limit_interval() {
     const ContactSurface support = manifold_[0];
     const double duration =
@@ -281,13 +285,13 @@ void RollbackMover::limit_interval() {
     const Vec3 lift = lift_to_surface(support, flight_.path, rules_.world);
     turns_ = lift != Vec3{};
     if (!turns_) return;
-    // A chord, at whose end the velocity is turned along the surface.
+    // Replaces the path by a chord, at whose end the velocity is turned along the surface.
     const Vec3 end = flight_.path.end + lift;
     flight_.path = parabola_path(state_.position, v + (end - flight_.path.end) / duration, a, duration);
     flight_.path.end = end;
 }
 
-/// After a chord the velocity is turned along the surface. Its speed is kept.
+/// Turns the velocity along the surface after a chord. Keeps the speed.
 void RollbackMover::turn_along() {
     manifold_.touch_again(touch_rule());
     const auto turned = turned_along(state_.velocity, manifold_.normals());

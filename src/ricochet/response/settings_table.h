@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: tables of materials and of the settings of responses, see core/setting.h.
+/// Private to the library: tables of materials and of response settings, see core/setting.h.
 #pragma once
 
 #include "ricochet/core/setting.h"
@@ -15,7 +15,7 @@ inline constexpr Setting<SurfaceMotion> kSurfaceMotionTable[] = {
     {"center", &SurfaceMotion::center, kCoordinate, "m", "A point on the axis, in world coordinates."},
 };
 
-/// Without the name and the motion, which has a table of its own.
+/// All members except the name and the motion, which has its own table.
 inline constexpr Setting<Material> kMaterialTable[] = {
     {"restitution", &Material::restitution, kFraction, "",
      "Rebound speed divided by approach speed, along the normal."},
@@ -34,7 +34,7 @@ inline constexpr Setting<Material> kMaterialTable[] = {
     {"absorption", &Material::absorption, kFraction, "", "Fraction of the impacts that remove the particle."},
 };
 
-/// Contact between two spheres: for PairMaterial, and for PairContactSettings, which has the same members.
+/// Contact between two spheres, for PairMaterial and PairContactSettings, which have the same members.
 template <class Struct>
 inline constexpr Setting<Struct> kSphereContactTable[] = {
     {"restitution", &Struct::restitution, kFraction, "",

@@ -6,7 +6,8 @@
 namespace ricochet {
 namespace {
 
-/// Relative margin for the rounding of distances. Local: it is far larger than needed, and the distances found decide.
+/// Relative margin for the rounding of distances. Local: it is far larger than needed, and the computed distances
+/// decide.
 constexpr double kDistanceRounding = 1e-9;
 
 }  // namespace
@@ -45,7 +46,7 @@ Proximity SideWatch::proximity(const SurfacePoint& point, const Vec3& position, 
     seen.behind = is_behind(point, position, from);
     if (point.on_rim) seen.side = 0;
     if (seen.behind) seen.normal = -point.direction;
-    // On the surface itself the direction is the surface's normal, not the particle's.
+    // On the surface itself, the direction is the surface's normal, which may not point to the particle's side.
     if (point.side == 0 && memory.side < 0) seen.normal = -point.direction;
     seen.distance = (seen.behind ? -point.distance : point.distance) - radius_;
     return seen;
@@ -62,13 +63,13 @@ void SideWatch::survey(const Vec3& position, double reach) {
 void SideWatch::find_near(const Vec3& position, const Vec3& from, double margin, std::vector<Proximity>& out) {
     out.clear();
     points_.clear();
-    // Distances are rounded: what is as far off as it may be must not be lost for that.
+    // A collider exactly at the limit must not be lost by the rounding of distances.
     const double within = (1.0 + kDistanceRounding) * (std::max(radius_ + margin, deepest()) + length(position - from));
     const bool clear = length(position - clear_center_) + within < (1.0 - kDistanceRounding) * clear_radius_;
     if (!clear) distance_.near(position, within, points_);
     for (const SurfacePoint& point : points_) {
         const Proximity seen = proximity(point, position, from);
-        // Just behind, the distance may be rounded to 0.
+        // Just behind a surface, the distance may be rounded to 0.
         if (seen.behind || seen.distance < margin) out.push_back(seen);
     }
 }

@@ -10,12 +10,12 @@
 namespace ricochet {
 namespace {
 
-/// True if neither force changes the rate of the other, see CoulombProblem.
+/// Returns true if neither force changes the rate of the other, see CoulombProblem.
 bool are_independent(const MotionVector& a, const MotionVector& b, double b_squared) {
     return std::fabs(dot(a, b)) <= kCoulombRounding * b_squared;
 }
 
-/// True if all directions of a contact and of its friction are independent.
+/// Returns true if all directions of a contact and of its friction are independent.
 bool are_independent(const CoulombContact& contact, const CoulombResistance& slip, double normal_squared) {
     const auto& [first, second] = slip.direction;
     return are_independent(first, contact.direction, normal_squared) &&

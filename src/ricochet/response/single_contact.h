@@ -1,6 +1,6 @@
 /// \file
-/// Private to the responses: closed forms of contact with a single surface. They have the bits of the general methods
-/// (CoulombProblem, along_surfaces()), which take many times longer.
+/// Private to the responses: closed forms of contact with a single surface. Their results are bitwise equal to the
+/// results of the general methods (CoulombProblem, along_surfaces()), which take many times longer.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ struct SingleContactForces {
     MotionVector change{};               ///< change of the motion by both
 };
 
-/// Solves a contact without resistance (`slip` is null), or with friction that slips along its heading: the normal
+/// Solves a contact without resistance (`slip` is null), or with friction that slips along its heading. The normal
 /// force cancels the approach, and friction is its multiple against the heading. `friction` is a factor on the bound,
-/// 0..1. Returns nothing if the directions depend on each other, or rounding leaves more than kCoulombResidual.
+/// 0..1. Returns std::nullopt if the directions depend on each other, or rounding leaves more than kCoulombResidual.
 [[nodiscard]] std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact,
                                                                       const CoulombResistance* slip, double friction);
 

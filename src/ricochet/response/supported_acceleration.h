@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: what surfaces leave of the forces on a particle whose contact lasts.
+/// Private to the responses: the acceleration of a particle in lasting contact, including the reactions of surfaces.
 #pragma once
 
 #include <span>
@@ -11,19 +11,20 @@
 
 namespace ricochet {
 
-/// By the contact that it has kept, where that is with surfaces at rest; without any: `pull` as it is.
+/// Returns the acceleration of a particle on the surfaces of its contact state. `pull` is its acceleration by the
+/// forces, in m/s^2. Returns `pull` if the particle is in no contact, or if one of the surfaces moves.
 [[nodiscard]] SupportedAcceleration acceleration_in_contact(const ResponseRules& rules, const MovingParticle& particle,
                                                             const Vec3& pull, const TouchRule& rule);
 
-/// The same by what touches it exactly.
+/// As above, with the standard rule for touching surfaces, TouchRule::at().
 [[nodiscard]] SupportedAcceleration acceleration_in_contact(const ResponseRules& rules, const MovingParticle& particle,
                                                             const Vec3& pull);
 
-/// By these surfaces.
+/// Returns the acceleration of a particle on the given surfaces.
 [[nodiscard]] SupportedAcceleration acceleration_on(const ResponseRules& rules, const MovingParticle& particle,
                                                     const Vec3& pull, std::span<const ContactSurface> surfaces);
 
-/// A particle with sides and scratch memory of its own: what holds it is found by a mover that may change both.
+/// A copy of a particle with its own sides and scratch memory. The mover that finds its supports may change both.
 struct ProbedParticle {
     explicit ProbedParticle(const MovingParticle& of) : sides(of.sides.begin(), of.sides.end()), particle(of) {
         particle.sides = sides;

@@ -7,24 +7,24 @@
 namespace ricochet {
 namespace {
 
-/// Halvings in search of the friction that adds no energy, down to the last bit. Local: it ends below the rounding of
+/// Halvings in the search for the friction that adds no energy, to the last bit. Local: it ends below the rounding of
 /// the result.
 constexpr int kHalvings = 53;
 
-/// How both yield at the contact to an impulse on the particle, N s, and its opposite on the body.
+/// Response of both sides at the contact: of the particle to an impulse, in N s, and of the body to its opposite.
 class Contact {
 public:
     Contact(const ForceInput& state, const DynamicSurface& surface)
         : state_(state), surface_(surface), where_(state.position - state.radius * surface.normal) {}
 
-    /// The change of the velocity between them, m/s.
+    /// Returns the change of the relative velocity by an impulse, in m/s.
     [[nodiscard]] Vec3 change(const Vec3& impulse) const {
         const Vec3 of_particle = impulse / state_.mass;
         Vec3 along;
         if (state_.radius > 0.0) along = 2.5 * (of_particle - dot(of_particle, surface_.normal) * surface_.normal);
         return of_particle + along + surface_.body.change_at(where_, impulse);
     }
-    /// The impulse that makes a change.
+    /// Returns the impulse that causes a change of the relative velocity, in N s.
     [[nodiscard]] Vec3 impulse_for(const Vec3& wanted) const {
         const Vec3 x = change({1, 0, 0});
         const Vec3 y = change({0, 1, 0});
@@ -38,7 +38,7 @@ private:
     Vec3 where_;
 };
 
-/// One impact, seen from the body: the impulse on the particle.
+/// One impact on a body. Its result is the impulse on the particle.
 class Impact {
 public:
     Impact(const Motion& before, const ForceInput& state, const DynamicSurface& surface)
@@ -54,9 +54,9 @@ public:
 
     [[nodiscard]] double approach() const { return approach_; }
 
-    /// Impulse on the particle, N s. Friction opposes the slip before the impact for as long as there is any. It sticks
-    /// from then on, or opposes the slip that the rest of the impulse would leave without it. Source: E. J. Routh, "The
-    /// Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on impulses.
+    /// Returns the impulse on the particle, in N s. Friction opposes the slip before the impact for as long as there is
+    /// any. It sticks from then on, or opposes the slip that the rest of the impulse would leave without it. Source: E.
+    /// J. Routh, "The Advanced Part of a Treatise on the Dynamics of a System of Rigid Bodies", chapter on impulses.
     [[nodiscard]] Vec3 impulse() const {
         if (friction_ == 0.0) return impulse_with({}, {});
         const Vec3 stop = contact_.impulse_for(wanted_ * normal_ - slip_);
@@ -73,12 +73,12 @@ public:
     }
 
 private:
-    /// The whole impulse, of which a part was given until the slip before the impact had stopped. stop: the one that
-    /// leaves no slip.
+    /// Returns the whole impulse, in N s. Its part `given` has stopped the slip before the impact. stop: the whole
+    /// impulse that leaves no slip.
     [[nodiscard]] Vec3 impulse_after(const Vec3& given, const Vec3& stop) const {
         if (is_in_cone(stop - given)) {
             if (!gains(stop)) return stop;
-            // The nearer to that the smaller the slip is.
+            // The nearer the impulse is to `stop`, the smaller the slip.
             const double pressing = dot(stop - given, normal_);
             const Vec3 supports = (stop - given) / pressing - normal_;
             return most_of(given, supports, 1.0, [](const Vec3& /*impulse*/) { return true; });
@@ -99,15 +99,16 @@ private:
         return pressing > 0.0 && length(impulse - pressing * normal_) <= friction_ * pressing;
     }
 
-    /// The impulse that turns the approach around: the part that is given, and a rest with friction as a part of its
-    /// normal component.
+    /// Returns the impulse, in N s, that reverses the approach: the part `given`, and a rest with friction as a
+    /// multiple of its normal component.
     [[nodiscard]] Vec3 impulse_with(const Vec3& given, const Vec3& friction) const {
         const Vec3 direction = normal_ + friction;
         const double left = wanted_ - dot(normal_, contact_.change(given));
         return given + (left / dot(normal_, contact_.change(direction))) * direction;
     }
 
-    /// With as much friction along a vector as lets no energy in, up to a part of the normal impulse.
+    /// Returns the impulse with the largest friction along a vector that adds no energy. `most` limits friction, as a
+    /// multiple of the normal component.
     template <class Is>
     [[nodiscard]] Vec3 most_of(const Vec3& given, const Vec3& along, double most, const Is& is_allowed) const {
         const auto is_sound = [&](double friction) {
@@ -118,7 +119,7 @@ private:
         return impulse_with(given, friction * along);
     }
 
-    /// True if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.
+    /// Returns true if an impulse adds kinetic energy beyond rounding. Sticking without losses adds exactly none.
     [[nodiscard]] bool gains(const Vec3& by) const {
         const double taken = 0.5 * dot(by, contact_.change(by));
         return dot(by, slip_ - approach_ * normal_) + taken > kEnergyRounding * taken;
@@ -128,7 +129,7 @@ private:
     Vec3 normal_;
     double friction_;
     double approach_ = 0.0;  // m/s
-    double wanted_ = 0.0;    // m/s, the change along the normal
+    double wanted_ = 0.0;    // m/s, change along the normal
     Vec3 slip_;              // m/s
 };
 

@@ -19,7 +19,7 @@ struct SweptRows {
 enum class SweepVariant {
     one_by_one,
     avx2,   ///< four rows at once; no two rows may share a body that is not fixed
-    avx512  ///< the same with twice as many registers
+    avx512  ///< four rows at once, with twice as many registers
 };
 
 /// Returns the instruction sets that this processor has, the fastest last.

@@ -43,7 +43,7 @@ struct alignas(64) ContactConstraint {
     double strictness = 1.0;    ///< square of SolverContact::exactness
     std::uint32_t rolling = 0;  ///< index of its RollingConstraint, or kNone
     ConstraintImpulse impulse;
-    ConstraintImpulse direction;  ///< change of `push` in the last sweep, its momentum step included
+    ConstraintImpulse direction;  ///< change of `impulse` in the last sweep, including its momentum step
 
     static constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 };
@@ -57,7 +57,7 @@ struct RollingConstraint {
     Vec3 wall_turning;     ///< angular velocity of the wall, in rad/s
     double inertia = 0.0;  ///< angular impulse per change of the rolling velocity, in kg m^2
     Vec3 moment;           ///< angular impulse, in N m s
-    Vec3 direction;        ///< change of `moment` in the last sweep, its momentum step included
+    Vec3 direction;        ///< change of `moment` in the last sweep, including its momentum step
 };
 
 /// Velocities, in m/s, by which contact conditions may be violated.
@@ -189,7 +189,8 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     return change;
 }
 
-/// Does the same for the rolling resistance of a row. Its change of velocity is that of the smaller sphere's surface.
+/// Relaxes the rolling resistance of a row like relax() of the row. Its change of velocity is that of the smaller
+/// sphere's surface.
 inline void relax(const ContactConstraint& row, RollingConstraint& rolling, double factor, SolverState& a,
                   SolverState& b, SweepChange& change) {
     const Vec3 step = factor * rolling.direction;

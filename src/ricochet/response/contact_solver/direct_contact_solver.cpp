@@ -88,8 +88,8 @@ bool DirectContactSolver::improve(const SolverSystem& parts, double tolerance) {
 }
 
 /// Makes the first pass. It tries the full stiffness first, which succeeds if the start is near the solution, as for
-/// spheres at rest. Otherwise the stiffness grows in stages, because stiff dampers would throw light spheres to and
-/// fro.
+/// spheres at rest. Otherwise the stiffness grows in stages, because stiff dampers would throw light spheres back and
+/// forth.
 void DirectContactSolver::begin_passes(double most_defect) {
     const double stiffest = kStiffness * heaviest_;
     const std::vector<SolverState> start(parts_.states.begin(), parts_.states.end());

@@ -15,8 +15,8 @@ namespace {
 /// Corrections of the end of a chord. Local, because the segment is certified before use.
 constexpr int kCorrections = 3;
 
-/// The same between moving surfaces and others. In a wedge each correction undoes a part of the one before. Three
-/// quarters per pass leave 1e-4. Local, because the segment is certified before use.
+/// Corrections of the end of a chord between moving surfaces and others. In a wedge, each correction undoes a part of
+/// the one before. Three quarters per pass leave 1e-4. Local, because the segment is certified before use.
 constexpr int kCorrectionsInWedge = 32;
 
 /// The move of one particle.

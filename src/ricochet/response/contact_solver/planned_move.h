@@ -1,5 +1,5 @@
 /// \file
-/// Private to the responses: moves a particle along the plan of a contact network.
+/// Private to the responses: moves a particle along the plan of a contact island.
 #pragma once
 
 #include <span>

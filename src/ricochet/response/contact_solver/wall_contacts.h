@@ -29,9 +29,9 @@ struct WallContact {
 bool find_wall_contacts(const SurfaceGeometry& geometry, const Vec3& center, double radius, double reach,
                         std::vector<WallContact>& found);
 
-/// Does the same for colliders at rest and for moving colliders that come near in a step. Gaps are those at the start
-/// of the step. Normals are those in the middle of the step, so that a point fixed to a turning surface neither
-/// approaches nor leaves it. Returns true if any surface may come within reach in the step.
+/// Appends the contacts with colliders at rest, and with moving colliders that come near in a step. Gaps are those at
+/// the start of the step. Normals are those in the middle of the step, so that a point fixed to a turning surface
+/// neither approaches nor leaves it. Returns true if any surface may come within reach in the step.
 bool find_wall_contacts(const MovingColliders& bodies, const TimeOfStep& step, const Vec3& center, double radius,
                         double reach, std::vector<WallContact>& found);
 

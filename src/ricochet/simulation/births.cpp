@@ -151,7 +151,7 @@ void StepBirths::give_ids() {
         all_[k].made->id = limits_.first_id + k;
         here_.push_back(all_[k].made);
     }
-    all_ = Wave();  // memory is wanted for the particles next
+    all_ = Wave();  // frees memory for the particles
 }
 
 }  // namespace ricochet

@@ -19,8 +19,8 @@
 
 namespace ricochet {
 
-// Steps of free flights, integrated together later. A particle that makes many of
-// them at once is fetched from memory once.
+// Steps of free flights, integrated together later. A particle that makes many of them at once is fetched from memory
+// once.
 
 /// The latest steps, and how many of them each particle has made. A particle in free flight makes none of them until it
 /// needs a query.
@@ -120,7 +120,7 @@ public:
     /// Forgets deferred steps without making them.
     void drop_deferred() { deferred_.reset(); }
 
-    // Like those of Particles.
+    // Like the functions of Particles.
     void append();
     void reserve(std::size_t more);
     void compact(const std::vector<std::uint8_t>& keep);

@@ -149,7 +149,7 @@ bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& m
     return member.impacts > 0 || !contains(plans_.box(k), member.swept);
 }
 
-/// Returns the members of islands of this round first, then those of islands that earlier rounds have joined.
+/// Returns the members of islands of this round first, then the members of islands that earlier rounds have joined.
 IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     OutOfBoundsMembers off;
     std::vector<const IslandMember*> earlier;

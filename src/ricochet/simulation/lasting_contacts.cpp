@@ -66,8 +66,8 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
-    // The memory has the impulses of spheres that are awake already, or they have ended. Contacts without an impulse
-    // have no effect.
+    // Impulses of spheres that are awake are in the memory already, or have ended. Contacts without an impulse have no
+    // effect.
     const auto has_lain = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
                is_pinned(particle);

@@ -50,12 +50,12 @@ void ActiveSet::sort_by_position(const std::vector<Vec3>& positions, const Box3&
 
 namespace {
 
-/// Particles from the prefetch of one, of its candidates and of their corners to its move.
+/// Numbers of particles between the prefetch of a particle, of its candidates and of their corners, and its move.
 constexpr std::size_t kPrefetchDistance = 6;
 constexpr std::size_t kTrianglePrefetchDistance = 4;
 constexpr std::size_t kVertexPrefetchDistance = 2;
 
-/// It flies on, in contact with nothing.
+/// Returns true if the particle flies on without contact.
 bool flies_on(const MovingParticle& moved, const MoveOutcome& outcome) {
     return moved.contact.count == 0 && moved.contact.cascade_left == 0.0 && outcome.end == MoveEnd::moving;
 }
@@ -132,8 +132,8 @@ void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, doubl
     parts_.store.particles().spin[i] = parts_.store.spin_of(i, particle);
 }
 
-/// What it touches keeps the core of a sphere in overlap as it is; in flight it grows with the distance to surfaces, as
-/// they are at the time of its position.
+/// Lets the core of a sphere in overlap grow with its distance to the surfaces, at the time of its stored position. In
+/// contact the core keeps its radius.
 void ActiveMover::grow_core(std::size_t i, double time) {
     ParticleStore& store = parts_.store;
     if (!store.cores().has(i) || store.is_fixed(i)) return;
@@ -187,7 +187,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
         parts_.schedule.leave_alone(i);
         return;
     }
-    // One that slept on walls alone has weighed on them until now.
+    // A sphere that slept on walls alone has pressed on them until now.
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
 }
@@ -247,7 +247,7 @@ std::vector<ColliderLoad> ActiveMover::preview(const ParticleRange& range, const
     return all;
 }
 
-/// False where it cannot come to a body that yields, unless something else throws it there.
+/// Returns false if the particle cannot reach a dynamic body without an impact on something else.
 bool ActiveMover::is_near_dynamic_body(const ForceInput& state, double duration) const {
     const ResponseRules& rules = parts_.response.rules();
     const double speed = length(state.velocity) + duration * length(rules.forces.acceleration(state));
@@ -259,7 +259,7 @@ bool ActiveMover::is_near_dynamic_body(const ForceInput& state, double duration)
     return std::any_of(near.begin(), near.end(), [&](BodyId body) { return rules.bodies->is_dynamic(body); });
 }
 
-// The part of the step in which it lives.
+// Returns the part of the step in which the particle lives.
 TimeSpan ActiveMover::life_in(std::size_t i, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
     return {std::max(step.begin, particles.birth_time[i]),
@@ -370,8 +370,8 @@ void ActiveMover::record_lists(std::span<const SurfaceHit> hits, std::span<const
     record.contact_records.insert(record.contact_records.end(), contacts.begin(), contacts.end());
 }
 
-// Neighbours in space lie anywhere in memory. What load() and store() use first, then the candidates, then their
-// corners.
+// Prefetches in three stages, because neighbours in space are scattered in memory: the data that load() and store()
+// use, then the candidates, then their corners.
 void ActiveMover::prefetch(std::span<const std::uint32_t> active, std::size_t k) const {
     if (k + kPrefetchDistance < active.size()) prefetch(active[k + kPrefetchDistance]);
     if (k + kTrianglePrefetchDistance < active.size()) prefetch_triangles(active[k + kTrianglePrefetchDistance]);

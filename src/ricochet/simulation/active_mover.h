@@ -28,7 +28,7 @@ class SleepingIslands;
 /// Particles per unit of parallel work.
 inline constexpr std::size_t kParticleBlock = 256;
 
-/// Blocks that so many particles make.
+/// Returns the number of blocks for a number of particles.
 inline constexpr std::size_t blocks_of(std::size_t particles) {
     return (particles + kParticleBlock - 1) / kParticleBlock;
 }
@@ -47,7 +47,7 @@ struct ParticleRange {
 class ActiveSet {
 public:
     ActiveSet() = default;
-    /// sizes: of the blocks. The particles are to be filled in, see block().
+    /// sizes: sizes of the blocks. The particles must be filled in, see block().
     explicit ActiveSet(std::vector<std::size_t> sizes);
 
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
@@ -59,15 +59,16 @@ public:
         return std::span(particles_).subspan(begin_of(k), ends_[k] - begin_of(k));
     }
 
-    /// Cuts the list into blocks of kParticleBlock: no more of them than there is work, since what they count is added
-    /// up by one thread.
+    /// Cuts the list into blocks of kParticleBlock. There are no more blocks than needed, because one thread adds up
+    /// their counts.
     void cut_evenly();
-    /// Puts the list in the order of a space-filling curve in the box, so that particles that follow each other query
-    /// the same triangles. Deterministic.
+    /// Sorts the list along a space-filling curve in the box, so that consecutive particles query the same triangles.
+    /// Deterministic.
     void sort_by_position(const std::vector<Vec3>& positions, const Box3& box);
-    /// True when that saves more than it costs: the set is a thin selection of all particles, so that its order in
-    /// memory is of no use, and the caches hold only a part of the triangles. Ordering most of the particles fetches
-    /// them from memory at random: that cost debris 40 % (docs/decisions/2026-11-23-what-pays.md).
+    /// Returns true if sorting saves more than it costs. The set must be a small part of all particles, because
+    /// otherwise their order in memory is already good. The mesh must be too large for the caches. Sorting most of the
+    /// particles fetches them from memory at random, which made debris 40 % slower
+    /// (docs/decisions/2026-11-23-what-pays.md).
     [[nodiscard]] bool is_worth_sorting(std::size_t all_particles, std::size_t triangles) const;
 
 private:
@@ -77,86 +78,88 @@ private:
     std::vector<std::size_t> ends_;  // of the blocks
 };
 
-/// What moving particles takes and changes. All must outlive the mover.
+/// Parts of the simulation that the mover uses and changes. All must outlive the mover.
 struct MoverParts {
     ParticleStore& store;
     QuerySchedule& schedule;
     RunRecorder& recorder;
     const Response& response;
     CoupledMotion& coupled;
-    const Offspring* offspring;            ///< null where no particles spawn others
+    const Offspring* offspring;            ///< null if no particles spawn others
     RunCheck* check;                       ///< null without options.verify
-    const FrictionMeter* meter = nullptr;  ///< null where surfaces do not heat
+    const FrictionMeter* meter = nullptr;  ///< null if surfaces do not heat
 };
 
-/// Hands particles to the response and takes over what comes out: their state, what is known of their next query, and
-/// the records of their block.
+/// Moves particles by the response. Stores their new states, the forecasts of their next queries, and the records of
+/// their blocks.
 class ActiveMover {
 public:
     explicit ActiveMover(const MoverParts& parts) : parts_(parts) {}
 
-    /// To be called at the begin of a step that bodies which impulses move, or coupled motion, may cut into parts:
-    /// impacts count in all of them together.
+    /// Must be called at the start of a step that dynamic bodies or coupled motion may divide into substeps. The
+    /// bounces of all its substeps count together.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
-    /// Moves every particle of the set for itself, by all threads; one record a block of the set.
+    /// Moves every particle of the set alone, on all threads. Writes one record per block of the set.
     void move(const ActiveSet& active, const TimeSpan& step, std::vector<BlockRecord>& blocks);
-    /// The path of a particle that others lead, for a part of the step, and what they do to it where it leaves that.
+    /// Path of a particle in a cloud for a substep, and the action of the others on it after it leaves that path.
     struct Lead {
         const Flight& flight;
         const Coupling& pull;
     };
-    /// Moves one particle in a part of the step, as it is led where `lead` says how.
+    /// Moves one particle in a substep. lead: null for a particle that does not follow others.
     void move_one(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                   const Lead* lead = nullptr);
-    /// Gives a led particle a change of velocity, m/s, at a time, s, as if it had been a part of the forces in the
-    /// `duration` seconds before it; surfaces that hold it take their part.
+    /// Gives a particle in a cloud a velocity change, in m/s, at a time, in s. It acts as if it had been part of the
+    /// forces in the `duration` seconds before. Surfaces that support the particle take their part.
     void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
                                MoveScratch& scratch);
-    /// Hands over what particles have done since prepare().
+    /// Records the hits, loads and contacts since prepare().
     void record_lists(const MoveScratch& scratch, BlockRecord& record);
-    /// Whose particles move() leaves alone; it must outlive the mover.
+    /// Sets the clouds. move() skips the particles that follow a parent. Must outlive the mover.
     void set_clouds(const CloudMotion* clouds) { clouds_ = clouds; }
 
-    /// Moves the particles of the range as one system that goes back together: see rollback.h.
+    /// Moves the particles of the range as one system with a common rollback, see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
     // For particles that act on each other.
 
-    /// What forces that accelerate particle i by `pull` at a time, s, leave it in the contact that it is in, m/s^2.
+    /// Returns the acceleration, in m/s^2, that is left of `pull` at a time, in s, in the present contact of particle
+    /// i. `pull` is the acceleration by forces.
     [[nodiscard]] Vec3 supported_acceleration(std::size_t i, double time, const Vec3& pull);
-    /// Gives particles in contact what they are owed at the end of a part of the step.
+    /// Applies velocity corrections to particles in contact at the end of a substep.
     void apply_correction(std::span<const CoupledMotion::VelocityCorrection> corrections, const TimeSpan& part,
                           std::vector<BlockRecord>& blocks);
 
-    // For spheres that meet each other, which are moved together.
+    // For spheres that touch each other, which are moved together.
 
-    /// Makes a new member a particle as it sets out. False where it does not live in the step.
+    /// Loads a particle into a new member at the start of its life in the step. Returns false if the particle does not
+    /// live in the step.
     [[nodiscard]] bool set_out(std::size_t i, const TimeSpan& step, IslandMember& member);
-    /// Takes over where it has gone and what it has done.
+    /// Stores the final state and the records of a member.
     void write_back(IslandMember& member, const TimeSpan& step, BlockRecord& record);
     /// Prefetches the data of a particle that set_out() and write_back() use.
     void prefetch(std::size_t i) const {
         parts_.store.prefetch(i);
         parts_.schedule.prefetch(i);
     }
-    /// Scratch memory that records what the run asks for.
+    /// Clears scratch memory and selects its records, as the run requires.
     void prepare(MoveScratch& scratch) const;
 
-    /// What the particles of the range would do to bodies that impulses move, if the step were made: nothing is
-    /// changed.
+    /// Returns the loads of the particles of the range on dynamic bodies, as if the step were made. Changes nothing.
     [[nodiscard]] std::vector<ColliderLoad> preview(const ParticleRange& range, const TimeSpan& step);
 
-    /// Adds to the totals of surfaces the impulse of a sleeping particle's weight since it was last moved, until a
-    /// time, s; or (sign -1) takes exactly that away again. Returns how many impulses were too large for the totals. Of
-    /// different particles from several threads.
+    /// Adds to the totals of surfaces the impulse of a sleeping particle's weight from its last move until a time, in
+    /// s. sign -1 subtracts exactly the same. Returns the number of impulses that were too large for the totals.
+    /// Several threads may call it for different particles.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);
-    /// Whose sleepers' weights are theirs; it must outlive the mover.
+    /// Sets the sleeping islands, which compute the weights of their sleepers. Must outlive the mover.
     void set_sleeping_islands(const SleepingIslands* sleeping_islands) { sleeping_islands_ = sleeping_islands; }
-    /// A sphere that has slept on others takes part from a time on, s. Before the pile has forgotten it.
+    /// Wakes a sphere that has slept on others, from a time on, in s. Must be called before the sleeping islands forget
+    /// it.
     void wake(std::size_t i, double time);
-    /// Shows the verifier, where there is one, that it has stayed where it is in a step.
+    /// Tells the verifier, if there is one, that a particle has kept its position in a step.
     void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
 
 private:
@@ -171,13 +174,13 @@ private:
                       std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
-    /// What surfaces and other spheres have given a particle in a move.
+    /// Impulses of surfaces and other spheres on a particle in a move.
     struct MoveImpulses {
         std::span<const SurfaceHit> hits{};
-        Vec3 by_surfaces{};  ///< N s, besides the hits
+        Vec3 by_surfaces{};  ///< N s, in addition to the hits
         Vec3 by_spheres{};   ///< m/s
     };
-    /// is_pulled: others lead it, so that it neither sleeps nor flies by what is known of forces.
+    /// is_pulled: true for a particle in a cloud. It does not sleep, and gets no forecast of free flight.
     void write_back(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                     const MoveImpulses& impulses, BlockRecord& record, bool is_pulled = false);
     [[nodiscard]] RunawayCause runaway_cause(std::size_t i, const MoveImpulses& impulses) const;
@@ -190,7 +193,7 @@ private:
     MoverParts parts_;
     const SleepingIslands* sleeping_islands_ = nullptr;
     const CloudMotion* clouds_ = nullptr;
-    std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); of those behind its end nothing
+    std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
 };
 
 }  // namespace ricochet

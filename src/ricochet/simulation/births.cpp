@@ -12,11 +12,13 @@
 namespace ricochet {
 namespace {
 
-/// Births that a thread makes at a time: some hundred microseconds.
+/// Births that a thread makes at a time, in some hundred microseconds.
 constexpr std::size_t kBirthBlock = 64;
-/// Births that are taken off the schedule at a time: more need memory for those that are refused, fewer need talk.
+/// Births that are taken off the schedule at a time. More need memory for the refused ones, fewer need more
+/// communication.
 constexpr std::uint64_t kMostInWave = std::uint64_t{1} << 20U;
-/// So many births that may be refused are made by every rank for itself sooner than what is refused is told.
+/// Most births in a wave that every rank makes for itself if they may be refused. For so few this is faster than
+/// communicating the refusals.
 constexpr std::size_t kFewBirths = 16;
 
 bool makes_spheres(const Emitter& emitter) {
@@ -52,8 +54,8 @@ bool StepBirths::make() {
     return true;
 }
 
-// Of an emitter no more than there is room for, so that of all that are made hardly one is made for nothing; alone, one
-// more than fits shows that too many are born, before there are so many.
+// Takes at most as many births of an emitter as there is room for, so that few are made in vain. Without other ranks a
+// wave ends with the first birth that does not fit into memory, so that make() can report it early.
 StepBirths::Wave StepBirths::next_wave() {
     const bool may_end = share_.is_alone() && limits_.fitting < limits_.room;
     const std::uint64_t most = may_end ? std::min(kMostInWave, limits_.fitting + 1 - made_here_) : kMostInWave;
@@ -100,7 +102,8 @@ void StepBirths::make(Wave& wave) {
     for (const Entry& entry : wave) ++made_of_[entry.emitter];
 }
 
-// Where most are refused, or live elsewhere, they take no memory until the step ends.
+// Keeps the accepted births of this rank until the step ends. If they are fewer than half of the births made, frees the
+// memory of the others.
 void StepBirths::keep_local(Wave& wave, std::span<const std::size_t> mine, std::vector<std::optional<Particle>>& made) {
     std::vector<std::size_t> here;
     for (std::size_t j = 0; j < mine.size(); ++j) {
@@ -124,7 +127,8 @@ void StepBirths::make_by_threads(const Wave& wave, std::span<const std::size_t> 
     });
 }
 
-// One that finds no room begins again, and comes by itself to where it has been.
+// Tests births against those before them. A refused one is made again from its first draw. It repeats the refused
+// position and continues from there.
 void StepBirths::look_among(const Wave& wave, std::span<const std::size_t> mine,
                             std::vector<std::optional<Particle>>& made) const {
     const BirthTest both = [this](const Particle& particle) {
@@ -147,7 +151,7 @@ void StepBirths::give_ids() {
         all_[k].made->id = limits_.first_id + k;
         here_.push_back(all_[k].made);
     }
-    all_ = Wave();  // memory is wanted for the particles next
+    all_ = Wave();  // frees memory for the particles
 }
 
 }  // namespace ricochet

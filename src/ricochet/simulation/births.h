@@ -1,10 +1,10 @@
 /// \file
 /// Private to the simulation: the births of a step by emitters, made by all threads and by all ranks.
 ///
-/// What a birth is depends on nobody but its emitter and its number there, so any thread and any rank can make it. What
-/// all must know is which births there are: their ids are given in the order of (time, emitter, number), and one that
-/// is refused takes none. Each rank takes all of them off the schedule, which is cheap, and makes its part; those that
-/// surfaces refuse are told to all.
+/// A birth depends only on its emitter and its number there, so any thread and any rank can make it. All ranks must
+/// know which births there are: ids are given in the order of (time, emitter, number), and a refused birth gets none.
+/// Each rank takes all births off the schedule, which is cheap, and makes its part. Births that surfaces refuse are
+/// communicated to all ranks.
 #pragma once
 
 #include <cstdint>
@@ -17,20 +17,20 @@
 
 namespace ricochet {
 
-/// What decides whether a birth takes place. Empty: nothing refuses it.
+/// Tests that decide whether a birth takes place. Empty functions refuse nothing.
 struct BirthTests {
-    BirthTest alone;  ///< of one by itself: pure, from any thread; refuses no point
-    /// Of one that has passed, among those that were born before it: it takes note of what it lets pass. One emitter
-    /// after the other, by one thread. Not where ranks share the run.
+    BirthTest alone;  ///< tests a birth by itself; pure, called from any thread; never refuses a point
+    /// Tests a birth that has passed `alone` against the births before it, and remembers the accepted ones. Called by
+    /// one thread, for one emitter after the other. Not used if ranks share the run.
     BirthTest among;
 };
 
-/// Where births of a step end.
+/// Limits of the births of a step.
 struct BirthLimits {
-    double end = 0.0;            ///< s, of the step
-    std::uint64_t room = 0;      ///< that may live, on all ranks
-    std::uint64_t fitting = 0;   ///< that the memory of this process holds
-    std::uint64_t first_id = 0;  ///< of the first
+    double end = 0.0;            ///< end of the step, in s
+    std::uint64_t room = 0;      ///< particles that may still be added, on all ranks
+    std::uint64_t fitting = 0;   ///< particles that still fit into the memory of this process
+    std::uint64_t first_id = 0;  ///< id of the first birth
 };
 
 /// The births of a step.
@@ -41,13 +41,13 @@ public:
     StepBirths(const StepBirths&) = delete;
     StepBirths& operator=(const StepBirths&) = delete;
 
-    /// Makes them. All ranks call it. False where more are born here than fit: the schedules have gone on then, and
-    /// nobody has been given an id.
+    /// Makes the births. All ranks call it. Returns false if more particles are born here than fit. The schedules have
+    /// then advanced, and no ids have been given.
     [[nodiscard]] bool make();
 
-    /// Those that live here, with their ids, ascending.
+    /// Returns the births of this rank with their ids, ascending.
     [[nodiscard]] std::span<Particle* const> here() const { return here_; }
-    /// On all ranks:
+    /// Counts on all ranks.
     [[nodiscard]] std::uint64_t count() const { return count_; }
     [[nodiscard]] std::uint64_t refused_by_overlap() const { return refused_by_overlap_; }
     [[nodiscard]] std::uint64_t refused_by_population() const { return refused_by_population_; }
@@ -76,8 +76,8 @@ private:
     const BirthTests& tests_;
     const RankShare& share_;
     Wave all_;                                                // in the order of waves
-    std::vector<std::vector<std::optional<Particle>>> made_;  // by this rank, wave by wave
-    std::vector<std::uint64_t> made_of_;                      // by emitter, on all ranks
+    std::vector<std::vector<std::optional<Particle>>> made_;  // by this rank, in a list per wave
+    std::vector<std::uint64_t> made_of_;                      // per emitter, on all ranks
     std::uint64_t made_here_ = 0;
     std::uint64_t taken_ = 0;  // births off the schedule, on all ranks
     std::vector<Particle*> here_;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: whether anything is in the way to where a particle is born.
+/// Private to the simulation: tests whether a surface lies between a particle and the position of its birth.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace ricochet {
 
-/// Exact: no surface intersects the closed segment.
+/// Returns true if no surface intersects the closed segment. Exact.
 [[nodiscard]] inline bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from,
                                    const Vec3& to) {
     const SurfaceGeometry geometry(world, scratch.plane_cache);
@@ -19,7 +19,7 @@ namespace ricochet {
     return !found.contact && found.near.is_free(from, to);
 }
 
-/// The same among colliders that move in frames, as they stand at a time, s; bodies: null where there are none.
+/// Also tests the colliders in moving frames, with their poses at a time, in s. bodies: null if there are none.
 [[nodiscard]] inline bool is_clear_at(const CollisionWorld& world, const MovingColliders* bodies, double time,
                                       const Vec3& from, const Vec3& to) {
     ContactScratch scratch;

@@ -37,8 +37,8 @@ bool ContactIslands::begins_as_contact_island(const std::vector<IslandMember>& m
                                           [](const IslandMember& member) { return member.moving.id; });
 }
 
-/// A plan has one restitution for all that is connected, so that what loses nothing is planned by no method before it
-/// crowds.
+/// A plan has a single restitution for all connected contacts. Islands without energy loss are therefore planned only
+/// if their impacts become too many, with every method.
 ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& members) const {
     ImpactLimit limit;
     if (!parts_.may_be_contact_island()) return limit;
@@ -51,7 +51,7 @@ ImpactLimit ContactIslands::impacts_before(const std::vector<IslandMember>& memb
     return limit;
 }
 
-/// Islands in parallel have one each.
+/// Returns spare memory, or new memory if there is none. Islands in parallel have one each.
 std::unique_ptr<ContactIslands::Work> ContactIslands::acquire_work() {
     const std::lock_guard lock(spare_mutex_);
     if (spare_.empty()) return std::make_unique<Work>(parts_.response.rules(), parts_.materials);
@@ -80,14 +80,14 @@ void ContactIslands::find_pairs(std::span<const IslandMember> members, Work& wor
     work.near.find(members, work.boxes);
 }
 
-/// Again, where some reach farther; by their numbers, ascending.
+/// Finds pairs again after some members have a larger reach. changed: their numbers, ascending.
 void ContactIslands::find_pairs(Work& work, std::span<const std::uint32_t> changed) {
     for (const std::uint32_t i : changed) work.boxes[i] = box_within_reach(work.members[i]);
     work.near.update(work.boxes, changed);
 }
 
-/// What is near something that goes far may be pushed by it: then the first plan is the last one. Those that reach
-/// farther by that, ascending.
+/// Enlarges the reach of members near others with a large reach, because those may push them. The first plan is then
+/// usually the last. Returns the changed members, ascending.
 std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     struct Sphere {
         double radius;
@@ -98,7 +98,7 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     spheres.reserve(work.members.size());
     for (const ContactIslandMember& member : work.members) spheres.push_back({member.radius, member.reach, 0.0});
     const auto collect = [&](Sphere& sphere, const Sphere& by) {
-        // A large sphere looks farther about it than it goes, which is no push for small ones.
+        // The reach of a large sphere includes a margin in proportion to its radius, which pushes no small spheres.
         const bool is_large = by.radius > kLargeSphere * sphere.radius;
         const double beside = is_large ? kNetworkReach * (by.radius - sphere.radius) : 0.0;
         sphere.loaded = std::max(sphere.loaded, kExpectedPush * (by.reach - beside));
@@ -116,7 +116,7 @@ std::vector<std::uint32_t> ContactIslands::expect_reactions(Work& work) {
     return changed;
 }
 
-/// Again where a sphere is pushed farther than its contacts have been looked for.
+/// Plans the island. Repeats the plan if a sphere is pushed beyond its search distance for contacts.
 SolverReport ContactIslands::plan(std::span<const IslandMember> members, Work& work, double duration) const {
     MoveScratch scratch;
     find_pairs(members, work);

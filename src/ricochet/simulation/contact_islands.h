@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: islands of spheres in which contacts last, or in which impact would follow impact. They
-/// are planned together, by the problem of all their contacts (ContactIsland), and moved each for itself.
+/// Private to the simulation: islands of spheres with lasting contacts or with too many impacts. They are planned
+/// together, as one problem of all their contacts (ContactIsland). Then each member moves alone.
 #pragma once
 
 #include <array>
@@ -23,17 +23,17 @@ public:
     /// contacts must outlive it.
     ContactIslands(const PairParts& parts, const LastingContacts& contacts) : parts_(parts), contacts_(contacts) {}
 
-    /// An island that is dense before anything has been tried: where spheres pressed on each other in the last step
-    /// they still do.
+    /// Returns true if two members pressed on each other in the last step. The island is then a contact island from the
+    /// start, because they still do.
     [[nodiscard]] bool begins_as_contact_island(const std::vector<IslandMember>& members) const;
-    /// Beyond these an island that does not begin so is dense: spheres that meet alone in a step do so at their exact
-    /// time with every method.
+    /// Returns the numbers of impacts beyond which an event-driven island becomes a contact island. With every method,
+    /// two spheres that meet only each other in a step do so at their exact time.
     [[nodiscard]] ImpactLimit impacts_before(const std::vector<IslandMember>& members) const;
-    /// Moves the members of an island to the step's end. Several threads may run different ones.
+    /// Moves the members of an island to the end of the step. Several threads may run different islands.
     [[nodiscard]] ContactIslandTrace run(std::vector<IslandMember>& members, const TimeSpan& step);
 
 private:
-    /// What planning an island takes, kept for the next one.
+    /// Memory for planning an island, kept for the next one.
     struct Work {
         Work(const ResponseRules& rules, const PairMaterials& materials) : island(rules, materials) {}
         ContactIsland island;

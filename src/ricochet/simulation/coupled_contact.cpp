@@ -1,5 +1,5 @@
-// Particles that act on each other and meet something: what is planned with, what becomes of the plan, and what they
-// are owed.
+// Coupled particles that meet surfaces or spheres: planning with their contacts, deviations from the plan, and velocity
+// corrections.
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -11,8 +11,8 @@
 namespace ricochet {
 namespace {
 
-/// Responses that do not say what a particle has flown are taken to have led it smoothly from where it was to where it
-/// is.
+/// Records the flown path of a response that does not report it. It is assumed to be smooth between the start and the
+/// end.
 void note_flown(const Flight& plan, const MovingParticle& moved, std::vector<FlownPiece>& flown) {
     if (!flown.empty()) return;
     const ForceInput& from = plan.start;
@@ -28,14 +28,14 @@ bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<co
 
 }  // namespace
 
-/// N s, that surfaces have given a particle.
+/// Returns the sum of the impulses of surfaces on a particle, in N s.
 Vec3 ActiveMover::velocity_change_by(std::span<const SurfaceHit> hits) {
     Vec3 sum;
     for (const SurfaceHit& hit : hits) sum -= hit.impulse;
     return sum;
 }
 
-/// pushed: N s, that surfaces have given it.
+/// velocity_change: impulse of surfaces on the particle, in N s.
 void ActiveMover::record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                    std::vector<FlownPiece>& flown, const Vec3& velocity_change) {
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;

@@ -16,7 +16,7 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// An energy, J, that rounding explains: all springs stretched by a part of their length that no one asks about.
+/// Returns an energy, in J, that rounding explains: all springs are stretched by a negligible part of their length.
 double negligible_energy(const SpringNetwork& island) {
     double sum = 0.0;
     for (const Spring& spring : island.springs()) {
@@ -38,14 +38,14 @@ constexpr double kWorthCutting = 0.5;
 /// Halvings in a row without improvement after which no more are tried. Local, because the best prediction is used.
 constexpr int kMostVainCuts = 2;
 
-/// How closely a step is solved.
+/// Tolerances of the solution of a step.
 struct Closeness {
     double tolerance;              ///< of Newton's method
     double smallest_inverse_mass;  ///< of friction, see PlannedContacts::find()
 };
-/// Before it is known what surfaces hold: friction that yields more is found in fewer iterations.
+/// Before the supports are known. Friction with a larger yield is found in fewer iterations.
 constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
-/// After it. What yields ten times as much was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
+/// After that. Ten times this yield was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
 constexpr Closeness kClose{kNewtonTolerance, kFrictionYield};
 
 double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities) {
@@ -56,7 +56,7 @@ double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> veloci
     });
 }
 
-/// m, by which members are foreseen elsewhere than surfaces, as they are found, leave them.
+/// Returns the displacements of members under the supports found for a step, minus the predicted ones, in m.
 std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportConstraints> found) {
     std::vector<Vec3> missed(found.size());
     for (std::size_t k = 0; k < found.size(); ++k) {
@@ -65,7 +65,7 @@ std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportCo
     return missed;
 }
 
-/// J, by which springs are stretched by that.
+/// Returns the energy, in J, by which these differences stretch springs.
 double residual_energy(const ParticleSystem& system, const SystemStep& step, std::span<const Vec3> missed) {
     double sum = 0.0;
     for (const ParticleSystem::Bond& bond : system.bonds()) {
@@ -77,7 +77,7 @@ double residual_energy(const ParticleSystem& system, const SystemStep& step, std
     return sum;
 }
 
-/// What a solver of the user's own has made of a state that was sound.
+/// Throws RunError if a custom solver has returned numbers that are not finite.
 void require_solved(const ParticleSystem& system, const SystemStep& step) {
     for (std::size_t k = 0; k < system.size(); ++k) {
         if (is_finite(step.positions[k]) && is_finite(step.velocities[k])) continue;
@@ -123,8 +123,8 @@ std::vector<std::uint32_t> CoupledMotion::members_of(const Particles& particles,
     return members;
 }
 
-/// What holds a member at the start of the step is expected to go on with that: others would feel it fall through what
-/// it lies on, and the plan could not rest.
+/// Returns the accelerations by which contacts support members at the start of the step. They are expected to last.
+/// Otherwise other members would feel a supported member fall through its support, and the plan could not rest.
 std::vector<Vec3> CoupledMotion::expected_reactions(const Particles& particles,
                                                     const ContactAcceleration& contact_acceleration) const {
     const std::vector<Vec3>& x = system_.positions();
@@ -173,7 +173,8 @@ void CoupledMotion::plan_flights(const SystemStep& step) {
                                 : CoupledMember(system_, flights_, k, mutual_pull(step, k));
             flights_[k] = planned_flight(kind, system_, step, k);
             flights_[k].start.coupling = &coupled_[k];
-            // What a solver steps may be more than springs; its velocities are those of its path.
+            // A custom solver may apply more than springs, so its flights are not stepped again. Their velocities
+            // belong to the path.
             flights_[k].steps_again = flights_[k].steps_again || !(holds || solver_);
         }
     });
@@ -184,12 +185,12 @@ MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) con
     return {step.mutual_start[k], (step.mutual_end[k] - step.mutual_start[k]) / step.duration, system_.time()};
 }
 
-/// s: the clock must move, and the particles with it.
+/// Returns the shortest substep, in s. It must advance the clock and the particles.
 double CoupledMotion::shortest_part() const {
     return std::max(kShortestSubstep * terms_.time_step, 2.0 * ulp(system_.time()));
 }
 
-/// What is left when all sub-steps of a step are spent is taken at once, and counted as unsolved.
+/// Takes the rest of the step at once if all its sub-steps are used up, and counts the step as unsolved.
 SystemStep CoupledMotion::stepped(double duration) {
     if (!solver_) {
         const bool is_spent = ++substeps_ > kMostSubsteps;
@@ -213,9 +214,10 @@ SystemStep CoupledMotion::stepped(double duration) {
     return step;
 }
 
-/// The step with what surfaces hold in its equations. Where that goes on changing a part of it is taken: in half of the
-/// time springs carry less from one to the other. The next part begins with what has settled last. What a part would
-/// not make better, as on an edge from both faces of which a point is led to the other, is taken as it is, and counted.
+/// Returns a step with the supports in its equations. If they do not settle, half of the duration is tried, because
+/// springs then carry less from one member to the other. The next substep begins with the duration that settled last.
+/// If half of the duration is no better, the step is taken as it is and counts as unsolved. An example is a point on an
+/// edge, which each of the two faces leads to the other.
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
@@ -243,8 +245,8 @@ SystemStep CoupledMotion::among_surfaces(double duration, const Particles& parti
     return step;
 }
 
-/// What surfaces hold follows from the step and decides it: it is solved again until it agrees with what was foreseen
-/// for it, and closely only then.
+/// Predicts the supports in a step. They follow from the step and decide it, so the step is solved again until it
+/// agrees with the prediction. Only then is it solved closely.
 CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::span<const Vec3> spins,
                                                         const PlannedContacts& contacts) const {
     SupportPrediction best;
@@ -277,7 +279,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
         if (has_settled) residual += residual_energy(system_, step, contacts.bends(system_, step, found));
         ++worse;
         if (has_settled || best.held.empty() || residual < best.residual) {
-            const double lost = lost_in(step);  // where surfaces throw members back it can be below 0
+            const double lost = lost_in(step);  // can be negative if surfaces throw members back
             const bool is_true = has_settled && lost >= -negligible && residual <= negligible + kPredictionLoss * lost;
             best = {step, held, residual, is_true, is_close};
             worse = 0;
@@ -288,7 +290,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
     return best;
 }
 
-/// J, that a step takes away; below 0 what it makes out of nothing.
+/// Returns the energy, in J, that a step dissipates. It is negative if the step creates energy.
 double CoupledMotion::lost_in(const SystemStep& step) const {
     double work = 0.0;
     for (std::size_t k = 0; k < system_.size(); ++k) {
@@ -305,8 +307,9 @@ double CoupledMotion::energy(const std::vector<Vec3>& positions, const std::vect
     return kinetic_energy(system_, velocities) + system_.spring_energy(positions);
 }
 
-// Energy comes from the start, from forces and from walls. What a method makes beyond that is its error, and far beyond
-// it the motion is nonsense. The work of a step is taken by the trapezoid rule; its error is of the work's own size.
+// Adds up the energy that the method creates, and reports a divergence. Energy comes from the start, from forces and
+// from walls. More is an error of the method, and far more makes the motion nonsense. The work of a step is computed by
+// the trapezoid rule, whose error is of the size of the work.
 void CoupledMotion::watch_energy(const SystemStep& step) {
     const double before = energy(system_.positions(), system_.velocities());
     const double after = energy(step.positions, step.velocities);
@@ -320,7 +323,8 @@ void CoupledMotion::watch_energy(const SystemStep& step) {
         pull += 2.0 * system_.expected_reaction(k);
         if (!step.mutual_start.empty()) pull += step.mutual_start[k];
         if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
-        // The way that the velocities mean: forward Euler's, which sets out without the forces, would have no work.
+        // Uses the path that the velocities give. The path of forward Euler starts without the forces, which would do
+        // no work.
         return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
     };
     const auto sum = [&](auto&& term) {

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the particles that act on each other, planned together before each moves for itself.
+/// Private to the simulation: coupled particles, which are planned together before each moves alone.
 #pragma once
 
 #include <cstdint>
@@ -18,82 +18,86 @@
 
 namespace ricochet {
 
-/// Springs, forces between particles, or a solver of the user's own. Every step: plan() says where all members would go
-/// if no surface stopped them; then each member moves along its flight and bounces; settle() takes up what came out.
+/// Motion of particles that are coupled by springs, by forces between particles or by a custom solver. In every step
+/// plan() computes the paths of all members without surfaces. Then each member moves along its flight and bounces.
+/// correct_velocities() and settle() process the results.
 class CoupledMotion {
 public:
-    /// Of the run.
+    /// Settings of the run.
     struct Terms {
         double time_step = 0.0;       ///< s
-        bool knows_implicit = false;  ///< whether implicit_euler may be advised where the motion diverges
+        bool knows_implicit = false;  ///< true if implicit_euler may be advised if the motion diverges
     };
-    /// Throws InputError for springs that cannot be. forces must outlive it.
+    /// Throws InputError for invalid springs. forces must outlive it.
     CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesForceEntry> mutual, SystemSolver solver,
                   const ForceField& forces, const Integrator& integrator, const Terms& terms);
 
-    /// True when particles may act on each other, or a solver of the user's own steps them.
+    /// Returns true if particles may act on each other, or if a custom solver moves them.
     [[nodiscard]] bool is_active() const { return !is_disabled_ && (solver_ || !springs_.empty() || !mutual_.empty()); }
-    /// Others have the particles: what there is of springs is kept only for states that are restored.
+    /// Disables coupled motion, because another stage moves the particles. Springs are kept only for restored states.
     void disable() { is_disabled_ = true; }
-    /// What the forces on particle i, m/s^2, leave it in the contact that it is in.
+    /// Function that returns the acceleration, in m/s^2, that is left of `pull` in the present contact of particle i.
     using ContactAcceleration = std::function<Vec3(std::size_t i, const Vec3& pull)>;
 
-    /// To be called whenever particles were added or removed.
+    /// Must be called whenever particles were added or removed.
     void bind(const Particles& particles);
-    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the seconds planned. contacts:
-    /// foresees what surfaces do to them, for the implicit method; hold: for the methods that follow forces as they
-    /// vary. Throws DivergedError when what comes out is nonsense.
+    /// Plans the members' paths from a time on, for at most `duration` seconds. Returns the planned duration, in s.
+    /// contacts: predicts the supports of members for the implicit method. contact_acceleration: used by methods that
+    /// follow forces as they vary. Throws DivergedError if the motion diverges.
     double plan(const Particles& particles, double time, double duration, const PlannedContacts& contacts,
                 const ContactAcceleration& contact_acceleration);
 
-    /// between: called between the iterations of plan() with the implicit method; what it throws comes out of it.
-    /// Empty: nothing is.
+    /// Sets a function that plan() calls between the iterations of the implicit method. Its exceptions leave plan(). An
+    /// empty function ends the calls.
     void call_between(std::function<void()> between) { between_ = std::move(between); }
 
-    /// True when particle i is a member.
+    /// Returns true if particle i is a member.
     [[nodiscard]] bool holds(std::size_t i) const { return i < slots_.size() && slots_[i] != kNoSlot; }
-    /// The planned flight of a member; null for others.
+    /// Returns the planned flight of a member, or null for other particles.
     [[nodiscard]] const Flight* flight_of(std::size_t i) const { return holds(i) ? &flights_[slots_[i]] : nullptr; }
-    /// What others do to particle i after a bounce; null for those that are no members.
+    /// Returns the action of the others on particle i after a bounce, or null if i is no member.
     [[nodiscard]] const Coupling* coupling_of(std::size_t i) const {
         return holds(i) ? flights_[slots_[i]].start.coupling : nullptr;
     }
-    /// True when what surfaces are expected to give member i is in its planned flight: only others reckon with that,
-    /// it itself meets its surfaces.
+    /// Returns true if the planned flight of member i contains expected reactions of surfaces. Only the other members
+    /// use that flight. The member itself meets its surfaces.
     [[nodiscard]] bool is_planned_in_contact(std::size_t i) const {
         return holds(i) && system_.expected_reaction(slots_[i]) != Vec3{};
     }
-    /// True when what member i flies instead of its plan is to be noted.
+    /// Returns true if the deviation of member i from its plan must be recorded.
     [[nodiscard]] bool wants_deviation_of(std::size_t i) const {
         return holds(i) && flights_[slots_[i]].start.coupling->varies();
     }
-    /// Notes it, and what surfaces have given it meanwhile, m/s; several threads may do so for different members.
+    /// Records the flown path of member i, and its velocity change by surfaces, in m/s. Several threads may call it for
+    /// different members.
     void add_deviation(std::size_t i, std::span<const FlownPiece> flown, const Vec3& velocity_change) {
         deviations_.record(slots_[i], flown, velocity_change);
     }
 
-    /// The same of a member that has been planned together with what it presses on, with its forces at the start.
+    /// Records a member that was planned together with its contacts. Its forces keep their values at the start.
+    /// velocity_change: by contacts, in m/s.
     void record_planned_contact(std::size_t i, const Vec3& velocity_change) {
         deviations_.record_at_start(slots_[i], velocity_change);
     }
 
-    /// A change of velocity that is owed to a particle in contact, m/s.
+    /// Velocity correction, in m/s, of a particle in contact.
     struct VelocityCorrection {
         std::uint32_t particle = 0;
         Vec3 change;
     };
     struct Correction {
-        std::vector<VelocityCorrection> corrections;  ///< to those in contact
-        std::optional<std::uint32_t> runaway;         ///< the first particle that it has brought beyond kMaxSpeed
-        double runaway_speed = 0.0;                   ///< m/s
+        std::vector<VelocityCorrection> corrections;  ///< of members in contact
+        std::optional<std::uint32_t> runaway;  ///< first particle that a correction has accelerated beyond kMaxSpeed
+        double runaway_speed = 0.0;            ///< m/s
     };
-    /// After the move of what was planned: gives members in flight what their springs and forces have given them
-    /// beyond what they have seen of it.
+    /// Corrects the velocities of members in flight after the moves, because springs and forces follow the actual
+    /// paths. Returns the corrections of members in contact.
     [[nodiscard]] Correction correct_velocities(Particles& particles);
-    /// After the step: counts it where a part of it was not solved, and breaks what is overstretched.
+    /// Ends a step: counts it if a substep was not solved, and breaks overstretched springs.
     void settle(const Particles& particles);
 
-    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h. Call bind after it.
+    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h. bind() must be called after
+    /// it.
     template <class Archive>
     void archive(Archive& a) {
         springs_.archive(a);
@@ -106,10 +110,10 @@ public:
     }
 
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
-    /// Energy of the forces between particles, J; nothing where one of them has no potential.
+    /// Returns the energy of the forces between particles, in J, or nothing if one of them has no potential.
     [[nodiscard]] std::optional<double> mutual_energy(const Particles& particles, double time) const;
-    /// Steps whose implicit equations were not solved to the tolerance, or for which what surfaces hold in them did not
-    /// settle, or in which dormand_prince could not keep its tolerance.
+    /// Returns the number of unsolved steps. In these, implicit equations were not solved to the tolerance, the
+    /// predicted supports did not settle, or dormand_prince could not keep its tolerance.
     [[nodiscard]] std::uint64_t unsolved_steps() const { return unsolved_steps_; }
 
 private:
@@ -121,13 +125,13 @@ private:
     [[nodiscard]] double shortest_part() const;
     [[nodiscard]] std::vector<Vec3> expected_reactions(const Particles& particles,
                                                        const ContactAcceleration& contact_acceleration) const;
-    /// What surfaces hold in a step, and its solution with that.
+    /// Predicted supports of members in a step, and the solution of the step with them.
     struct SupportPrediction {
         SystemStep step;
         std::vector<SupportConstraints> held;
-        double residual = 0.0;  // J, that springs get by what was not foreseen
+        double residual = 0.0;  // J, that springs get by errors of the prediction
         bool has_settled = false;
-        bool is_close = false;  // solved to the tolerance of steps
+        bool is_close = false;  // solved to kNewtonTolerance
     };
     [[nodiscard]] SystemStep among_surfaces(double duration, const Particles& particles,
                                             const PlannedContacts& contacts);
@@ -145,18 +149,19 @@ private:
     Integrator integrator_;
     Terms terms_;
     ParticleSystem system_;
-    std::vector<std::uint32_t> slots_;    // of every particle: its number among the members
+    std::vector<std::uint32_t> slots_;    // of every particle: its index among the members, or kNoSlot
     std::vector<Flight> flights_;         // of the members
-    std::vector<CoupledMember> coupled_;  // what the flights' starts point to
+    std::vector<CoupledMember> coupled_;  // coupling of each flight
     PlanDeviations deviations_;           // of the members, from the flights
-    double first_try_ = 0.0;              // s, of an adaptive method; of the implicit one where contacts settle
+    double first_try_ =
+        0.0;  // s, of an adaptive method, or of the implicit one if supports settle only in substeps; 0: not known
     std::uint64_t unsolved_steps_ = 0;
-    bool is_unsolved_ = false;    // a part of the present step
+    bool is_unsolved_ = false;    // a substep of the present step
     std::uint32_t substeps_ = 0;  // of an adaptive method in the present step
     bool is_disabled_ = false;
     std::function<void()> between_;
 
-    // What forces and walls have put in, J, and what the method has made out of nothing.
+    // Energy from the start, from forces and from walls, and energy that the method has created, in J.
     double given_ = 0.0;
     double gained_ = 0.0;
     double energy_after_plan_ = 0.0;

@@ -16,14 +16,14 @@ namespace {
 
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
-/// True where the way goes on with another velocity than that with which it came.
+/// Returns true if a path begins with another velocity than that at the end of the path before.
 bool jumps(const BodyPath& before, const BodyPath& after) {
     const MovingPose came = before.at(before.end);
     const MovingPose goes = after.at(after.begin);
     return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
 }
 
-/// W, that a wrench (N, N m) about its moment_center() gives a body.
+/// Returns the power, in W, that a wrench (N, N m) about its moment_center() gives a body.
 double power_of(const DrivenBody& body, const Wrench& load) {
     const double turning = dot(load.moment, body.angular_velocity());
     return body.description().joint == JointKind::hinge ? turning : turning + dot(load.impulse, body.velocity());
@@ -90,7 +90,8 @@ void DrivenMotion::plan(double begin, double end, double oldest) {
     plan_paths(begin, end);
 }
 
-/// What impacts at one time, or too near to be told apart, do to a body is shared: it yields to each as to all of them.
+/// Sets factors on the bodies' inverse masses and inertias. Impacts at one time, or too near in time to be told apart,
+/// share their effect: the body reacts to each of them as to all together.
 void DrivenMotion::set_shares(std::vector<double> shares) {
     shares.resize(bodies_.size(), 1.0);
     if (shares == shares_) return;
@@ -126,7 +127,7 @@ void DrivenMotion::plan_paths(double begin, double end) {
         }
         frames_->forget_paths(frame_of_[k], oldest_);
         const double size = max_abs(next.at(end).world_from_frame.translation);
-        // A body may turn about its centre alone: a sweep past such turns would not end.
+        // A body may turn only about its own centre. Sweeps along such fast rotations would not end.
         const MotionBounds motion = next.bounds(begin, end);
         if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
             throw DivergedError(fmt::format(
@@ -144,7 +145,7 @@ void DrivenMotion::end_at(double time) {
         BodyPath path = planned(k);
         const bool is_cut = time < path.end;
         path.end = time;
-        // What a spring does is known at the ends of a part.
+        // The force of a spring is known only at the ends of a substep, so the path is planned again.
         const JointSettings& joint = bodies_[k].description().settings;
         const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
         if (is_cut && is_sprung) path = bodies_[k].plan(forces_, planned_loads_[k], path.begin, time);
@@ -161,7 +162,7 @@ std::vector<ImpactTally> DrivenMotion::no_impacts() const {
 }
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
-    // What lies on a body lands on it anew, slowly, at every change of its velocity.
+    // A resting particle lands on its body again, slowly, after every change of the body's velocity.
     std::erase_if(preview, [&](const ColliderLoad& load) {
         return !load.impact || load.approach <= slow_ || !loads_on_bodies().body_of(load);
     });
@@ -191,7 +192,8 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
                        changes_velocity(load, before[body].wrench(), tallies[body], contacts_[body]);
             });
         if (is_too_much) return end_of(before, preview[first - 1].time, preview[first].time);
-        // What waits for a body turns it by its own momentum, that its way lacks meanwhile: much, of what is heavy.
+        // A particle that waits for a body keeps its momentum but does not move along it. The resulting couple turns
+        // the body, by much if the particle is heavy.
         if (is_heavy && parts_ < kManyParts) {
             const double until = next < preview.size() ? preview[next].time : end;
             return std::min(end, soon_after_impact(preview[first].time, until));
@@ -201,27 +203,29 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
 }
 
 RestingLoad DrivenMotion::resting_load_on(std::size_t body, std::span<const ColliderLoad> preview, double until) const {
-    // What is entered at the end of what was planned may be a rounding behind it.
+    // A load at the end of the plan may be recorded later by a rounding.
     const bool is_whole = until >= planned_end();
     return loads_on_bodies().resting_load_on(body, preview, is_whole ? std::numeric_limits<double>::infinity() : until);
 }
 
-/// The part of a duration after which it ends where what lay on a body has left it: the load is that of the time
-/// before.
+/// Returns the part of a duration after which the substep must end because the resting load on a body ends. The load
+/// then covers the time before.
 double DrivenMotion::substep_with_load(std::size_t body, std::span<const ColliderLoad> preview, double begin,
                                        double duration) const {
     const double part = (loads_on_bodies().left_at(body, preview) - begin) / duration;
     return part > kLoadEndMargin && part < 1.0 - kLoadEndMargin ? part : 1.0;
 }
 
-/// m/s, that a wrench (N, N m) changes a body's velocity by in a time, s; of one that turns, at its radius of gyration.
+/// Returns the velocity change, in m/s, of a body by a wrench (N, N m) in a time, in s. For a rotation it is the change
+/// at the radius of gyration.
 double DrivenMotion::change_by(std::size_t body, const Wrench& load, double duration) const {
     const Wrench whole{duration * load.impulse, duration * load.moment};
     return std::sqrt(2.0 * bodies_[body].quadratic_energy(whole) / bodies_[body].description().mass);
 }
 
-/// Not after `end`, s. What waits for a body that it has hit turns it by its own momentum, that its way lacks
-/// meanwhile: in proportion to the time.
+/// Returns the end of the substep, in s, at most `end`, as limited by particles that wait for bodies. A particle that
+/// waits for a body after an impact keeps its momentum but does not move along it. The resulting couple turns the body
+/// in proportion to the time.
 double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double end) const {
     const double begin = planned(0).begin;
     for (std::size_t i = 0; i < preview.size(); ++i) {
@@ -239,7 +243,7 @@ double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double 
     return end;
 }
 
-/// m/s, of its velocity, that need not be planned.
+/// Returns the velocity change of a body, in m/s, that need not be planned.
 double DrivenMotion::most_change(std::size_t body) const {
     const double speed = std::sqrt(2.0 * bodies_[body].kinetic_energy() / bodies_[body].description().mass);
     return std::max(slow_, kMostBodyChange * speed);
@@ -247,7 +251,7 @@ double DrivenMotion::most_change(std::size_t body) const {
 
 DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const {
     const Wrench& planned = loads_[body];
-    // Where impacts have cut a part short, a slow impact is no force that lasts.
+    // If impacts have cut a substep short, a slow impact is no lasting force.
     const double lasts = std::max(duration, kShortestLoad * shortest_part_);
     const Wrench back{resting_load.wrench.impulse / lasts, resting_load.wrench.moment / lasts};
     const Wrench lacks{back.impulse - planned.impulse, back.moment - planned.moment};
@@ -259,8 +263,8 @@ DrivenMotion::Fit DrivenMotion::fit_of(std::size_t body, const RestingLoad& rest
     return {back, change > 1.1 * most ? most / change : 1.0, lacking <= kLoadResidual * most, lacking <= most};
 }
 
-/// True where much lies on a body, and is entered after a time, s, before which the part has to end: how much of it
-/// comes until then is not known.
+/// Returns true if the substep must end at a time, in s, while a large load rests on a body and is recorded later. The
+/// part of the load until then is not known.
 bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, double end) const {
     if (end >= planned_end()) return false;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -274,7 +278,7 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     return false;
 }
 
-/// Returns false where bodies yield otherwise than in the preview.
+/// Returns false if bodies react otherwise than in the preview.
 bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end, int round) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (round % kMostLoadRounds == 0) relaxations_[k].begin_search();
@@ -290,7 +294,7 @@ bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end
 
 bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut, int round) {
     const double begin = planned(0).begin;
-    // A part that has been cut once is not cut again at the same impact.
+    // A substep that has been cut once is not cut again at the same impact.
     double end = round == 0 || cut < begin + 0.5 * (planned_end() - begin) ? cut : planned_end();
     end = end_of_waits(preview, end);
     bool fits = begin_round(preview, end, round);
@@ -336,7 +340,8 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
     return true;
 }
 
-/// True where a planned load, with what came back from it, would give a body more than particles lose to it.
+/// Returns true if a planned load and the load of the preview together give a body more energy than particles lose to
+/// it.
 bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
     const Wrench& planned_load = planned_loads_[body];
     if (planned_load.impulse == Vec3{} && planned_load.moment == Vec3{}) return false;
@@ -361,7 +366,7 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     return gained > kMostLoadGain * (bodies_[body].kinetic_energy() + comes.kinetic_energy());
 }
 
-/// The plan stands, up to a time, s.
+/// Keeps the plan up to a time, in s.
 void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     const double duration = end - planned(0).begin;
     for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_substep(resting_load_on(k, preview, end));
@@ -369,8 +374,9 @@ void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
     limit_next_substep(duration);
 }
 
-/// Bodies that no load fits, however short the part, as where something much heavier jams them, go on as if nothing lay
-/// on them: each touch is answered with what they yield. False where there are none.
+/// Plans bodies as if nothing rested on them, if no load fits however short the substep is. An example is a body that
+/// something much heavier jams. Each impact is then resolved with the body's inverse mass. Returns false if there are
+/// no such bodies.
 bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, double begin, double end) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (!gains_energy(k, preview, end)) continue;
@@ -381,8 +387,8 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
     return has_given_up_;
 }
 
-/// What lies on a body shows by its mean alone how it changes in a part: that may be little, over a part in which it
-/// comes and goes. So parts grow by and by.
+/// Limits the next substep, so that substeps grow gradually. A resting load shows changes only by its mean, which may
+/// be small in a substep in which the load comes and goes.
 void DrivenMotion::limit_next_substep(double duration) {
     // Local: a rule of this step control, whose substeps are checked.
     constexpr double kGrowth = 2.0;
@@ -408,7 +414,7 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
-        // A search for loads that has been given up leaves others behind than those of the path.
+        // If the search for loads was given up, the loads for the next plan differ from the loads of the path.
         const Wrench& load = planned_loads_[k];
         contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
         bodies_[k].follow(path, load, wrenches[k]);
@@ -432,7 +438,7 @@ double DrivenMotion::repeat_substep(double time) {
     return paths[path].end;
 }
 
-/// Whether a body's velocity jumps where one of its paths begins. All bodies have the same parts.
+/// Sets a flag on a body's colliders if its velocity jumps at the start of a path. All bodies have the same substeps.
 void DrivenMotion::publish_velocity_jump(std::size_t body, std::size_t path) const {
     if (collider_of_[body] == kWorldBody) return;
     const std::vector<BodyPath>& paths = paths_of(body);

@@ -1,9 +1,10 @@
 /// \file
 /// Private to the simulation: the bodies that impulses of particles move.
 ///
-/// In a part of a step the bodies move as planned at its begin, as if nothing hit them; each impact is answered with
-/// what its body yields. At the part's end a body takes all impulses of it, in the order of particles. So that many of
-/// them together put no energy in, the part is cut before the first impact that would: a preview says when that is.
+/// In a substep the bodies move as planned at its start, as if nothing hit them. Each impact is resolved with the
+/// inverse mass and inertia of its body. At the end of the substep a body takes all its impulses, in the order of
+/// particles. Many impulses together could add energy, so the substep is cut before the first impact that would. A
+/// preview gives that time.
 #pragma once
 
 #include <algorithm>
@@ -27,41 +28,44 @@ namespace ricochet {
 
 class DrivenMotion {
 public:
-    /// frames and colliders: in which the bodies move; null where there are none. All must outlive it. Throws
-    /// InputError for descriptions that cannot be.
+    /// frames and colliders: contain the bodies' frames and colliders; null if there are none. All must outlive it.
+    /// Throws InputError for invalid descriptions.
     DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
                  const ForceField& forces, const ResponseSettings& settings);
 
     [[nodiscard]] bool is_active() const { return !bodies_.empty(); }
     [[nodiscard]] const std::vector<DrivenBody>& bodies() const { return bodies_; }
 
-    /// When the part that begins at a time has to end, s, at the latest; not after `end`, s.
+    /// Returns the latest end, in s, of a substep that begins at a time; at most `end`, in s.
     [[nodiscard]] double next_substep_end(double begin, double end) const;
-    /// Plans the bodies' paths over [begin, end], s, instead of what was planned last and not followed. Nothing asks
-    /// for where they were before `oldest`, s, any more.
+    /// Plans the bodies' paths over [begin, end], in s. They replace a plan that was not followed. Paths before
+    /// `oldest`, in s, are no longer needed.
     void plan(double begin, double end, double oldest);
-    /// When the planned part has to end, s, where these are the loads on the bodies in it.
+    /// Returns the time, in s, at which the planned substep must end if these are the loads on the bodies in it.
     [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
-    /// What is planned ends at an earlier time, s.
+    /// Ends the plan at an earlier time, in s.
     void end_at(double time);
-    /// Where what lies on a body is heavy beside it: plans the part once more with the load that a preview of it shows,
-    /// and ends it earlier where that load would change the body's velocity by much. cut: of cut_by(); round: how often
-    /// this part has been planned again. False when the plan fits; it ends at the cut then.
+    /// Plans the substep again if a load that rests on a body is heavy compared with it. The new plan contains the load
+    /// of a preview. It ends earlier if that load would change the body's velocity by much. cut: result of cut_by().
+    /// round: number of earlier calls for this substep. Returns false if the plan is kept, which then ends at the cut.
     [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
-    /// When what is planned ends, s.
+    /// Returns the end of the plan, in s.
     [[nodiscard]] double planned_end() const { return planned(0).end; }
-    /// The bodies go along their paths, and take the loads of that time.
+    /// Moves the bodies along their paths, and applies the loads of that time.
     void follow(std::span<const ColliderLoad> loads);
-    /// They take loads of an earlier part of the step.
+    /// Applies loads of an earlier substep of the step.
     void take(std::span<const ColliderLoad> loads);
-    /// To be called at the begin of a step: what has lain on the bodies in the last one lies on them in this one, too.
+    /// Must be called at the start of a step. The loads that rested on the bodies in the last step become planned
+    /// loads.
     void begin_step();
-    /// J, that a body takes from a load besides ColliderLoad::work: by what it yields meanwhile.
+    /// Returns the energy, in J, that a body gets from a load in addition to ColliderLoad::work, because the load
+    /// changes its velocity.
     [[nodiscard]] double became_dynamic(const ColliderLoad& load) const;
-    /// For what is moved through this step once more: the part that begins at a time. Returns when it ends, s.
+    /// Selects the substep that begins at a time, in s, for particles that move through this step later. Returns its
+    /// end, in s.
     double repeat_substep(double time);
 
-    /// Saves or restores how they move; a: an archive of core/binary_archive.h.
+    /// Saves or restores the motion of the bodies; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         for (DrivenBody& body : bodies_) body.archive(a);
@@ -77,19 +81,19 @@ public:
         a(is_planned_), a(longest_part_);
     }
 
-    /// Returns false for bodies that no run leaves behind at a time, s.
+    /// Returns false if no run leaves the bodies in this state at a time, in s.
     [[nodiscard]] bool is_sound(double time) const;
 
 private:
-    /// How the load of a plan fits to what came back from it.
+    /// Comparison of a planned load with the load that a preview of the plan gives.
     struct Fit {
-        Wrench back;           // N, N m
+        Wrench back;           // load of the preview, N, N m
         double longest = 1.0;  // part of the duration in which the load changes the body's motion by little
         bool fits = true;
-        bool is_near = true;  // so that the body's motion changes by little where it takes what was not planned
+        bool is_near = true;  // the difference of the loads changes the body's motion by little
     };
 
-    /// Of a body, as far back as may be asked for; the last is planned.
+    /// Returns the paths of a body, as far back as they may be needed. The last one is planned.
     [[nodiscard]] const std::vector<BodyPath>& paths_of(std::size_t body) const {
         return frames_->paths(frame_of_[body]);
     }
@@ -125,20 +129,20 @@ private:
     double slow_;                                                    // m/s, of impacts that end bounces
     double time_step_;                                               // s
     double shortest_part_;                                           // s
-    double longest_part_ = std::numeric_limits<double>::infinity();  // s, of the next part
-    bool was_shortened_ = false;                                     // this part, by what lies on bodies
-    bool was_cut_ = false;                // the last plan of this part, by an impact on what lies on bodies
-    bool has_given_up_ = false;           // this part: no load fits
-    std::vector<Wrench> loads_;           // of each body, N and N m: what lies on it, as it will be planned next
-    std::vector<Wrench> planned_loads_;   // with which the planned paths were planned
-    std::vector<Wrench> resting_loads_;   // of each body, N s and N m s, of contact that lasted in this step so far
-    double resting_time_ = 0.0;           // s, of this step so far
-    std::vector<BodyContacts> contacts_;  // of each body
+    double longest_part_ = std::numeric_limits<double>::infinity();  // s, of the next substep
+    bool was_shortened_ = false;                                     // this substep, because of resting loads
+    bool was_cut_ = false;                     // the last plan of this substep, by an impact while loads rest on bodies
+    bool has_given_up_ = false;                // no load fits in this substep
+    std::vector<Wrench> loads_;                // of each body, N and N m: resting load for the next plan
+    std::vector<Wrench> planned_loads_;        // in the planned paths
+    std::vector<Wrench> resting_loads_;        // of each body, N s and N m s, by lasting contact in this step so far
+    double resting_time_ = 0.0;                // s, of this step so far
+    std::vector<BodyContacts> contacts_;       // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
-    std::vector<double> shares_;               // of each body: how many times as much it yields in this part
-    double oldest_ = 0.0;                      // s, of plan()
-    int parts_ = 0;                            // of this step so far
-    bool is_planned_ = false;                  // the last of them has not been followed
+    std::vector<double> shares_;               // of each body: factor on its inverse mass and inertia in this substep
+    double oldest_ = 0.0;                      // s, see plan()
+    int parts_ = 0;                            // substeps of this step so far
+    bool is_planned_ = false;                  // the last plan has not been followed
 };
 
 }  // namespace ricochet

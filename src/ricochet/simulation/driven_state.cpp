@@ -1,4 +1,4 @@
-// Whether the state of bodies that impulses move, as a file holds it, can be one that a run has left behind.
+// Checks that the state of dynamic bodies in a file can be one that a run has left behind.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ bool is_finite(const Wrench& wrench) {
 
 bool is_unit(const Vec3& v) { return std::fabs(dot(v, v) - 1.0) <= kMostSkew; }
 
-/// True for a rotation with a shift.
+/// Returns true for a rotation with a translation.
 bool is_rigid(const AffineMap& map) {
     const double skew = std::max({std::fabs(dot(map.row_x, map.row_y)), std::fabs(dot(map.row_y, map.row_z)),
                                   std::fabs(dot(map.row_z, map.row_x))});
@@ -37,7 +37,7 @@ bool is_path(const BodyPath& path) {
            is_rigid(path.at_begin);
 }
 
-/// A scene may begin with such speeds, and no faster.
+/// Speeds are limited as at the start of a scene.
 bool is_body(const DrivenBody& body) {
     return is_rigid(body.world_from_frame()) && ricochet::is_finite(body.center()) &&
            length(body.velocity()) <= kMaxSpeed && length(body.angular_velocity()) <= kMaxSpeed &&
@@ -61,7 +61,7 @@ bool DrivenMotion::is_sound(double time) const {
                               relaxations_[k].is_sound() && std::is_sorted(ids.begin(), ids.end());
         if (!is_whole) return false;
     }
-    // A part that does not move the time on would be followed by the same one again and again.
+    // A substep that does not advance the time would be repeated without end.
     return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_part_ > time;
 }
 

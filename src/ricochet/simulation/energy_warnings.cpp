@@ -23,21 +23,21 @@ namespace {
 
 constexpr double kExplodes = std::numeric_limits<double>::infinity();
 
-/// Steps of a trial. A growth by a hundredth in a long run is far above rounding after so many.
+/// Most steps of a trial. After so many, rounding is far below a growth by a hundredth in a long run.
 constexpr std::size_t kMostTrialSteps = 4096;
 
-/// Growth of the energy over the largest kinetic energy that is warned of. Local, because it decides only about a
-/// warning.
+/// Largest growth of the energy, over the largest kinetic energy, without a warning. Local, because it decides only
+/// about a warning.
 constexpr double kLargestGain = 0.01;
 
 /// Rounding of energies, over the largest potential energy. Local, because it decides only about a warning.
 constexpr double kEnergyNoise = 1e-11;
 
-/// Particles that are looked at, and those of them that are tried: where forces vary most.
+/// Most particles that are examined, and most of them that are tried: those at whose positions forces vary most.
 constexpr std::size_t kMostSubjects = 256;
 constexpr std::size_t kMostTried = 4;
 
-/// A force of a setup that is not built yet.
+/// Reference to a force of a setup that is not built yet.
 class Borrowed final : public Force {
 public:
     explicit Borrowed(const Force& force) : force_(force) {}
@@ -59,7 +59,7 @@ struct TrialForces {
     std::string names;  ///< list of the forces that vary
 };
 
-/// Nothing where there is no energy to keep.
+/// Returns nothing if there is no energy to keep.
 std::optional<TrialForces> trial_forces(const SimulationSetup& setup) {
     std::vector<std::unique_ptr<Force>> borrowed;
     TrialForces forces;
@@ -79,16 +79,16 @@ std::optional<TrialForces> trial_forces(const SimulationSetup& setup) {
     return forces;
 }
 
-/// A particle as it sets out.
+/// A particle at its start.
 struct Subject {
     ForceInput state{};
     std::string name;
     double lifetime = std::numeric_limits<double>::infinity();  // s
-    bool is_coupled = false;                                    ///< others act on it
-    double rate = 0.0;                                          ///< 1/s^2, by which forces vary where it is
+    bool is_coupled = false;                                    ///< other particles act on it
+    double rate = 0.0;                                          ///< 1/s^2, at which forces vary at its position
 };
 
-/// Returns the rate of change of accelerations with position, or the square of that with velocity.
+/// Returns the rate of change of accelerations with position, or the squared one with velocity if larger, in 1/s^2.
 double rate_at(const ForceField& field, const ForceInput& state) {
     // Local: a step of a numerical derivative for warnings.
     constexpr double kDifference = 1e-6;
@@ -123,7 +123,7 @@ std::optional<Subject> subject_of(const EmitterDescription& emitter, std::size_t
     return subject;
 }
 
-/// Where forces vary most.
+/// Returns the particles to try: those at whose positions forces vary most.
 std::vector<Subject> subjects_of(const SimulationSetup& setup, const ForceField& field) {
     std::vector<Subject> subjects;
     std::vector<std::uint8_t> is_joined(setup.particles.size(), setup.particles_forces.empty() ? 0 : 1);
@@ -151,7 +151,7 @@ std::vector<Subject> subjects_of(const SimulationSetup& setup, const ForceField&
     return subjects;
 }
 
-/// Steps of one particle under forces alone.
+/// Motion of one particle under forces alone.
 class EnergyTrial {
 public:
     EnergyTrial(const TrialForces& forces, const ForceInput& start, double step, std::size_t steps)
@@ -159,11 +159,11 @@ public:
         follow();
     }
 
-    /// The particle comes so near to a point of infinite force that no sub-step is short enough.
+    /// Returns true if the particle comes so near to a point of infinite force that no sub-step is short enough.
     [[nodiscard]] bool falls_in() const { return is_coarse_; }
 
-    /// Returns the unphysical growth of the energy in the trial over the largest kinetic energy: kExplodes where
-    /// it has no bound, 0 where it does not grow.
+    /// Returns the unphysical growth of the energy in the trial over the largest kinetic energy: kExplodes if it has no
+    /// bound, 0 if it does not grow.
     [[nodiscard]] double gain(const Integrator& integrator) const {
         Course course = course_of(integrator, kMostSubsteps);
         if (course.energies.size() < steps_) return kExplodes;
@@ -178,11 +178,11 @@ public:
         if (!(kinetic_ > 0.0) || late <= kEnergyNoise * potential_) return 0.0;
         const IntegratorKind kind = integrator.kind;
         const bool is_symplectic = kind == IntegratorKind::symplectic_euler || kind == IntegratorKind::velocity_verlet;
-        // Their energies swing within bounds, which grow as steps near the end of stability.
+        // Their energies oscillate within bounds, which grow as steps near the end of stability.
         if (is_symplectic && !forces_.law.is_magnetic) {
             return late > 3.0 * std::max(early, 0.0) + kinetic_ ? late / kinetic_ : 0.0;
         }
-        // An even growth is at three quarters of its end on average in the second half.
+        // In the second half, an even growth has reached three quarters of its final value on average.
         return late > 0.5 * early ? late / (0.75 * kinetic_) : 0.0;
     }
 
@@ -194,7 +194,7 @@ private:
         bool is_coarse = false;
     };
 
-    /// Where the particle goes in truth.
+    /// Computes the true motion of the particle.
     void follow() {
         const double speed = std::max(length(start_.velocity), step_ * length(forces_.field.acceleration(start_)));
         const ErrorTolerance tolerance{std::max(kTrialTolerance * max_abs(start_.position), kSmallestTolerance),
@@ -251,14 +251,14 @@ private:
     ForceInput start_;
     double step_;
     std::size_t steps_;
-    std::vector<double> true_energies_;  // where forces take energy away
+    std::vector<double> true_energies_;  // if forces dissipate energy; J, after each step
     double energy_ = 0.0;                // J, at the start
     double kinetic_ = 0.0;
     double potential_ = 0.0;
     bool is_coarse_ = false;
 };
 
-/// Returns the integrator that steps the particle: forces on coupled ones are not held over a step.
+/// Returns the integrator that moves the particle. Forces on coupled particles are not held over a step.
 Integrator integrator_of(const Subject& subject, Integrator integrator) {
     if (subject.is_coupled && integrator.kind == IntegratorKind::ballistic) {
         integrator.kind = IntegratorKind::velocity_verlet;
@@ -270,9 +270,9 @@ Integrator integrator_of(const Subject& subject, Integrator integrator) {
 struct TrialLength {
     double step = 0.0;  ///< s
     std::size_t tried = 0;
-    double in_all = 0.0;  ///< steps of the run that the particle lives in
+    double in_all = 0.0;  ///< steps of the run in the particle's lifetime
 
-    /// Returns the gain in the run from that in the steps that were tried, growing by the same factor.
+    /// Returns the gain in the whole run, if the energy goes on growing by the same factor as in the trial.
     [[nodiscard]] double in_run(double gain) const {
         return std::expm1(std::log1p(gain) * in_all / static_cast<double>(tried));
     }
@@ -287,7 +287,7 @@ TrialLength length_of(const SimulationSetup& setup, const Subject& subject) {
     return length;
 }
 
-/// An integrator that keeps the energy of the trial with the same step; empty where none is known.
+/// Returns an integrator that keeps the energy of the trial with the same step, or an empty name if none is known.
 std::string_view better_than(const Integrator& integrator, const SimulationSetup& setup, const EnergyTrial& trial,
                              const TrialLength& length) {
     const SimulationOptions& options = setup.options;

@@ -9,10 +9,10 @@
 
 namespace ricochet {
 
-/// Returns a warning where an integrator does not keep the energy of forces on single particles. A few particles are
-/// stepped without colliders, springs and other particles. The warning comes where the energy grows by more than a
-/// hundredth of the energy of the motion in the time of the run. It also comes where a particle falls into a point of
-/// infinite force. Forces without a potential and forces of the user's own are not judged.
+/// Returns a warning if an integrator does not keep the energy of forces on single particles. A few particles are
+/// stepped without colliders, springs and other particles. The warning comes if the energy grows by more than a
+/// hundredth of the energy of the motion in the time of the run. It also comes if a particle falls into a point of
+/// infinite force. Forces without a potential and custom forces are not judged.
 [[nodiscard]] std::vector<std::string> energy_warnings(const SimulationSetup& setup);
 
 }  // namespace ricochet

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: what a particle has flown in a step, as flights between knots.
+/// Private to the simulation: the path that a particle has flown in a step, as flights between knots.
 #pragma once
 
 #include <algorithm>
@@ -16,16 +16,16 @@
 
 namespace ricochet {
 
-/// A begin, an impact or an end.
+/// Start, impact or end of a path.
 struct FlightKnot {
     double time;    ///< s
     Vec3 position;  ///< m
-    Vec3 before;    ///< m/s, velocity with which it arrives
-    Vec3 after;     ///< m/s
+    Vec3 before;    ///< m/s, velocity of arrival
+    Vec3 after;     ///< m/s, velocity of departure
 };
 
-/// The cubic through both ends of a flight with their velocities, at a time, s, between them: exact for a steady
-/// acceleration.
+/// Returns the state at a time, in s, on the cubic through both ends of a flight with their velocities. Exact for a
+/// constant acceleration.
 [[nodiscard]] inline PhaseState state_between(const FlightKnot& a, const FlightKnot& b, double time) {
     const double duration = b.time - a.time;
     if (!(duration > 0.0)) return {a.position, a.after};
@@ -37,8 +37,8 @@ struct FlightKnot {
             (chord + (1.0 - s) * (1.0 - 3.0 * s) * begin + s * (2.0 - 3.0 * s) * end) / duration};
 }
 
-/// Those of particle i, which began the step from..to, s, in the state `start` and now is where it has come to;
-/// records: of its impacts, in the order of time. What an impact has removed ends there.
+/// Returns the knots of particle i in a step. start: its state at the start. from, to: start and end of the step, in s.
+/// records: its impacts, in the order of time. The knots of a particle that an impact removes end there.
 [[nodiscard]] inline std::vector<FlightKnot> flight_knots(const Particles& particles, std::size_t i,
                                                           const PhaseState& start, double from, double to,
                                                           std::span<const ContactRecord> records) {
@@ -53,7 +53,7 @@ struct FlightKnot {
     return knots;
 }
 
-/// Contact records by particle; those of one stay in their order.
+/// Contact records by particle. The records of one particle stay in their order.
 class RecordsByParticle {
 public:
     explicit RecordsByParticle(std::vector<ContactRecord> records) : records_(std::move(records)) {

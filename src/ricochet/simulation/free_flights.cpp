@@ -5,7 +5,7 @@
 namespace ricochet {
 namespace {
 
-/// Particles from the prefetch of one to its turn.
+/// Number of particles between the prefetch of a particle and its use.
 constexpr std::size_t kPrefetchDistance = 6;
 
 }  // namespace
@@ -38,7 +38,7 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
     return active;
 }
 
-// The loop that most particles of most steps go through: nothing but what they need.
+// Contains only necessary operations, because most particles of most steps go through this loop.
 void FreeFlights::advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight) {
     Particles& particles = store_.particles();
     for (std::size_t i = begin; i < end; ++i) {
@@ -93,7 +93,7 @@ void FreeFlights::catch_up(std::size_t i) {
     particles.velocity[i] = state.velocity;
 }
 
-// Their deferred steps are made while the next ones are being fetched from memory.
+// Makes the deferred steps of the active set, while the next particles are being fetched from memory.
 void FreeFlights::catch_up_active(std::span<const std::uint32_t> active) {
     const Particles& particles = store_.particles();
     for (std::size_t k = 0; k < active.size(); ++k) {

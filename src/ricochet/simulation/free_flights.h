@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the steps of particles that hit nothing.
+/// Private to the simulation: the steps of particles in free flight.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +19,20 @@
 
 namespace ricochet {
 
-// Steps of free flights, integrated together later. A particle that makes many of
-// them at once is fetched from memory once.
+// Steps of free flights, integrated together later. A particle that makes many of them at once is fetched from memory
+// once.
 
-/// Which particle has made which of the latest steps. Those in free flight make none of them until they need a query.
+/// The latest steps, and how many of them each particle has made. A particle in free flight makes none of them until it
+/// needs a query.
 class DeferredSteps {
 public:
-    /// No more steps are kept, so that they stay in the L1 cache and numbers small.
+    /// Most steps that are kept, so that they stay in the L1 cache and counts stay small.
     static constexpr std::size_t kMost = 64;
 
-    /// Nothing is deferred by any of `count` particles.
+    /// Begins with `count` particles that defer no steps.
     explicit DeferredSteps(std::size_t count) : made_(count, 0) {}
 
-    /// One more step that all particles in free flight defer. Not when is_full().
+    /// Adds a step that all particles in free flight defer. Must not be called if is_full().
     void add(const FreeFlight& step) {
         is_straight_ = (is_empty() || is_straight_) && step.is_straight() && step.duration() >= kShortestStraight;
         steps_.push_back(step);
@@ -39,9 +40,9 @@ public:
     [[nodiscard]] bool is_full() const { return steps_.size() == kMost; }
     [[nodiscard]] bool is_empty() const { return steps_.empty(); }
 
-    /// A particle that is spawned within the step that is made now: it has deferred nothing.
+    /// Adds a particle that is spawned in the present step. It has deferred nothing.
     void append() { made_.push_back(static_cast<std::uint8_t>(steps_.size())); }
-    /// Makes room for `more` particles.
+    /// Reserves memory for `more` particles.
     void reserve(std::size_t more) { grow_capacity_by(made_, more); }
     /// Keeps the particles whose flag is not 0. keep.size() is the number of particles.
     void compact(const std::vector<std::uint8_t>& keep) {
@@ -52,29 +53,29 @@ public:
         made_.resize(kept);
     }
 
-    /// Where a particle is after its deferred steps.
+    /// Returns the state of a particle after its deferred steps.
     [[nodiscard]] PhaseState after(std::size_t i, PhaseState state) const {
         std::size_t k = made_[i];
-        if (k >= steps_.size()) return state;  // more than these, where the step that is made now has failed
+        if (k >= steps_.size()) return state;  // more than these, if the present step has failed
         state = steps_[k++].step(state.position, state.velocity);
         if (is_straight_ && moves_far(state.velocity)) return straight_on(k, state);
         for (; k < steps_.size(); ++k) state = steps_[k].step(state.position, state.velocity);
         return state;
     }
-    /// The particle has made all steps so far and the one that is made now.
+    /// Marks a particle that has made all steps so far and the present one.
     void make_next(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size() + 1); }
-    /// The particle has slept through all steps so far, and has nothing to make up for.
+    /// Marks a particle that has slept through all steps so far, and has nothing to make up for.
     void skip(std::size_t i) { made_[i] = static_cast<std::uint8_t>(steps_.size()); }
-    /// Every particle has made all steps.
+    /// Removes the steps after every particle has made them.
     void clear() {
         steps_.clear();
         std::fill(made_.begin(), made_.end(), std::uint8_t{0});
     }
 
 private:
-    // A step by nothing or by 2^-230 m and more along each axis never ends at a position that flush_tiny() changes:
-    // where the position nearly cancels the displacement, both are multiples of 2^-283 m. Local: bounds that this proof
-    // needs.
+    // If a step moves a particle along each axis by 0 or by at least 2^-230 m, its end is no position that flush_tiny()
+    // changes. If the position nearly cancels the displacement, both are multiples of 2^-283 m. Local: bounds that this
+    // proof needs.
     static constexpr double kShortestStraight = 0x1p-100;  ///< s
     static constexpr double kSlowestStraight = 0x1p-130;   ///< m/s
 
@@ -83,19 +84,18 @@ private:
         return far(velocity.x) && far(velocity.y) && far(velocity.z);
     }
 
-    /// What FreeFlight::step() does, in fewer operations that wait for each other.
+    /// Gives the result of FreeFlight::step() in fewer operations that wait for each other.
     [[nodiscard]] PhaseState straight_on(std::size_t k, PhaseState state) const {
         for (; k < steps_.size(); ++k) state.position += steps_[k].duration() * state.velocity;
         return state;
     }
 
-    bool is_straight_ = true;  ///< all steps are, and none is very short
+    bool is_straight_ = true;  ///< all steps are straight, and none is very short
     std::vector<FreeFlight> steps_;
-    std::vector<std::uint8_t> made_;  ///< of every particle how many of them
+    std::vector<std::uint8_t> made_;  ///< number of steps that each particle has made
 };
 
-/// Advances the particles in free flight, and finds the others: the pass over all particles that every step begins
-/// with.
+/// Advances the particles in free flight, and finds the others. Every step begins with this pass over all particles.
 class FreeFlights {
 public:
     /// All must outlive it; check may be null.
@@ -103,24 +103,24 @@ public:
                 const Integrator& integrator, RunCheck* check)
         : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), check_(check) {}
 
-    /// Advances those of the range that are in free flight. Returns those that need a query, listed in ascending order
-    /// in one block for kParticleBlock particles of the range.
+    /// Advances the particles of the range that are in free flight. Returns the others that need a query, in ascending
+    /// order, with one block for kParticleBlock particles of the range.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
-    /// From now on particles in free flight stay where they are, and make several steps at once when they need a query.
-    /// Only where nothing asks in between where they are. No effect where accelerations differ.
+    /// Lets particles in free flight keep their state from now on, and make several steps at once when they need a
+    /// query. Must be called only if nothing reads their states in between. Has no effect if accelerations differ.
     void begin_deferring();
     [[nodiscard]] bool is_deferring() const { return deferred_.has_value(); }
-    /// All particles make the steps that they have deferred.
+    /// Lets all particles make their deferred steps.
     void end_deferring();
-    /// A particle that has slept takes part from the next step on.
+    /// Lets a particle that has slept take part from the next step on.
     void wake(std::size_t i) {
         if (deferred_) deferred_->skip(i);
     }
-    /// Forgets deferred steps.
+    /// Forgets deferred steps without making them.
     void drop_deferred() { deferred_.reset(); }
 
-    // As for Particles.
+    // Like the functions of Particles.
     void append();
     void reserve(std::size_t more);
     void compact(const std::vector<std::uint8_t>& keep);

@@ -9,25 +9,25 @@
 namespace ricochet {
 namespace {
 
-/// A time after one by a part of the time to another, or by more than rounding where that is no more; not after the
-/// other.
+/// Returns a time after `time` by a part of the interval to `next`, or by more than rounding if that is longer. The
+/// result is at most `next`.
 double soon_after(double time, double next, double part) {
     return std::min(next, time + std::max(part * (next - time), kSoonUlps * ulp(time)));
 }
 
 }  // namespace
 
-/// A body on its planned path, as it yields and moves at a time.
+/// Body on its planned path at a time: its inverse mass and inertia, and its velocity.
 struct ImpactTally::BodyOnPath {
     Mobility mobility;
-    Vec3 velocity;          ///< of the center of that, m/s
+    Vec3 velocity;          ///< of the mobility's center, m/s
     Vec3 angular_velocity;  ///< rad/s
 
     [[nodiscard]] Wrench about_center(Wrench wrench, const Vec3& center) const {
         wrench.moment += cross(center - mobility.center, wrench.impulse);
         return wrench;
     }
-    /// J, that it takes of a wrench about `center`, m.
+    /// Returns the energy, in J, that the body gets from a wrench about `center`, in m.
     [[nodiscard]] double energy_by(const Wrench& given, const Vec3& center) const {
         const Wrench wrench = about_center(given, center);
         return dot(wrench.impulse, velocity) + dot(wrench.moment, angular_velocity) + mobility.energy_by(wrench);

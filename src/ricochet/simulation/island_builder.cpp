@@ -13,7 +13,7 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kIslandBlock = 16;
 
-/// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
+/// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kPrefetchDistance = 6;
 
 /// Rounds that join only spheres that have met. Later rounds also join spheres that touch the joined ones. Otherwise
@@ -34,7 +34,7 @@ void IslandBuilder::solve(const ParticleRange& range, const TimeSpan& step) {
     run(step);
     while (join_those_met()) rebuild(step);
     for (Island& island : islands_) {
-        // Those that have flown as if nobody had been there go the ordinary way.
+        // Members that have flown as if alone are moved like other particles.
         std::erase_if(island.members, [](const IslandMember& member) { return member.is_free; });
     }
 }
@@ -49,14 +49,14 @@ void IslandBuilder::find_islands(const ParticleRange& range) {
         involved.push_back(pair.first);
         involved.push_back(pair.second);
     }
-    // Where a sphere may go farther than its box those that meet nobody are watched, too.
+    // Spheres that may leave their boxes are watched even if they meet no others.
     for (std::uint32_t k = 0; k < range.size(); ++k) {
         if (plans_.may_roam(k)) involved.push_back(k);
     }
     islands_ = islands_of(involved);
 }
 
-/// False where they are of one island already.
+/// Joins the islands of two particles. Returns false if they belong to one island already.
 bool IslandBuilder::join(std::uint32_t a, std::uint32_t b) {
     a = sets_.find(a);
     b = sets_.find(b);
@@ -66,7 +66,7 @@ bool IslandBuilder::join(std::uint32_t a, std::uint32_t b) {
     return true;
 }
 
-/// Islands in the order of their lowest particles, which lead them.
+/// Returns the islands in the order of their lowest particles, which represent them.
 std::vector<IslandBuilder::Island> IslandBuilder::islands_of(const std::vector<std::uint32_t>& involved) {
     is_involved_.assign(sets_.size(), 0);
     for (const std::uint32_t k : involved) is_involved_[k] = 1;
@@ -91,7 +91,7 @@ void IslandBuilder::run(const TimeSpan& step) {
         EventIsland worker(parts_.response, parts_.materials, parts_.settings.impact_budget);
         for (std::size_t n = begin; n < end; ++n) {
             Island& island = islands_[n];
-            if (!island.members.empty()) continue;  // as before
+            if (!island.members.empty()) continue;  // unchanged since the last round
             island.round = round_;
             collect_members(island, step);
             island.is_contact_island = contact_islands_.begins_as_contact_island(island.members);
@@ -110,7 +110,7 @@ void IslandBuilder::run(const TimeSpan& step) {
     });
 }
 
-/// As they are at the step's begin. By place, not by id, so that ids do not decide.
+/// Collects the members as they are at the start of the step. They are ordered by position, so that ids have no effect.
 void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     struct Placed {
         double x;
@@ -141,7 +141,7 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     }
 }
 
-/// Who flies freely has declared its way, others how far they may come.
+/// Returns true if a member has left its declared bounds: its path if it flies freely, else its box.
 bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& member) const {
     if (member.is_fixed) return false;
     const auto k = static_cast<std::uint32_t>(member.particle - first_);
@@ -149,7 +149,7 @@ bool IslandBuilder::is_out_of_bounds(const Island& island, const IslandMember& m
     return member.impacts > 0 || !contains(plans_.box(k), member.swept);
 }
 
-/// First those of islands of this round, then those of islands that have been joined before.
+/// Returns the members of islands of this round first, then the members of islands that earlier rounds have joined.
 IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     OutOfBoundsMembers off;
     std::vector<const IslandMember*> earlier;
@@ -172,7 +172,8 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
     return off;
 }
 
-/// What those of this round have met of what has done what it has declared, and was off its plan in the first round.
+/// Returns, for each member out of bounds in this round, the spheres that it may have met. They have kept their
+/// declared bounds, or were out of bounds in the first round.
 std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsMembers& off) {
     std::vector<std::vector<std::uint32_t>> met(off.of_this_round);
     const auto for_each = [&](const auto& body) {
@@ -190,7 +191,7 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
         std::vector<std::uint32_t> near;
         first_off_plan_grid_.find_near(swept, near);
         for (const std::uint32_t k : near) {
-            const IslandMember* const other = first_out_of_bounds_[k];  // valid where it has not been run anew
+            const IslandMember* const other = first_out_of_bounds_[k];  // valid if it has not been solved again
             if (has_run_anew_[first_numbers_[k]] == 0 && may_have_met(member, *other))
                 found.push_back(first_numbers_[k]);
         }
@@ -198,14 +199,14 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
     return met;
 }
 
-/// False where both ways are known and do not meet.
+/// Returns false if both paths are known and do not meet.
 bool IslandBuilder::may_have_met(const IslandMember& first, const IslandMember& second) {
     if (first.trajectory.empty() || second.trajectory.empty()) return true;
     return first_meeting(first.trajectory, second.trajectory, first.radius() + second.radius(), 0.0).has_value();
 }
 
-/// True where members that are off their plans have met particles of other islands, which are joined. What islands of
-/// earlier rounds have to do with each other is known.
+/// Joins islands whose members out of bounds have met particles of other islands. Returns false if there are none.
+/// Islands of earlier rounds have been compared with each other already.
 bool IslandBuilder::join_those_met() {
     const OutOfBoundsMembers off = members_out_of_bounds();
     const auto number = [&](const IslandMember& member) {
@@ -235,7 +236,8 @@ bool IslandBuilder::join_those_met() {
     return !joined_.empty();
 }
 
-/// All of the islands that are joined, whoever leads them: numbers must not decide what lies on them.
+/// Returns all members of the joined islands, whichever particle represents them. Otherwise the order of particles
+/// would decide which spheres rest on them.
 std::vector<std::uint32_t> IslandBuilder::members_joined() {
     std::vector<std::uint8_t> is_joined(sets_.size(), 0);
     for (const std::uint32_t k : joined_) is_joined[sets_.find(k)] = 1;
@@ -249,7 +251,7 @@ std::vector<std::uint32_t> IslandBuilder::members_joined() {
     return members;
 }
 
-/// Islands that have been joined begin anew; the others stay.
+/// Solves joined islands again and keeps the others.
 void IslandBuilder::rebuild(const TimeSpan& step) {
     std::vector<std::uint32_t> involved = joined_;
     for (const Island& island : islands_) {

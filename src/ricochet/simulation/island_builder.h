@@ -1,10 +1,10 @@
 /// \file
-/// Private to the simulation: islands of spheres that meet each other in a step, and what each of them does.
+/// Private to the simulation: islands of spheres that meet each other in a step, and their solution.
 ///
-/// Those that may meet, by what they declare (PairPlans), form islands, which are worked off in parallel: impact by
-/// impact (EventIsland), or by the problem of all contacts (ContactIslands). A member that has done something else than
-/// it has declared may have missed somebody: its island and those that it would have met are joined and worked off
-/// again from the step's begin, in rounds, until there are none.
+/// Spheres that may meet, by their declared bounds (PairPlans), form islands. Islands are solved in parallel: impact by
+/// impact (EventIsland), or as one problem of all contacts (ContactIslands). A member that has left its declared bounds
+/// may have missed other spheres. Its island is joined with the spheres that it would have met, and solved again from
+/// the start of the step. This repeats in rounds until no islands are joined.
 #pragma once
 
 #include <cstdint>
@@ -24,29 +24,30 @@ class IslandBuilder {
 public:
     struct Island {
         std::vector<std::uint32_t> particles;  ///< numbers in the range, ascending
-        std::vector<IslandMember> members;     ///< by place
+        std::vector<IslandMember> members;     ///< ordered by position
         std::vector<PairImpactRecord> impacts;
         std::vector<PairMeeting> meetings;
         bool is_contact_island = false;
         ContactIslandTrace trace;
-        std::size_t round = 0;  ///< in which it has been worked off
+        std::size_t round = 0;  ///< in which it was solved
     };
 
     /// All must outlive it.
     IslandBuilder(const PairParts& parts, PairPlans& plans, const LastingContacts& contacts)
         : parts_(parts), plans_(plans), contacts_(contacts), contact_islands_(parts, contacts) {}
 
-    /// Works off the islands among the particles of a range, whose plans have been found.
+    /// Solves the islands among the particles of a range. Their plans must have been found.
     void solve(const ParticleRange& range, const TimeSpan& step);
-    /// Those of this step, in the order of their lowest particles, without members that have flown freely.
+    /// Returns the islands of this step, in the order of their lowest particles, without members that have flown
+    /// freely.
     [[nodiscard]] std::vector<Island>& all() { return islands_; }
 
 private:
-    /// Members that may have met others than those of their island.
+    /// Members that have left their declared bounds, and may have met spheres outside their island.
     struct OutOfBoundsMembers {
         std::vector<const IslandMember*> members;
-        std::vector<Box3> swept;        ///< by them
-        std::size_t of_this_round = 0;  ///< so many come first
+        std::vector<Box3> swept;        ///< boxes of their paths
+        std::size_t of_this_round = 0;  ///< members of this round, which come first
     };
 
     void find_islands(const ParticleRange& range);
@@ -66,18 +67,18 @@ private:
     PairPlans& plans_;
     const LastingContacts& contacts_;
     ContactIslands contact_islands_;
-    std::size_t first_ = 0;  // of the range: numbers count from it
+    std::size_t first_ = 0;  // first particle of the range; numbers count from it
     std::vector<Island> islands_;
     DisjointSets sets_;  // particles of the range; the lowest number of an island represents it
     std::vector<std::uint8_t> is_involved_;
-    std::vector<std::size_t> island_of_;  // by the particle that leads it
+    std::vector<std::size_t> island_of_;  // by the particle that represents it
     std::size_t round_ = 0;               // of joining islands
-    std::vector<std::uint32_t> joined_;   // in the last round
+    std::vector<std::uint32_t> joined_;   // particles that the last round has joined
     NeighbourGrid out_of_bounds_grid_;
-    NeighbourGrid first_off_plan_grid_;  // of the members that were off their plans in the first round
+    NeighbourGrid first_off_plan_grid_;  // of the members out of bounds in the first round
     std::vector<const IslandMember*> first_out_of_bounds_;
-    std::vector<std::uint32_t> first_numbers_;  // of these
-    std::vector<std::uint8_t> has_run_anew_;    // by number, in a later round
+    std::vector<std::uint32_t> first_numbers_;  // numbers of these members
+    std::vector<std::uint8_t> has_run_anew_;    // by number: solved again in a later round
 };
 
 }  // namespace ricochet

@@ -33,12 +33,12 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         const Particles& particles = parts_.store.particles();
         if (is_beside_movers(particles.position[*i], particles.radius[*i])) carried.push_back(particle);
     }
-    // What rests on a surface that moves goes with it, however slowly.
+    // A sphere on a moving surface goes with it, however slowly.
     wake_alone(sleeping_islands_.islands_of_sleepers(carried), step.begin);
     wake(gone, step.begin);
 }
 
-/// What lies farther away is woken when it is pushed; what nothing holds any more, at once.
+/// Sleepers farther away wake when they are pushed. Sleepers without support wake at once.
 void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double time, int contacts) {
     if (particles.empty()) return;
     const int farther = std::max(0, ++wakings_ - kWakingsAlone);
@@ -66,7 +66,8 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
         if (*i >= first_ && *i - first_ < traces_.is_asleep.size()) traces_.is_asleep[*i - first_] = 0;
     }
     std::vector<WarmStartMemory::Entry> contacts = sleeping_islands_.wake(woken);
-    // What somebody awake does to them is remembered already, or has ended; what only leans does nothing.
+    // Impulses of spheres that are awake are in the memory already, or have ended. Contacts without an impulse have no
+    // effect.
     const auto has_lain = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
                is_pinned(particle);
@@ -115,7 +116,8 @@ std::vector<std::uint8_t> LastingContacts::pressing() const {
     return pressing;
 }
 
-/// Slow ones that only press it onto what holds it do not: their contacts say how much. hitting, sleeping: indices.
+/// Returns true if a sphere hits a sleeper in the step. Slow spheres that only press it onto its supports do not count,
+/// because their contacts show the load. hitting, sleeping: indices.
 bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const {
     const Particles& particles = parts_.store.particles();
     const double duration = step.end - step.begin;
@@ -133,7 +135,7 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
     return is_aside(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
 }
 
-/// Whether a push in a direction moves it where nothing but friction holds it.
+/// Returns true if a push in a direction moves a sleeper that only friction holds in that direction.
 bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
     const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(sleeping, time));
     return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
@@ -142,7 +144,7 @@ bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, doub
 bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step) {
     if (sleeping_islands_.empty() || are_children_) return false;
     std::vector<std::uint64_t> hit;
-    double largest = 1.0;  // times the radius of one that is hit
+    double largest = 1.0;  // ratio of the radii of a sphere and the sleeper that it hits
     for (std::size_t n = 0; n < plans.pairs().size(); ++n) {
         const NeighbourPair& pair = plans.pairs()[n];
         if (!plans.may_meet(n) || is_asleep(pair.first) == is_asleep(pair.second)) continue;
@@ -153,7 +155,8 @@ bool LastingContacts::wake_hit_sleepers(const PairPlans& plans, const TimeSpan& 
         hit.push_back(particles.id[first_ + sleeping]);
         largest = std::max(largest, particles.radius[first_ + hitting] / particles.radius[first_ + sleeping]);
     }
-    // A large one pushes as many small ones as it covers, at once: each time that more wake costs all again.
+    // A large sphere pushes as many small ones as it covers. They wake at once, because each further waking repeats the
+    // whole solution.
     wake(hit, step.begin, static_cast<int>(std::min(largest, kMostWokenContacts)));
     return !hit.empty();
 }
@@ -174,7 +177,7 @@ std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const Pair
     return loaded;
 }
 
-/// What belts and the like drive is pushed by them for good.
+/// Returns true if a driven material, such as a belt, pushes the sphere. Such a push does not end.
 bool LastingContacts::is_carried_by_material(const ContactIsland& island, std::size_t index) const {
     const ResponseRules& rules = parts_.response.rules();
     const std::vector<WallImpulse> impulses = island.impulses_of(index);
@@ -192,22 +195,23 @@ bool LastingContacts::is_supported_by_surfaces(const ContactIslandMember& member
     });
 }
 
-/// Whether a surface that pushes a sphere so holds it against the pull of forces: one that it rubs on can.
+/// Returns true if a surface supports a sphere against the acceleration by forces with the impulse that it gives the
+/// sphere. A surface with friction always can.
 bool LastingContacts::holds(SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) const {
     const ResponseRules& rules = parts_.response.rules();
     const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
     return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kSupportingCosine * length(wall_impulse) * length(pull);
 }
 
-/// It lives through the whole step, and nothing that moves is near.
+/// Returns true if the member lives through the whole step, and no moving collider is near.
 bool LastingContacts::may_sleep(const ContactIslandMember& member, const TimeSpan& step) const {
-    const bool is_acted_on = member.moving->state.coupling != nullptr;  // from afar, by what may move
+    const bool is_acted_on = member.moving->state.coupling != nullptr;  // at a distance, by particles that may move
     const bool is_moved = !member.is_fixed && !member.is_pinched && member.duration == step.end - step.begin;
     if (is_acted_on || !is_moved) return false;
     return !is_beside_movers(member.moving->state.position, member.radius);
 }
 
-/// True if a collider that moves may touch a sphere there in the step.
+/// Returns true if a moving collider may touch a sphere at this position in the step.
 bool LastingContacts::is_beside_movers(const Vec3& center, double radius) const {
     const MovingColliders* const bodies = parts_.response.rules().bodies;
     return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
@@ -318,13 +322,13 @@ void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> tr
                 contacts.push_back(entry);
         }
     }
-    // All at once: each call goes through all that sleep.
+    // All in one call, because each call visits all sleepers.
     if (falling.empty()) return;
     sleeping_islands_.add(falling, contacts, weights);
     sleeping_islands_.join(touching);
 }
 
-/// Among colliders that move the verifier follows everybody's time.
+/// Needed only among moving colliders, where the verifier follows the time of every particle.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
     if (sleeping_islands_.empty() || are_children_ || parts_.response.rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
@@ -356,7 +360,7 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
 }
 
-/// Of a pair: the gap between its spheres over the smaller radius. What one of them has left is wide open.
+/// Returns the gap between the spheres of a pair, over the smaller radius. It is infinite if one of them is gone.
 double LastingContacts::relative_gap(const ContactKey& key) const {
     const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
     const std::optional<std::size_t> k = parts_.store.index_of(key.other);
@@ -366,7 +370,7 @@ double LastingContacts::relative_gap(const ContactKey& key) const {
     return gap / std::min(p.radius[*i], p.radius[*k]);
 }
 
-/// Those that have lost what leant on them, or held them, and those that others stand in.
+/// Wakes sleepers that have lost a sphere that leant on them or held them, and sleepers that others overlap.
 void LastingContacts::wake_unsupported(const TimeSpan& step) {
     if (sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> left;

@@ -1,9 +1,9 @@
 /// \file
-/// Private to the simulation: what lasts from step to step where spheres are planned together in dense islands: what
-/// their contacts did, and which of them sleep.
+/// Private to the simulation: the state of contact islands that lasts from step to step. It consists of the impulses of
+/// their contacts, and of the spheres that sleep.
 ///
-/// What has lain still in a dense island for a while sleeps (SleepingIslands): nothing moves it, until it is hit, or
-/// pressed otherwise than when it fell asleep.
+/// Spheres that have been at rest in a contact island for a while sleep (SleepingIslands). They stay until they are
+/// hit, or until the load on them differs from that at which they fell asleep.
 #pragma once
 
 #include <cstdint>
@@ -21,16 +21,16 @@
 
 namespace ricochet {
 
-/// What a dense island leaves behind; empty for others.
+/// Results of a contact island for later steps; empty for other islands.
 struct ContactIslandTrace {
-    std::vector<WarmStartMemory::Entry> pressed;       ///< what its contacts do
-    std::vector<SleepingIslands::SleepCounter> still;  ///< those that have not moved
+    std::vector<WarmStartMemory::Entry> pressed;       ///< impulses of its contacts
+    std::vector<SleepingIslands::SleepCounter> still;  ///< spheres that have not moved
     std::vector<std::uint64_t> falling_asleep;         ///< ids, ascending
-    std::vector<SleepingIslands::Weight> weights;      ///< of those
-    std::vector<SleeperImpulse> onto_sleepers;         ///< by those that are awake
-    std::vector<SleeperImpulse> stopped;               ///< momentum with which those fall asleep
-    std::vector<ContactKey> touching;                  ///< where some do, pairs that touch, whether they press or not
-    bool is_unsolved = false;                          ///< the sweeps did not come to the tolerance
+    std::vector<SleepingIslands::Weight> weights;      ///< of the spheres that fall asleep
+    std::vector<SleeperImpulse> onto_sleepers;         ///< by spheres that are awake
+    std::vector<SleeperImpulse> stopped;               ///< momentum with which spheres fall asleep
+    std::vector<ContactKey> touching;                  ///< if some fall asleep: pairs that touch, with or without load
+    bool is_unsolved = false;                          ///< the solver did not reach the tolerance
 };
 
 class LastingContacts {
@@ -39,49 +39,49 @@ public:
         parts_.mover.set_sleeping_islands(&sleeping_islands_);
     }
 
-    /// A step begins for the particles of a range: says who sleeps; wakes those beside one that has gone, and those
-    /// that colliders come near.
+    /// Begins a step for the particles of a range, and finds the sleepers among them. Wakes sleepers next to one that
+    /// is gone, and sleepers that colliders come near.
     void begin(const ParticleRange& range, const TimeSpan& step);
-    /// What plans depend on; again after somebody has woken.
+    /// Returns the state that plans depend on. Must be called again after sleepers have woken.
     [[nodiscard]] const PairTraces& find_traces();
-    /// Wakes sleepers that are hit, by what is planned; false where there are none.
+    /// Wakes sleepers that are hit according to the plans. Returns false if there are none.
     [[nodiscard]] bool wake_hit_sleepers(const PairPlans& plans, const TimeSpan& step);
-    /// Sleepers that an island, as it has been worked off, has hit or pushed. Where there are any they have to be
-    /// woken, and the step begins anew: they were walls to it.
+    /// Returns the sleepers that a solved island has hit or pushed. The island treated them as walls. If there are any,
+    /// they must be woken, and the step must begin again.
     [[nodiscard]] std::vector<std::uint64_t> loaded_sleepers(std::span<const PairImpactRecord> impacts,
                                                              const ContactIslandTrace& trace,
                                                              const TimeSpan& step) const;
-    /// Wakes some, where they sleep, and what so many contacts in a row join to them, at a time, s; what lies farther,
-    /// too, where a step does so again and again.
+    /// Wakes sleepers, and those connected to them by so many contacts in a row, at a time, in s. If a step wakes
+    /// sleepers again and again, it also wakes sleepers farther away.
     void wake(const std::vector<std::uint64_t>& particles, double time, int contacts = 1);
-    /// A particle of the range, by its number in the particles' arrays, sleeps in a pile.
+    /// Returns true if a particle of the range, by its index in the particles' arrays, sleeps in an island.
     [[nodiscard]] bool sleeps(std::size_t i) const { return traces_.is_asleep[i - first_] != 0; }
-    /// Of each particle: contacts of the last step's dense islands have held it, and have not thrown it off.
+    /// Returns a flag per particle: contacts of the last step's contact islands support it, and have not thrown it off.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const;
-    /// Of the contacts of the last step's dense islands.
+    /// Returns the contacts of the last step's contact islands.
     [[nodiscard]] const WarmStartMemory& memory() const { return memory_; }
 
-    /// Those of a dense island that have lain still for long, and that nobody else pushes or rests on, lie from now on:
-    /// their plans are changed.
+    /// Puts members of a contact island to sleep by changing their plans. They have been at rest for long, and no
+    /// sphere that stays awake pushes them or rests on them.
     void plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island, const TimeSpan& step,
                     ContactIslandTrace& trace) const;
 
-    /// A step has ended, with these dense islands and impacts.
+    /// Ends a step with these contact islands and impacts.
     void end(std::span<const ContactIslandTrace* const> traces, std::span<const PairImpactRecord> impacts,
              const TimeSpan& step);
-    /// Shows the verifier, where there is one, that sleepers have stayed where they are.
+    /// Tells the verifier, if there is one, that sleepers have kept their positions.
     void check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const;
-    /// Wakes all that sleep, at a time, s.
+    /// Wakes all sleepers at a time, in s.
     void wake_all(double time);
 
-    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         memory_.archive(a);
         sleeping_islands_.archive(a);
     }
 
-    /// Returns false for a state that no run leaves behind. next_id: of the next particle.
+    /// Returns false for a state that no run leaves behind. next_id: id of the next particle.
     [[nodiscard]] bool is_sound(std::uint64_t next_id) const;
 
 private:
@@ -106,7 +106,7 @@ private:
     [[nodiscard]] double relative_gap(const ContactKey& key) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;      // of the range: numbers count from it
+    std::size_t first_ = 0;      // first particle of the range; numbers count from it
     bool are_children_ = false;  // the range holds particles that were spawned in this step
     PairTraces traces_;
     WarmStartMemory memory_;

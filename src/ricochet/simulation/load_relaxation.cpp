@@ -11,14 +11,14 @@ Wrench sum(const Wrench& a, double factor, const Wrench& b) {
     return {a.impulse + factor * b.impulse, a.moment + factor * b.moment};
 }
 
-/// Of two wrenches, by how the body yields to them.
+/// Returns the inner product of two wrenches, weighted with the body's inverse mass and inertia.
 double product(const DrivenBody& body, const Wrench& a, const Wrench& b) {
     return 0.5 * (body.quadratic_energy(sum(a, 1.0, b)) - body.quadratic_energy(sum(a, -1.0, b)));
 }
 
 }  // namespace
 
-// What is lacking of the first load is the direction in which loads are too small.
+// The residual of the first load defines the direction in which loads are too small.
 void LoadRelaxation::keep(const DrivenBody& body, const Wrench& planned, const Wrench& lacks) {
     const Tried tried{planned, lacks, std::sqrt(product(body, lacks, lacks))};
     const bool is_low = !low_ || product(body, lacks, low_->lacks) >= 0.0;
@@ -39,9 +39,9 @@ Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const
         const double part = both > 0.0 ? low_->size / both : 0.5;
         return sum(low_->load, part, sum(high_->load, -1.0, low_->load));
     }
-    if (!(heaviness > 0.0)) return {};  // the body runs away from it
+    if (!(heaviness > 0.0)) return {};  // the body escapes from the load
     double factor = 1.0 / (1.0 + heaviness_);
-    if (before) {  // Aitken's: along the line through the last two
+    if (before) {  // Aitken's method: along the line through the last two
         const Wrench change = sum(lacks, -1.0, before->lacks);
         const double size = product(body, change, change);
         const double step =
@@ -51,7 +51,7 @@ Wrench LoadRelaxation::next(const DrivenBody& body, const Wrench& planned, const
     return sum(planned, factor, lacks);
 }
 
-// It grows from what it was before.
+// The load is taken to change evenly from that of the first plan.
 Wrench LoadRelaxation::shortened(double part) {
     begin_search();
     return sum(first_, part, sum(fitting_, -1.0, first_));

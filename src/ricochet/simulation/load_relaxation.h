@@ -1,12 +1,13 @@
 /// \file
-/// Private to the simulation: the steady load with which the plan of a body fits to what lies on it.
+/// Private to the simulation: the steady load for the plan of a body, so that the plan fits the particles that rest on
+/// it.
 ///
-/// The body's plan takes a load; what lies on the body goes along with that plan, and gives it another load back. What
-/// is heavier than the body gives the more back the less it is given, by more than that, and nothing where it is given
-/// so much that the body runs away from it: planned again and again with what came back, the load would grow without
-/// bound. So it is found between one that is too small and one that is too large, where there are both (M. Dowell,
-/// P. Jarratt, "A modified regula falsi method for computing the root of an equation", BIT 11, 1971), and before with a
-/// factor by how much heavier what lies there is (U. Kuttler, W. A. Wall, "Fixed-point fluid-structure interaction
+/// The plan of a body contains a load. Particles that rest on the body follow that plan, and give another load back. If
+/// they are heavier than the body, they give the more back the less is planned, and by more than the difference. They
+/// give nothing back if the planned load is so large that the body escapes from them. Planning again with the returned
+/// load would diverge. Instead the load is searched between one that is too small and one that is too large (M. Dowell,
+/// P. Jarratt, "A modified regula falsi method for computing the root of an equation", BIT 11, 1971). Until both are
+/// known, a factor from the ratio of masses is used (U. Kuttler, W. A. Wall, "Fixed-point fluid-structure interaction
 /// solvers with dynamic relaxation", Computational Mechanics 43, 2008).
 #pragma once
 
@@ -19,30 +20,30 @@
 
 namespace ricochet {
 
-/// What lies on a body in a part of a step.
+/// Load of the particles that rest on a body in a substep.
 struct RestingLoad {
     Wrench wrench;           ///< N s, and N m s about the body's moment_center()
-    double heaviness = 0.0;  ///< its masses, each over that with which the body yields to it
+    double heaviness = 0.0;  ///< sum of their masses, each over the body's effective mass for it
 };
 
 class LoadRelaxation {
 public:
-    /// To be called with the load of the first plan of a part of a step.
+    /// Must be called with the load of the first plan of a substep.
     void begin_substep(const Wrench& load) { first_ = load; }
-    /// To be called before a load is looked for.
+    /// Must be called before the search for a load.
     void begin_search() { low_ = high_ = last_ = std::nullopt; }
     [[nodiscard]] bool is_searching() const { return low_.has_value(); }
-    /// The load that would be looked for next in such a part of the duration: the search for it begins.
+    /// Begins a search for a substep of a part of the duration, and returns the first load to try.
     [[nodiscard]] Wrench shortened(double part);
-    /// By how much the load of this part differs from that of its first plan, as far as is known.
+    /// Returns the difference between the load of this substep, as far as it is known, and that of its first plan.
     [[nodiscard]] Wrench variation(const Wrench& planned, const Wrench& back, double heaviness) const;
-    /// True where what lies on the body is heavy, or has been in the last part.
+    /// Returns true if the resting load is heavy or was heavy in the last substep, or if a search has begun.
     [[nodiscard]] bool concerns(const RestingLoad& resting_load) const {
         return is_heavy_ || low_ || resting_load.heaviness > kHeavyLoad;
     }
-    /// The load (N, N m) that is nearer to what fits, after a plan with one load came back with another.
+    /// Returns a load (N, N m) that fits better, after a plan with the load `planned` has given the load `back`.
     [[nodiscard]] Wrench next(const DrivenBody& body, const Wrench& planned, const Wrench& back, double heaviness);
-    /// The part is as planned.
+    /// Ends a substep that follows its plan.
     void end_substep(const RestingLoad& resting_load);
 
     template <class Archive>
@@ -56,15 +57,15 @@ public:
 private:
     struct Tried {
         Wrench load;
-        Wrench lacks;       // what came back more
-        double size = 0.0;  // of that; halved where the other end alone moves
+        Wrench lacks;       // returned load minus this one
+        double size = 0.0;  // norm of `lacks`; halved if only the other end moves
     };
     void keep(const DrivenBody& body, const Wrench& planned, const Wrench& lacks);
 
     bool is_heavy_ = false;
-    double heaviness_ = 0.0;  // when something lay there last
+    double heaviness_ = 0.0;  // of the last resting load
     Wrench first_;
-    Wrench fitting_;  // as far as is known
+    Wrench fitting_;  // as far as it is known
     std::optional<Tried> low_;
     std::optional<Tried> high_;
     std::optional<Tried> last_;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: which body takes a load, how much of many loads lies on one, and when that leaves it.
+/// Private to the simulation: the loads on bodies, the resting ones among them, and the times at which these end.
 #pragma once
 
 #include <optional>
@@ -14,25 +14,26 @@
 
 namespace ricochet {
 
-/// A view: what it is made of must outlive it. Loads are those of a part of a step, each particle's one after the other
-/// in the order of time.
+/// View of the loads in a substep; its arguments must outlive it. The loads of each particle follow each other in the
+/// order of time.
 class LoadsOnBodies {
 public:
-    /// collider_of: of each body, kWorldBody where it has none. slow: m/s, of impacts that begin contact.
+    /// collider_of: colliders of each body, kWorldBody if it has none. slow: speed of impacts that begin contact, in
+    /// m/s.
     LoadsOnBodies(std::span<const DrivenBody> bodies, std::span<const BodyId> collider_of,
                   const MovingColliders* colliders, double slow)
         : bodies_(bodies), collider_of_(collider_of), colliders_(colliders), slow_(slow) {}
 
-    /// Nothing where the load is on no body.
+    /// Returns the body that takes a load, or nothing if the load is on no body.
     [[nodiscard]] std::optional<std::size_t> body_of(const ColliderLoad& load) const;
-    /// Of each body, about its moment_center(): N s and N m s.
+    /// Returns the sum of the loads on each body, about its moment_center(), in N s and N m s.
     [[nodiscard]] std::vector<Wrench> sums(std::span<const ColliderLoad> loads) const;
-    /// What lies on a body until a time, s.
+    /// Returns the load that rests on a body until a time, in s.
     [[nodiscard]] RestingLoad resting_load_on(std::size_t body, std::span<const ColliderLoad> loads,
                                               double until) const;
-    /// s, after which nothing of what lies on a body pushes it any more; infinite where nothing does at all.
+    /// Returns the time, in s, after which no resting load pushes a body any more, or infinity if none does at all.
     [[nodiscard]] double left_at(std::size_t body, std::span<const ColliderLoad> loads) const;
-    /// The mass of a particle over that with which a body yields to its impulse; 0 where there is none.
+    /// Returns the mass of a particle over the body's effective mass for the impulse of a load; 0 without impulse.
     [[nodiscard]] double heaviness_on(std::size_t body, const ColliderLoad& load) const;
 
 private:

@@ -6,10 +6,10 @@
 namespace ricochet {
 namespace {
 
-/// Fewer members are looked for anew as fast.
+/// Fewest members whose pairs are kept by the particles' numbers. For fewer, a new search is as fast.
 constexpr std::size_t kMany = 512;
 
-/// So many times as many numbers as members may lie between their lowest and their highest.
+/// Largest range of the particles' numbers, as a multiple of the number of members.
 constexpr std::size_t kMostSlots = 2;
 
 }  // namespace
@@ -57,7 +57,7 @@ void MemberPairs::update(std::span<const Box3> boxes, std::span<const std::uint3
     static_cast<void>(near_.update(boxes_, changed_));
 }
 
-/// By the second, and then by the first, which keeps the order of the seconds.
+/// Sorts by the second numbers, and then by the first, which keeps the order of the second.
 std::span<const NeighbourPair> MemberPairs::sorted() {
     const std::vector<NeighbourPair>& all = near_.all();
     if (!is_by_particle_) return all;

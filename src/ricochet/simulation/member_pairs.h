@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: which members of a dense island are near each other.
+/// Private to the simulation: pairs of members of a contact island that are near each other.
 #pragma once
 
 #include <cstddef>
@@ -12,17 +12,17 @@
 
 namespace ricochet {
 
-/// Pairs of members by their numbers, which change from step to step, since members stand in the order of their places.
-/// Where an island is most of all particles pairs are kept by the particles' numbers, so that what NeighbourPairs keeps
-/// from step to step is of use. The same pairs come out either way.
+/// Pairs of members by their numbers. Members are in the order of their positions, so their numbers change from step to
+/// step. In an island of most particles, pairs are kept by the particles' numbers, so that NeighbourPairs can reuse its
+/// data from step to step. The pairs are the same either way.
 class MemberPairs {
 public:
-    /// boxes: of all members.
+    /// Finds the pairs of members whose boxes overlap. boxes: one per member.
     void find(std::span<const IslandMember> members, std::span<const Box3> boxes);
-    /// The same of boxes of which only those have changed, by their numbers, ascending, since the last call.
+    /// Finds the pairs again. changed: numbers of the boxes that have changed since the last call, ascending.
     void update(std::span<const Box3> boxes, std::span<const std::uint32_t> changed);
 
-    /// Calls visit(a, b) for all, in any order.
+    /// Calls visit(a, b) for all pairs, in any order.
     template <class Visit>
     void for_each(const Visit& visit) const {
         for (const auto& [first, second] : near_.all()) {
@@ -33,7 +33,7 @@ public:
             }
         }
     }
-    /// Ascending by (first, second). Valid until the next call.
+    /// Returns the pairs, ascending by (first, second). Valid until the next call.
     [[nodiscard]] std::span<const NeighbourPair> sorted();
 
 private:
@@ -41,14 +41,14 @@ private:
 
     NeighbourPairs near_;
     bool is_by_particle_ = false;
-    std::vector<std::uint32_t> slots_;      // of each member: its particle's number, from the lowest on
-    std::vector<std::uint32_t> member_at_;  // of each slot
+    std::vector<std::uint32_t> slots_;      // of each member: its particle's number minus the lowest one
+    std::vector<std::uint32_t> member_at_;  // member of each slot
     std::vector<Box3> boxes_;               // of each slot
     std::vector<std::uint32_t> changed_;    // slots
     std::vector<NeighbourPair> by_second_;
     std::vector<NeighbourPair> sorted_;
-    std::vector<std::uint32_t> first_ends_;   // of each member: where in sorted_ its pairs go
-    std::vector<std::uint32_t> second_ends_;  // the same in by_second_
+    std::vector<std::uint32_t> first_ends_;   // of each member: end of its pairs in sorted_
+    std::vector<std::uint32_t> second_ends_;  // of each member: end of its pairs in by_second_
 };
 
 }  // namespace ricochet

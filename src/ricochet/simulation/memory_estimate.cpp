@@ -15,23 +15,23 @@ namespace {
 // Bytes, measured with runs of a million particles and meshes of two million triangles. Local: they only estimate
 // memory.
 constexpr double kProgram = 12e6;             // libraries, threads
-constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value while it is born
-constexpr double kAttributeComponent = 32.0;  // of it the same
+constexpr double kParticle = 380.0;           // in the arrays, in two frames, and as a value at its birth
+constexpr double kAttributeComponent = 32.0;  // of a particle, likewise
 constexpr double kFamily = 400.0;             // with children: their origin, and the lists from which children are made
-constexpr double kCloudParticle = 300.0;      // with clouds: whom it goes with, and what it has flown where it leads
-constexpr double kSide = 16.0;                // what penalty and its like remember of a collider
+constexpr double kCloudParticle = 300.0;      // with clouds: its parent, and the path of a parent
+constexpr double kSide = 16.0;                // memory of penalty and similar responses for a collider
 constexpr double kVerifiedParticle = 90.0;    // by options.verify
 constexpr double kMeetingParticle = 1500.0;   // of spheres that meet: boxes, pairs, islands, contacts, as counted
 constexpr double kTriangle = 378.0;           // of a mesh with its search structures, while they are made
 constexpr double kVerifiedTriangle = 160.0;   // by options.verify
 constexpr double kContact = 412.0;            // a record, and its row in the log
-constexpr double kMemoryEstimateMostContacts = 500'000.0;  // rows that the log gathers at most beyond those of a step
-constexpr double kJoinedParticle = 800.0;                  // as kParticle, with what its rope or cloth is made in
-constexpr double kSpring = 200.0;                          // and what it is made in
-constexpr double kStandingTriangle = 238.0;                // as kTriangle, when the mesh has been read
-constexpr double kCoupledParticle = 900.0;   // of forces between particles: its plan, and the lists that they see
+constexpr double kMemoryEstimateMostContacts = 500'000.0;  // most rows that the log gathers besides a step's rows
+constexpr double kJoinedParticle = 800.0;    // like kParticle, with the data that its rope or cloth is made from
+constexpr double kSpring = 200.0;            // with the data that it is made from
+constexpr double kStandingTriangle = 238.0;  // like kTriangle, after the mesh has been read
+constexpr double kCoupledParticle = 900.0;   // with forces between particles: its plan, and the lists for the forces
 constexpr double kImplicitParticle = 390.0;  // in the matrix of implicit_euler
-constexpr double kImplicitSpring = 1200.0;   // the same, and its factors
+constexpr double kImplicitSpring = 1200.0;   // likewise, with its factors
 
 double mean_of(const MeanSpread& pair) { return std::max(0.0, pair.mean); }
 
@@ -40,13 +40,13 @@ double triangles_of(const ColliderShape& shape) {
     return mesh != nullptr && mesh->mesh ? static_cast<double>(mesh->mesh->triangles.size()) : 0.0;
 }
 
-/// Bytes of the positions of a mesh that deforms, of one copy of them.
+/// Returns the bytes of one copy of the positions of a deforming mesh.
 double positions_of(const ColliderShape& shape) {
     const auto* const mesh = std::get_if<MeshShape>(&shape);
     return mesh != nullptr && mesh->motion ? static_cast<double>(mesh->motion->memory_bytes()) : 0.0;
 }
 
-/// What of the estimate a setup itself holds already, or was held while it was made.
+/// Returns the bytes of the estimate that a setup itself holds, or that were needed while it was made.
 double bytes_taken(const SimulationSetup& setup) {
     constexpr double kStillToCome = kParticle - static_cast<double>(sizeof(Particle));
     const double particles = static_cast<double>(setup.particles.size());
@@ -58,7 +58,7 @@ double bytes_taken(const SimulationSetup& setup) {
     return kProgram + bytes;
 }
 
-/// Whether something can end particles before their time.
+/// Returns true if something can remove particles before the end of their lifetime.
 bool may_retire_early(const SimulationSetup& setup) {
     return setup.bounds.has_value() ||
            std::any_of(setup.materials.begin(), setup.materials.end(),
@@ -67,7 +67,7 @@ bool may_retire_early(const SimulationSetup& setup) {
                        [](const EmitterDescription& emitter) { return emitter.parent && emitter.parent->share; });
 }
 
-/// Particles a second, on average.
+/// Returns the mean number of particles per second.
 double rate_of(const EmitterDescription& emitter, const SimulationSetup& setup) {
     double per_frame = mean_of(emitter.rate_per_frame);
     if (mean_of(emitter.rate_per_area) > 0.0 && setup.reference_camera) {
@@ -76,7 +76,7 @@ double rate_of(const EmitterDescription& emitter, const SimulationSetup& setup) 
     return mean_of(emitter.rate) + per_frame * setup.options.frame_rate;
 }
 
-/// Its particles that are sure to live at one time. How many children there will be nobody knows.
+/// Returns the number of an emitter's particles that certainly live at one time. The number of children is not known.
 double sure_population(const EmitterDescription& emitter, const SimulationSetup& setup) {
     const SimulationOptions& options = setup.options;
     if (emitter.parent || !(emitter.start < options.duration)) return 0.0;
@@ -98,7 +98,7 @@ bool has_children(const SimulationSetup& setup) {
                        [](const EmitterDescription& emitter) { return emitter.parent.has_value(); });
 }
 
-/// The needs of a setup, one after the other.
+/// Lists the needs of a setup.
 class Estimator {
 public:
     explicit Estimator(const SimulationSetup& setup)
@@ -127,7 +127,7 @@ private:
         estimate_.needs.push_back(need);
     }
 
-    // No more live than may.
+    // Limits the living particles to the allowed number.
     void add_particles(const MemoryNeed& need, double count) {
         const double living = std::min(count, room_);
         room_ -= living;
@@ -148,7 +148,7 @@ private:
         for (std::size_t k = 0; k < setup_.colliders.size(); ++k) {
             const ColliderShape& shape = setup_.colliders[k].shape;
             add({MemoryNeed::Part::collider, k}, triangles_of(shape), each);
-            // As they are given and as they are placed, and by options.verify once more with boxes of as much.
+            // Given and placed positions. options.verify needs another copy, with boxes of the same size.
             const double copies = setup_.options.verify ? 4.0 : 2.0;
             if (positions_of(shape) > 0.0) estimate_.needs.back().bytes += copies * positions_of(shape);
         }

@@ -24,11 +24,11 @@ constexpr std::size_t kBlock = 256;
 
 }  // namespace
 
-/// What one particle did in one pass: flights between knots.
+/// Path of one particle in one pass, as flights between knots.
 struct Offspring::Trajectory {
     using Knot = FlightKnot;
     Particle particle;      ///< with the last state
-    std::size_t entry = 0;  ///< from first_ on
+    std::size_t entry = 0;  ///< index from first_ on
     std::vector<Knot> knots;
     std::span<const ContactRecord> records;
     bool shattered = false;
@@ -116,7 +116,7 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     trajectory.records = records;
     const PhaseState start{positions_[i - first_], velocities_[i - first_]};
     if (clouds_ != nullptr) {
-        const auto known = clouds_->knots_of(particles.id[i]);  // those of what goes with a parent have its impacts too
+        const auto known = clouds_->knots_of(particles.id[i]);  // in a cloud they contain the impacts too
         trajectory.knots.assign(known.begin(), known.end());
     }
     if (trajectory.knots.empty()) trajectory.knots = flight_knots(particles, i, start, from, to, records);
@@ -126,8 +126,8 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
     return trajectory;
 }
 
-// Those beyond `most` are refused one and all, since the first ones, which come before them, take all the room: they
-// are one batch.
+// Puts the births beyond `most` into one spawn generation. They are all refused, because the earlier ones take all the
+// room.
 void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
                          std::uint64_t most, std::vector<SpawnGeneration>& spawn_generations) const {
     thread_local ContactScratch scratch;
@@ -149,7 +149,8 @@ void Offspring::add_impacts(const Emitter& emitter, const Trajectory& trajectory
         const bool is_last = &record == &trajectory.records.back();
         const double impulse = record.mass * length(record.velocity_after - record.velocity_before);
         const bool ends_here = rule.share && trajectory.shattered && is_last;
-        // A shattering parent's only birth is at its end; one that is too deep to shatter is refused here and there.
+        // A shattering parent has births only at its end. If its generation is too deep to shatter, they are refused
+        // here.
         const bool refused = rule.share && origin.generation >= limits_.max_depth && impulse >= rule.threshold_impulse;
         if (!ends_here && !refused && (rule.share || impulse < rule.threshold_impulse)) continue;
         std::uint32_t count = children_of_event(emitter, trajectory.particle, origin.birth_impacts++);
@@ -170,8 +171,8 @@ void Offspring::add_death(const Emitter& emitter, const Trajectory& trajectory,
     std::uint32_t count = children_of_event(emitter, trajectory.particle, 0);
     if (rule.share) count = std::max(count, 1U);
     const Trajectory::Knot& last = trajectory.knots.back();
-    // What an absorbing surface has stopped spawns with the velocity of arrival. Only what is shared out has none any
-    // more: its momentum has gone into the surface, and would go there again.
+    // Children of a particle that an absorbing surface has stopped get the velocity of arrival. Fragments have no
+    // velocity: the parent's momentum has gone into the surface, and would go there again.
     const bool absorbed = !trajectory.records.empty() && last.time == trajectory.records.back().time;
     spawn_generations.push_back({last.time, emitter.number(), 0, count, rule.share,
                                  trajectory.at(last, absorbed && !rule.share ? last.before : last.after),
@@ -215,7 +216,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
                     add_birth(emitter, trajectory, blocks[block]);
                 }
             }
-            // A batch takes no more memory than the particle that it makes.
+            // A SpawnGeneration takes no more memory than a particle that it makes.
             const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
             if (gathered.fetch_add(more, std::memory_order_relaxed) + more > fitting + count) {
                 refuse_to_grow(particles.size(), bytes_each_);
@@ -242,7 +243,7 @@ std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnGenera
     return claims;
 }
 
-/// Decides of all batches of a pass, in their order, how many of each may live.
+/// Decides for all spawn generations of a pass, in their order, how many children of each may live.
 void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                       OffspringCounts& counts) const {
     for (Claim& claim : claims) {
@@ -263,7 +264,8 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
     }
 }
 
-/// The same where ranks share the run: each decides of all batches of all of them. A parent's are on one rank.
+/// Decides like allot() if ranks share the run: each rank decides for all of them. A parent's spawn generations are on
+/// one rank.
 void Offspring::allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
                                OffspringCounts& counts) const {
     const auto rank = static_cast<std::uint32_t>(share.ranks().rank());
@@ -291,7 +293,7 @@ Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& pa
     return {std::move(particle), positions_[spawn_generation.entry], sides, is_fragment, number, std::nullopt};
 }
 
-/// What finds no place keeps its number.
+/// Adds a child of a cloud. If no position is free, its number stays unused.
 void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
                                 std::vector<Child>& children, OffspringCounts& counts) const {
     const auto has_place = [&](const Particle& child) {

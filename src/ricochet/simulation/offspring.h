@@ -1,10 +1,11 @@
 /// \file
 /// Private to the simulation: particles spawned by particles, step by step.
 ///
-/// Children spawn only at positions of their parent's trajectory: where it is at an impact or at its end, or, in
-/// between, at a position on the cubic through both ends of a flight that a straight segment joins to one of these ends
-/// without meeting a surface (decided exactly); otherwise at that end itself. So no child begins behind a wall that its
-/// parent is in front of. Those of a cloud spawn beside it, where nothing is in the way from it to there.
+/// Children spawn only at positions of their parent's trajectory. At an impact or at the parent's end, this is its
+/// position. In between, it is a position on the cubic through both ends of a flight. A straight segment must join it
+/// to one of these ends without meeting a surface (decided exactly). Otherwise it is the start of the flight. So no
+/// child begins behind a wall that its parent is in front of. Children of a cloud spawn beside the parent, if nothing
+/// is in between.
 #pragma once
 
 #include <algorithm>
@@ -25,12 +26,12 @@
 
 namespace ricochet {
 
-/// Room for more below a limit.
+/// Returns how many more fit below a limit.
 [[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
     return most - std::min(most, living);
 }
 
-/// Where hierarchies end.
+/// Limits of hierarchies of particles.
 struct OffspringLimits {
     std::uint32_t max_depth = 16;                          ///< highest generation
     std::uint64_t most_particles = kDefaultMostParticles;  ///< living at a time
@@ -38,76 +39,78 @@ struct OffspringLimits {
 
 class CloudMotion;
 
-/// Whom a particle goes with, and its place there.
+/// The parent that a particle goes with, and its offset from the parent.
 struct CloudMembership {
     std::uint64_t parent = 0;  ///< id
-    Vec3 offset;               ///< m, about the parent, at the child's birth
+    Vec3 offset;               ///< m, from the parent, at the child's birth
 };
 
-/// Whether a child may be born where it is, away from its parent.
+/// Test of whether a child may be born at its position, away from its parent.
 using SpawnTest = std::function<bool(const Particle& parent, const Particle& child)>;
 
 /// A particle spawned by another.
 struct Child {
     Particle particle;
-    Vec3 parent_start;                         ///< m, where the parent's move began
-    std::span<const SideMemory> parent_sides;  ///< its sides there; valid until the next before_move()
-    bool goes_on = false;                      ///< a fragment: what its parent touches it is in contact with already
-    std::uint64_t number = 0;                  ///< among all children of the pass, those of other ranks too
-    std::optional<CloudMembership> cloud = std::nullopt;  ///< of one that goes with its parent
+    Vec3 parent_start;                         ///< m, position of the parent at the start of its move
+    std::span<const SideMemory> parent_sides;  ///< sides of the parent there; valid until the next before_move()
+    bool goes_on = false;      ///< a fragment: it is already in contact with the surfaces that its parent touches
+    std::uint64_t number = 0;  ///< among all children of the pass, on all ranks
+    std::optional<CloudMembership> cloud = std::nullopt;  ///< if it goes with its parent
 };
 
-/// What a pass has spawned and refused.
+/// Numbers of children that a pass has spawned and refused.
 struct OffspringCounts {
     std::uint64_t children = 0;
     std::uint64_t refused_by_depth = 0;
     std::uint64_t refused_by_population = 0;
-    std::uint64_t refused_by_overlap = 0;  ///< of the children
+    std::uint64_t refused_by_overlap = 0;  ///< included in `children`
 };
 
 /// Spawns the children of a simulation's particles.
 class Offspring {
 public:
-    /// emitters: all of the scene's; must outlive it. Throws InputError for a parent that is not there and for two
-    /// emitters that share out one parent at the same event.
+    /// emitters: all of the scene; must outlive it. Throws InputError for a missing parent, and for two emitters that
+    /// share out one parent at the same event.
     Offspring(const std::vector<Emitter>& emitters, const OffspringLimits& limits);
 
-    /// True when no emitter has a parent.
+    /// Returns true if no emitter has a parent.
     [[nodiscard]] bool empty() const { return empty_; }
-    /// Particles that the memory holds, of so many bytes each: where more would live, after_move() throws RunError.
+    /// Sets the number of particles, of so many bytes each, that the memory holds. If more would live, after_move()
+    /// throws RunError.
     void set_memory(std::uint64_t most_that_fit, double bytes_each) {
         most_that_fit_ = most_that_fit;
         bytes_each_ = bytes_each;
     }
-    /// clouds: they know what parents have flown, and must outlive it. test: of each child of a cloud.
+    /// Sets the clouds, which know the paths of parents and must outlive it, and the test for each child of a cloud.
     void set_clouds(const CloudMotion* clouds, SpawnTest test) {
         clouds_ = clouds;
         spawn_test_ = std::move(test);
     }
-    /// N s: the impact that ends particle i; infinity when none does.
+    /// Returns the impulse, in N s, of an impact that shatters particle i; infinity if no impact does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
 
-    /// Keeps the states of the entries from `first` on, which are about to be moved. sides: theirs, where there are
-    /// any.
+    /// Stores the states of the entries from `first` on, which are about to be moved. sides: of these entries, if there
+    /// are any.
     void before_move(const Particles& particles, std::size_t first, std::span<const SideMemory> sides);
-    /// The children that the entries kept have spawned in [from, to), in the order of (time, parent, ordinal). records:
-    /// of the impacts of these entries, those of one particle in the order of time. counts: of all ranks, on each.
+    /// Returns the children that the stored entries have spawned in [from, to), in the order of (time, parent,
+    /// ordinal). records: impacts of these entries, in the order of time for each particle. counts: of all ranks, on
+    /// each.
     [[nodiscard]] std::vector<Child> after_move(const CollisionWorld& world, Particles& particles, double from,
                                                 double to, std::vector<ContactRecord> records, const RankShare& share,
                                                 OffspringCounts& counts) const;
 
 private:
-    /// Children of one event, or one child of a life.
+    /// Children of one event, or one child during a life.
     struct SpawnGeneration {
         double time = 0.0;
         std::uint32_t emitter = 0;
         std::uint32_t first_ordinal = 0;
         std::uint32_t count = 0;
         bool share = false;
-        Particle parent;        ///< as it is at the birth
-        std::size_t entry = 0;  ///< of the parent, from first_ on
+        Particle parent;        ///< in its state at the birth
+        std::size_t entry = 0;  ///< index of the parent, from first_ on
     };
-    /// What decides how many of a batch may live, and what has been decided.
+    /// Request of a spawn generation for a number of children, and the number that is allowed.
     struct Claim {
         double time = 0.0;
         std::uint64_t parent = 0;  ///< id
@@ -118,9 +121,9 @@ private:
         double mass = 0.0;             ///< kg, the parent's
         bool share = false;
         std::uint32_t rank = 0;
-        std::uint64_t spawn_generation = 0;  ///< its number there
+        std::uint64_t spawn_generation = 0;  ///< index on that rank
         std::uint32_t allowed = 0;
-        std::uint64_t first = 0;  ///< number of its first child among all of the pass
+        std::uint64_t first = 0;  ///< number of its first child among all children of the pass
     };
     struct Trajectory;
 

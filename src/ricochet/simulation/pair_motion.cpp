@@ -14,10 +14,10 @@ namespace {
 /// Islands per unit of parallel work.
 constexpr std::size_t kPairMotionBlock = 16;
 
-/// Members from the prefetch of one to its use: neighbours in space lie anywhere in memory.
+/// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
 constexpr std::size_t kPairMotionPrefetchDistance = 6;
 
-/// Without the table that spheres are moved by.
+/// Returns the rules for the verifier, without the table that moves spheres.
 verify::ImpactAudit books_of(const PairParts& parts) {
     const PairContactSettings& settings = parts.settings;
     const ResponseRules& rules = parts.response.rules();
@@ -60,12 +60,12 @@ void PairMotion::solve(const ParticleRange& range, const TimeSpan& step) {
         islands_.solve(range, step);
     } while (wake_loaded_sleepers(step));
     for (const IslandBuilder::Island& island : islands_.all()) {
-        // It leaves the others alone until they are taken over.
+        // Members are excluded from other moves until their results are stored.
         for (const IslandMember& member : island.members) parts_.schedule.leave_alone(member.particle);
     }
 }
 
-/// Whom islands have pushed that was asleep: nothing has been taken over yet.
+/// Wakes the sleepers that islands have pushed. No results have been stored yet. Returns false if there are none.
 bool PairMotion::wake_loaded_sleepers(const TimeSpan& step) {
     std::vector<std::uint64_t> loaded;
     for (const IslandBuilder::Island& island : islands_.all()) {
@@ -109,7 +109,7 @@ void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& 
     }
 }
 
-/// Of those that are there at the end of a step.
+/// Measures the largest overlap of spheres that live at the end of a step.
 void PairMotion::measure_overlaps(double time) {
     const Particles& particles = parts_.store.particles();
     const auto measure = [&](std::size_t i, std::size_t j) {

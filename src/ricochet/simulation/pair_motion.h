@@ -1,8 +1,8 @@
 /// \file
-/// Private to the simulation: spheres that meet each other in a step.
+/// Private to the simulation: the motion of spheres that meet each other in a step.
 ///
-/// Who may meet whom is PairPlans' question, what islands of them do IslandBuilder', what lasts from step to step that
-/// of LastingContacts; all that meets nobody goes the ordinary way.
+/// PairPlans finds the pairs that may meet, IslandBuilder solves their islands, and LastingContacts keeps the state
+/// between steps. Spheres that meet no others are moved like other particles.
 #pragma once
 
 #include <cstdint>
@@ -17,50 +17,49 @@
 
 namespace ricochet {
 
-/// What spheres have done to each other in a step.
+/// Results of contacts between spheres in a step.
 struct PairCounts {
     std::uint64_t impacts = 0;
-    double largest_overlap = 0.0;  ///< of the spheres at the step's end, over the smaller radius
+    double largest_overlap = 0.0;  ///< at the end of the step, over the smaller radius
 };
 
 class PairMotion {
 public:
     explicit PairMotion(const PairParts& parts);
 
-    /// Works off the islands among the particles of the range; none of their members is moved by the ordinary way any
-    /// more in this step.
+    /// Solves the islands among the particles of the range. Their members are not moved otherwise in this step.
     void solve(const ParticleRange& range, const TimeSpan& step);
-    /// After the others have moved: takes over where the members have gone.
+    /// Stores the results of the members. Must be called after the others have moved.
     void write_back(const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
-    /// Of the last step's islands.
+    /// Returns the counts of the last step's islands.
     [[nodiscard]] const PairCounts& counts() const { return counts_; }
-    /// Impacts of the last step's islands, island by island.
+    /// Returns the impacts of the last step's islands, island by island.
     [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
-    /// The same for the verifier, where there is one.
+    /// Returns these impacts for the verifier, if there is one.
     [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
-    /// What it holds them against.
+    /// Returns the rules by which the verifier checks them.
     [[nodiscard]] const verify::ImpactAudit& books() const { return books_; }
-    /// Islands that were dense and not solved to the tolerance, in all steps.
+    /// Returns the number of contact islands, in all steps, that were not solved to the tolerance.
     [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
 
-    /// Its attribute is the number of a material, or there are none.
+    /// Returns true if a particle's attribute is the number of a material, or if there are no materials.
     [[nodiscard]] bool has_material(std::size_t particle) const;
 
-    /// Of each particle: others, or walls together with others, have held it in the last step.
+    /// Returns a flag per particle: others, or walls together with others, have supported it in the last step.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
 
-    /// Wakes all spheres that sleep on others, at a time, s: what holds them may change.
+    /// Wakes all spheres that sleep on others, at a time, in s, because their supports may change.
     void wake_all(double time) { contacts_.wake_all(time); }
 
-    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         contacts_.archive(a);
         a(unsolved_);
     }
 
-    /// Returns false for contacts and sleepers that no run leaves behind. next_id: of the next particle.
+    /// Returns false for contacts and sleepers that no run leaves behind. next_id: id of the next particle.
     [[nodiscard]] bool is_sound(std::uint64_t next_id) const { return contacts_.is_sound(next_id); }
 
 private:
@@ -69,7 +68,7 @@ private:
     void measure_overlaps(double time);
 
     PairParts parts_;
-    std::size_t first_ = 0;  // of the range
+    std::size_t first_ = 0;  // first particle of the range
     LastingContacts contacts_;
     PairPlans plans_;
     IslandBuilder islands_;

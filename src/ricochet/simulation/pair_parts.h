@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: what spheres that meet each other are moved by.
+/// Private to the simulation: the parts that move spheres which touch each other.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace ricochet {
 
-/// What it refers to must outlive who has it.
+/// Parts of the simulation that move spheres which touch each other. All must outlive the object.
 struct PairParts {
     ParticleStore& store;
     QuerySchedule& schedule;
@@ -24,11 +24,11 @@ struct PairParts {
     const CoupledMotion& coupled;
     const PairContactSettings& settings;
     PairMaterials materials;                          ///< of the settings
-    std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; none where all are of one
+    std::optional<std::size_t> material_column = {};  ///< of kMaterialAttribute; none if all spheres have one material
 
-    /// False: impacts are worked off one after the other, whatever comes.
+    /// Returns false if all islands are solved impact by impact.
     [[nodiscard]] bool may_be_contact_island() const { return settings.method != PairMethod::events; }
-    /// Its number.
+    /// Returns the number of a particle's material.
     [[nodiscard]] std::uint32_t material_of(std::size_t particle) const {
         if (!material_column) return 0;
         return static_cast<std::uint32_t>(store.particles().attributes.value(*material_column, particle).x);

@@ -27,7 +27,7 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     freedom_.assign(range.size(), Freedom::unknown);
     boxes_.resize(range.size());
     declare();
-    // What may go anywhere without touching a wall has to say where.
+    // Spheres that may go anywhere without touching a wall must declare their paths.
     std::vector<std::uint32_t> asked;
     for (std::uint32_t k = 0; k < boxes_.size(); ++k) {
         if (is_unbounded(k)) asked.push_back(k);
@@ -41,7 +41,7 @@ void PairPlans::find(const ParticleRange& range, const TimeSpan& step, const Pai
     }
 }
 
-/// From those whose boxes are near each other.
+/// Collects the pairs of spheres whose boxes are near each other.
 void PairPlans::collect_pairs() {
     changed_.clear();
     pairs_ = near_.all();
@@ -56,8 +56,8 @@ void PairPlans::collect_pairs() {
     });
 }
 
-/// What flies freely onto something that lies, presses or is expected to be deflected itself does not go on as it has
-/// declared: it says again how far it may come. False where there is none.
+/// Binds spheres that fly freely onto bound ones, because they will be deflected, and declares how far they may come.
+/// Bound spheres rest, press, or are expected to be deflected. Returns false if there are none.
 bool PairPlans::expect_deflections() {
     if (!parts_.may_be_contact_island()) return false;
     std::vector<std::uint32_t> deflected;
@@ -102,7 +102,7 @@ std::vector<NeighbourPair> PairPlans::stack_on(std::vector<std::uint32_t> base) 
     return stack;
 }
 
-/// It touches the other one, but for a small gap, and its free way leads into the place where that is.
+/// Returns true if a free sphere touches another one, except for a small gap, and its path leads into the other.
 bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     if (!is_free(above)) return false;
     const Particles& particles = parts_.store.particles();
@@ -114,7 +114,7 @@ bool PairPlans::lies_on(std::uint32_t above, std::uint32_t below) const {
     return has_sunk(touching, smaller, apart, free_path(above).path.end - center);
 }
 
-/// What is known without asking.
+/// Makes the declarations that need no test by ask().
 void PairPlans::declare() {
     parallel_for_blocks(boxes_.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
@@ -128,7 +128,7 @@ void PairPlans::declare() {
 void PairPlans::ask(std::vector<std::uint32_t> particles) {
     std::erase_if(particles, [&](std::uint32_t k) {
         if (freedom_[k] != Freedom::unknown) return true;
-        freedom_[k] = Freedom::bound;  // until it says otherwise
+        freedom_[k] = Freedom::bound;  // until the test shows that it is free
         return !parts_.may_be_contact_island() || boxes_[k].empty() || !moves(k);
     });
     parallel_for_blocks(particles.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
@@ -145,7 +145,8 @@ void PairPlans::ask(std::vector<std::uint32_t> particles) {
                  [&](std::uint32_t k) { return is_free(k); });
 }
 
-/// Held by walls alone, for as long as nothing comes: where single particles may sleep it does.
+/// Returns true if walls alone hold a sphere, for as long as nothing comes near. It sleeps if single particles may
+/// sleep.
 bool PairPlans::lies(std::size_t i) const {
     const Particles& particles = parts_.store.particles();
     if (particles.held[i] == 0 || !parts_.response.rules().forces.is_steady()) return false;
@@ -159,7 +160,7 @@ bool PairPlans::moves(std::uint32_t k) const {
     return parts_.store.particles().pinned[i] == 0 && !is_asleep(k) && !lies(i);
 }
 
-/// Whether reach() is all that spheres may come where nothing that moves pushes them.
+/// Returns true if reach() bounds the motion of spheres that no moving collider pushes.
 bool PairPlans::is_bounded() const {
     const ResponseRules& rules = parts_.response.rules();
     const auto gives_energy = [](const Material& m) { return m.drives() || m.wall_temperature.has_value(); };
@@ -167,15 +168,15 @@ bool PairPlans::is_bounded() const {
            std::none_of(rules.materials.begin(), rules.materials.end(), gives_energy);
 }
 
-/// True for a sphere that may go farther than its box.
+/// Returns true for a sphere that may go farther than its box.
 bool PairPlans::is_unbounded(std::uint32_t k) const {
     if (!is_bounded_) return true;
     const MovingColliders* const bodies = parts_.response.rules().bodies;
     return bodies != nullptr && !boxes_[k].empty() && !bodies->all_stay_out(boxes_[k]);
 }
 
-/// m, that a sphere may come in a duration, s, where no wall and no force gives it more energy than a uniform force
-/// does: its spin may turn into speed.
+/// Returns the distance, in m, that a sphere can come in a duration, in s. Walls and forces must not give it more
+/// energy than a uniform force does. Its spin may turn into speed.
 double PairPlans::reach(std::size_t i, double duration) const {
     const Particles& particles = parts_.store.particles();
     const double turning = particles.radius[i] * length(particles.spin[i]);
@@ -186,7 +187,7 @@ double PairPlans::reach(std::size_t i, double duration) const {
     return kPairBoxSlack * duration * (speed + change);
 }
 
-/// Of one that may touch walls; empty where it meets nobody. Those that sleep are in a grid of their own.
+/// Returns the box of a sphere that may touch walls; empty if it meets no others. Sleepers are in a grid of their own.
 Box3 PairPlans::reachable_box(std::uint32_t k) const {
     const std::size_t i = first_ + k;
     const Particles& particles = parts_.store.particles();
@@ -214,7 +215,8 @@ bool PairPlans::lives_through(std::size_t i) const {
     return particles.birth_time[i] <= step_.begin && particles.birth_time[i] + particles.lifetime[i] >= step_.end;
 }
 
-/// By what has been looked at ahead. Where nothing depends on it no more is asked for.
+/// Returns true if the look-ahead shows that a sphere flies freely. With contact islands results depend on it, so the
+/// sphere must also be free by its state.
 bool PairPlans::is_known_free(std::uint32_t k) const {
     const std::size_t i = first_ + k;
     if (parts_.store.particles().radius[i] == 0.0 || is_asleep(k) || !parts_.schedule.is_in_free_flight(i))
@@ -222,7 +224,7 @@ bool PairPlans::is_known_free(std::uint32_t k) const {
     return !parts_.may_be_contact_island() || (traces_->presses[k] == 0 && lives_through(i));
 }
 
-/// By going its way, as if nobody were there.
+/// Returns true if a sphere flies freely. Moves it as if it were alone.
 bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     const std::size_t i = first_ + k;
     const bool touches = parts_.store.particles().support[i][0] != kNoSupport || traces_->presses[k] != 0;
@@ -243,7 +245,7 @@ bool PairPlans::flies_freely(std::uint32_t k, MoveScratch& scratch) const {
     return goes_on && outcome.meetings() == 0 && moving.state.position == free_path(k).path.end;
 }
 
-/// False for two whose boxes overlap that do not meet, unless others are met.
+/// Returns false if two spheres do not meet, unless others deflect them.
 bool PairPlans::do_meet(const NeighbourPair& pair) const {
     if (!overlap(place_of(pair.first), place_of(pair.second))) return false;
     if (!is_free(pair.first) || !is_free(pair.second)) return true;
@@ -253,7 +255,7 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     const double a = radius[first_ + pair.first];
     const double b = radius[first_ + pair.second];
     if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
-    // Two that touch do not meet where forces drive them into each other, which only a plan can hold.
+    // Two spheres that touch have no first meeting if forces drive them into each other. Only a plan can hold them.
     return parts_.may_be_contact_island() &&
            has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }
@@ -266,7 +268,7 @@ bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     return first_meeting(member.trajectory, {&trajectory, 1}, distance, 0.0).has_value();
 }
 
-/// They are in a grid of their own, which stays as long as they do.
+/// Adds pairs with sleepers. Sleepers are in a grid of their own, which stays as long as they sleep.
 void PairPlans::add_pairs_with_sleepers() {
     const std::vector<std::uint8_t>& asleep = traces_->is_asleep;
     if (grid_version_ != traces_->version || in_grid_ != asleep) {

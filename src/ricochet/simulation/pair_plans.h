@@ -1,11 +1,11 @@
 /// \file
-/// Private to the simulation: where spheres would go in a step if each were alone, and so which of them may meet.
+/// Private to the simulation: the paths of spheres in a step as if each were alone, and the pairs that may meet.
 ///
-/// Each sphere declares a box in which it stays if it meets none of the others. One that flies freely, without touching
-/// a wall, declares its exact way; one that is bound, since it touches walls or pressed on something in the last step,
-/// declares how far it may come. Who is planned together in dense islands depends on it, and so do results: what
-/// is declared depends on the state at the step's begin alone, never on what has been looked at ahead, which only saves
-/// going a way.
+/// Each sphere declares a box in which it stays if it meets no others. A sphere that flies freely, without touching a
+/// wall, declares its exact path. A bound sphere touches walls, or pressed on something in the last step. It declares
+/// how far it may come. The declarations decide which spheres contact islands plan together, and so they affect
+/// results. They depend only on the state at the start of the step, never on the look-ahead, which only saves the
+/// computation of a path.
 #pragma once
 
 #include <cstdint>
@@ -18,42 +18,44 @@
 
 namespace ricochet {
 
-/// What steps have left behind, of each particle of a range.
+/// State from earlier steps, for each particle of a range.
 struct PairTraces {
-    std::vector<std::uint8_t> is_asleep;  ///< in a pile: its place is all that others meet
-    std::vector<std::uint8_t> presses;    ///< on others or walls, where they were planned together in the last step
-    std::uint64_t version = 0;            ///< of the piles that sleep: changes with them
+    std::vector<std::uint8_t> is_asleep;  ///< in a sleeping island: others meet only its position
+    std::vector<std::uint8_t> presses;    ///< on others or walls, in a contact island of the last step
+    std::uint64_t version = 0;            ///< of the sleeping islands; changes with them
 };
 
 class PairPlans {
 public:
     explicit PairPlans(const PairParts& parts) : parts_(parts) {}
 
-    /// What those of a range declare for a step, and which of them may meet. traces must live as long as the plans are
-    /// asked. Particles are called by their numbers in the range from here on.
+    /// Finds the declarations of the particles of a range for a step, and the pairs that may meet. traces must outlive
+    /// the use of the plans. From here on, particles are given by their numbers in the range.
     void find(const ParticleRange& range, const TimeSpan& step, const PairTraces& traces);
 
-    /// Those whose boxes are near each other, of which at least one moves; more than those that may meet.
+    /// Returns the pairs whose boxes are near each other and of which at least one sphere moves. They include all pairs
+    /// that may meet.
     [[nodiscard]] const std::vector<NeighbourPair>& pairs() const { return pairs_; }
-    /// Whether the two of a pair may meet, by its number.
+    /// Returns true if the spheres of a pair, given by its number, may meet.
     [[nodiscard]] bool may_meet(std::size_t pair) const { return met_[pair] != 0; }
-    /// It is bound, and may go farther than it declares.
+    /// Returns true if a sphere is bound, and may go farther than it declares.
     [[nodiscard]] bool may_roam(std::uint32_t k) const { return is_bound(k) && is_unbounded(k); }
-    /// It is there, something may move it, and it does not fly freely.
+    /// Returns true if a sphere takes part in the step, can be moved, and does not fly freely.
     [[nodiscard]] bool is_bound(std::uint32_t k) const { return !boxes_[k].empty() && moves(k) && !is_free(k); }
 
-    /// Appends all whose boxes are near another one.
+    /// Appends all spheres whose boxes are near a box.
     void find_near(const Box3& box, std::vector<std::uint32_t>& found) const;
-    /// Lets those that have not said it yet say whether they fly freely.
+    /// Tests which of these spheres fly freely, unless that is known.
     void ask(std::vector<std::uint32_t> particles);
-    /// Of those that have been asked, as those of pairs() have.
+    /// Returns true if a sphere flies freely. It must have been tested by ask(), as the spheres of pairs() have.
     [[nodiscard]] bool is_free(std::uint32_t k) const { return freedom_[k] == Freedom::free; }
     [[nodiscard]] const Box3& box(std::uint32_t k) const { return boxes_[k]; }
-    /// Whether a member's way leads it onto a sphere of another island that does what it declares, and has been asked.
+    /// Returns true if a member's path leads onto a sphere of another island that keeps its declaration. The sphere
+    /// must have been tested by ask().
     [[nodiscard]] bool comes_to(const IslandMember& member, std::uint32_t k) const;
 
-    /// All that fly freely and lie on one of the base, if that stays where it is, or on others that do: each with one
-    /// that it lies on, which comes first.
+    /// Returns all spheres that fly freely and rest on the base, or on others that do, if the base keeps its position.
+    /// Each comes second in a pair with a sphere that it rests on.
     [[nodiscard]] std::vector<NeighbourPair> stack_on(std::vector<std::uint32_t> base) const;
 
 private:
@@ -80,21 +82,21 @@ private:
     [[nodiscard]] bool do_meet(const NeighbourPair& pair) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;  // of the range
+    std::size_t first_ = 0;  // first particle of the range
     TimeSpan step_;
-    bool is_bounded_ = true;  // but for what comes to colliders that move
+    bool is_bounded_ = true;  // except near moving colliders
     const PairTraces* traces_ = nullptr;
     std::vector<Freedom> freedom_;
     std::vector<Box3> boxes_;
-    NeighbourPairs near_;                 // of boxes, those of bound ones where somebody has not been asked
-    std::vector<std::uint32_t> changed_;  // boxes, since
+    NeighbourPairs near_;                 // of boxes; spheres that have not been tested by ask() count as bound
+    std::vector<std::uint32_t> changed_;  // boxes that have changed since then
     std::vector<NeighbourPair> pairs_;
     std::vector<std::uint8_t> met_;  // of the pairs
     NeighbourGrid sleeper_grid_;
     std::vector<Box3> sleeper_boxes_;
-    Box3 sleepers_;                      // around all of those
-    std::vector<std::uint8_t> in_grid_;  // who sleeps, as that grid has it
-    std::uint64_t grid_version_ = 0;     // of the piles in it
+    Box3 sleepers_;                      // box around all sleepers
+    std::vector<std::uint8_t> in_grid_;  // sleepers in the grid
+    std::uint64_t grid_version_ = 0;     // version of the sleeping islands in it
 };
 
 }  // namespace ricochet

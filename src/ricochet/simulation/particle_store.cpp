@@ -88,7 +88,7 @@ void ParticleStore::load_core(std::size_t i, MovingParticle& particle) const {
     particle.spin = OverlapCores::spin_of_core(particle.spin, cores_.radius(i), particles_.radius[i]);
 }
 
-/// Its spin where the response has moved its core; the bits of the one before where that has not changed.
+/// Converts the spin of a core to that of the sphere. An unchanged spin keeps its bits.
 Vec3 ParticleStore::spin_of(std::size_t i, const MovingParticle& moved) const {
     if (!cores_.has(i)) return moved.spin;
     const double core = cores_.radius(i);
@@ -112,7 +112,7 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (particles_.draws[i] != moved.draws) particles_.draws[i] = moved.draws;
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
-    // What rides goes where its body goes.
+    // An attached particle goes where its body goes.
     if (in_contact) store_contact(i, moved, outcome, may_be_supported && !moved.attachment);
     if (!keeps_attachments_) return;
     frame_rules_[i] = {};
@@ -170,7 +170,7 @@ bool ParticleStore::is_sound(std::size_t i) const {
 std::optional<std::size_t> ParticleStore::index_of(std::uint64_t id) const {
     const std::vector<std::uint64_t>& ids = particles_.id;
     if (ids.empty() || id < ids.front()) return std::nullopt;
-    const std::size_t guess = id - ids.front();  // while nobody has gone
+    const std::size_t guess = id - ids.front();  // right if no particle has been removed
     if (guess < ids.size() && ids[guess] == id) return guess;
     const auto at = std::lower_bound(ids.begin(), ids.end(), id);
     if (at == ids.end() || *at != id) return std::nullopt;

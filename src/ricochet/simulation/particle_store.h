@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: the particles with what the response remembers of each, and how one is handed to the
-/// response and taken back.
+/// Private to the simulation: the particles with the state that the response keeps of each, and their exchange with the
+/// response.
 #pragma once
 
 #include <cmath>
@@ -20,9 +20,8 @@ namespace ricochet {
 /// The particles of a simulation. Particles are appended at the end and keep their order.
 class ParticleStore {
 public:
-    /// may_sleep: what holds a particle now holds it for good, so it need not be asked for again.
-    /// colliders: how many have sides that the response keeps; 0 where it keeps none. keeps_attachments: colliders
-    /// move.
+    /// may_sleep: supports last, so a held particle needs no further query. colliders: number of colliders whose sides
+    /// the response keeps; 0 if it keeps none. keeps_attachments: true if colliders move.
     ParticleStore(std::vector<AttributeDescription> attributes, bool keeps_origin, bool may_sleep,
                   std::size_t colliders, bool keeps_attachments = false);
 
@@ -30,44 +29,44 @@ public:
     [[nodiscard]] Particles& particles() { return particles_; }
     [[nodiscard]] std::size_t size() const { return particles_.size(); }
 
-    /// Gives the particle its id and takes it in. Its sides are not known yet.
+    /// Gives the particle its id and appends it. Its sides are not known yet.
     void append(Particle&& particle);
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
 
-    /// What it touches at the start of its next step.
+    /// Sets the contacts of a particle at the start of its next step.
     void set_contact(std::size_t i, const ContactState& contact);
 
-    /// As what spheres in overlap collide.
+    /// Returns the cores of spheres in overlap.
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
-    /// From now on it collides as its core.
+    /// Lets a sphere collide as its core from now on. core: radius, in m.
     void set_core(std::size_t i, double core) { cores_.set(i, core, size()); }
-    /// From now on it collides as itself.
+    /// Lets a sphere collide as itself from now on.
     void release_from_overlap(std::size_t i) { cores_.release(i); }
 
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
     [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
-    /// Of all particles from `first` on, one after the other.
+    /// Returns the sides of all particles from `first` on, one after the other.
     [[nodiscard]] std::span<const SideMemory> sides_from(std::size_t first) const {
         return std::span(sides_).subspan(first * colliders_);
     }
-    /// Nothing moves it, or an earlier part of the step has removed it.
+    /// Returns true if nothing moves the particle, or if an earlier substep has removed it.
     [[nodiscard]] bool is_fixed(std::size_t i) const {
         return particles_.frozen[i] != 0 || particles_.pinned[i] != 0 || particles_.absorbed[i] != 0;
     }
     [[nodiscard]] bool is_asleep(std::size_t i) const { return particles_.held[i] != 0 && may_sleep_; }
     [[nodiscard]] bool may_sleep() const { return may_sleep_; }
     void set_may_sleep(bool may_sleep) { may_sleep_ = may_sleep; }
-    /// What has held it need not hold it any longer.
+    /// Wakes a particle, because its supports may have changed.
     void wake(std::size_t i) { particles_.held[i] = 0; }
-    /// The number of the particle with an id; none where it is gone.
+    /// Returns the index of the particle with an id, or nothing if it is gone.
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t id) const;
-    /// Its life is over, or a surface has absorbed or shattered it, by a time, s.
+    /// Returns true if the life of a particle is over at a time, in s, or if a surface has absorbed or shattered it.
     [[nodiscard]] bool has_ended(std::size_t i, double time) const {
         return particles_.absorbed[i] != 0 || particles_.birth_time[i] + particles_.lifetime[i] <= time;
     }
-    /// What forces see of it at a time, s.
+    /// Returns the state of a particle for forces at a time, in s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
                          particles_.id[i]};
@@ -75,37 +74,37 @@ public:
         return input;
     }
 
-    /// Particle i as the response moves it from `start`, s. in_contact: the arrays may hold a contact of it; where they
-    /// do not, they are not read, since for particles in arbitrary order each costs a cache miss.
+    /// Returns particle i for a move by the response from `start`, in s. in_contact: the arrays may hold a contact of
+    /// it. Otherwise they are not read, because each read costs a cache miss for particles in arbitrary order.
     [[nodiscard]] MovingParticle load(std::size_t i, double start, bool in_contact);
-    /// Takes over where it has gone. in_contact: the arrays may hold a contact of it, or it has one now;
-    /// may_be_supported: false for one that others pull at.
+    /// Stores a particle after a move. in_contact: the arrays may hold a contact of it, or it has one now.
+    /// may_be_supported: false for a particle on which others act.
     void store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
                bool may_be_supported);
 
-    /// Begins to fetch from memory what load() and store() use.
+    /// Prefetches the data that load() and store() use.
     void prefetch(std::size_t i) const;
 
-    /// s, of its position as it is stored: now, but where its clock stands still.
+    /// Returns the time, in s, of the stored position: `now`, except for stalled particles.
     [[nodiscard]] double stored_time(std::size_t i, double now) const {
         return keeps_attachments_ && !std::isnan(frame_rules_[i].stored_time) ? frame_rules_[i].stored_time : now;
     }
 
-    /// The id of the next particle that is added.
+    /// Returns the id of the next particle that is added.
     [[nodiscard]] std::uint64_t next_id() const { return next_id_; }
-    /// Where particles with the ids between live on other ranks.
+    /// Sets this id, if particles with the ids in between live on other ranks.
     void set_next_id(std::uint64_t id) { next_id_ = id; }
-    /// A store like this one, without particles.
+    /// Returns a store like this one, without particles.
     [[nodiscard]] ParticleStore empty_copy() const;
 
-    /// Saves or restores what steps have left behind; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a);
 
-    /// Returns false for a memory of particle i that no run leaves behind.
+    /// Returns false for a state of particle i that no run leaves behind.
     [[nodiscard]] bool is_sound(std::size_t i) const;
 
-    /// rad/s, of particle i as the response has moved it, as it is stored.
+    /// Returns the spin, in rad/s, of particle i as it is stored after a move by the response.
     [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
 
 private:
@@ -115,22 +114,22 @@ private:
 
     Particles particles_;
     OverlapCores cores_;
-    /// What is kept of a particle where colliders move.
+    /// State of a particle that is kept if colliders move.
     struct AttachmentMemory {
-        double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, where its clock stands still; else NaN
+        double stored_time = std::numeric_limits<double>::quiet_NaN();  ///< s, of a stalled particle; else NaN
         std::uint8_t is_attached = 0;
-        MovingParticle::Attachment attachment{};  ///< where it is
+        MovingParticle::Attachment attachment{};  ///< if is_attached
     };
-    std::vector<AttachmentMemory> frame_rules_;  // one a particle, where they are kept
+    std::vector<AttachmentMemory> frame_rules_;  // one per particle, if they are kept
     bool keeps_attachments_ = false;
-    std::vector<SideMemory> sides_;  // one a collider for every particle, for responses that keep sides
+    std::vector<SideMemory> sides_;  // one per collider for every particle, for responses that keep sides
     std::size_t colliders_;
     std::uint64_t next_id_ = 0;
     bool may_sleep_;
-    std::optional<std::size_t> temperature_column_;  // among the attributes, where there is one
+    std::optional<std::size_t> temperature_column_;  // among the attributes, if there is one
 };
 
-/// Begins to fetch a vector from memory; it may lie across two cache lines.
+/// Prefetches a vector, which may lie across two cache lines.
 inline void prefetch_vector(const Vec3& v) {
     __builtin_prefetch(&v.x, 1);
     __builtin_prefetch(&v.z, 1);

@@ -22,14 +22,14 @@ constexpr double kLedBy = 1.0 / 6.0;
 
 }  // namespace
 
-/// A member on its line.
+/// Motion of a member along its line.
 struct PlannedContacts::Flown {
     Vec3 before;    ///< m/s, at the start of the step
     Vec3 velocity;  ///< m/s, along the line
     Vec3 spin;      ///< rad/s
     double radius;
     double duration;               ///< s
-    double smallest_inverse_mass;  ///< m/s
+    double smallest_inverse_mass;  ///< lower bound of SupportConstraints::yield, m/s
 };
 
 std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
@@ -85,9 +85,9 @@ std::vector<Vec3> PlannedContacts::bends(const ParticleSystem& system, const Sys
     return result;
 }
 
-/// Along the normals it gets as far as the surface, and where it rebounds back from there. Friction stops a point, and
-/// lets a sphere roll, from the impact on, as far as it can: it takes a share of the slip that the member would have,
-/// so that in proportion to what is left of it.
+/// Returns the support constraints of a contact. Along the normals the member gets to the surface and, if it rebounds,
+/// back from there. From the impact on, friction stops a point and lets a sphere roll, as far as it can. It removes a
+/// share of the slip that the member would have, so it is proportional to the slip that is left.
 SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& contact) const {
     SupportConstraints held;
     const double part = contact.time / flown.duration;
@@ -100,7 +100,7 @@ SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& cont
         const Vec3 across = held.across(surface.normal);
         if (!(approach > 0.0) || !(length(across) > kIndependentSupport)) continue;
         const Material& material = materials_[world_.material_of(surface.surface)];
-        // What the step's own kick has put into the velocity is not the speed of an impact.
+        // The velocity that forces add in this step is no impact speed.
         const double arriving = std::max(0.0, std::min(approach, -dot(flown.before, surface.normal)));
         double rebound = material.restitution_at(arriving) * arriving;
         rebound = rebound < resting_speed_ ? 0.0 : material.restitution_at(approach) * approach;

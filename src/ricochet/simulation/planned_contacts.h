@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: what surfaces leave of the motion of particles that are planned together.
+/// Private to the simulation: prediction of the surfaces that stop coupled particles.
 #pragma once
 
 #include <span>
@@ -12,25 +12,26 @@
 
 namespace ricochet {
 
-/// Looks along the paths of a planned step for the surfaces that will stop them. What it says is taken into the plan of
-/// an implicit method, for which a neighbour that a surface stops and one that flies on are not the same thing: at a
-/// long step the springs between them would be stretched by all that the plan did not know. Each member still meets its
-/// surfaces for itself and exactly; what is foreseen here decides only where the others expect it.
+/// Predicts the surfaces that will stop members, by searching along the paths of a planned step. The plan of an
+/// implicit method uses the predictions, because the method must know which neighbours a surface stops. Otherwise
+/// springs between stopped and flying members would be stretched by the error at a long step. Each member still meets
+/// its surfaces alone and exactly. The prediction decides only where other members expect it.
 class PlannedContacts {
 public:
-    /// All must outlive it; resting_speed in m/s. Surfaces that move are not foreseen.
+    /// All must outlive it. resting_speed is in m/s. Moving surfaces are not predicted.
     PlannedContacts(const CollisionWorld& world, std::span<const Material> materials, double resting_speed)
         : world_(world), materials_(materials), resting_speed_(resting_speed) {}
 
-    /// By member. velocities: those with which they would fly, m/s, in lines for a duration, s. smallest_inverse_mass:
-    /// parts of the largest of them up to which friction may leave a slip to what it stops, since Newton's method needs
-    /// a slope.
+    /// Returns the support constraints of each member on a straight line. velocities: along the lines, in m/s.
+    /// duration: in s. smallest_inverse_mass: lower bound of SupportConstraints::yield, as a part of the largest
+    /// velocity. Newton's method needs a slope, so friction may leave so much slip to a member that it stops.
     [[nodiscard]] std::vector<SupportConstraints> find(const ParticleSystem& system, std::span<const Vec3> velocities,
                                                        std::span<const Vec3> spins, double duration,
                                                        double smallest_inverse_mass) const;
 
-    /// By member, m: by how much what surfaces hold ends elsewhere than its straight motion in a step, since they bend:
-    /// by where they are at its end, and by the way that what presses on them leads along them as they turn.
+    /// Returns the deviation of each constrained member, in m, from its straight motion in a step, because surfaces are
+    /// curved. It has two parts: the distance to the surface at the end, and the motion along the surface by a contact
+    /// force whose direction turns with it.
     [[nodiscard]] std::vector<Vec3> bends(const ParticleSystem& system, const SystemStep& step,
                                           std::span<const SupportConstraints> held) const;
 

@@ -20,7 +20,8 @@ void QuerySchedule::set_flying(std::size_t i, const FreeFlightForecast& forecast
     set(i, next, candidates_for(next, forecast));
 }
 
-// They must be all that is near in the whole step of the query, which the last step may exceed by rounding.
+// Returns the candidates if they are complete for the whole step of the query, which the last step may exceed by
+// rounding.
 ContactCandidates QuerySchedule::candidates_for(std::uint32_t next, const FreeFlightForecast& forecast) const {
     const std::uint64_t end = std::max<std::uint64_t>(next, step_ + 2);  // of that step, as a number of steps
     if (end >= clock_.steps() && !clock_.last_is_whole()) return {};

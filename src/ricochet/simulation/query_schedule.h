@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: which particles need a query in a step, and what is known of their next one.
+/// Private to the simulation: the particles that need a query in a step, and the forecasts of their next queries.
 #pragma once
 
 #include <algorithm>
@@ -23,27 +23,28 @@ struct TimeSpan {
     double end = 0.0;
 };
 
-/// Equal steps from 0 to the end of the run; the last one is cut there, or longer by less than kStepRounding.
+/// Clock with equal steps from 0 to the end of the run. The last step is cut there, or longer by less than
+/// kStepRounding.
 class StepClock {
 public:
-    /// time_step > 0, duration >= 0, both finite, s.
+    /// time_step > 0, duration >= 0, both finite, in s.
     StepClock(double time_step, double duration)
         : time_step_(time_step),
           duration_(duration),
           steps_(static_cast<std::uint64_t>(
               std::max(duration > 0.0 ? 1.0 : 0.0, std::ceil(duration / time_step - kStepRounding)))) {}
 
-    /// Steps of the whole run.
+    /// Returns the number of steps of the whole run.
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
-    /// s at which a step begins; that of steps() and all beyond is the end of the run.
+    /// Returns the time, in s, at which a step begins. For steps() and beyond it is the end of the run.
     [[nodiscard]] double time_at(std::uint64_t step) const {
         return step >= steps_ ? duration_ : static_cast<double>(step) * time_step_;
     }
     [[nodiscard]] TimeSpan span_of(std::uint64_t step) const { return {time_at(step), time_at(step + 1)}; }
-    /// True when the last step is exactly as long as the others.
+    /// Returns true if the last step is exactly as long as the others.
     [[nodiscard]] bool last_is_whole() const { return duration_ == static_cast<double>(steps_) * time_step_; }
-    /// The last step, up to `most`, that begins before `until`, or 0: a step of time_step s may begin there, so not a
-    /// last one that is shorter.
+    /// Returns the last step, up to `most`, that begins before `until`, or 0. A step of time_step seconds must be able
+    /// to begin there, so a shorter last step does not count.
     [[nodiscard]] std::uint64_t last_step_before(double until, std::uint64_t most) const {
         most = std::min(most, last_is_whole() ? steps_ : steps_ - 1);
         auto step = static_cast<std::uint64_t>(std::min(until / time_step_, static_cast<double>(most)));
@@ -57,7 +58,7 @@ private:
     std::uint64_t steps_;
 };
 
-/// What a particle does in the step that is made.
+/// State of a particle in the present step.
 enum class QueryState : std::uint8_t {
     unknown,      ///< nothing is known: it is queried, and may be in contact
     flying,       ///< it is queried; it was in contact with nothing at the end of its last step
@@ -65,22 +66,22 @@ enum class QueryState : std::uint8_t {
     left_alone,   ///< nothing moves it (pinned, frozen, asleep) or it is about to be removed: no query
 };
 
-/// What the look-ahead of a particle's last query has found out about a particle that flies on.
+/// Forecast by the look-ahead of a particle's last query, if the particle flies on.
 struct FreeFlightForecast {
-    double free_until = 0.0;            ///< s: it certainly hits nothing before; up to now: not found out
+    double free_until = 0.0;            ///< s: it certainly hits nothing before; not known if not later than now
     double candidates_until = 0.0;      ///< s: no triangles but the candidates come near its path before
     ContactCandidates candidates = {};  ///< only when candidates_until is later than now
 };
 
-/// The state of every particle, in four bytes each, so that a scan finds the active set of a step in a fraction of the
-/// time that it takes to move it; and the candidates of its next query. It serves speed only: with every particle
-/// unknown a run has the same bits.
+/// State of every particle, in four bytes each, and the candidates of its next query. A scan finds the active set of a
+/// step in a fraction of the time that its moves take. This serves only speed: with every particle unknown a run has
+/// the same bits.
 class QuerySchedule {
 public:
     /// clock must outlive it.
     explicit QuerySchedule(const StepClock& clock) : clock_(clock) {}
 
-    /// The states below are those of this step from now on.
+    /// Begins a step, to which the states below then belong.
     void begin_step(std::uint64_t step);
 
     [[nodiscard]] QueryState state(std::size_t i) const {
@@ -90,33 +91,33 @@ public:
     }
     [[nodiscard]] bool is_left_alone(std::size_t i) const { return next_[i] == kLeftAlone; }
     [[nodiscard]] bool is_in_free_flight(std::size_t i) const { return is_free(next_[i], now_); }
-    /// True when the particles' arrays hold no contact of it: nothing of them needs to be read.
+    /// Returns true if the particles' arrays hold no contact of a particle, so that they need not be read.
     [[nodiscard]] bool is_without_contact(std::size_t i) const {
         return next_[i] != kLeftAlone && next_[i] != kUnknown;
     }
-    /// The triangles that come near its path in its next query, where they are known.
+    /// Returns the triangles that come near the path in the next query, if they are known.
     [[nodiscard]] const ContactCandidates& candidates(std::size_t i) const { return candidates_[i]; }
 
-    /// How many of [begin, end) need a query.
+    /// Returns how many particles of [begin, end) need a query.
     [[nodiscard]] std::size_t count_active(std::size_t begin, std::size_t end) const {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += is_active(next_[i], now_) ? 1 : 0;
         return count;
     }
-    /// How many of [begin, end) are left alone.
+    /// Returns how many particles of [begin, end) are left alone.
     [[nodiscard]] std::size_t count_left_alone(std::size_t begin, std::size_t end) const {
         std::size_t count = 0;
         for (std::size_t i = begin; i < end; ++i) count += is_left_alone(i) ? 1 : 0;
         return count;
     }
-    /// Calls visit(i) for those of [begin, end) that need a query, in ascending order.
+    /// Calls visit(i) for the particles of [begin, end) that need a query, in ascending order.
     template <class Visit>
     void visit_active(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t* next = next_.data();
         for_each_if(
             begin, end, [next, now = now_](std::size_t i) { return is_active(next[i], now); }, visit);
     }
-    /// The same for those that are not in free flight.
+    /// Calls visit(i) for the particles that are not in free flight, in the same order.
     template <class Visit>
     void visit_all_but_free_flights(std::size_t begin, std::size_t end, const Visit& visit) const {
         const std::uint32_t* next = next_.data();
@@ -124,33 +125,33 @@ public:
             begin, end, [next, now = now_](std::size_t i) { return !is_free(next[i], now); }, visit);
     }
 
-    /// What is known of a particle that has just been moved. Different particles from any number of threads.
+    /// Sets the state of a particle that has just been moved. Several threads may call these for different particles.
     void leave_alone(std::size_t i) { set(i, kLeftAlone, {}); }
     void forget(std::size_t i) { set(i, kUnknown, {}); }
     void set_flying(std::size_t i, const FreeFlightForecast& forecast);
 
-    /// A particle more, of which nothing is known or which is left alone.
+    /// Adds a particle that is unknown or left alone.
     void append(bool is_left_alone);
     void reserve(std::size_t more);
     /// Keeps the particles whose flag is not 0.
     void compact(const std::vector<std::uint8_t>& keep);
-    /// Of a particle that was not here.
+    /// Index in rearrange() of a particle that was not here.
     static constexpr std::size_t kNew = std::numeric_limits<std::size_t>::max();
-    /// Particle i is from now on the one that was from[i], or a new one, of which nothing is known.
+    /// Rearranges the particles: particle i was from[i] before, or is a new one of unknown state.
     void rearrange(const std::vector<std::size_t>& from);
-    /// `count` particles, of none of which anything is known.
+    /// Begins with `count` particles of unknown state.
     void reset(std::size_t count);
 
-    /// Begins to fetch from memory what is kept of a particle.
+    /// Prefetches the data of a particle.
     void prefetch(std::size_t i) const {
         __builtin_prefetch(&next_[i], 1);
         __builtin_prefetch(&candidates_[i], 1);
     }
 
 private:
-    // Of every particle one more than the number of the step of its next query, or one of two marks. They are at the
-    // ends of the range, so that a particle is active when its number is at most that of the step made, and not in free
-    // flight when that holds for numbers with 1 added, which makes the upper mark 0.
+    // For every particle, one more than the number of the step of its next query, or one of two marks. The marks are at
+    // the ends of the range. So a particle is active if its number is at most that of the present step. It is not in
+    // free flight if this holds after adding 1 to both numbers, which turns the upper mark into 0.
     static constexpr std::uint32_t kUnknown = 0;
     static constexpr std::uint32_t kLeftAlone = std::numeric_limits<std::uint32_t>::max();
 
@@ -164,7 +165,7 @@ private:
 
     const StepClock& clock_;
     std::uint64_t step_ = 0;
-    std::uint32_t now_ = 1;  ///< one more than step_; no run has so many steps that anything flies freely beyond
+    std::uint32_t now_ = 1;  ///< one more than step_, within its range; no run is so long that flights are free beyond
     std::vector<std::uint32_t> next_;
     std::vector<ContactCandidates> candidates_;
 };

@@ -11,13 +11,13 @@
 namespace ricochet {
 namespace {
 
-/// Costs in tens of nanoseconds (docs/design/many-machines.md). Wrong ones leave ranks uneven, and change no bit.
+/// Costs in tens of nanoseconds (docs/design/many-machines.md). Wrong values leave ranks uneven, and change no bit.
 constexpr std::uint64_t kQueriedWork = 150;
 constexpr std::uint64_t kContactWork = 150;
 constexpr std::uint64_t kFlyingWork = 6;
 constexpr std::uint64_t kIdleWork = 1;
 
-/// Multiples of it, less their whole parts, fill the unit interval evenly, however many there are. A mathematical
+/// The fractional parts of its multiples fill the unit interval evenly, however many there are. A mathematical
 /// constant.
 constexpr double kGoldenPart = 0.6180339887498949;
 
@@ -97,7 +97,7 @@ std::uint32_t TransferChoice::next(Cost cost) {
     return kStays;
 }
 
-// Where particles are is asked for nowhere but here: they may go once what they have deferred is made up for.
+// Particles change ranks after they have made their deferred steps. Nothing else uses the rank of a particle.
 void Simulation::Impl::balance_ranks() {
     if (share.is_alone()) return;
     std::optional<RankTransfers> gifts = balancer.look(share.ranks(), store.size());
@@ -136,7 +136,7 @@ void Simulation::Impl::give_away(TransferChoice choice) {
     if (!parts.empty()) insert_particles(std::move(parts));
 }
 
-// In the order of their ids, as everywhere. What is known of the queries of those that are here is kept.
+// Inserts particles in the order of ids, as everywhere. The schedule of the particles that are here is kept.
 void Simulation::Impl::insert_particles(std::vector<std::vector<std::byte>> parts) {
     const std::vector<std::uint64_t> here = particles().id;
     parts.insert(parts.begin(), bytes_of(store));

@@ -23,7 +23,7 @@ void RankShare::keep_together(std::vector<std::uint64_t> ids) {
     together_ = std::move(ids);
 }
 
-// Numbers above 0 have the order of their bits.
+// Positive numbers have the order of their bits.
 double RankShare::shortest(double duration) const {
     std::array<std::uint64_t, 1> bits{std::bit_cast<std::uint64_t>(duration)};
     ranks_->least(bits);
@@ -64,7 +64,7 @@ void RankShare::note(const std::vector<BlockRecord>& blocks, const std::vector<s
     }
 }
 
-// Within a particle the terms are in the order of events, and all of them are on one rank.
+// The terms of a particle are in the order of events, and all of them are on one rank.
 void RankShare::add_up(const ColliderList& colliders) {
     std::vector<LostTime> times = gather_list(*ranks_, new_lost_times_);
     std::vector<Load> loads = gather_list(*ranks_, new_loads_);

@@ -1,12 +1,12 @@
 /// \file
-/// Private to the simulation: what of a run one of several processes has.
+/// Private to the simulation: the part of a run that one of several processes has.
 ///
-/// Each rank has the whole scene and moves particles of its own. The schedules of emitters run on all of them alike; a
-/// birth is made, and lives, where its place in them puts it (births.h), a particle of the setup where its id does, a
-/// child where its parent lives. Those that springs join live on the first rank, which plans their motion; the others
-/// take a step in as many parts as it does. Sums that do not depend on the order of their terms are kept by each rank
-/// for itself; for the others (seconds that budgets have cut off, what colliders that move have been given) each keeps
-/// its terms, and the first one adds them up in the order in which one process would.
+/// Each rank has the whole scene and moves its own particles. The schedules of emitters run on all ranks alike. A birth
+/// is made, and lives, on the rank that its position in the schedules gives (births.h). The id of a particle of the
+/// setup gives its rank. A child lives on the rank of its parent. Particles joined by springs live on the first rank,
+/// which plans their motion. The other ranks divide a step into the same substeps. Sums that do not depend on the order
+/// of their terms are kept by each rank for itself. For other sums (unsimulated time, loads on moving colliders) each
+/// rank keeps its terms. The first rank adds them in the order in which one process would.
 #pragma once
 
 #include <algorithm>
@@ -28,66 +28,66 @@
 
 namespace ricochet {
 
-/// All of a run, or a rank's part of it.
+/// A whole run, or the part of one rank.
 class RankShare {
 public:
-    /// ranks: null, or only one: all is here.
+    /// ranks: null or a single rank if this process has the whole run.
     explicit RankShare(std::shared_ptr<Ranks> ranks)
         : ranks_(ranks && ranks->size() > 1 ? std::move(ranks) : nullptr),
           rank_(ranks_ ? ranks_->rank() : 0),
           size_(ranks_ ? ranks_->size() : 1) {}
 
     [[nodiscard]] bool is_alone() const { return ranks_ == nullptr; }
-    /// The one that enters what all ranks count alike.
+    /// Returns true for the rank that enters the common counts of all ranks.
     [[nodiscard]] bool is_first() const { return rank_ == 0; }
-    /// Throws InputError where it is not: what users change between steps, they change in one process.
+    /// Throws InputError if ranks share the run, because users change a run between steps only in one process.
     void require_alone(const char* call) const;
-    /// Not when alone.
+    /// Must not be called if is_alone().
     [[nodiscard]] Ranks& ranks() const { return *ranks_; }
-    /// Those with these ids live on the first one and stay there: they act on each other.
+    /// Keeps the particles with these ids on the first rank, because they act on each other.
     void keep_together(std::vector<std::uint64_t> ids);
     [[nodiscard]] bool keeps_together() const { return !together_.empty(); }
     [[nodiscard]] bool stays(std::uint64_t id) const {
         return !together_.empty() && std::binary_search(together_.begin(), together_.end(), id);
     }
-    /// Whether a particle that no other one spawns lives here. Of a birth: by the id that it has where
-    /// none before it in the step is refused.
+    /// Returns true if a particle that is no child lives here. A birth is tested with the id that it has if no birth
+    /// before it in the step is refused.
     [[nodiscard]] bool has_place_for(std::uint64_t id) const {
         if (is_alone()) return true;
         if (stays(id)) return is_first();
         return (id / kNeighbours) % size_ == rank_;
     }
-    /// s: the least of what ranks are ready to do next, all of them above 0. All call it.
+    /// Returns the shortest of the durations of all ranks, in s, all above 0. All ranks call it.
     [[nodiscard]] double shortest(double duration) const;
 
-    /// Particles that live on all ranks; here: those of this one, all when alone.
+    /// Returns the number of living particles on all ranks. here: number on this rank, which has all if is_alone().
     [[nodiscard]] std::uint64_t living(std::size_t here) const { return is_alone() ? here : living_; }
-    /// All know how many live at the start, or where a run goes on.
+    /// Sets the number of living particles at the start, or after a restore.
     void begin(std::uint64_t living) { living_ = living; }
-    /// So many more are born, on whichever rank.
+    /// Counts births on any rank.
     void add_births(std::uint64_t count) { living_ += count; }
-    /// At the end of a step all tell how many live with them; where there are many terms, they are added up.
+    /// Ends a step: all ranks exchange their numbers of living particles. If there are many terms, they are added up.
     void end_step(std::size_t living_here, const ColliderList& colliders);
 
-    /// The message of the rank with the lowest id among those that have one, for all of them.
+    /// Returns, on all ranks, the message of the rank with the lowest id among the ranks with a message.
     [[nodiscard]] std::optional<std::string> first_message(const std::optional<std::string>& message,
                                                            std::uint64_t id) const;
 
-    // Sums whose terms have an order.
+    // Sums that depend on the order of their terms.
 
-    /// From where a run begins or goes on; colliders: as RunRecorder::loads().
+    /// Sets the sums at the start of a run, or after a restore. colliders: as RunRecorder::loads().
     void begin_sums(double unsimulated_time, const std::vector<ColliderTotals>& colliders);
-    /// What blocks have done in one part of a step. id: of all particles here.
+    /// Records the results of blocks in one substep. id: of all particles here.
     void note(const std::vector<BlockRecord>& blocks, const std::vector<std::uint64_t>& id);
-    /// Adds the terms of all ranks up, on the first one. All call it.
+    /// Adds up the terms of all ranks on the first one. All ranks call it.
     void add_up(const ColliderList& colliders);
-    [[nodiscard]] double unsimulated_time() const { return unsimulated_time_; }        ///< s, of the first one
-    [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }  ///< of the first one
+    [[nodiscard]] double unsimulated_time() const { return unsimulated_time_; }        ///< s, on the first rank
+    [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }  ///< on the first rank
 
 private:
-    /// Particles that follow each other by id and live together.
+    /// Number of particles with consecutive ids that live together.
     static constexpr std::uint64_t kNeighbours = 16;
-    /// Terms of all ranks from which on they are added up within a run's output interval.
+    /// Number of terms of all ranks from which on they are added up within a run's output interval.
     static constexpr std::uint64_t kManyTerms = 1'000'000;
 
     struct LostTime {
@@ -105,22 +105,22 @@ private:
     std::size_t size_;                     // ranks
     std::vector<std::uint64_t> together_;  // ascending
     std::uint64_t living_ = 0;
-    std::uint64_t part_ = 0;  // parts of steps so far
+    std::uint64_t part_ = 0;  // substeps so far
     std::vector<LostTime> new_lost_times_;
     std::vector<Load> new_loads_;
     double unsimulated_time_ = 0.0;
     std::vector<ColliderTotals> loads_;
 };
 
-/// Lists of values that may be copied byte by byte, of all ranks one after the other: on the first one.
+/// Returns the lists of all ranks, one after the other, on the first rank. T must allow copies byte by byte.
 template <class T>
 [[nodiscard]] std::vector<T> gather_list(Ranks& ranks, const std::vector<T>& list);
 
-/// The same on all of them.
+/// Returns the lists on all ranks.
 template <class T>
 [[nodiscard]] std::vector<T> gather_list_to_all(Ranks& ranks, const std::vector<T>& list);
 
-/// What the bytes of lists hold, one list after the other.
+/// Returns the values of lists that are given as bytes, one list after the other.
 template <class T>
 [[nodiscard]] std::vector<T> joined_list(const std::vector<std::vector<std::byte>>& parts) {
     static_assert(std::is_trivially_copyable_v<T>);

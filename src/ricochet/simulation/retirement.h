@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: which particles leave at the end of a step, and why.
+/// Private to the simulation: the particles that leave at the end of a step, and the reasons.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace ricochet {
 
-/// Why a particle leaves.
+/// Reason why a particle leaves.
 enum class RemovalReason : std::uint8_t {
     none,           ///< it stays
     expired,        ///< its lifetime is over
@@ -21,23 +21,23 @@ enum class RemovalReason : std::uint8_t {
     out_of_bounds,  ///< it is outside the bounds
 };
 
-/// What there is at the end of a step. Particles that leave count as leaving only.
+/// Counts at the end of a step. Particles that leave count only as leaving.
 struct EndOfStepCounts {
     std::uint64_t leaving = 0;
     std::uint64_t resting = 0;
-    std::uint64_t held = 0;  ///< of the resting ones those that friction and support hold
+    std::uint64_t held = 0;  ///< resting particles that friction and support hold
 };
 
-/// Tests all particles once a step, those in free flight only where there are bounds.
+/// Tests all particles once per step. Particles in free flight are tested only if there are bounds.
 class Retirement {
 public:
     /// All must outlive it.
     Retirement(const ParticleStore& store, const QuerySchedule& schedule, const std::optional<Box3>& bounds)
         : store_(store), schedule_(schedule), bounds_(bounds) {}
 
-    /// time: of the end of the step, s.
+    /// time: end of the step, in s.
     [[nodiscard]] RemovalReason removal_reason(std::size_t i, double time) const;
-    /// All particles, by all threads.
+    /// Counts all particles, on all threads.
     [[nodiscard]] EndOfStepCounts count(double time) const;
 
 private:

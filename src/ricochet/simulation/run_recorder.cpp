@@ -14,7 +14,7 @@ namespace ricochet {
 
 namespace {
 
-/// Hits from the prefetch of a surface's totals to their change.
+/// Number of hits between the prefetch of a surface's totals and their change.
 constexpr std::size_t kPrefetchDistance = 8;
 
 }  // namespace
@@ -81,7 +81,7 @@ Vec3 SurfaceTotals::lasting_impulse(std::size_t surface) const {
 
 namespace {
 
-/// What all blocks list under `list`, in the order of particles, whatever the order in which they were moved.
+/// Returns the entries of a list of all blocks in the order of particles, whatever the order in which these were moved.
 template <class Entry>
 std::vector<Entry> in_order_of_particles(const std::vector<BlockRecord>& blocks,
                                          const std::vector<Entry> BlockRecord::*list) {
@@ -132,7 +132,7 @@ void RunRecorder::record_cut_off(const std::vector<BlockRecord>& blocks) {
     const std::vector<CutOff> all = in_order_of_particles(blocks, &BlockRecord::cut_off);
     for (const CutOff& entry : all) statistics_.unsimulated_time += entry.time;
     statistics_.budget_exhausted += all.size();
-    // Where surfaces close on a particle more bounces would not help.
+    // If surfaces close on a particle, more bounces would not help.
     for (const BlockRecord& block : blocks) statistics_.budget_exhausted -= block.counts.squeezed;
 }
 
@@ -171,7 +171,7 @@ void RunRecorder::end_generation(std::size_t particles) {
     if (shows_contacts_) contacts_.insert(contacts_.end(), batch_contacts_.begin(), batch_contacts_.end());
 }
 
-// Within a particle impacts are in the order of time already.
+// The impacts of one particle are in the order of time already.
 void RunRecorder::put_in_order(std::vector<ContactRecord>& records) {
     std::stable_sort(records.begin(), records.end(), [](const ContactRecord& a, const ContactRecord& b) {
         return a.time != b.time ? a.time < b.time : a.particle < b.particle;
@@ -200,7 +200,7 @@ VerifiedDeformation verified_deformation(const std::vector<Triangle>& triangles,
     return surface;
 }
 
-/// The colliders as they collide, each in the frame that it stands in; planes and shapes own one surface each.
+/// Returns the colliders as they collide, each in its own frame. Planes and shapes have one surface each.
 std::vector<VerifiedSurface> surfaces_of(const CollisionWorld& world, const MovingColliders* bodies) {
     std::vector<VerifiedSurface> surfaces(world.colliders().size());
     for (std::size_t i = 0; i < surfaces.size(); ++i) {

@@ -27,28 +27,28 @@ namespace ricochet {
 
 class ParticleStore;
 
-// Hits and impulses of every surface, added up from any number of threads to the same bits.
+// Hits and impulses of every surface, added up by any number of threads to the same bits.
 
-/// Sums since the start of the run, one entry a surface. Impulses of impacts and of lasting contact are summed apart.
+/// Sums since the start of the run, one entry per surface. Impulses of impacts and of lasting contact are summed apart.
 class SurfaceTotals {
 public:
-    /// surfaces: how many; 0 where nothing is to be kept.
+    /// surfaces: number of surfaces; 0 to keep nothing.
     explicit SurfaceTotals(std::size_t surfaces) : entries_(surfaces) {}
 
     [[nodiscard]] bool empty() const { return entries_.empty(); }
     [[nodiscard]] std::size_t size() const { return entries_.size(); }
 
-    /// Adds hits; returns how many of them had an impulse that is too large for the sums. Nothing when empty(). From
-    /// any number of threads.
+    /// Adds hits. Returns the number of hits whose impulse was too large for the sums. Does nothing if empty(). Any
+    /// number of threads may call it.
     std::uint64_t add(std::span<const SurfaceHit> hits);
     [[nodiscard]] std::uint64_t hits(std::size_t surface) const {
         return entries_[surface].hits.load(std::memory_order_relaxed);
     }
-    /// Adds the sums of another part of the run, of as many surfaces.
+    /// Adds the sums of another part of the run, with as many surfaces.
     void add(const SurfaceTotals& other);
-    /// N s, given to the surface.
+    /// Returns the impulse given to the surface, in N s.
     [[nodiscard]] Vec3 impulse(std::size_t surface) const;
-    /// The part of it that no impact gave: lasting contact, N s.
+    /// Returns the part of that impulse by lasting contact, in N s.
     [[nodiscard]] Vec3 lasting_impulse(std::size_t surface) const;
 
     /// Saves or restores the sums; a: an archive of core/binary_archive.h.
@@ -79,35 +79,35 @@ private:
     std::vector<Entry> entries_;
 };
 
-/// Time of a particle that its bounce budget has cut off.
+/// Unsimulated time of a particle after its bounce budget was used up.
 struct CutOff {
     std::size_t particle = 0;
     double time = 0.0;  ///< s
 };
 
-/// What surfaces have heated a particle by.
+/// Heat that surfaces have given a particle.
 struct HeatGain {
     std::size_t particle = 0;
     double time = 0.0;    ///< s
     double energy = 0.0;  ///< J
 };
 
-/// What has brought a particle beyond kMaxSpeed.
+/// Cause of a speed beyond kMaxSpeed.
 enum class RunawayCause : std::uint8_t {
-    forces,   ///< on it alone, or an integrator that cannot follow them
+    forces,   ///< on the particle alone, or an integrator that cannot follow them
     others,   ///< springs and forces between particles
     spheres,  ///< impacts and contacts of spheres
-    surface,  ///< a collider that moves, or whose material drives or heats; or a spring of the penalty response
+    surface,  ///< a moving collider, or one whose material drives or heats; or a spring of the penalty response
 };
 
-/// A particle that has come beyond kMaxSpeed.
+/// A particle that has exceeded kMaxSpeed.
 struct Runaway {
     std::size_t particle = 0;
-    double speed = 0.0;  ///< m/s, then
+    double speed = 0.0;  ///< m/s, at that time
     RunawayCause cause = RunawayCause::forces;
 };
 
-/// What one block of particles has done: written by the thread that moves the block.
+/// Results of one block of particles, written by the thread that moves the block.
 struct BlockRecord {
     SimulationStatistics counts;  ///< of the moves of its particles
     std::vector<CutOff> cut_off;
@@ -115,7 +115,7 @@ struct BlockRecord {
     std::vector<ColliderLoad> loads;
     std::vector<HeatGain> heat;
     std::vector<Violation> violations;
-    std::optional<Runaway> runaway;  ///< the first particle that has come beyond kMaxSpeed
+    std::optional<Runaway> runaway;  ///< the first particle that has exceeded kMaxSpeed
 
     void add(const MoveOutcome& outcome);
     void note(const Runaway& found) {
@@ -136,40 +136,40 @@ inline void BlockRecord::add(const MoveOutcome& outcome) {
     counts.penetration_deepest = std::max(counts.penetration_deepest, outcome.depth);
 }
 
-/// Adds what a particle has done to a collider to the totals of all.
+/// Adds the load of a particle on a collider to the totals of all colliders.
 void add_load(std::vector<ColliderTotals>& totals, const ColliderLoad& load, const ColliderList& colliders);
 
-/// The first particle of all blocks that has come beyond kMaxSpeed.
+/// Returns the first particle of all blocks that has exceeded kMaxSpeed.
 [[nodiscard]] std::optional<Runaway> first_runaway(const std::vector<BlockRecord>& blocks);
 
-/// What a run leaves behind besides the particles. Blocks are added in their order, sums over particles in the order of
-/// particles, so that everything is the same for any number of threads.
+/// Results of a run besides the particles. Blocks are added in their order, and sums over particles in the order of
+/// particles. So everything is the same for any number of threads.
 class RunRecorder {
 public:
-    /// surfaces: how many have totals. With `shows_contacts` the contact records of a step are kept for its end; with
-    /// `collects_contacts` at least those of a batch of particles, for their children.
-    /// colliders: how many have loads; 0 where none moves, nor the material of any.
+    /// surfaces: number of surfaces with totals. colliders: number of colliders with loads; 0 if no collider and no
+    /// material moves. shows_contacts: keeps the contact records of a step for its end. collects_contacts: keeps at
+    /// least the records of a spawn generation, for its children.
     RunRecorder(std::size_t surfaces, std::size_t colliders, bool shows_contacts, bool collects_contacts)
         : totals_(surfaces),
           loads_(colliders),
           shows_contacts_(shows_contacts),
           collects_contacts_(collects_contacts) {}
 
-    /// From the next step on.
+    /// Keeps contact records from the next step on, or stops keeping them.
     void show_contacts(bool shows) { shows_contacts_ = shows; }
     [[nodiscard]] bool shows_contacts() const { return shows_contacts_; }
     void begin_step();
-    /// Nothing is known of the step that has begun, and of those before it these violations.
+    /// Forgets the step that has begun. violations: found in the steps before it.
     void forget_step(const std::vector<Violation>& violations) {
         begin_step();
         begin_generation();
         violations_ = violations;
     }
-    /// The particles that are moved next.
+    /// Begins a spawn generation, whose particles are moved next.
     void begin_generation() { batch_contacts_.clear(); }
-    /// Takes over what blocks have done in a part of the step.
+    /// Adds the results of blocks in a substep.
     void record(const std::vector<BlockRecord>& blocks);
-    /// particles: how many were moved.
+    /// Ends a spawn generation. particles: number of moved particles.
     void end_generation(std::size_t particles);
     /// Puts the contact records in the order of (time, particle, order of events).
     void end_step();
@@ -186,10 +186,10 @@ public:
     [[nodiscard]] const SurfaceTotals& totals() const { return totals_; }
     [[nodiscard]] SurfaceTotals& totals() { return totals_; }
     [[nodiscard]] bool collects_loads() const { return !loads_.empty(); }
-    /// Of all colliders, since the start.
+    /// Returns the loads of all colliders, since the start.
     [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }
     [[nodiscard]] std::vector<ColliderTotals>& loads() { return loads_; }
-    /// Of a part of the step.
+    /// Adds the impacts of a substep.
     void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);
     void add_pair_violations(const std::vector<Violation>& found);
     void add_violations(const std::vector<Violation>& found);
@@ -205,7 +205,7 @@ private:
     SurfaceTotals totals_;
     std::vector<ColliderTotals> loads_;
     std::vector<ContactRecord> contacts_;         // of the step
-    std::vector<ContactRecord> batch_contacts_;   // of the particles that were moved last
+    std::vector<ContactRecord> batch_contacts_;   // of the spawn generation that was moved last
     std::vector<PairImpactRecord> pair_records_;  // of the step
     std::vector<Violation> violations_;
     std::vector<Violation> last_violations_;  // of the step
@@ -213,52 +213,53 @@ private:
     bool collects_contacts_;
 };
 
-// Private to the simulation: the verifier at work on a run.
+// Private to the simulation: verification of a run.
 
-/// The verifier with what it remembers of every living particle, in the order of Particles.
+/// The verifier, with its state of every living particle, in the order of Particles.
 class RunCheck {
 public:
-    /// s, when a step ends, and that of the position as it is stored (MovingParticle::stored_time).
+    /// Times of a check, in s: the end of the step, and the time of the stored position (MovingParticle::stored_time).
     struct StepTimes {
         double end = 0.0;
         double stored = 0.0;
     };
 
-    /// bodies: null where no collider moves; they must outlive it.
+    /// bodies: null if no collider moves. Both must outlive it.
     RunCheck(const CollisionWorld& world, const MovingColliders* bodies);
 
-    /// Follows the number of particles, after some have been appended. Not while others check. A new particle is
-    /// watched from its first check on, because a driven body has its path at the birth only then: impacts earlier in
-    /// the same step change it.
+    /// Adds entries for particles that have been appended. particles: their new number. Must not be called during
+    /// checks. A new particle is watched from its first check on. Only then is a driven body's path at the birth known,
+    /// because earlier impacts in the same step change it.
     void add_spawned(std::size_t particles);
-    /// Checks what particle i, which `particles` still has as it was, did until `time`. Different particles may be
-    /// checked from several threads at once.
+    /// Checks the motion of particle i up to the given times. `particles` still has its state before the motion.
+    /// Several threads may check different particles.
     void check(std::size_t i, const Particles& particles, const ForceInput& moved, const StepTimes& times,
                std::span<const Segment> segments, std::vector<Violation>& violations, const RecordedParts& motion = {});
-    /// Appends impacts of a particle whose rebound is not that of the surfaces that were hit.
+    /// Appends violations for impacts of a particle whose rebound does not match the surfaces that were hit.
     static void check_rebounds(std::uint64_t particle, std::span<const RecordedImpact> impacts,
                                std::vector<Violation>& violations);
-    /// What is wrong with the particles whose clocks stand still where the run ends, at a time, s.
+    /// Returns the violations of particles that are stalled at the end of the run, at a time, in s.
     [[nodiscard]] std::vector<Violation> check_end(const Particles& particles, double time) const;
-    /// Begins to watch all particles from where they are, at a time, s; where their clocks stand still, from theirs.
+    /// Begins to watch all particles at their positions, from a time on, in s. Stalled particles are watched from their
+    /// stored times on.
     void restart(const ParticleStore& store, double now);
-    /// Keeps what Particles::compact() keeps.
+    /// Keeps the entries that Particles::compact() keeps.
     void compact(const std::vector<std::uint8_t>& keep);
 
-    /// What is wrong with impacts of spheres on each other.
+    /// Returns the violations in impacts of spheres on each other.
     [[nodiscard]] static std::vector<Violation> check_meetings(const std::vector<PairMeeting>& meetings,
                                                                const verify::ImpactAudit& books);
-    /// Which spheres stand in each other at the end of a step by more than a part of the smaller radius, and did not
-    /// before, or less.
+    /// Returns violations for spheres that overlap at the end of a step, and did not before, or by less. Overlaps up to
+    /// `most` times the smaller radius are allowed.
     [[nodiscard]] std::vector<Violation> check_spheres(const Particles& particles, const TimeSpan& step, double most);
-    /// Of the last call, over the smaller radius.
+    /// Returns the largest overlap found by the last call, over the smaller radius.
     [[nodiscard]] double largest_overlap() const { return overlaps_.largest(); }
 
 private:
     Verifier verifier_;
     SphereOverlaps overlaps_;
-    bool has_looked_ = false;                               // at overlaps
-    std::vector<std::optional<VerifiedParticle>> watched_;  // nothing: not checked yet since its birth
+    bool has_looked_ = false;                               // check_spheres() has been called
+    std::vector<std::optional<VerifiedParticle>> watched_;  // nothing: not checked since its birth
 };
 
 }  // namespace ricochet

@@ -9,7 +9,7 @@
 namespace ricochet {
 namespace {
 
-/// m/s, of its surface where it is fastest.
+/// Returns the largest speed of a member's surface, in m/s.
 double speed_of(const ContactIslandMember& member, const SolverBody& planned) {
     return length(planned.velocity) + member.radius * length(planned.spin);
 }

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: when spheres of dense islands lie still, and so long that they fall asleep.
+/// Private to the simulation: the rules by which spheres of contact islands are at rest and fall asleep.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,17 @@
 
 namespace ricochet {
 
-/// A member hardly moves in a step as it is planned, whatever pulls it. beside_movers: colliders that move are near its
-/// island, which they may carry.
+/// Returns true if a member hardly moves in its planned step, whatever the forces on it. beside_movers: moving
+/// colliders are near its island, and may carry it.
 [[nodiscard]] bool is_slow(const ContactIslandMember& member, const SolverBody& planned, bool beside_movers);
-/// One that is slow does so for what pulls it, too. pull: m/s^2, of the forces on it.
+/// Returns true if a slow member is also slow for the forces on it. pull: their acceleration, in m/s^2.
 [[nodiscard]] bool is_at_rest(const ContactIslandMember& member, const SolverBody& planned, double pull);
-/// Steps that it has to lie still before it sleeps.
+/// Returns the number of steps that a member must be at rest before it sleeps.
 [[nodiscard]] std::uint32_t steps_to_sleep(const ContactIslandMember& member, double pull);
 
-/// Leaves of those that would fall asleep those that are held, or rest on such: one that lies on others that
-/// stay awake would weigh on nobody. is_held: of each. pressing: members that press on each other, by their numbers.
+/// Keeps, of the members that would fall asleep, those with a support and others that rest on them. A member that rests
+/// on spheres that stay awake would press on none of them. is_held: flags of supported members. pressing: pairs of
+/// members that press on each other, by their numbers.
 void keep_supported(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,
                     std::span<const NeighbourPair> pressing);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto by_particle = [](const auto& a, const auto& b) { return a.particle < b.particle; };
 
-/// Entries of a sorted list that are a particle's.
+/// Returns the entries of a sorted list that belong to a particle.
 template <class List>
 auto range_of(List& list, std::uint64_t particle) {
     const auto begin = std::lower_bound(list.begin(), list.end(), particle,
@@ -71,7 +71,7 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     const std::unordered_set<std::uint64_t> falling(particles.begin(), particles.end());
     WarmStartMemory now;
     now.replace(contacts);
-    // Of those that fall asleep nothing counts but what their contacts do now.
+    // For particles that fall asleep, only the present impulses of their contacts count.
     std::vector<WarmStartMemory::Entry> all = contacts;
     for (const WarmStartMemory::Entry& entry : contacts_.entries()) {
         const ContactKey& key = entry.key;
@@ -93,7 +93,7 @@ void SleepingIslands::add(const std::vector<std::uint64_t>& particles,
     ++version_;
 }
 
-/// By trees of sleepers, whose roots have the lowest numbers of piles.
+/// Uses trees of sleepers, whose roots have the lowest numbers of islands.
 void SleepingIslands::join(const std::vector<ContactKey>& touching) {
     const auto slot_of = [&](const Sleeper* sleeper) { return static_cast<std::uint32_t>(sleeper - sleepers_.data()); };
     DisjointSets sets(sleepers_.size());
@@ -106,12 +106,12 @@ void SleepingIslands::join(const std::vector<ContactKey>& touching) {
         const Sleeper* const b = pair.is_wall() ? nullptr : find(pair.other);
         if (a != nullptr && b != nullptr) sets.join(slot_of(a), slot_of(b));
     }
-    // Ascending, so that a root has been given its number before those below it.
+    // Ascending, so that a root gets its number before the sleepers below it.
     for (std::uint32_t i = 0; i < sets.size(); ++i)
         sleepers_[i].sleeping_island = sleepers_[sets.find(i)].sleeping_island;
 }
 
-/// What is at the edge of sleep, how strongly sleepers are pressed, and by whom.
+/// Finds the contacts at the edge of sleep, the largest loads of sleepers, and their neighbours.
 void SleepingIslands::look_at_contacts() {
     find_ends();
     edges_.clear();
@@ -169,7 +169,8 @@ std::vector<std::uint64_t> SleepingIslands::islands_of_sleepers(const std::vecto
     return members;
 }
 
-/// Marks, by sleepers, those among some particles and those that contacts in a row join to them.
+/// Returns marks by sleeper: 1 for some particles and the sleepers that at most so many contacts in a row connect to
+/// them. must_press: follows only contacts under load.
 std::vector<std::uint8_t> SleepingIslands::reached_from(const std::vector<std::uint64_t>& particles, int contacts,
                                                         bool must_press) const {
     std::vector<std::uint8_t> marks(sleepers_.size(), 0);

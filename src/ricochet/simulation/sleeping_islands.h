@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: spheres that lie still on each other, and are not moved until something disturbs them.
+/// Private to the simulation: spheres at rest on each other, which are not moved until something disturbs them.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace ricochet {
 
-/// Who sleeps, what holds them, and for how many steps the others have lain still.
+/// Sleeping spheres, their contacts, and the sleep counters of other spheres.
 class SleepingIslands {
 public:
-    /// What a sleeper does to a surface.
+    /// Force of a sleeper on a surface.
     struct Weight {
         std::uint64_t particle = 0;
         SurfaceId surface = 0;
         Vec3 force;  ///< N, on the surface
     };
-    /// Steps that a sphere has lain still.
+    /// Number of steps for which a sphere has been at rest.
     struct SleepCounter {
         std::uint64_t particle = 0;
         std::uint32_t steps = 0;
@@ -30,45 +30,47 @@ public:
 
     [[nodiscard]] bool empty() const { return sleepers_.empty(); }
     [[nodiscard]] bool has(std::uint64_t particle) const { return find(particle) != nullptr; }
-    /// Of all sleepers, ascending.
+    /// Returns all sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> particles() const;
-    /// Changes whenever sleepers do.
+    /// Returns a number that changes whenever the sleepers do.
     [[nodiscard]] std::uint64_t version() const { return version_; }
-    /// The number of a sleeper's pile: the lowest particle that was in it when it was joined. Where some have woken in
-    /// its middle it is one pile still.
+    /// Returns the number of a sleeper's island: its lowest particle when it was joined. It remains one island if some
+    /// spheres in its middle have woken.
     [[nodiscard]] std::uint64_t number_of(std::uint64_t sleeper) const { return find(sleeper)->sleeping_island; }
-    /// N s, of a step: with which the contact that presses a sleeper most did so when it fell asleep.
+    /// Returns the largest impulse, in N s per step, with which a contact pressed a sleeper when it fell asleep.
     [[nodiscard]] double load_of(std::uint64_t sleeper) const { return find(sleeper)->load; }
-    /// What sleepers do to surfaces, ascending by particle.
+    /// Returns the forces of sleepers on surfaces, ascending by particle.
     [[nodiscard]] const std::vector<Weight>& weights() const { return weights_; }
-    /// Contacts of sleepers, as they were when they fell asleep.
+    /// Returns the contacts of sleepers, as they were when these fell asleep.
     [[nodiscard]] const WarmStartMemory& contacts() const { return contacts_; }
-    /// Those of them with spheres that do not sleep, ascending: all that a step has to look at.
+    /// Returns the contacts of sleepers with spheres that are awake, ascending. A step needs to examine only these.
     [[nodiscard]] const std::vector<WarmStartMemory::Entry>& edges() const { return edges_; }
 
     [[nodiscard]] std::uint32_t sleep_counter(std::uint64_t particle) const;
-    /// Of the step that ends, in any order; those not in the list have moved.
+    /// Sets the counters at the end of a step, in any order. Spheres that are not in the list have moved.
     void set_sleep_counters(std::vector<SleepCounter> still);
 
-    /// Those fall asleep, with contacts of all of them. What they have done to sleepers and do no more stays a contact
-    /// without an impulse: it says when they leave for good. Piles that contacts join are one.
+    /// Puts particles to sleep, with the contacts of all of them. An earlier contact with a sleeper that has ended
+    /// stays without an impulse, because it shows when the spheres separate for good. Islands that contacts join become
+    /// one.
     void add(const std::vector<std::uint64_t>& particles, const std::vector<WarmStartMemory::Entry>& contacts,
              const std::vector<Weight>& weights);
-    /// Pairs of spheres that touch: their piles are one, where both sleep.
+    /// Joins the islands of pairs of spheres that touch, if both sleep.
     void join(const std::vector<ContactKey>& touching);
-    /// All of the piles that some sleepers are of: ascending.
+    /// Returns all members of the islands of some sleepers, ascending.
     [[nodiscard]] std::vector<std::uint64_t> islands_of_sleepers(const std::vector<std::uint64_t>& sleepers) const;
-    /// Sleepers among some particles, and those that so many contacts in a row at most join to one of them: ascending.
+    /// Returns the sleepers among some particles, and the sleepers that at most so many contacts in a row connect to
+    /// them, ascending.
     [[nodiscard]] std::vector<std::uint64_t> around(const std::vector<std::uint64_t>& particles, int contacts) const;
-    /// Sleepers that no row of contacts that press joins to one of those that are held, nor are so themselves:
-    /// ascending.
+    /// Returns the sleepers that are not in `held`, and that no row of contacts under load connects to one in it.
+    /// Ascending.
     [[nodiscard]] std::vector<std::uint64_t> not_joined_to(const std::vector<std::uint64_t>& held) const;
-    /// Wakes some, ascending. Says what their contacts did when they fell asleep.
+    /// Wakes sleepers, given in ascending order. Returns their contacts, as they were when these fell asleep.
     [[nodiscard]] std::vector<WarmStartMemory::Entry> wake(const std::vector<std::uint64_t>& woken);
-    /// Appends what a sleeper gives to surfaces in a time, s.
+    /// Appends the impulses of a sleeper on surfaces in a time, in s.
     void add_weight(std::uint64_t particle, double duration, std::vector<SurfaceHit>& hits) const;
 
-    /// Saves or restores it; a: an archive of core/binary_archive.h.
+    /// Saves or restores the state; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         archive_entries(a, sleepers_, [&](Sleeper& sleeper) { a(sleeper.particle), a(sleeper.sleeping_island); });
@@ -80,9 +82,9 @@ public:
         ++version_;
     }
 
-    /// Returns false for a state that no run leaves behind: lists must be in ascending order, piles must be numbered by
-    /// one of their particles, and all weights and contacts must be those of sleepers. next_id: of the next particle;
-    /// surfaces: how many there are.
+    /// Returns false for a state that no run leaves behind. Lists must be in ascending order. The number of an island
+    /// must be at most the ids of its particles. All weights and contacts must belong to sleepers. next_id: id of the
+    /// next particle. surfaces: number of surfaces.
     [[nodiscard]] bool is_sound(std::uint64_t next_id, std::size_t surfaces) const;
 
 private:
@@ -91,7 +93,7 @@ private:
         std::uint64_t sleeping_island = 0;  ///< number_of()
         double load = 0.0;                  ///< load_of()
     };
-    /// Of a contact: numbers of the sleepers that it is between, or kNobody.
+    /// Indices of the sleepers at the ends of a contact, or kNobody.
     struct Ends {
         std::uint32_t first = 0;
         std::uint32_t second = 0;
@@ -121,15 +123,15 @@ private:
     void find_ends();
     void find_neighbours();
 
-    std::vector<Sleeper> sleepers_;                           // ascending, as the others
-    std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // of those among them, by particle
+    std::vector<Sleeper> sleepers_;                           // ascending by particle, like the others
+    std::unordered_map<std::uint64_t, std::uint32_t> slots_;  // index in sleepers_ by particle
     std::vector<SleepCounter> sleep_counters_;
     std::vector<Weight> weights_;
     WarmStartMemory contacts_;
     std::vector<Ends> ends_;  // of the contacts
     std::vector<WarmStartMemory::Entry> edges_;
-    std::vector<Neighbour> neighbours_;  // particles that sleepers have contacts with, sleeper by sleeper
-    std::vector<std::uint32_t> first_;   // of each sleeper's among those, and the end
+    std::vector<Neighbour> neighbours_;  // particles in contact with sleepers, sleeper by sleeper
+    std::vector<std::uint32_t> first_;   // of each sleeper: start of its part of neighbours_; and the end
     std::uint64_t version_ = 0;
 };
 

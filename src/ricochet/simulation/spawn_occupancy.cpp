@@ -31,7 +31,7 @@ std::size_t SpawnOccupancy::CellHash::operator()(const Cell& cell) const {
     return hash;
 }
 
-/// Of all places until the end of the step.
+/// Returns the box of all positions of a ball until the end of the step.
 Box3 SpawnOccupancy::box_of(const FlyingBall& ball) const {
     const double rest = std::max(0.0, end_ - ball.time);
     const Vec3 fall = rest * ball.acceleration;

@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: where among spheres that meet each other there is room for one more.
+/// Private to the simulation: test for free space for a birth among spheres that meet each other.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace ricochet {
 
-/// A sphere as it moves until it meets another: from a time on along a parabola.
+/// Motion of a sphere until it meets another: along a parabola, from a time on.
 struct FlyingBall {
     double time = 0.0;  ///< s
     double radius = 0.0;
@@ -24,14 +24,14 @@ struct FlyingBall {
     [[nodiscard]] Vec3 at(double t) const;
 };
 
-/// The spheres of a step, in cells as large as they are: their sizes may differ by any factor.
+/// The spheres of a step, in cells as large as they are. Their sizes may differ by any factor.
 class SpawnOccupancy {
 public:
-    /// end: s, of the step.
+    /// end: end of the step, in s.
     explicit SpawnOccupancy(double end) : end_(end) {}
 
     void add(const FlyingBall& ball);
-    /// True when a ball overlaps none of them at the time of its birth, nor at the births of those that are born later.
+    /// Returns true if a ball overlaps no other ball at the later of their two births.
     [[nodiscard]] bool has_room(const FlyingBall& ball) const;
 
 private:

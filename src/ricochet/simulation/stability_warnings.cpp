@@ -22,35 +22,36 @@
 namespace ricochet {
 namespace {
 
-/// What twelve neighbours in the closest packing of equal spheres hold a sphere with, over what one does: the sum of
-/// the squared cosines between their lines and any other. A mathematical constant.
+/// Stiffness by which twelve neighbours in the closest packing of equal spheres hold a sphere, over that of one
+/// neighbour. It is the sum of the squared cosines between their lines and any other. A mathematical constant.
 constexpr double kClosestPacking = 4.0;
 
-/// Digits after which doubles differ, if they do.
+/// Number of digits with which any two different doubles differ.
 constexpr int kMostDigits = 17;
 
-/// Among colliders that move these methods would kick spheres that meet twice.
+/// Returns false for spheres that meet among moving colliders, because methods that kick first would kick them twice.
 bool may_kick_first(const SimulationSetup& setup) {
     return !setup.options.particle_contacts ||
            std::none_of(setup.colliders.begin(), setup.colliders.end(),
                         [](const ColliderDescription& c) { return !c.frame.empty() || is_deforming(c); });
 }
 
-/// The two lightest of the particles that a force acts between, kg, infinite where they are pinned or not there.
+/// The two smallest masses of the particles between which a force acts, in kg. Infinite for pinned or missing
+/// particles.
 struct LightestPair {
     std::array<double, 2> masses{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    double count = 0.0;  ///< of all of them
+    double count = 0.0;  ///< number of these particles
 
     void add(double mass) {
         masses[1] = std::min(masses[1], std::max(masses[0], mass));
         masses[0] = std::min(masses[0], mass);
         ++count;
     }
-    /// 1/kg
+    /// Returns the inverse of the reduced mass, in 1/kg.
     [[nodiscard]] double reduced_inverse() const { return 1.0 / masses[0] + 1.0 / masses[1]; }
 };
 
-/// Fragments, whose masses only the run gives, are passed over.
+/// Fragments are skipped, because their masses are known only in the run.
 LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry& entry) {
     const bool is_all = entry.particles.empty() && entry.emitters.empty();
     LightestPair lightest;
@@ -73,7 +74,7 @@ LightestPair lightest_of(const SimulationSetup& setup, const ParticlesForceEntry
     return lightest;
 }
 
-/// As few digits as tell them apart.
+/// Returns both numbers with as few digits as distinguish them.
 std::array<std::string, 2> told_apart(double step, double bound) {
     for (int digits = 3;; ++digits) {
         std::array<std::string, 2> texts{fmt::format("{:.{}g}", step, digits), fmt::format("{:.{}g}", bound, digits)};
@@ -101,11 +102,12 @@ std::string undamped(const SimulationSetup& setup, const std::string& forces, co
         name_of(setup.options.integrator.kind), forces, whose, others);
 }
 
-/// Growth of an energy in a run that is warned of. Local, because it decides only about a warning.
+/// Largest growth of an energy in a run without a warning. Local, because it decides only about a warning.
 constexpr double kLargestGain = 0.01;
 
-/// Steps that are short enough for the fastest oscillation may feed it all the same: midpoint's do, unless dampers take
-/// more. Slower ones are fed less, by the fourth power of their rate, and damped by its square.
+/// Returns a warning if the steps are short enough for the fastest oscillation, but still feed it. midpoint does so,
+/// unless dampers take more. Slower oscillations are fed less by the fourth power of their rate, and damped less by its
+/// square.
 std::optional<std::string> growth_warning(const SimulationSetup& setup, const OscillationRates& rates,
                                           const std::string& forces) {
     const double h = setup.options.time_step;
@@ -129,7 +131,8 @@ std::optional<std::string> spring_warning(const SimulationSetup& setup) {
                     may_be_implicit(setup) ? "the integrator implicit_euler" : "softer springs and dampers");
 }
 
-/// Particles that begin in each other, or nearer than at rest, need a shorter step until they have parted.
+/// Returns a warning if particles begin in overlap, or nearer than at rest. They need a shorter step until they have
+/// separated.
 std::optional<std::string> start_warning(const SimulationSetup& setup, std::size_t number, double bound_later) {
     // Packings differ from the closest one by rounding. Local, because it decides only about a warning.
     constexpr double kRounding = 1.0 - 1e-6;
@@ -164,14 +167,14 @@ std::optional<std::string> pair_warning(const SimulationSetup& setup, std::size_
     return too_long(setup, bound, "what is held together by " + what, "a weaker force");
 }
 
-/// A particle that drags may be too strong for, and what it is in the scene.
+/// A particle for which drag may be too strong, and its name in the scene.
 struct DraggedParticle {
     ForceInput state{};
     std::string name;
 };
 
-/// As an emitter lets go the lightest, largest and fastest, each way it may: drags do most to that one. Nothing of
-/// those whose mass only the run gives, or that go with their parents.
+/// Returns the lightest, largest and fastest particle of an emitter, in each direction that it may have. Drag affects
+/// it most. Returns nothing for fragments, whose masses are known only in the run, and for clouds.
 std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, std::size_t number) {
     const double lightest = emitter.mass.mean - emitter.mass.spread;
     if (!(lightest > 0.0) || is_cloud(emitter) || (emitter.parent && emitter.parent->share)) return {};
@@ -196,8 +199,8 @@ std::vector<DraggedParticle> most_dragged_of(const EmitterDescription& emitter, 
     return particles;
 }
 
-/// How the particle moves at the end of a long time under the drags and what pulls all alike, m/s: as far as it gets
-/// there within many steps, since where it takes longer drags are weak.
+/// Returns the velocity, in m/s, of the particle after a long time under drag and the common acceleration. The time is
+/// limited to many steps, because drag that takes longer is weak.
 Vec3 falling_velocity(const std::vector<const Force*>& drags, const Vec3& pull, const ForceInput& state, double step) {
     // Local, because it decides only about a warning.
     constexpr double kManySteps = 1000.0;
@@ -219,7 +222,7 @@ double damping_of_all(const std::vector<const Force*>& drags, const ForceInput& 
     return rate;
 }
 
-/// The particle that drags damp fastest, with its velocity where they do: as it sets out or as it falls.
+/// The particle that drag damps fastest, with the velocity at which it does: the first one or that of its fall.
 class FastestDamped {
 public:
     FastestDamped(const SimulationSetup& setup, std::vector<const Force*> drags)
@@ -286,7 +289,8 @@ std::optional<std::string> drag_warning(const SimulationSetup& setup) {
         length(particle.velocity), longest, may_be_implicit(setup) ? " or the integrator implicit_euler" : "");
 }
 
-/// Children begin where their parent is: two of a batch in each other, one that the parent outlives in the parent.
+/// Returns true if children overlap at their births. They begin at the position of their parent: two of one event in
+/// each other, and one whose parent lives on in the parent.
 bool is_born_beside_others(const ParentRule& rule) {
     return (!rule.share && rule.on != BirthEvent::death) || rule.count.mean + rule.count.spread >= 1.5;
 }

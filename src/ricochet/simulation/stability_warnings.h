@@ -10,11 +10,12 @@
 
 namespace ricochet {
 
-/// True where the setup has another integrator and would not be refused with implicit_euler.
+/// Returns true if the setup has another integrator than implicit_euler and would not be refused with it.
 [[nodiscard]] bool may_be_implicit(const SimulationSetup& setup);
 
-/// The time step against the stability bounds of the springs and of every force between particles whose steepness is
-/// known (steepness_of()), and children that are born in each other where a force grows without bound. A line each.
+/// Returns warnings, a line each. They compare the time step with the stability bounds of drag, of springs, and of
+/// forces between particles with a known steepness (steepness_of()). They also name children that are born in overlap
+/// while a force grows without bound. energy_warnings() are included.
 [[nodiscard]] std::vector<std::string> stability_warnings(const SimulationSetup& setup);
 
 }  // namespace ricochet

@@ -23,14 +23,14 @@ double largest_eigenvalue(const SymmetricMatrix& a) {
     return mean + 2.0 * spread * std::cos(std::acos(cosine) / 3.0);
 }
 
-/// The particles that a force acts between, as lists.
+/// Particles between which a force acts, as lists.
 struct Members {
     std::vector<std::uint64_t> ids;
     std::vector<Vec3> positions;
     std::vector<Vec3> velocities;
     std::vector<double> masses;
     std::vector<double> radii;
-    std::vector<double> inverse_masses;  ///< 1/kg, 0 where pinned
+    std::vector<double> inverse_masses;  ///< 1/kg, 0 if pinned
 
     void add(const Particle& particle, std::uint64_t id) {
         ids.push_back(id);

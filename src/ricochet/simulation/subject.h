@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: refuses what a setup holds, by the name of the object that holds it.
+/// Private to the simulation: refusal of values in a setup, with the name of the object that has them.
 #pragma once
 
 #include <concepts>
@@ -14,10 +14,10 @@
 
 namespace ricochet {
 
-/// The object whose values are checked. Everything that does not hold throws InputError.
+/// The object whose values are checked. All checks throw InputError.
 class Subject {
 public:
-    /// By its name, or its number where it has none.
+    /// The object is called by its name, or by its number if it has none.
     Subject(std::string_view kind, std::size_t number, std::string_view name = {});
     explicit Subject(std::string_view name) : name_(name) {}
 

@@ -5,15 +5,15 @@
 namespace ricochet {
 namespace {
 
-/// What the contacts of a pile with surfaces press with.
+/// Sums over the contacts of an island with surfaces.
 struct SupportList {
-    double along = 0.0;   ///< N times N s, sum of what they press along what is shared out
-    double strong = 0.0;  ///< N, sum of their strengths
+    double along = 0.0;   ///< N times N s, sum of the contact forces along the load
+    double strong = 0.0;  ///< N, sum of the magnitudes of the contact forces
 };
 
 double along(const SleepingIslands::Weight& weight, const Vec3& total) { return std::fabs(dot(weight.force, total)); }
 
-/// Of what is shared out: a smooth wall carries no weight, whatever presses on it.
+/// Returns the part of a load that a contact carries. A smooth wall carries no weight, whatever presses on it.
 double share_of(const SleepingIslands::Weight& weight, const Vec3& total, const SupportList& all) {
     return all.along > 0.0 ? along(weight, total) / all.along : length(weight.force) / all.strong;
 }
@@ -43,7 +43,7 @@ void TransmittedLoads::stop(const SleepingIslands& sleeping_islands, std::span<c
     share_out_all(sleeping_islands, totals);
 }
 
-/// What pulls a pile down and what pushes it aside are held by different ones.
+/// Distributes the load along the weight and the load across it apart, because different contacts carry them.
 void TransmittedLoads::share_out_all(const SleepingIslands& sleeping_islands,
                                      const std::map<std::uint64_t, Vec3>& totals) {
     std::map<std::uint64_t, Vec3> down;
@@ -57,8 +57,8 @@ void TransmittedLoads::share_out_all(const SleepingIslands& sleeping_islands,
     share_out(sleeping_islands, aside);
 }
 
-/// Among the contacts of each pile with surfaces, by how strongly they are pressed along it, or at all where none is.
-/// totals: N s, by pile.
+/// Distributes loads among the contacts of each island with surfaces, by their forces along the load. If no contact has
+/// one, the magnitudes of the forces count. totals: N s, by island.
 void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const std::map<std::uint64_t, Vec3>& totals) {
     if (totals.empty()) return;
     std::map<std::uint64_t, SupportList> holding;
@@ -80,7 +80,8 @@ void TransmittedLoads::share_out(const SleepingIslands& sleeping_islands, const 
     parts_.mover.press(hits);
 }
 
-/// What fell asleep at different times, or not quite at rest, is not in balance by itself.
+/// Finds the balance of each island. Spheres that fell asleep at different times, or not quite at rest, are not in
+/// balance by themselves.
 void TransmittedLoads::find_balances(const SleepingIslands& sleeping_islands, const TimeSpan& step) {
     version_ = sleeping_islands.version();
     balances_.clear();
@@ -99,7 +100,7 @@ void TransmittedLoads::find_balances(const SleepingIslands& sleeping_islands, co
     add_contacts(sleeping_islands, step);
 }
 
-/// Pinned spheres push as they did when the pile fell asleep.
+/// Adds the forces of pinned spheres, which are the same as when the island fell asleep.
 void TransmittedLoads::add_contacts(const SleepingIslands& sleeping_islands, const TimeSpan& step) {
     const std::vector<Vec3>& position = parts_.store.particles().position;
     for (const WarmStartMemory::Entry& entry : sleeping_islands.edges()) {

@@ -1,6 +1,6 @@
 /// \file
-/// Private to the simulation: what a simulation refuses. Every check throws InputError with one line that names the
-/// object and the value.
+/// Private to the simulation: checks of setups. Every check throws InputError with one line that names the object and
+/// the value.
 #pragma once
 
 #include <cstddef>
@@ -11,27 +11,27 @@
 
 namespace ricochet {
 
-/// Everything in a setup that its own class does not check (forces, emitters, springs and frames check their values).
-/// Returns it.
+/// Checks everything in a setup that its own class does not check (forces, emitters, springs and frames check their
+/// values). Returns the setup.
 const SimulationSetup& validated(const SimulationSetup& setup);
 
-/// What its parts cannot do together: colliders that move, bodies, spheres that meet, flows, forces between particles.
+/// Checks parts that cannot be combined: moving colliders, bodies, spheres that meet, flows, forces between particles.
 void validate_together(const SimulationSetup& setup);
 
-/// What changes temperatures: its values, and what it needs of particles and of what moves them.
+/// Checks the settings that change temperatures, and their requirements on particles and on motion.
 void validate_heat(const SimulationSetup& setup);
-/// What forces that ask for temperatures need of the rest.
+/// Checks the requirements of forces that depend on temperatures.
 void validate_thermal_forces(const SimulationSetup& setup);
 
-/// What spheres do when they meet, their materials, and what else there is.
+/// Checks contacts between spheres, their materials, and their combination with other settings.
 void validate_particle_contacts(const SimulationSetup& setup);
-/// A particle that is to meet others: its mass, and whether it is of one of the materials; columns: of its attributes.
+/// Checks a particle that can meet others: its mass, and that it has one of the materials. columns: of its attributes.
 void validate_sphere(const Particle& particle, std::size_t number, const PairContactSettings& contacts,
                      std::span<const AttributeDescription> columns);
 
-/// A particle, by its number among those that are given; columns: how many attributes particles have.
+/// Checks a particle. number: among the given particles. columns: number of attributes of particles.
 void validate(const Particle& particle, std::size_t number, std::size_t columns);
-/// materials: how many there are.
+/// Checks a collider. materials: number of materials.
 void validate(const ColliderDescription& collider, std::size_t number, std::size_t materials);
 
 }  // namespace ricochet

@@ -240,11 +240,11 @@ void EventIsland::fly_freely(IslandMember& member, double duration) {
     const ResponseRules& rules = response_.rules();
     ForceInput& state = member.moving.state;
     const Flight flight = begin_flight(rules.settings.integrator, rules.forces, state, member.end - state.time);
-    const Vec3 separation_speed = state.velocity;
+    const Vec3 initial_velocity = state.velocity;
     const double begin = state.time;
     state.velocity = velocity_at(rules.settings.integrator, rules.forces, flight, duration);
     state.position = flight.path.position(duration);
-    scratch_->flown.push_back({flight.path, begin, duration, separation_speed, state.velocity, true});
+    scratch_->flown.push_back({flight.path, begin, duration, initial_velocity, state.velocity, true});
 }
 
 /// Makes the prediction of a member its result.

@@ -249,7 +249,7 @@ public:
     virtual void first_sides(const Vec3& position, std::span<SideMemory> sides) const;
     /// Sets the sides for a particle that another one spawns. sides: initially the parent's sides at the start of its
     /// move.
-    virtual void inherit_sides(const ChildStart& particle_center, std::span<SideMemory> sides) const;
+    virtual void inherit_sides(const ChildStart& start, std::span<SideMemory> sides) const;
 
     /// Returns the particle's acceleration under this response, in its present contact, if forces accelerate it by
     /// `pull`, in m/s^2. Moving surfaces do not support it here.

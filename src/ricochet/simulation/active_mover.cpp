@@ -104,8 +104,7 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.record_flown = as_planned && parts_.coupled.wants_deviation_of(i);
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
     if (scratch.record_flown)
-        record_deviation(i, particle, outcome, scratch.flown,
-                         velocity_change_by(std::span(scratch.hits).subspan(first_hit)));
+        record_deviation(i, particle, outcome, scratch.flown, impulse_of(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.meter != nullptr) {
         parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
     }

@@ -167,9 +167,9 @@ private:
     [[nodiscard]] bool is_near_dynamic_body(const ForceInput& state, double duration) const;
     [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
     void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                          std::vector<FlownPiece>& flown, const Vec3& velocity_change);
+                          std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
-    [[nodiscard]] static Vec3 velocity_change_by(std::span<const SurfaceHit> hits);
+    [[nodiscard]] static Vec3 impulse_of(std::span<const SurfaceHit> hits);
     void record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
                       std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);

@@ -29,20 +29,20 @@ bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<co
 }  // namespace
 
 /// Returns the sum of the impulses of surfaces on a particle, in N s.
-Vec3 ActiveMover::velocity_change_by(std::span<const SurfaceHit> hits) {
+Vec3 ActiveMover::impulse_of(std::span<const SurfaceHit> hits) {
     Vec3 sum;
     for (const SurfaceHit& hit : hits) sum -= hit.impulse;
     return sum;
 }
 
-/// velocity_change: impulse of surfaces on the particle, in N s.
+/// impulse: of surfaces on the particle, in N s.
 void ActiveMover::record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                                   std::vector<FlownPiece>& flown, const Vec3& velocity_change) {
+                                   std::vector<FlownPiece>& flown, const Vec3& impulse) {
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
     const Flight& plan = *parts_.coupled.flight_of(i);
     note_flown(plan, moved, flown);
     if (moved.planned == nullptr || outcome.meetings() > 0 || !is_as_planned(plan, moved, flown)) {
-        parts_.coupled.add_deviation(i, flown, velocity_change / moved.state.mass);
+        parts_.coupled.add_deviation(i, flown, impulse / moved.state.mass);
     }
 }
 
@@ -50,13 +50,12 @@ void ActiveMover::record_deviation(IslandMember& member) {
     const std::size_t i = member.particle;
     if (!parts_.coupled.wants_deviation_of(i)) return;
     const MovingParticle& moving = member.moving;
-    const Vec3 velocity_change =
-        velocity_change_by(member.lists.hits) + moving.state.mass * member.pair_velocity_change;
+    const Vec3 impulse = impulse_of(member.lists.hits) + moving.state.mass * member.pair_velocity_change;
     const bool is_there = !member.is_gone() && member.outcome.unsimulated_time == 0.0;
     if (!member.is_planned) {
-        record_deviation(i, moving, member.outcome, member.trajectory, velocity_change);
+        record_deviation(i, moving, member.outcome, member.trajectory, impulse);
     } else if (is_there) {
-        parts_.coupled.record_planned_contact(i, velocity_change / moving.state.mass);
+        parts_.coupled.record_planned_contact(i, impulse / moving.state.mass);
     }
 }
 

@@ -40,8 +40,8 @@ constexpr int kMostVainCuts = 2;
 
 /// Tolerances of the solution of a step.
 struct Closeness {
-    double tolerance;              ///< of Newton's method
-    double smallest_inverse_mass;  ///< of friction, see PlannedContacts::find()
+    double tolerance;         ///< of Newton's method
+    double least_compliance;  ///< of friction, see PlannedContacts::find()
 };
 /// Before the supports are known. Friction with a larger yield is found in fewer iterations.
 constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
@@ -260,20 +260,20 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
     const double negligible = kPredictionEnergy * kinetic_energy(system_, step.velocities) + least_energy_;
     bool is_close = false;
     std::vector<SupportConstraints> held =
-        contacts.find(system_, step.velocities, spins, duration, kRough.smallest_inverse_mass);
+        contacts.find(system_, step.velocities, spins, duration, kRough.least_compliance);
     for (int pass = 0, worse = 0; pass < kMostForesights && worse < kMostWorse; ++pass) {
         const Closeness& closeness = is_close ? kClose : kRough;
         step = implicit_system_step(system_, duration, held, step.velocities, {closeness.tolerance, between_});
         duration = step.duration;
-        const auto find = [&](double smallest_inverse_mass) {
-            return contacts.find(system_, step.free_velocities, spins, duration, smallest_inverse_mass);
+        const auto find = [&](double least_compliance) {
+            return contacts.find(system_, step.free_velocities, spins, duration, least_compliance);
         };
-        std::vector<SupportConstraints> found = find(closeness.smallest_inverse_mass);
+        std::vector<SupportConstraints> found = find(closeness.least_compliance);
         double residual = residual_energy(system_, step, missed_paths(step, found));
         const bool has_settled = residual <= negligible;
         if (has_settled && !is_close) {
             is_close = true;
-            held = find(kClose.smallest_inverse_mass);
+            held = find(kClose.least_compliance);
             continue;
         }
         if (has_settled) residual += residual_energy(system_, step, contacts.bends(system_, step, found));

@@ -69,7 +69,7 @@ void DrivenMotion::begin_step() {
     for (BodyContacts& contacts : contacts_) contacts.begin_step();
 }
 
-double DrivenMotion::became_dynamic(const ColliderLoad& load) const {
+double DrivenMotion::work_by_yielding(const ColliderLoad& load) const {
     const auto body = loads_on_bodies().body_of(load);
     if (!body) return 0.0;
     const AffineMap map = planned(*body).at(load.time).world_from_frame;
@@ -355,7 +355,7 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
     for (const ColliderLoad& part : preview) {
         if (loads_on_bodies().body_of(part) != body || (part.time > end && !is_whole)) continue;
         taken += wrench_of(part, bodies_[body].moment_center());
-        given += part.work + (part.impact ? became_dynamic(part) : 0.0);
+        given += part.work + (part.impact ? work_by_yielding(part) : 0.0);
     }
     DrivenBody as_planned = bodies_[body];
     as_planned.follow(path, planned_load, load);

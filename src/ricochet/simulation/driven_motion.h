@@ -60,7 +60,7 @@ public:
     void begin_step();
     /// Returns the energy, in J, that a body gets from a load in addition to ColliderLoad::work, because the load
     /// changes its velocity.
-    [[nodiscard]] double became_dynamic(const ColliderLoad& load) const;
+    [[nodiscard]] double work_by_yielding(const ColliderLoad& load) const;
     /// Selects the substep that begins at a time, in s, for particles that move through this step later. Returns its
     /// end, in s.
     double repeat_substep(double time);

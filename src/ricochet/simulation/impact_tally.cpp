@@ -44,12 +44,12 @@ ImpactTally::BodyOnPath ImpactTally::at(double time) const {
 void ImpactTally::add(const ColliderLoad& load) {
     const Wrench wrench = wrench_of(load, about_);
     const BodyOnPath body = at(load.time);
-    const double is_dynamic = body.mobility.energy_by(wrench_of(load, body.mobility.center));
+    const double by_yielding = body.mobility.energy_by(wrench_of(load, body.mobility.center));
     ++count_;
     wrench_ += wrench;
     alone_ += body.energy_by(wrench, about_);
-    dynamic_ += is_dynamic;
-    lost_ += load.lost_energy - load.work - is_dynamic;
+    dynamic_ += by_yielding;
+    lost_ += load.lost_energy - load.work - by_yielding;
     size_ += std::fabs(load.work) + std::fabs(load.lost_energy);
 }
 

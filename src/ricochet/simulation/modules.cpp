@@ -211,7 +211,7 @@ public:
     void record(const ParticleRange& generation, const std::vector<BlockRecord>& /*blocks*/,
                 std::vector<ColliderLoad>& loads) override {
         const std::vector<ColliderLoad> given = loads;
-        for (ColliderLoad& load : loads) load.work += parts_.driven.became_dynamic(load);
+        for (ColliderLoad& load : loads) load.work += parts_.driven.work_by_yielding(load);
         if (generation.are_children) {
             parts_.driven.take(given);
             return;

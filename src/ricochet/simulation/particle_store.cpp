@@ -43,18 +43,18 @@ void ParticleStore::append(Particle&& particle) {
     particles_.append(particle);
     cores_.append();
     sides_.resize(particles_.size() * colliders_);
-    if (keeps_attachments_) frame_rules_.emplace_back();
+    if (keeps_attachments_) attachments_.emplace_back();
 }
 
 void ParticleStore::reserve(std::size_t more) {
     particles_.reserve(more);
     grow_capacity_by(sides_, more * colliders_);
-    if (keeps_attachments_) grow_capacity_by(frame_rules_, more);
+    if (keeps_attachments_) grow_capacity_by(attachments_, more);
 }
 
 void ParticleStore::compact(const std::vector<std::uint8_t>& keep) {
     if (colliders_ > 0) keep_marked(sides_, keep, colliders_);
-    if (keeps_attachments_) keep_marked(frame_rules_, keep);
+    if (keeps_attachments_) keep_marked(attachments_, keep);
     cores_.compact(keep);
     particles_.compact(keep);
 }
@@ -74,9 +74,9 @@ MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact)
     particle.sides = sides_of(i);
     particle.stored_time = start;
     if (keeps_attachments_) {
-        const AttachmentMemory& ride = frame_rules_[i];
-        if (!std::isnan(ride.stored_time)) particle.stored_time = ride.stored_time;
-        if (ride.is_attached != 0) particle.attachment = ride.attachment;
+        const AttachmentMemory& known = attachments_[i];
+        if (!std::isnan(known.stored_time)) particle.stored_time = known.stored_time;
+        if (known.is_attached != 0) particle.attachment = known.attachment;
     }
     return particle;
 }
@@ -115,9 +115,9 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     // An attached particle goes where its body goes.
     if (in_contact) store_contact(i, moved, outcome, may_be_supported && !moved.attachment);
     if (!keeps_attachments_) return;
-    frame_rules_[i] = {};
-    if (moved.stored_time < moved.step_end) frame_rules_[i].stored_time = moved.stored_time;
-    if (moved.attachment) frame_rules_[i].is_attached = 1, frame_rules_[i].attachment = *moved.attachment;
+    attachments_[i] = {};
+    if (moved.stored_time < moved.step_end) attachments_[i].stored_time = moved.stored_time;
+    if (moved.attachment) attachments_[i].is_attached = 1, attachments_[i].attachment = *moved.attachment;
 }
 
 void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
@@ -160,8 +160,8 @@ bool ParticleStore::is_sound(std::size_t i) const {
     const bool is_core_inside = !cores_.has(i) || cores_.radius(i) <= particles_.radius[i];
     const bool is_attachment_finite =
         !keeps_attachments_ ||
-        (!std::isinf(frame_rules_[i].stored_time) && is_finite(frame_rules_[i].attachment.position) &&
-         is_finite(frame_rules_[i].attachment.spin) && frame_rules_[i].is_attached <= 1);
+        (!std::isinf(attachments_[i].stored_time) && is_finite(attachments_[i].attachment.position) &&
+         is_finite(attachments_[i].attachment.spin) && attachments_[i].is_attached <= 1);
     return are_sides_known && is_core_inside && is_attachment_finite && std::isfinite(particles_.birth_time[i]) &&
            !std::isnan(particles_.lifetime[i]) && std::isfinite(particles_.accounted_until[i]) &&
            std::isfinite(particles_.cascade_left[i]) && std::isfinite(particles_.unsimulated_time[i]);

@@ -87,7 +87,7 @@ public:
 
     /// Returns the time, in s, of the stored position: `now`, except for stalled particles.
     [[nodiscard]] double stored_time(std::size_t i, double now) const {
-        return keeps_attachments_ && !std::isnan(frame_rules_[i].stored_time) ? frame_rules_[i].stored_time : now;
+        return keeps_attachments_ && !std::isnan(attachments_[i].stored_time) ? attachments_[i].stored_time : now;
     }
 
     /// Returns the id of the next particle that is added.
@@ -120,7 +120,7 @@ private:
         std::uint8_t is_attached = 0;
         MovingParticle::Attachment attachment{};  ///< if is_attached
     };
-    std::vector<AttachmentMemory> frame_rules_;  // one per particle, if they are kept
+    std::vector<AttachmentMemory> attachments_;  // one per particle, if they are kept
     bool keeps_attachments_ = false;
     std::vector<SideMemory> sides_;  // one per collider for every particle, for responses that keep sides
     std::size_t colliders_;
@@ -157,7 +157,7 @@ void ParticleStore::archive(Archive& a) {
     const auto attachment_of = [&](AttachmentMemory& ride) {
         a(ride.stored_time), a(ride.is_attached), a(ride.attachment.position), a(ride.attachment.spin);
     };
-    archive_entries(a, frame_rules_, attachment_of, keeps_attachments_ ? n : 0);
+    archive_entries(a, attachments_, attachment_of, keeps_attachments_ ? n : 0);
 }
 
 }  // namespace ricochet

@@ -28,13 +28,13 @@ struct PlannedContacts::Flown {
     Vec3 velocity;  ///< m/s, along the line
     Vec3 spin;      ///< rad/s
     double radius;
-    double duration;               ///< s
-    double smallest_inverse_mass;  ///< lower bound of SupportConstraints::yield, m/s
+    double duration;          ///< s
+    double least_compliance;  ///< lower bound of SupportConstraints::yield, m/s
 };
 
 std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& system, std::span<const Vec3> velocities,
                                                       std::span<const Vec3> spins, double duration,
-                                                      double smallest_inverse_mass) const {
+                                                      double least_compliance) const {
     std::vector<SupportConstraints> result(system.size());
     double fastest = 0.0;
     for (const Vec3& v : velocities) fastest = std::max(fastest, max_abs(v));
@@ -48,9 +48,9 @@ std::vector<SupportConstraints> PlannedContacts::find(const ParticleSystem& syst
             const SurfaceGeometry geometry(world_, scratch.plane_cache);
             const auto contact = find_first_contact(geometry, {path, radius}, scratch).contact;
             if (contact)
-                result[k] = held({system.velocities()[k], velocities[k], spins[k], radius, duration,
-                                  smallest_inverse_mass * fastest},
-                                 *contact);
+                result[k] = held(
+                    {system.velocities()[k], velocities[k], spins[k], radius, duration, least_compliance * fastest},
+                    *contact);
         }
     });
     return result;
@@ -117,7 +117,7 @@ SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& cont
     if (!(held.grip > 0.0)) return held;
     held.spin_slip = held.across(cross(flown.spin, flown.radius * contact.first().normal));
     const double share = (1.0 - part) * (is_point ? 1.0 : kRollingShare);
-    held.yield = std::max(held.grip * (1.0 - share) / share, flown.smallest_inverse_mass);
+    held.yield = std::max(held.grip * (1.0 - share) / share, flown.least_compliance);
     return held;
 }
 

@@ -23,11 +23,11 @@ public:
         : world_(world), materials_(materials), resting_speed_(resting_speed) {}
 
     /// Returns the support constraints of each member on a straight line. velocities: along the lines, in m/s.
-    /// duration: in s. smallest_inverse_mass: lower bound of SupportConstraints::yield, as a part of the largest
+    /// duration: in s. least_compliance: lower bound of SupportConstraints::yield, as a part of the largest
     /// velocity. Newton's method needs a slope, so friction may leave so much slip to a member that it stops.
     [[nodiscard]] std::vector<SupportConstraints> find(const ParticleSystem& system, std::span<const Vec3> velocities,
                                                        std::span<const Vec3> spins, double duration,
-                                                       double smallest_inverse_mass) const;
+                                                       double least_compliance) const;
 
     /// Returns the deviation of each constrained member, in m, from its straight motion in a step, because surfaces are
     /// curved. It has two parts: the distance to the surface at the end, and the motion along the surface by a contact

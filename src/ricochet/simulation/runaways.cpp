@@ -15,7 +15,7 @@ namespace ricochet {
 RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
     const Particles& particles = parts_.store.particles();
     const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
-    const Vec3 by_surfaces = (velocity_change_by(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
+    const Vec3 by_surfaces = (impulse_of(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
     const bool may_throw = parts_.recorder.collects_loads() || parts_.response.keeps_sides();
     if (may_throw && is_slow_without(by_surfaces)) return RunawayCause::surface;
     if (is_slow_without(impulses.by_spheres) || is_slow_without(impulses.by_spheres + by_surfaces)) {

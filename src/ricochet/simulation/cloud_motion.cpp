@@ -13,8 +13,8 @@
 namespace ricochet {
 namespace {
 
-/// Places turn and what is pulled swings, whatever the run's own integrator makes of its forces: after a bounce the
-/// rest of a piece is a step of fourth order.
+/// The method after a bounce, for the rest of a piece. It is of fourth order whatever the run's integrator is, because
+/// children circle the parent or oscillate about it.
 std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
     ResponseRules own = rules;
     own.settings.integrator = IntegratorKind::rk4;
@@ -92,7 +92,7 @@ void CloudMotion::before_move(const ParticleRange& spawn_generation) {
     }
 }
 
-/// Of parents that go with nobody themselves.
+/// Notes the paths of parents outside clouds.
 void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeSpan& step,
                               const std::vector<BlockRecord>& blocks) {
     std::vector<ContactRecord> all;
@@ -110,7 +110,7 @@ void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeS
     }
 }
 
-/// The batch's children, those of each generation together.
+/// Returns the children of the generation by their depth below a parent outside clouds.
 std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange& spawn_generation) const {
     std::vector<std::size_t> all;
     for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
@@ -147,7 +147,7 @@ void CloudMotion::move(const ParticleRange& spawn_generation, const TimeSpan& st
     }
 }
 
-/// track: filled with what it has flown, where it leads others in turn.
+/// track: filled with the child's path if it has children itself.
 void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& scratch, BlockRecord& record,
                              Track& track) {
     Particles& particles = store_.particles();
@@ -180,7 +180,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
 }
 
-/// Returns true where the parent has ended, and the child is alone from now on.
+/// Returns true if the parent has ended, so that the child continues alone.
 bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scratch, BlockRecord& record) {
     const std::vector<FlightKnot>& knots = parent.knots;
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
@@ -188,7 +188,7 @@ bool CloudMotion::follow(Journey& journey, const Track& parent, MoveScratch& scr
         const FlightKnot& to = knots[k + 1];
         if (to.time < journey.now) continue;
         if (!fly_along(journey, from, to, scratch, record)) return false;
-        const bool is_last = k + 2 == knots.size();  // what ends with an impact gives none of that to its children
+        const bool is_last = k + 2 == knots.size();  // a parent that ends at an impact does not pass it on
         if (!(is_last && parent.ends)) add_forces(journey, from, to, scratch);
     }
     return parent.ends && journey.now >= knots.back().time;
@@ -201,8 +201,8 @@ CloudMember CloudMotion::member_of(std::size_t i, const FlightKnot& from, const 
     return {rule_of(i), path, from.time, members_[i].offset, store_.particles().birth_time[i]};
 }
 
-/// Along one flight of the parent, whose end is an impact of it or the end of the step. False where the child's life in
-/// the step ends before.
+/// Moves the child along one flight of the parent, which ends at an impact or with the step. Returns false if the
+/// child's life in the step ends before that.
 bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch,
                             BlockRecord& record) {
     const std::size_t i = journey.particle;
@@ -218,7 +218,7 @@ bool CloudMotion::fly_along(Journey& journey, const FlightKnot& from, const Flig
     return end == to.time;
 }
 
-/// At the end of a flight of the parent: what its impact has changed its velocity by, its child's changes by too.
+/// Changes the child's velocity by the parent's change at the end of a flight, that is, by its impact.
 void CloudMotion::add_forces(Journey& journey, const FlightKnot& from, const FlightKnot& to, MoveScratch& scratch) {
     const std::size_t i = journey.particle;
     Particles& particles = store_.particles();
@@ -261,7 +261,7 @@ void CloudMotion::fly_piece(Journey& journey, const CloudMember& member, double 
     journey.track->knots.push_back({until, particles.position[i], velocity, velocity});
 }
 
-/// From a time, s, on it goes with nobody.
+/// Releases particle i from its cloud at a time, in s.
 void CloudMotion::part(std::size_t i, double time) {
     Particles& particles = store_.particles();
     const CloudEnd end = rule_of(i).end;

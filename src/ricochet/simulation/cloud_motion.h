@@ -1,10 +1,11 @@
 /// \file
-/// Private to the simulation: particles that go with their parents, moved after these and along what they have flown.
+/// Private to the simulation: clouds. The children of a cloud move with their parent, after it and along its path.
 ///
-/// A parent's path in a step is a cubic between each two of its knots (flight_knots.h). A child flies the sum of that
-/// and of its own motion about the parent, in pieces, each of which is swept and certified as the path of any particle
-/// is. What it hits, it bounces off as it is; from there on the response follows the sum of the same accelerations. At
-/// the parent's impacts it is given the change of the parent's velocity.
+/// A parent's path in a step is a cubic between each two of its knots (flight_knots.h). The path of a child is the sum
+/// of the parent's path and of its own motion about the parent. It is divided into pieces, and each piece is swept and
+/// certified like the path of any particle. The child bounces off surfaces by itself. From there on the response
+/// follows the sum of the same accelerations. At an impact of the parent, the child's velocity changes like the
+/// parent's.
 #pragma once
 
 #include <cstddef>
@@ -27,36 +28,37 @@ namespace ricochet {
 /// The clouds of a run.
 class CloudMotion {
 public:
-    /// parts: of the mover of all other particles, which moves what clouds have let go; all must outlive it.
+    /// mover: the mover of all other particles, which also moves particles that leave a cloud. parts: of that mover.
+    /// All must outlive the object.
     CloudMotion(const std::vector<Emitter>& emitters, const MoverParts& parts, ActiveMover& mover);
 
-    /// True when the particle goes with a parent.
+    /// Returns true if the particle moves with a parent.
     [[nodiscard]] bool leads(std::size_t i) const { return members_[i].parent != kNobody; }
-    /// Of each particle the id of its parent; -1 of those that go with nobody.
+    /// Returns the id of each particle's parent, or -1 for a particle outside clouds.
     [[nodiscard]] std::vector<std::int64_t> parents() const;
-    /// What a parent has flown in this step; nothing of a particle that is none, or was not moved yet.
+    /// Returns the path of a parent in this step. It is empty for a particle that is no parent, or has not moved yet.
     [[nodiscard]] std::span<const FlightKnot> knots_of(std::uint64_t id) const;
 
     void begin_step() { tracks_.clear(); }
-    /// Keeps the states of parents that are about to be moved.
+    /// Keeps the states of parents before they move.
     void before_move(const ParticleRange& spawn_generation);
-    /// Moves the children of the batch once all others in it have been moved, parents before their children.
+    /// Moves the children of a generation after all its other particles, parents before their children.
     void move(const ParticleRange& spawn_generation, const TimeSpan& step, std::vector<BlockRecord>& blocks);
-    /// At the end of a step: children of parents that leave the bounds are let go, or end too.
+    /// Releases or ends the children of parents that leave the bounds, at the end of a step.
     void part_from_leavers(const Retirement& retirement, double time);
 
     // As for Particles.
     void append() { members_.emplace_back(); }
     void compact(const std::vector<std::uint8_t>& keep);
-    /// A particle that has been appended goes with its parent.
+    /// Makes an appended particle move with its parent.
     void join(std::size_t i, const CloudMembership& offset) { members_[i] = {offset.parent, offset.offset}; }
-    /// Saves or restores whom particles go with; a: an archive of core/binary_archive.h.
+    /// Saves or restores the parents of particles. a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a, std::size_t particles) {
         const auto member = [&](Member& m) { a(m.parent), a(m.offset); };
         archive_entries(a, members_, member, particles);
     }
-    /// True when what is kept of a particle can be.
+    /// Returns false for a parent that no run can give particle i.
     [[nodiscard]] bool is_sound(std::size_t i, std::uint64_t next_id) const;
 
 private:
@@ -67,7 +69,7 @@ private:
     };
     struct Track {
         std::vector<FlightKnot> knots;
-        bool ends = false;  ///< the particle ends with the last one
+        bool ends = false;  ///< the particle ends at the last knot
     };
     struct Journey;
 
@@ -91,9 +93,9 @@ private:
     ActiveMover& free_mover_;
     std::unique_ptr<Response> response_;
     ActiveMover mover_;
-    std::vector<std::uint8_t> has_children_;  // of each emitter: its particles lead clouds
-    std::vector<Member> members_;             // of each particle
-    std::vector<PhaseState> starts_;          // of the particles of the batch
+    std::vector<std::uint8_t> has_children_;  // per emitter: its particles have clouds
+    std::vector<Member> members_;             // per particle
+    std::vector<PhaseState> starts_;          // of the particles of the generation
     std::unordered_map<std::uint64_t, Track> tracks_;
 };
 

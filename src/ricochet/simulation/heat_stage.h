@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the stage of the step in which particles cool and are heated.
+/// Private to the simulation: changes of particle temperatures in a step.
 #pragma once
 
 #include <cstddef>
@@ -16,16 +16,16 @@
 
 namespace ricochet {
 
-/// Tells from the record of a move what surfaces have taken of the particle's motion and made heat of it: the kinetic
-/// energy that its parts in contact lose, with the work that forces do meanwhile, less the work that is done on
-/// surfaces that move. Flights lose nothing to surfaces.
+/// Measures the energy that surfaces turn into heat, from the record of a particle's move. It is the kinetic energy
+/// that the particle loses in contact, plus the work of forces in that time, minus the work on moving surfaces.
 class FrictionMeter {
 public:
-    /// All must outlive it; bodies: null where no collider moves.
+    /// bodies: null if no collider moves. All must outlive the object.
     FrictionMeter(const HeatSettings& heat, const ForceField& forces, const MovingColliders* bodies)
         : heat_(heat), forces_(forces), bodies_(bodies) {}
 
-    /// Appends what heats particle i, the first to the last, by a move's lists from these entries on.
+    /// Appends the heat gains of particle i in the order of time. They follow from the entries of the move in
+    /// `scratch`, which begin at first_record and first_load.
     void note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
               std::size_t first_load, std::vector<HeatGain>& gains) const;
 
@@ -37,21 +37,21 @@ private:
     const MovingColliders* bodies_;
 };
 
-/// Changes the temperatures of all particles that have been moved.
+/// Changes the temperatures of the particles that have moved.
 class HeatStage {
 public:
-    /// column: of the temperature among the attributes. The others as for FrictionMeter.
+    /// column: index of the temperature among the attributes. Other arguments: see FrictionMeter.
     HeatStage(HeatSettings heat, std::size_t column, const ForceField& forces, const MovingColliders* bodies);
     HeatStage(const HeatStage&) = delete;
     HeatStage& operator=(const HeatStage&) = delete;
 
-    /// Null where surfaces do not heat.
+    /// Returns null if surfaces do not heat particles.
     [[nodiscard]] const FrictionMeter* meter() const { return heat_.is_heated_by_surfaces() ? &meter_ : nullptr; }
 
-    /// Keeps what convection is like for the particles of the range, which are about to be moved.
+    /// Keeps the coefficients of convection of the particles of a range before they move.
     void before_move(const Particles& particles, const ParticleRange& range, const TimeSpan& step);
-    /// They have been moved: each cools for as long as it has lived in the step, and is heated at the times of its
-    /// gains. gains: of all parts of the step, those of one particle in the order of time.
+    /// Cools each particle of the range for the time that it has lived in the step, and heats it at the times of its
+    /// gains. gains: of all substeps; the gains of one particle are in the order of time.
     void after_move(Particles& particles, const ParticleRange& range, const TimeSpan& step,
                     std::vector<HeatGain> gains) const;
 
@@ -63,7 +63,7 @@ private:
     HeatSettings heat_;
     std::size_t column_;
     FrictionMeter meter_;
-    std::vector<double> coefficients_;  // W/(m^2 K), of the range at the begin of its move; empty where they are given
+    std::vector<double> coefficients_;  // W/(m^2 K), per particle before its move; empty if the scene gives one value
 };
 
 }  // namespace ricochet

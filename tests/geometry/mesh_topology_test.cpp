@@ -214,8 +214,8 @@ Reference reference_counts(const std::vector<Triangle>& triangles, std::uint32_t
     for (const auto& [edge, uses] : directed) {
         const auto back = directed.find({edge.second, edge.first});
         const std::size_t other = back == directed.end() ? 0 : back->second;
-        counts.inconsistent += uses > 1 ? 1 : 0;
         if (other > 0 && edge.first > edge.second) continue;
+        counts.inconsistent += std::max(uses, other) - std::min(uses, other) > 1 ? 1 : 0;
         counts.boundary += uses + other == 1 ? 1 : 0;
         counts.nonmanifold += uses + other > 2 ? 1 : 0;
     }

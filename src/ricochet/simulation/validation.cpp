@@ -19,8 +19,6 @@
 namespace ricochet {
 namespace {
 
-/// Local: a limit of input values.
-constexpr double kMostSteps = 1e15;
 /// Particles are numbered by 32 bits; what is born is retired again, so more may be born than live at a time. Local: a
 /// limit of input values.
 constexpr double kMostBirths = 1e12;

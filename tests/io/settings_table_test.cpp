@@ -123,5 +123,22 @@ TEST(SettingsTable, SceneReaderAndLibraryRefuseTheSameHeat) {
         kConvectionTable);
 }
 
+TEST(SettingsTable, SceneReaderAndLibraryRefuseTheSameBodies) {
+    using S = SimulationSetup;
+    const auto body = [](S& s) -> BodyDescription& {
+        FrameDescription frame;
+        frame.name = "door";
+        frame.is_driven = true;
+        s.frames = std::make_shared<const FrameTree>(std::vector{frame});
+        BodyDescription& door = s.bodies.emplace_back();
+        door.frame = "door";
+        door.inertia = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
+        return door;
+    };
+    expect_refused_by_both("frames.door.body", "body 'door': ", body, kBodyMotionTable);
+    expect_refused_by_both(
+        "frames.door.body", "body 'door': ", [&](S& s) -> JointSettings& { return body(s).settings; }, kJointTable);
+}
+
 }  // namespace RICOCHET_FILE
 }  // namespace ricochet

@@ -1,10 +1,11 @@
 /// \file
-/// Private to the library: tables of settings of heat and bodies, see core/setting.h.
+/// Private to the library: tables of settings of heat, bodies and springs, see core/setting.h.
 #pragma once
 
 #include "ricochet/core/setting.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/dynamics/heat.h"
+#include "ricochet/dynamics/springs.h"
 
 namespace ricochet {
 
@@ -60,6 +61,52 @@ inline constexpr Setting<JointSettings> kJointTable[] = {
      "Target speed of a motor on the hinge or slider.", "", false, "motor_most"},
     {"motor_most", &JointSettings::motor_most, kNotNegative, "N m or N",
      "Largest moment or force of the motor. 0 means no motor."},
+};
+
+/// Without the ends.
+inline constexpr Setting<Spring> kSpringTable[] = {
+    {"rest_length", &Spring::rest_length, kLengthOrZero, "m", "Length at which it neither pulls nor pushes.",
+     "the distance of its ends at the start"},
+    {"stiffness", &Spring::stiffness, kLengthOrZero, "N/m", "Force divided by stretch.", "", kMustBeGiven},
+};
+
+/// Damping and breaking: for Spring, RopeSettings and ClothSettings, which have the same members.
+template <class Struct>
+inline constexpr Setting<Struct> kDampingTable[] = {
+    {"damping", &Struct::damping, kLengthOrZero, "N s/m",
+     "Damping force of a spring divided by the rate of change of its length."},
+    {"breaking_stretch", &Struct::breaking_stretch, kPositiveOrInfinite, "",
+     "Stretch, as a fraction of the rest length, beyond which a spring breaks permanently.", "it never breaks"},
+};
+
+inline constexpr Setting<RopeSettings> kRopeEndsTable[] = {
+    {"from", &RopeSettings::from, kCoordinate, "m", "Position of its first particle.", "", kMustBeGiven},
+    {"to", &RopeSettings::to, kCoordinate, "m", "Position of its last particle.", "", kMustBeGiven},
+};
+
+inline constexpr Setting<RopeSettings> kRopeLengthTable[] = {
+    {"length", &RopeSettings::length, kLength, "m",
+     "Rest length. A rope longer than the distance of its ends starts as a catenary. A shorter rope starts "
+     "straight and under tension.",
+     "the distance of its ends"},
+};
+
+/// Without the direction `sag`.
+inline constexpr Setting<RopeSettings> kRopeTable[] = {
+    {"mass", &RopeSettings::mass, kMass, "kg", "Total mass.", "", kMustBeGiven},
+    {"radius", &RopeSettings::radius, kLengthOrZero, "m", "Radius of its particles."},
+    {"stiffness", &RopeSettings::stiffness, kLengthOrZero, "N/m", "Stiffness of every segment."},
+    {"axial_stiffness", &RopeSettings::axial_stiffness, kLengthOrZero, "N",
+     "Stiffness E A of the material. The stiffness of a segment is this value divided by its rest length."},
+};
+
+/// Without the mass per area, which scenes can also give as a total.
+inline constexpr Setting<ClothSettings> kClothTable[] = {
+    {"radius", &ClothSettings::radius, kLengthOrZero, "m", "Radius of its particles."},
+    {"stiffness", &ClothSettings::stiffness, kLengthOrZero, "N/m", "Stiffness of the springs along the edges.", "",
+     kMustBeGiven},
+    {"bending_stiffness", &ClothSettings::bending_stiffness, kLengthOrZero, "N/m",
+     "Stiffness of the springs that resist bending. They join the corners across every edge between two triangles."},
 };
 
 }  // namespace ricochet

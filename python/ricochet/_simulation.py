@@ -192,6 +192,7 @@ def _bar(total: int) -> Any:
 
 def _text_of(scene: Any, meshes: List[Mesh]) -> Tuple[str, str]:
     if isinstance(scene, Mapping):
+        _require_known_materials(scene)
         return _json(_with_mesh_files(scene, meshes), _NAME, indent=1), _NAME
     if isinstance(scene, (str, os.PathLike)):
         file = os.fspath(scene)
@@ -244,13 +245,36 @@ def _with_mesh_files(value: Any, meshes: List[Mesh], depth: int = 0) -> Any:
     return value
 
 
+def _own_materials(mesh: Any) -> List[str]:
+    """Returns the names of materials that the user gave a mesh. Names read from a file are none."""
+    if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
+        return []
+    return [name for name in np.unique(mesh.materials).tolist() if name]
+
+
 def _with_own_materials(plain: Any, collider: Any) -> Any:
     """Adds the user's materials of a collider's mesh to its `group_materials`. Existing entries take precedence."""
-    mesh = collider.get("file")
-    if not isinstance(mesh, Mesh) or mesh.materials is None or "materials" in mesh.__dict__.get(_OF_FILE, ()):
+    own = _own_materials(collider.get("file"))
+    if not own or not isinstance(plain.get("group_materials", {}), Mapping):
         return plain
-    own = {name: name for name in np.unique(mesh.materials).tolist() if name}
-    return {**plain, "group_materials": {**own, **plain.get("group_materials", {})}}
+    return {**plain, "group_materials": {**{name: name for name in own}, **plain.get("group_materials", {})}}
+
+
+def _require_known_materials(scene: Any) -> None:
+    """Raises InputError if the user's materials of a mesh include a name that neither the scene nor the collider has."""
+    known, colliders = scene.get("materials", {}), scene.get("colliders", [])
+    if not isinstance(known, Mapping) or not isinstance(colliders, Sequence):
+        return
+    for number, collider in enumerate(colliders):
+        listed = collider.get("group_materials", {}) if isinstance(collider, Mapping) else {}
+        if not isinstance(collider, Mapping) or not isinstance(listed, Mapping):
+            continue
+        for name in _own_materials(collider.get("file")):
+            if name not in known and name not in listed:
+                raise InputError(
+                    f"scene: colliders[{number}].file: the mesh's `materials` have the name {name!r}, expected names of "
+                    f"the scene's materials ({', '.join(known) or 'none'}) or of the collider's `group_materials`"
+                )
 
 
 def _copy_of(mesh: Mesh) -> Mesh:

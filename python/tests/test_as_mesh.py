@@ -167,6 +167,13 @@ class Names(unittest.TestCase):
         mesh.materials = None
         self.assertEqual(self.rebounds(self.scene(mesh)), [False, False])
 
+    def test_an_unknown_material_of_a_mesh_is_refused_by_the_name_of_the_array(self):
+        mesh = self.plate()
+        mesh.materials = ["soft", "nomat", "hard", "hard"]
+        with self.assertRaisesRegex(ricochet.InputError, r"colliders\[0\]\.file: the mesh's `materials` have .*'nomat'"):
+            ricochet.Simulation(self.scene(mesh))
+        self.assertEqual(self.rebounds(self.scene(mesh, group_materials={"nomat": "hard"})), [True, True])
+
     def test_groups_get_their_group_materials(self):
         mesh = self.plate()
         mesh.groups = np.array([1, 1, 2, 2])

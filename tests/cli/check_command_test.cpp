@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "cli/run_program.h"
 #include "io/sample_scene.h"
@@ -79,6 +80,29 @@ TEST(CheckCommand, FindsErrorsThatOnlyTheSimulationDetects) {
     EXPECT_EQ(lines_of(result.errors), 1);
     EXPECT_EQ(result.errors.rfind("ricochet: " + scene + ": ", 0), 0U) << result.errors;
     EXPECT_NE(result.errors.find("rock"), std::string::npos) << result.errors;
+}
+
+TEST(CheckCommand, SaysWhatToDoWithAMeshInPlaceOfAScene) {
+    const SampleFolder folder;
+    const std::string mesh = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
+    const ProgramResult result = run_ricochet({"check", mesh});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.errors, "ricochet: " + mesh +
+                                 ": found a mesh file, expected a scene: `ricochet info` describes a mesh, and "
+                                 "`ricochet new` writes a scene with it\n");
+}
+
+TEST(CheckCommand, AsksForANameInPlaceOfAnEmptyOne) {
+    const SampleFolder folder;
+    const std::string scene = folder.write("s.json", test::kSampleScene).string();
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"check", ""},
+                                                  {"run", "", "--output", folder.path("out").string()},
+                                                  {"run", scene, "--output", ""}}) {
+        const ProgramResult result = run_ricochet(words);
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_EQ(lines_of(result.errors), 1) << result.errors;
+        EXPECT_NE(result.errors.find("empty name"), std::string::npos) << result.errors;
+    }
 }
 
 TEST(SchemaCommand, PrintsTheSchemaAndTheReference) {

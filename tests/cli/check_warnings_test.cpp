@@ -122,6 +122,8 @@ TEST_F(CheckWarnings, WarnsOfOverlappingShellsInOneMesh) {
     EXPECT_EQ(warnings(mesh("overlap.obj") + one).rfind("colliders[0] 'c': shells of its mesh overlap", 0), 0U);
     EXPECT_EQ(warnings(mesh("touch.obj") + one), "");
     EXPECT_EQ(warnings(mesh("nest.obj") + one), "");
+    write("flush.obj", testing::box_mesh({0, 0.25, 0.25}, {0.75, 0.75, 0.75}));
+    EXPECT_EQ(warnings(mesh("flush.obj") + one), "");
     const auto volume = [](const std::string& file) {
         return R"("emitters": [{"name": "e", "burst": 10, "type": "mesh", "volume": true, "file": ")" + file + "\"}]";
     };
@@ -398,6 +400,20 @@ TEST_F(CheckWarnings, QuestionsStartsFarFromTheCollidersAsAWrongUnit) {
         << wide;
     EXPECT_EQ(warnings(funnel + emitter(R"("type": "point", "center": [0, 0, 290])")), "");
     EXPECT_EQ(warnings(plane() + emitter(R"("type": "point", "center": [0, 0, 3800])")), "");
+}
+
+TEST_F(CheckWarnings, AcceptsFarStartsOfParticlesThatCanReachSomething) {
+    const std::string far_away = emitter(R"("type": "point", "center": [0, 0, 380])");
+    const std::string funnel = R"({"name": "f", "type": "mesh", "file": "funnel.obj")";
+    const auto colliders = [](const std::string& list) { return R"("colliders": [)" + list + "]"; };
+    EXPECT_NE(warnings(colliders(funnel + "}") + far_away), "");
+    EXPECT_EQ(warnings(colliders(funnel + R"(}, {"type": "plane", "normal": [0, 0, 1]})") + far_away), "");
+    EXPECT_EQ(
+        warnings(colliders(funnel + R"(, "motion": [{"time": 0}, {"time": 1, "position": [0, 0, 1]}]})") + far_away),
+        "");
+    EXPECT_EQ(warnings(colliders(funnel + "}") +
+                       emitter(R"("type": "point", "center": [0, 0, 380], "velocity": [0, 0, -4000])")),
+              "");
 }
 
 }  // namespace RICOCHET_FILE

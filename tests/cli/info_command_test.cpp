@@ -152,10 +152,12 @@ TEST(InfoCommand, WarnsThatAnEmitterOnAnInsideOutMeshLaunchesInward) {
     EXPECT_DOUBLE_EQ(info.at("volume"), 1.0 / 6.0);
     EXPECT_EQ(info.at("warnings").size(), 1U);
     const std::string text = test::run_ricochet({"info", path}).output;
-    EXPECT_NE(text.find("\nwarning: wound inside out, the faces' normals point inward: faces stop particles from both "
-                        "sides, so nothing leaks, but a mesh emitter on them (without volume) spawns particles on "
-                        "the inside and launches them inward\n"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find(
+            "\nwarning: wound inside out, the faces' normals point inward: faces stop particles from both "
+            "sides, so nothing leaks through them, but a mesh emitter on them (without volume) spawns particles on "
+            "the inside and launches them inward\n"),
+        std::string::npos)
         << text;
 }
 

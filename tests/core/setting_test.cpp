@@ -27,6 +27,11 @@ TEST(SettingTable, RefusalsTellTheViolatedEndOfTheRange) {
     EXPECT_EQ(refusal(kInfinity, kPositive, "s"), "found inf, expected a finite number above 0 (s)");
     EXPECT_EQ(refusal(kNan, kNotNegative, ""), "found nan, expected a finite number of at least 0");
     EXPECT_EQ(refusal(1e80, kLength, "m"), "found 1e+80, expected at most 1e+75 m");
+    EXPECT_EQ(refusal(-1e80, kCoordinate, "m"), "found -1e+80, expected at most 1e+75 m in magnitude");
+    EXPECT_EQ(refusal(kNan, kAnyNumber, "N"), "found nan, expected a finite number (N)");
+    EXPECT_EQ(refusal(-4.0, kTemperature, "K"), "found -4, expected a number from 0 to 1e+12 (K)");
+    EXPECT_EQ(refusal(kInfinity, kPositiveOrInfinite, ""), "");
+    EXPECT_EQ(refusal(0.0, kPositiveOrInfinite, ""), "found 0, expected a number above 0");
     EXPECT_EQ(refusal(2e6, positive_up_to(1e6), "1/s"), "found 2000000, expected at most 1e+06 1/s");
     EXPECT_EQ(refusal(std::uint64_t{1} << 32U, kCount, ""), "found 4294967296, expected a number below 2^32");
     EXPECT_EQ(refusal(Vec3{0, 1e80, 0}, kCoordinate, "m"),

@@ -252,10 +252,10 @@ TEST(SpringNetwork, RefusesImpossibleSpringsByTheirNumber) {
     const Spring good{0, 1, 1.0, 1.0, 0.0};
     EXPECT_EQ(refusal({good, {3, 3, 1.0, 1.0, 0.0}}), "spring 1: both ends are particle 3, expected two particles");
     EXPECT_EQ(refusal({{0, 1, 1.0, -2.0, 0.0}}),
-              "spring 0: the stiffness must be a finite number >= 0 (N/m), found -2");
-    EXPECT_NE(refusal({{0, 1, -1.0, 1.0, 0.0}}).find("rest length"), std::string::npos);
+              "spring 0: stiffness: found -2, expected a finite number of at least 0 (N/m)");
+    EXPECT_NE(refusal({{0, 1, -1.0, 1.0, 0.0}}).find("rest_length"), std::string::npos);
     EXPECT_NE(refusal({{0, 1, 1.0, 1.0, kInfinity}}).find("damping"), std::string::npos);
-    EXPECT_NE(refusal({{0, 1, 1.0, 1.0, 0.0, 0.0}}).find("breaking stretch"), std::string::npos);
+    EXPECT_NE(refusal({{0, 1, 1.0, 1.0, 0.0, 0.0}}).find("breaking_stretch"), std::string::npos);
     EXPECT_NE(refusal({{0, 1, 0.0, 1.0, 0.0, 0.5}}).find("without a rest length"), std::string::npos);
     EXPECT_EQ(refusal({good, {0, 1, 0.0, 1.0, 0.0}}), "");
 }

@@ -58,10 +58,10 @@ std::string random_input(std::size_t scene, std::uint64_t number) {
     return bytes;
 }
 
-/// Returns the first case to run. The environment can set it to reproduce a failed case.
-int first_case() {
-    const char* const first = std::getenv("RICOCHET_FIRST_CASE");  // NOLINT(concurrency-mt-unsafe): no code sets it
-    return first == nullptr ? 0 : std::atoi(first);
+/// Returns the number in an environment variable, or `otherwise` if it is not set.
+int number_from_environment(const char* name, int otherwise) {
+    const char* const number = std::getenv(name);  // NOLINT(concurrency-mt-unsafe): no code sets it
+    return number == nullptr ? otherwise : std::atoi(number);
 }
 
 class CheckpointEdits : public ::testing::TestWithParam<CheckpointScene> {};
@@ -72,8 +72,9 @@ TEST_P(CheckpointEdits, AreRefusedOrRunOn) {
     }
     std::size_t scene = 0;
     while (kCheckpointScenes[scene].name != GetParam().name) ++scene;
-    const int cases = test::scaled(200 * test::case_factor(500));
-    const int first = first_case();
+    // The environment can set the number of cases, and the first one to reproduce a failed case.
+    const int cases = number_from_environment("RICOCHET_CASES", test::scaled(200 * test::case_factor(500)));
+    const int first = number_from_environment("RICOCHET_FIRST_CASE", 0);
     int refused = 0;
     for (int k = first; k < cases; ++k) {
         static_cast<void>(std::snprintf(current_case.data(), current_case.size(), "scene %zu (%s), seed %d, case %d\n",

@@ -96,7 +96,7 @@ TEST(MeshTopology, CountsAnEdgeOfThreeFaces) {
     const TopologyReport report = report_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
     EXPECT_EQ(report.nonmanifold_edges, 1U);
     EXPECT_EQ(report.nonmanifold_vertices, 0U);
-    EXPECT_EQ(report.inconsistent_edges, 1U);
+    EXPECT_EQ(report.inconsistent_edges, 0U);
     EXPECT_EQ(report.boundary_edges, 6U);
     EXPECT_EQ(report.boundary_loops, 3U);
     EXPECT_EQ(report.shells, 1U);
@@ -115,6 +115,18 @@ TEST(MeshTopology, KeepsTwoCubesOnACommonEdgeClosed) {
     EXPECT_EQ(report.nonmanifold_edges, 1U);
     EXPECT_EQ(report.boundary_loops, 0U);
     EXPECT_EQ(report.shells, 1U);
+    EXPECT_EQ(report.inconsistent_edges, 0U);
+}
+
+TEST(MeshTopology, CountsTheEdgesOfATurnedFaceAlsoWhereTwoCubesTouch) {
+    auto both = kCube;
+    const std::uint32_t renamed[] = {1, 0, 8, 9, 10, 11, 12, 13};
+    for (const auto& face : kCube) {
+        both.emplace_back();
+        for (const std::uint32_t v : face) both.back().push_back(renamed[v]);
+    }
+    std::reverse(both[0].begin(), both[0].end());
+    EXPECT_EQ(report_of(14, both).inconsistent_edges, 4U);
 }
 
 TEST(MeshTopology, CountsNeighboursOfOppositeWinding) {
@@ -202,8 +214,8 @@ Reference reference_counts(const std::vector<Triangle>& triangles, std::uint32_t
     for (const auto& [edge, uses] : directed) {
         const auto back = directed.find({edge.second, edge.first});
         const std::size_t other = back == directed.end() ? 0 : back->second;
-        counts.inconsistent += uses > 1 ? 1 : 0;
         if (other > 0 && edge.first > edge.second) continue;
+        counts.inconsistent += std::max(uses, other) - std::min(uses, other) > 1 ? 1 : 0;
         counts.boundary += uses + other == 1 ? 1 : 0;
         counts.nonmanifold += uses + other > 2 ? 1 : 0;
     }

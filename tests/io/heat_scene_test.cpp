@@ -67,8 +67,9 @@ TEST(HeatScene, InvalidHeatIsRefusedInOneLine) {
                      "what heat changes, in K"}));
     EXPECT_EQ(errors_of(scene_with(radiates, "", R"("temperature": {"components": 3})")),
               (Lines{"heat: attribute \"temperature\": found a vector, expected one component (K)"}));
-    EXPECT_EQ(errors_of(scene_with(radiates, "", R"("temperature": {"default": -5})")),
-              (Lines{"heat: default of the attribute \"temperature\": found -5, expected 0 to 1e+12 (K)"}));
+    EXPECT_EQ(
+        errors_of(scene_with(radiates, "", R"("temperature": {"default": -5})")),
+        (Lines{"heat: default of the attribute \"temperature\": found -5, expected a number from 0 to 1e+12 (K)"}));
     EXPECT_EQ(errors_of(scene_with(R"("specific_heat": 460)")),
               (Lines{"heat: convection, emissivity, impact_fraction and friction_fraction: found none, expected at "
                      "least one of them: nothing would change a temperature"}));

@@ -325,6 +325,7 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:78: camera.up: the camera looks along its up direction, expected another one"},
     // keys
     {R"("simulation": {"timestep": 1})", "s.json:1:32: simulation.timestep: unknown key; did you mean \"time_step\"?"},
+    {R"("duration": 1)", "s.json:1:17: duration: unknown key; did you mean \"simulation.duration\"?"},
     {R"("gravity": [0, 0, -9.81])",
      "s.json:1:17: gravity: unknown key; known keys: \"ricochet\", \"$schema\", \"simulation\", \"forces\", "
      "\"particle_forces\", \"flows\", \"materials\", \"colliders\", \"frames\", \"emitters\", \"particles\", "

@@ -164,6 +164,10 @@ TEST(ShellsOverlap, AreFoundOnlyIfAPointIsWithinTwoOfThem) {
         box({1, 1, 1}, {2, 2, 2}),                      // a common corner
         box({0.25, 0.25, 0.25}, {0.75, 0.75, 0.75}),    // inside the box
         box({-1, -1, -1}, {2, 2, 2}),                   // around the box
+        box({0, 0.25, 0.25}, {0.5, 0.75, 0.75}),        // inside the box, against a face
+        box({0, 0, 0}, {0.5, 0.75, 0.75}),              // inside the box, in a corner
+        box({0, 0, 0.25}, {1, 1, 0.75}),                // a slice of the box
+        box({-1, 0, 0}, {2, 2, 1}),                     // around the box, with common faces
         box({0.25, 0.25, 1}, {0.75, 0.75, 1.5}),        // standing on the box
         testing::sphere_mesh({0.5, 0.5, 1.5}, 0.5, 1),  // a vertex on a face
         testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 2),

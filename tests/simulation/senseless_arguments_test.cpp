@@ -86,7 +86,7 @@ TEST(SenselessArguments, OptionsAreRefused) {
     const std::vector<double> no_time{0.0, -1.0, kNan, kInfinity};
     expect_values_refused("time_step", no_time, [](auto& s, double x) { s.options.time_step = x; });
     expect_values_refused("frame_rate", no_time, [](auto& s, double x) { s.options.frame_rate = x; });
-    expect_values_refused("duration", {-1.0, kNan, kInfinity, 1e300},
+    expect_values_refused("duration", {-1.0, kNan, kInfinity, 1e300, 1e13},
                           [](auto& s, double x) { s.options.duration = x; });
     expect_values_refused("resting_speed", {-1.0, kNan, kInfinity},
                           [](auto& s, double x) { s.options.resting_speed = x; });

@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/simulation.h"
 #include "support/setting_values.h"
 
@@ -30,6 +32,22 @@ SimulationSetup one_of_each() {
     return setup;
 }
 
+/// Returns a setup with a body on a joint, which spheres that meet cannot accompany.
+SimulationSetup one_body() {
+    SimulationSetup setup;
+    FrameDescription frame;
+    frame.name = "door";
+    frame.is_driven = true;
+    setup.frames = std::make_shared<const FrameTree>(std::vector{frame});
+    setup.materials.emplace_back();
+    setup.colliders.push_back({"door", BallShape{1.0, {}}, 0, "door"});
+    BodyDescription& body = setup.bodies.emplace_back();
+    body.frame = "door";
+    body.inertia = {1.0, 1.0, 1.0, 0.0, 0.0, 0.0};
+    body.joint = JointKind::hinge;
+    return setup;
+}
+
 /// Returns the hash of the settings in a saved state, which follows the format and the hash of the colliders.
 std::uint64_t fingerprint_of(SimulationSetup setup) {
     std::vector<std::byte> state;
@@ -41,11 +59,12 @@ std::uint64_t fingerprint_of(SimulationSetup setup) {
     return hash;
 }
 
-/// Expects another fingerprint for another value of every setting of a table. `part` returns the struct in a setup.
-void expect_fingerprint_of_all(const auto& part, const auto& table) {
-    const std::uint64_t before = fingerprint_of(one_of_each());
+/// Expects another fingerprint for another value of every setting of a table. `part` returns the struct in a setup,
+/// which `make` returns.
+void expect_fingerprint_of_all(const auto& part, const auto& table, SimulationSetup (*make)() = &one_of_each) {
+    const std::uint64_t before = fingerprint_of(make());
     for (const auto& line : table) {
-        SimulationSetup setup = one_of_each();
+        SimulationSetup setup = make();
         std::visit([&](auto member) { testing::set_inside(part(setup).*member); }, line.member);
         EXPECT_NE(fingerprint_of(std::move(setup)), before) << line.name;
     }
@@ -70,6 +89,7 @@ TEST(SettingsTable, EverySettingIsInTheFingerprintOfAState) {
         [](S & s) -> auto& { return s.options.project; }, kProjectTable);
     expect_fingerprint_of_all(
         [](S & s) -> auto& { return s.options.penalty; }, kPenaltyTable);
+    expect_fingerprint_of_all([](S& s) -> JointSettings& { return s.bodies[0].settings; }, kJointTable, &one_body);
 }
 
 }  // namespace RICOCHET_FILE

@@ -2,6 +2,7 @@
 /// Values for the lines of tables of settings.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,7 @@ namespace ricochet::testing {
 
 /// Sets a value outside the range. Returns false if the type has no such value.
 inline bool set_outside(double& value, const Range& range) {
+    if (!std::isfinite(range.lower)) return false;
     value = range.lower_open ? range.lower : range.lower - 1.0;
     return true;
 }

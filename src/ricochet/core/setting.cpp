@@ -7,18 +7,26 @@
 namespace ricochet {
 namespace {
 
-/// A bound of 1e75 tells a reader nothing unless it is exceeded.
-std::string refusal_of(double value, const Range& range, std::string_view unit) {
-    if (std::isfinite(value) && range.contains(value)) return "";
-    if (range.lower_open || range.upper >= kLargestCoordinate) {
-        if (std::isfinite(value) && value > range.upper) {
-            return fmt::format("found {}, expected at most {:g} {}", value, range.upper, unit);
-        }
-        return fmt::format("found {}, expected a finite number {} {:g}{}", value,
-                           range.lower_open ? "above" : "of at least", range.lower,
-                           unit.empty() ? "" : fmt::format(" ({})", unit));
+std::string in_unit(std::string_view unit) { return unit.empty() ? std::string() : fmt::format(" ({})", unit); }
+
+/// Returns the allowed numbers in words. A bound of 1e75 tells a reader nothing unless it is exceeded.
+std::string expectation(double value, const Range& range, std::string_view unit) {
+    const bool is_bounded = range.upper < kLargestCoordinate;
+    if (range.lower == -range.upper && !is_bounded) {
+        return std::isfinite(value) ? fmt::format("at most {:g} {} in magnitude", range.upper, unit)
+                                    : fmt::format("a finite number{}", in_unit(unit));
     }
-    return fmt::format("found {}, expected a number from {} to {}", value, range.lower, range.upper);
+    if (is_bounded && !range.lower_open) {
+        return fmt::format("a number from {:g} to {:g}{}", range.lower, range.upper, in_unit(unit));
+    }
+    if (std::isfinite(value) && value > range.upper) return fmt::format("at most {:g} {}", range.upper, unit);
+    return fmt::format("a {}number {} {:g}{}", range.takes_infinity ? "" : "finite ",
+                       range.lower_open ? "above" : "of at least", range.lower, in_unit(unit));
+}
+
+std::string refusal_of(double value, const Range& range, std::string_view unit) {
+    if (range.contains(value) && (std::isfinite(value) || range.takes_infinity)) return "";
+    return fmt::format("found {}, expected {}", value, expectation(value, range, unit));
 }
 
 std::string refusal_of(const std::optional<double>& value, const Range& range, std::string_view unit) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <variant>
 
+#include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/core/vec3.h"
 
@@ -19,7 +20,8 @@ namespace ricochet {
 struct Range {
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
-    bool lower_open = false;  ///< lower itself is not allowed
+    bool lower_open = false;      ///< lower itself is not allowed
+    bool takes_infinity = false;  ///< infinity is allowed, which no scene can express
 
     [[nodiscard]] constexpr bool contains(double x) const {
         return (lower_open ? x > lower : x >= lower) && x <= upper;
@@ -31,6 +33,7 @@ struct Range {
 }
 inline constexpr Range kAnyNumber{};
 inline constexpr Range kPositive{.lower = 0.0, .lower_open = true};
+inline constexpr Range kPositiveOrInfinite{.lower = 0.0, .lower_open = true, .takes_infinity = true};
 inline constexpr Range kMass{.lower = kSmallestMass};
 inline constexpr Range kNotNegative{.lower = 0.0};
 inline constexpr Range kFraction = between(0.0, 1.0);
@@ -41,6 +44,11 @@ inline constexpr Range kLengthOrZero = between(0.0, kLargestCoordinate);
 inline constexpr Range kCount = between(0.0, 4294967295.0);
 inline constexpr Range kCountFromOne = between(1.0, 4294967295.0);
 inline constexpr Range kSeed = between(0.0, 18446744073709551615.0);
+/// Kelvin. Hotter than the inside of any star, and the fourth power is far from overflow.
+inline constexpr Range kTemperature = between(0.0, 1e12);
+
+/// Value of Setting::is_required.
+inline constexpr bool kMustBeGiven = true;
 
 /// A line of the table of a struct.
 template <class Struct>
@@ -53,6 +61,8 @@ struct Setting {
     std::string_view unit;
     std::string_view meaning;
     std::string_view without = {};  ///< meaning of an absent value
+    bool is_required = false;       ///< a scene must contain the setting
+    std::string_view needs = {};    ///< setting that must be given together with this one
 };
 
 /// Value of a setting.
@@ -75,6 +85,13 @@ template <class Struct>
         if (!text.empty()) return std::string(owner) + std::string(line.name) + ": " + text;
     }
     return "";
+}
+
+/// Throws InputError if there is such a member. The owner is written before the name.
+template <class Struct>
+void require_settings(const Struct& object, const auto& table, std::string_view owner) {
+    const std::string text = first_refusal(object, table, owner);
+    if (!text.empty()) throw InputError(text);
 }
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 
 #include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/settings_table.h"
 
 namespace ricochet {
 namespace {
@@ -96,21 +97,8 @@ void check(const BodyDescription& body) {
     const auto of_body = [&](const char* what) { return fmt::format("body '{}': {}", body.frame, what); };
     detail::require_positive(body.mass, of_body("the mass"), "kg");
     detail::require_finite(body.center, of_body("the centre of mass"), "m");
-    detail::require_finite(body.velocity, of_body("the velocity"), "m/s");
-    detail::require_finite(body.angular_velocity, of_body("the angular velocity"), "rad/s");
-    detail::require_finite(body.rate, of_body("the rate"), "1/s");
-    const JointSettings& joint = body.settings;
-    for (const auto& [value, what] : {std::pair{joint.spring, "the spring"},
-                                      {joint.damping, "the damping"},
-                                      {joint.friction, "the friction"},
-                                      {joint.motor_most, "the motor"}}) {
-        detail::require_not_negative(value, of_body(what), "");
-    }
-    for (const auto& [value, what] : {std::pair{joint.spring_rest, "the spring's rest"},
-                                      {joint.drive, "the drive"},
-                                      {joint.motor_rate, "the motor's rate"}}) {
-        detail::require_finite(value, of_body(what), "");
-    }
+    require_settings(body, kBodyMotionTable, of_body(""));
+    require_settings(body.settings, kJointTable, of_body(""));
     if (!is_inertia(body.inertia)) {
         throw InputError(
             of_body("the inertia is impossible for a body with a volume (moments above 0, none above the sum of "

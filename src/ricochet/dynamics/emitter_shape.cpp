@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
+#include "ricochet/core/setting.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
@@ -26,15 +28,18 @@ bool is_length(double x) { return x > 0.0 && x <= kLargestCoordinate; }
 /// Returns true if the vector can be normalized.
 bool is_direction(const Vec3& v) { return length(v) > 0.0 && std::isfinite(length(v)); }
 
+void require_position(const Vec3& p, const std::string& name) {
+    const std::string refused = refusal(p, kCoordinate, "m");
+    if (!refused.empty()) throw InputError(name + refused);
+}
+
 void require_mesh(const TriangleMesh* mesh) {
-    require(mesh != nullptr, "the mesh is missing");
+    require(mesh != nullptr, "found a null pointer, expected a mesh");
     require_corners(*mesh);
 }
 
 struct CheckShape {
-    static void check_center(const Vec3& center) {
-        require(is_position(center), "its centre must be finite and at most 1e75 m from the origin");
-    }
+    static void check_center(const Vec3& center) { require_position(center, "center: "); }
     void operator()(const PointShape& point) const { check_center(point.center); }
     void operator()(const DiskShape& disk) const {
         check_center(disk.center);
@@ -53,7 +58,7 @@ struct CheckShape {
     }
     void operator()(const MeshSurfaceShape& surface) const { require_mesh(surface.mesh.get()); }
     void operator()(const ConeShape& cone) const {
-        require(is_position(cone.apex), "its apex must be finite and at most 1e75 m from the origin");
+        require_position(cone.apex, "apex: ");
         require(is_direction(cone.axis), "the cone's axis must be of finite length above 0");
         require(cone.angle_degrees >= 0.0 && cone.angle_degrees < 90.0,
                 "the cone's angle must be 0 to below 90 degrees");

@@ -9,6 +9,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/portable_math.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
 
 namespace ricochet {
@@ -75,37 +76,23 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length_of_ro
 
 namespace {
 
-void check_springs(double damping, double breaking_stretch, std::string_view what) {
-    detail::require_not_negative(damping, fmt::format("{}: the damping", what), "N s/m");
-    if (!(breaking_stretch > 0.0)) {
-        throw InputError(
-            fmt::format("{}: the breaking stretch must be a number > 0, found {}", what, breaking_stretch));
-    }
-}
-
 void check(const RopeSettings& rope) {
-    detail::require_finite(rope.from, "rope: the first end", "m");
-    detail::require_finite(rope.to, "rope: the last end", "m");
+    require_settings(rope, kRopeEndsTable, "rope: ");
+    require_settings(rope, kRopeLengthTable, "rope: ");
+    require_settings(rope, kRopeTable, "rope: ");
+    require_settings(rope, kDampingTable<RopeSettings>, "rope: ");
     if (rope.nodes < 2) throw InputError(fmt::format("rope: it needs at least 2 nodes, found {}", rope.nodes));
-    if (rope.length) detail::require_positive(*rope.length, "rope: the length", "m");
-    detail::require_positive(rope.mass, "rope: the mass", "kg");
-    detail::require_not_negative(rope.radius, "rope: the radius", "m");
     if (rope.stiffness.has_value() == rope.axial_stiffness.has_value()) {
         throw InputError("rope: expected either a stiffness or an axial stiffness");
     }
-    if (rope.stiffness) detail::require_not_negative(*rope.stiffness, "rope: the stiffness", "N/m");
-    if (rope.axial_stiffness) detail::require_not_negative(*rope.axial_stiffness, "rope: the axial stiffness", "N");
-    check_springs(rope.damping, rope.breaking_stretch, "rope");
     if (rope.from == rope.to) throw InputError("rope: both ends are at the same position, expected two positions");
 }
 
 void check(const TriangleMesh& mesh, const ClothSettings& cloth) {
     if (mesh.triangles.empty()) throw InputError("cloth: the mesh has no triangle, so no edge to make springs of");
     detail::require_positive(cloth.mass_per_area, "cloth: the mass per area", "kg/m^2");
-    detail::require_not_negative(cloth.radius, "cloth: the radius", "m");
-    detail::require_not_negative(cloth.stiffness, "cloth: the stiffness", "N/m");
-    detail::require_not_negative(cloth.bending_stiffness, "cloth: the bending stiffness", "N/m");
-    check_springs(cloth.damping, cloth.breaking_stretch, "cloth");
+    require_settings(cloth, kClothTable, "cloth: ");
+    require_settings(cloth, kDampingTable<ClothSettings>, "cloth: ");
     for (const std::uint32_t vertex : cloth.pinned) {
         if (vertex < mesh.vertices.size()) continue;
         throw InputError(fmt::format("cloth: there is no vertex {} to pin, the mesh has {} (numbered from 0)", vertex,

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "ricochet/core/checks.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/dynamics/stability.h"
 
 namespace ricochet {
@@ -26,13 +26,8 @@ void check(const Spring& spring, std::size_t number) {
     if (spring.first == spring.second) {
         throw InputError(fmt::format("{}both ends are particle {}, expected two particles", name, spring.first));
     }
-    detail::require_not_negative(spring.rest_length, name + "the rest length", "m");
-    detail::require_not_negative(spring.stiffness, name + "the stiffness", "N/m");
-    detail::require_not_negative(spring.damping, name + "the damping", "N s/m");
-    if (!(spring.breaking_stretch > 0.0)) {
-        throw InputError(
-            fmt::format("{}the breaking stretch must be a number > 0, found {}", name, spring.breaking_stretch));
-    }
+    require_settings(spring, kSpringTable, name);
+    require_settings(spring, kDampingTable<Spring>, name);
     if (spring.rest_length == 0.0 && spring.breaking_stretch < std::numeric_limits<double>::infinity()) {
         throw InputError(name + "a spring without a rest length has no breaking stretch; leave it out");
     }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ricochet/core/printable.h"
+#include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/io/scene/context.h"
 #include "ricochet/io/scene/diagnostics.h"
 #include "ricochet/io/scene/document.h"
@@ -47,6 +48,11 @@ SceneDescription parse_scene(std::string_view text, const std::filesystem::path&
                              const std::vector<std::string>& overrides) {
     detail::Diagnostics diagnostics(file.string(), overrides);
     std::optional<detail::JsonNode> root = detail::parse_json(text, diagnostics);
+    if (!root && mesh_format_of(file)) {
+        throw SceneError({printable(file.string(), 1000) +
+                          ": found a mesh file, expected a scene: `ricochet info` describes a mesh, and `ricochet new` "
+                          "writes a scene with it"});
+    }
     if (!root) throw SceneError(diagnostics.errors());
     for (std::size_t i = 0; i < overrides.size(); ++i) detail::apply_override(*root, i, diagnostics);
     StateHash fingerprint;

@@ -16,6 +16,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/response/pair_materials.h"
 #include "ricochet/response/settings_table.h"
 #include "ricochet/simulation/impl.h"
@@ -130,9 +131,9 @@ std::uint64_t Simulation::Impl::settings_hash() const {
     }
     for (const DrivenBody& body : driven.bodies()) {
         const BodyDescription& b = body.description();
-        add(b.mass, b.inertia.xx, b.inertia.yy, b.inertia.zz, b.inertia.xy, b.inertia.xz, b.inertia.yz, b.joint,
-            b.settings.spring, b.settings.spring_rest, b.settings.damping, b.settings.drive, b.settings.friction,
-            b.settings.motor_rate, b.settings.motor_most, b.feels_forces);
+        add(b.mass, b.inertia.xx, b.inertia.yy, b.inertia.zz, b.inertia.xy, b.inertia.xz, b.inertia.yz, b.joint);
+        add_settings(hash, b.settings, kJointTable);
+        add(b.feels_forces);
         hash.add(b.center);
         hash.add(b.axis);
     }

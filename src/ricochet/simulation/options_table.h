@@ -7,6 +7,9 @@
 
 namespace ricochet {
 
+/// Largest number of steps of a run. Local: a limit of input values.
+inline constexpr double kMostSteps = 1e12;
+
 inline constexpr Setting<SimulationOptions> kTimeTable[] = {
     {"time_step", &SimulationOptions::time_step, kPositive, "s", "Length of a step."},
     {"duration", &SimulationOptions::duration, kNotNegative, "s",

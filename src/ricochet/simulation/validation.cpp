@@ -19,8 +19,6 @@
 namespace ricochet {
 namespace {
 
-/// Local: a limit of input values.
-constexpr double kMostSteps = 1e15;
 /// Particles are numbered by 32 bits; what is born is retired again, so more may be born than live at a time. Local: a
 /// limit of input values.
 constexpr double kMostBirths = 1e12;
@@ -105,18 +103,6 @@ void validate(const ColliderShape& shape, const Subject& subject, std::size_t ma
     }
 }
 
-/// Positions of the shape and the mesh that it samples; its sizes are checked by its sampler.
-void validate(const EmitterShape& shape, const Subject& subject) {
-    const auto check_center = [&](const Vec3& center) { subject.require(center, kCoordinate, "center", "m"); };
-    if (const auto* point = std::get_if<PointShape>(&shape)) check_center(point->center);
-    if (const auto* disk = std::get_if<DiskShape>(&shape)) check_center(disk->center);
-    if (const auto* box = std::get_if<BoxShape>(&shape)) check_center(box->center);
-    if (const auto* sphere = std::get_if<SphereShape>(&shape)) check_center(sphere->center);
-    if (const auto* cone = std::get_if<ConeShape>(&shape)) subject.require(cone->apex, kCoordinate, "apex", "m");
-    if (const auto* surface = std::get_if<MeshSurfaceShape>(&shape)) validate(surface->mesh.get(), subject);
-    if (const auto* volume = std::get_if<MeshVolumeShape>(&shape)) validate(volume->mesh.get(), subject);
-}
-
 /// What it gives birth to by itself, at most; rates per screen area are left out.
 double most_births(const EmitterDescription& emitter, const SimulationOptions& options) {
     if (emitter.parent) return 0.0;
@@ -131,7 +117,6 @@ void validate_emitters(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.emitters.size(); ++k) {
         const EmitterDescription& emitter = setup.emitters[k];
         const Subject subject("emitter", k, emitter.name);
-        validate(emitter.shape, subject);
         if (emitter.burst > std::numeric_limits<std::uint32_t>::max()) {
             subject.refuse("burst", emitter.burst, "a number below 2^32");
         }

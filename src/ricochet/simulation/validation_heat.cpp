@@ -4,36 +4,21 @@
 #include <algorithm>
 #include <string_view>
 
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {
 namespace {
 
-/// Hotter than the inside of any star; fourth powers of it are far from the end of the arithmetic. Local: a limit of
-/// input values.
-constexpr double kHottest = 1e12;  // K
-
 void require_temperature(const Subject& subject, double value, std::string_view what) {
-    subject.require_in(value, 0.0, kHottest, what, fmt::format("0 to {:g} (K)", kHottest));
+    subject.require(value, kTemperature, what, "K");
 }
 
 void validate_numbers(const HeatSettings& heat, const Subject& subject) {
-    // With less, what is fast would be hotter after an impact than numbers go.
-    subject.require_in(heat.specific_heat, 1e-3, 1e12, "specific_heat", "0.001 to 1e12 (J/(kg K))");
-    require_temperature(subject, heat.ambient_temperature, "ambient_temperature");
-    subject.require(heat.emissivity, kFraction, "emissivity", "");
-    subject.require(heat.impact_fraction, kFraction, "impact_fraction", "");
-    subject.require(heat.friction_fraction, kFraction, "friction_fraction", "");
-    if (heat.convection) {
-        const Convection& convection = *heat.convection;
-        const Subject medium("heat.convection");
-        medium.require(convection.coefficient, kNotNegative, "coefficient", "W/(m^2 K)");
-        medium.require(convection.conductivity, kPositive, "conductivity", "W/(m K)");
-        medium.require(convection.density, kNotNegative, "fluid_density", "kg/m^3");
-        medium.require(convection.viscosity, kPositive, "viscosity", "Pa s");
-        medium.require(convection.prandtl, kPositive, "prandtl", "");
-    }
+    subject.require_settings(heat, kHeatTable);
+    subject.require_settings(heat, kHeatFractionTable);
+    if (heat.convection) Subject("heat.convection").require_settings(*heat.convection, kConvectionTable);
     if (heat.exchanges() || heat.is_heated_by_surfaces()) return;
     subject.refuse("convection, emissivity, impact_fraction and friction_fraction", "none",
                    "at least one of them: nothing would change a temperature");

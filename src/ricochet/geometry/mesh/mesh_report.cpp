@@ -51,10 +51,9 @@ void warn_of_gaps(const MeshReport& report, std::vector<std::string>& warnings) 
 
 void warn_of_nonmanifold_parts(const TopologyReport& topology, std::vector<std::string>& warnings) {
     if (topology.nonmanifold_edges > 0) {
-        warnings.push_back(
-            fmt::format("{} three faces or more: every face stops particles, so nothing leaks, but inside "
-                        "and outside may not be told apart there",
-                        counted(topology.nonmanifold_edges, "edge belongs to", "edges belong to")));
+        warnings.push_back(fmt::format("{} three faces or more: every face stops particles, so nothing leaks there{}",
+                                       counted(topology.nonmanifold_edges, "edge belongs to", "edges belong to"),
+                                       topology.closed ? "" : ", but inside and outside may not be told apart"));
     }
     if (topology.nonmanifold_vertices > 0) {
         warnings.push_back(
@@ -66,56 +65,58 @@ void warn_of_nonmanifold_parts(const TopologyReport& topology, std::vector<std::
 void warn_of_orientation(const MeshReport& report, std::vector<std::string>& warnings) {
     if (!report.topology.consistently_oriented) {
         warnings.push_back(
-            fmt::format("inconsistent winding along {}: faces stop particles from both sides, so nothing leaks, but "
-                        "normals and the "
-                        "volume cannot be trusted",
+            fmt::format("inconsistent winding along {}: faces stop particles from both sides, so nothing leaks "
+                        "there, but normals and the volume cannot be trusted",
                         counted(report.topology.inconsistent_edges, "edge", "edges")));
     }
     if (report.wound_inward) {
         warnings.push_back(
             "wound inside out, the faces' normals point inward: faces stop particles from both sides, so nothing "
-            "leaks, "
-            "but a mesh emitter on them (without volume) spawns particles on the inside and launches them inward");
+            "leaks through them, but a mesh emitter on them (without volume) spawns particles on the inside and "
+            "launches them inward");
     }
 }
 
 void warn_of_odd_faces(const MeshReport& report, std::vector<std::string>& warnings) {
     if (report.degenerate_triangles > 0) {
-        warnings.push_back(fmt::format("{} no area and cannot be hit: nothing leaks where neighbours share the edges",
-                                       counted(report.degenerate_triangles, "triangle has", "triangles have")));
+        warnings.push_back(
+            fmt::format("{} no area and cannot be hit: nothing leaks there if neighbours share the "
+                        "edges",
+                        counted(report.degenerate_triangles, "triangle has", "triangles have")));
     }
     if (report.faces_with_repeated_corners > 0) {
-        warnings.push_back(fmt::format("{} a vertex more than once: repeated neighbours count once, nothing leaks",
-                                       counted(report.faces_with_repeated_corners, "face names", "faces name")));
+        warnings.push_back(
+            fmt::format("{} a vertex more than once: repeated neighbours count once, nothing leaks there",
+                        counted(report.faces_with_repeated_corners, "face names", "faces name")));
     }
     if (report.crossing_faces > 0) {
-        warnings.push_back(fmt::format(
-            "{} an outline that crosses itself: its triangles cover all of it, so nothing leaks, but they overlap",
-            counted(report.crossing_faces, "face has", "faces have")));
+        warnings.push_back(
+            fmt::format("{} an outline that crosses itself: its triangles cover all of it, so nothing leaks there, but "
+                        "they overlap",
+                        counted(report.crossing_faces, "face has", "faces have")));
     }
     if (report.duplicate_faces > 0) {
         warnings.push_back(
-            fmt::format("{} an earlier face: nothing leaks, and repeated faces count once where an inside is told from "
-                        "an outside, unless both sides of a sheet or a wall are listed",
+            fmt::format("{} an earlier face: nothing leaks there, and repeated faces count once where an inside is "
+                        "told from an outside, unless both sides of a sheet or a wall are listed",
                         counted(report.duplicate_faces, "face repeats", "faces repeat")));
     }
 }
 
 void warn_of_self_intersections(const MeshReport& report, std::vector<std::string>& warnings) {
     if (report.self_intersections == 0) return;
-    warnings.push_back(fmt::format(
-        "{}{} or cross each other: every triangle stops particles, so nothing leaks, but where parts overlap "
-        "the volume counts "
-        "twice",
-        report.self_intersections_are_all ? "" : "at least ",
-        counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
+    warnings.push_back(
+        fmt::format("{}{} or cross each other: every triangle stops particles, so nothing leaks there, but where parts "
+                    "overlap the volume counts twice",
+                    report.self_intersections_are_all ? "" : "at least ",
+                    counted(report.self_intersections, "pair of triangles touch", "pairs of triangles touch")));
 }
 
 void warn_of_nested_shells(const MeshReport& report, std::vector<std::string>& warnings) {
     if (report.shells_nested_alike == 0) return;
     warnings.push_back(fmt::format(
-        "{} within another that is wound the same way: nothing leaks, and parity decides the inside, so the inner "
-        "shell is a hole; the volume counts it twice: reverse the inner faces to get the volume of the wall",
+        "{} within another that is wound the same way: parity decides the inside, so inside and outside alternate from "
+        "shell to shell, but the volume is the sum of all: reverse every second shell to get the volume of the walls",
         counted(report.shells_nested_alike, "shell lies", "shells lie")));
 }
 
@@ -128,7 +129,7 @@ std::vector<std::string> warnings_for(const MeshReport& report) {
     warn_of_self_intersections(report, warnings);
     warn_of_nested_shells(report, warnings);
     if (report.topology.unused_vertices > 0) {
-        warnings.push_back(fmt::format("{} to no face: ignored, nothing leaks",
+        warnings.push_back(fmt::format("{} to no face: ignored",
                                        counted(report.topology.unused_vertices, "vertex belongs", "vertices belong")));
     }
     return warnings;

@@ -5,6 +5,7 @@
 #include <OpenMesh/Core/Mesh/PolyConnectivity.hh>
 #include <algorithm>
 #include <bit>
+#include <cstdlib>
 #include <limits>
 #include <span>
 #include <string>
@@ -120,8 +121,8 @@ private:
         const auto along = std::count_if(uses.begin(), uses.end(), [&](std::uint32_t c) {
             return faces_.corners[c] < faces_.corners[faces_.next_corner[c]];
         });
-        if (along > 1) ++report_.inconsistent_edges;
-        if (static_cast<std::ptrdiff_t>(uses.size()) - along > 1) ++report_.inconsistent_edges;
+        const auto against = static_cast<std::ptrdiff_t>(uses.size()) - along;
+        if (std::abs(along - against) > 1) ++report_.inconsistent_edges;
         for (const std::uint32_t use : uses.subspan(1)) {
             shells_.join(face_of_corner_[uses[0]], face_of_corner_[use]);
             join_at_ends(faces_, uses[0], use, fans_);

@@ -78,9 +78,11 @@ struct TopologyReport {
     std::size_t boundary_loops = 0;        ///< closed chains of boundary half-edges, see MeshTopology::boundary_loops
     std::size_t nonmanifold_edges = 0;     ///< edges of three faces or more
     std::size_t nonmanifold_vertices = 0;  ///< vertices whose faces form several groups without a common edge
-    std::size_t inconsistent_edges = 0;    ///< edge directions shared by more than one face
-    bool consistently_oriented = false;    ///< no inconsistent edge
-    std::size_t unused_vertices = 0;       ///< vertices that no face names
+    /// Edges whose numbers of faces in the two directions differ by more than one. An edge of two solids that touch
+    /// there has two faces in each direction and is consistent.
+    std::size_t inconsistent_edges = 0;
+    bool consistently_oriented = false;  ///< no inconsistent edge
+    std::size_t unused_vertices = 0;     ///< vertices that no face names
 };
 
 /// Marker for a missing vertex.

@@ -1,6 +1,7 @@
 #include "ricochet/geometry/mesh/shells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -109,6 +110,52 @@ bool leads_into(const MeshInterior& shell, const TriangleMesh& mesh, std::uint32
     return false;
 }
 
+/// The interiors of the shells of a mesh, made on demand.
+class Interiors {
+public:
+    Interiors(const TriangleMesh& joined, const std::vector<std::uint32_t>& shell_of)
+        : joined_(joined), shell_of_(shell_of) {}
+
+    /// Returns the interior of a shell, or nullptr if too many others exist already.
+    const MeshInterior* of(std::uint32_t shell) {
+        constexpr std::size_t kMostInteriors = 256;
+        if (interiors_.size() == kMostInteriors && interiors_.count(shell) == 0) return nullptr;
+        const auto found =
+            interiors_.try_emplace(shell, std::make_shared<const TriangleMesh>(shell_alone(joined_, shell_of_, shell)));
+        return &found.first->second;
+    }
+
+    /// Returns true if the first shell lies within the second, though their surfaces may touch. Points close to the
+    /// centroid of each triangle decide, on the inner side of the first shell.
+    bool is_within(std::uint32_t inner, std::uint32_t outer) {
+        const auto [known, is_new] = within_.try_emplace({inner, outer}, true);
+        for (std::uint32_t t = 0; is_new && known->second && t < shell_of_.size(); ++t) {
+            if (shell_of_[t] != inner) continue;
+            for (const Vec3& point : beside(t)) {
+                if (of(inner)->contains(point) && !of(outer)->contains(point)) known->second = false;
+            }
+        }
+        return known->second;
+    }
+
+private:
+    /// Returns a point on either side of a triangle.
+    [[nodiscard]] std::array<Vec3, 2> beside(std::uint32_t triangle) const {
+        // Local: a test position, not a tolerance.
+        constexpr double kBeside = 1e-6;  // fraction of the triangle's size
+        const auto& [a, b, c] = joined_.triangles[triangle];
+        const Vec3 normal = cross(joined_.vertices[b] - joined_.vertices[a], joined_.vertices[c] - joined_.vertices[a]);
+        const double size = length(normal);
+        const Vec3 offset = size > 0.0 ? (kBeside * std::sqrt(size) / size) * normal : Vec3{0.0, 0.0, 0.0};
+        return {centroid(joined_, triangle) + offset, centroid(joined_, triangle) - offset};
+    }
+
+    const TriangleMesh& joined_;
+    const std::vector<std::uint32_t>& shell_of_;
+    std::map<std::uint32_t, MeshInterior> interiors_;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, bool> within_;
+};
+
 /// Signed volume of one shell, in m^3, and the sum of the magnitudes of its terms.
 struct ShellVolume {
     double sum = 0.0;
@@ -163,21 +210,19 @@ bool shells_overlap(const TriangleMesh& mesh) {
     const std::vector<std::uint32_t> shell_of = shells_of(joined);
     if (std::all_of(shell_of.begin(), shell_of.end(), [](std::uint32_t shell) { return shell == 0; })) return false;
     constexpr std::size_t kMostPairs = 4096;
-    constexpr std::size_t kMostInteriors = 256;
     const auto pairs = intersections_between(joined, shell_of, kMostPairs);
     for (const auto& [first, second] : pairs) {
         if (cross_properly(joined, first, second)) return true;
     }
-    std::map<std::uint32_t, MeshInterior> interiors;
+    Interiors interiors(joined, shell_of);
     for (const auto& [first, second] : pairs) {
         for (const auto& [triangle, other] : {std::pair(first, second), std::pair(second, first)}) {
-            const std::uint32_t shell = shell_of[other];
-            if (interiors.size() == kMostInteriors && interiors.count(shell) == 0) continue;
-            const auto found = interiors.try_emplace(
-                shell, std::make_shared<const TriangleMesh>(shell_alone(joined, shell_of, shell)));
-            const MeshInterior& interior = found.first->second;
-            if (interior.contains(centroid(joined, triangle)) || leads_into(interior, joined, triangle, other))
-                return true;
+            const MeshInterior* const interior = interiors.of(shell_of[other]);
+            const MeshInterior* const own = interiors.of(shell_of[triangle]);
+            if (interior == nullptr || own == nullptr) continue;
+            const bool meets_inside =
+                interior->contains(centroid(joined, triangle)) || leads_into(*interior, joined, triangle, other);
+            if (meets_inside && !interiors.is_within(shell_of[triangle], shell_of[other])) return true;
         }
     }
     return false;

@@ -9,9 +9,10 @@
 namespace ricochet {
 
 /// Returns true if two shells of a mesh overlap. Shells are sets of triangles joined by edges, at equal positions.
-/// Shells that only touch do not overlap, and neither do nested shells. The result is exact for shells that cross
-/// properly. If their triangles only touch, or lie in one plane, points on the first of these triangles decide. These
-/// points are centroids, and points halfway along an edge from its intersection with the other triangle's plane.
+/// Shells that only touch do not overlap. Neither do nested shells, even if they touch. The result is exact for shells
+/// that cross properly. If their triangles only touch, or lie in one plane, points decide. These points are centroids
+/// of the first of these triangles, and points halfway along an edge from its intersection with the other triangle's
+/// plane. A shell is nested if points close to its centroids, on the inner side, are within the other.
 [[nodiscard]] bool shells_overlap(const TriangleMesh& mesh);
 
 /// Returns the number of shells within other shells of the same winding. Such a shell is a hole by the parity rule of

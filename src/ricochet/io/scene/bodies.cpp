@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mass_moments.h"
 #include "ricochet/io/scene/body_volume.h"
@@ -30,9 +31,6 @@ template <class Member>
 auto of_body(Member BodyDescription::*member) {
     return [member](BodyKeys& k) -> Member& { return k.body.*member; };
 }
-auto of_joint(double JointSettings::*member) {
-    return [member](BodyKeys& k) -> double& { return k.body.settings.*member; };
-}
 
 Fields<BodyKeys> mass_fields() {
     using B = BodyKeys;
@@ -53,34 +51,17 @@ Fields<BodyKeys> mass_fields() {
 
 Fields<BodyKeys> joint_fields() {
     using B = BodyDescription;
-    using J = JointSettings;
-    return {
-        {"joint", of_body(&B::joint), "Joint that constrains the body.",
-         Choices{choice(JointKind::free, "free", "no joint"),
-                 choice(JointKind::hinge, "hinge", "rotation about an axis through the frame's origin"),
-                 choice(JointKind::slider, "slider", "translation along an axis, without rotation")}},
-        {"axis", of_body(&B::axis), kCoordinate, "",
-         "Direction of the axis of a hinge or slider, of any length, in the frame's axes at 0 s.", kNotZero},
-        {"velocity", of_body(&B::velocity), between(-kMaxSpeed, kMaxSpeed), "m/s",
-         "Velocity of the centre of mass of a free body at 0 s."},
-        {"angular_velocity", of_body(&B::angular_velocity), between(-kMaxSpeed, kMaxSpeed), "rad/s",
-         "Angular velocity of a free body at 0 s."},
-        {"rate", of_body(&B::rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
-         "Speed at 0 s: of the rotation on a hinge, by the right-hand rule, or of the motion along a slider."},
-        {"spring", of_joint(&J::spring), kNotNegative, "N m/rad or N/m",
-         "Spring constant of a hinge or slider: moment or force towards `spring_rest`, per angle or distance from it."},
-        {"spring_rest", of_joint(&J::spring_rest), kAnyNumber, "rad or m",
-         "Angle or offset at which the spring exerts no force. 0 is the pose at 0 s."},
-        {"damping", of_joint(&J::damping), kNotNegative, "N m s/rad or N s/m",
-         "Damping of a hinge or slider: moment or force against the motion, per speed."},
-        {"drive", of_joint(&J::drive), kAnyNumber, "N m or N",
-         "Constant moment about the axis of a hinge, or force along the axis of a slider."},
-        {"friction", of_joint(&J::friction), kNotNegative, "N m or N",
-         "Dry friction of a hinge or slider: largest moment or force against the motion."},
-        {"motor_rate", of_joint(&J::motor_rate), between(-kMaxSpeed, kMaxSpeed), "rad/s or m/s",
-         "Target speed of a motor on the hinge or slider.", Needs{"motor_most"}},
-        {"motor_most", of_joint(&J::motor_most), kNotNegative, "N m or N",
-         "Largest moment or force of the motor. 0 means no motor."}};
+    return {{"joint", of_body(&B::joint), "Joint that constrains the body.",
+             Choices{choice(JointKind::free, "free", "no joint"),
+                     choice(JointKind::hinge, "hinge", "rotation about an axis through the frame's origin"),
+                     choice(JointKind::slider, "slider", "translation along an axis, without rotation")}},
+            {"axis", of_body(&B::axis), kCoordinate, "",
+             "Direction of the axis of a hinge or slider, of any length, in the frame's axes at 0 s.", kNotZero}};
+}
+
+Fields<BodyKeys> motion_fields() {
+    return joined<BodyKeys>({fields_of_part<BodyKeys>(&BodyKeys::body, kBodyMotionTable),
+                             fields_of_part<BodyKeys>(of_body(&BodyDescription::settings), kJointTable)});
 }
 
 Fields<BodyKeys> force_fields() {
@@ -213,7 +194,7 @@ const ObjectSpec& body_spec() {
                          "A rigid body that impulses of particles and the scene's forces move. Its frame stands in the "
                          "world and has no motions. The frame's translation and rotation give the start pose. Bodies "
                          "collide neither with each other nor with colliders at rest.",
-                         joined<BodyKeys>({mass_fields(), joint_fields(), force_fields()}));
+                         joined<BodyKeys>({mass_fields(), joint_fields(), motion_fields(), force_fields()}));
     return spec;
 }
 

@@ -12,9 +12,6 @@
 namespace ricochet::detail {
 namespace {
 
-/// Local: a limit of input values.
-constexpr double kMostSteps = 1e12;
-
 enum class Motion { forces, flow };
 
 // Values of the key "simulation".

@@ -343,7 +343,7 @@ private:
             if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
             const auto nearest = nearest_absent(member.key, known, node);
             if (nearest.size() != 1 || nearest[0] != "type") continue;
-            report_unknown(member, path, nearest, known);
+            report_unknown(member, path, nearest, known, spec);
             member.key = "type";
             return;
         }
@@ -372,9 +372,19 @@ private:
         return nearest;
     }
 
+    // Returns the key of an object below that has a key of this name, for example simulation.duration for duration.
+    static std::optional<std::string> key_below(std::string_view name, const ObjectSpec& spec) {
+        for (const KeySpec& key : spec.keys) {
+            if (key.type != ValueType::object || key.content == nullptr) continue;
+            if (find_key(*key.content, nullptr, name) != nullptr) return fmt::format("{}.{}", key.name, name);
+        }
+        return std::nullopt;
+    }
+
     void report_unknown(const JsonMember& member, const std::string& path, const std::vector<std::string_view>& nearest,
-                        const std::vector<std::string_view>& known) {
-        const std::string help = nearest.empty() ? "known keys: " + quoted_list(known) : did_you_mean(nearest);
+                        const std::vector<std::string_view>& known, const ObjectSpec& spec) {
+        std::string help = nearest.empty() ? "known keys: " + quoted_list(known) : did_you_mean(nearest);
+        if (const auto below = key_below(member.key, spec); below && nearest.empty()) help = did_you_mean({*below});
         diagnostics_.error(member.key_location, path_of_key(path, member.key), "unknown key; " + help);
     }
 
@@ -383,7 +393,7 @@ private:
         const std::vector<std::string_view> known = all_names(spec);
         for (const JsonMember& member : *node.object()) {
             if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-            report_unknown(member, path, nearest_absent(member.key, known, node), known);
+            report_unknown(member, path, nearest_absent(member.key, known, node), known, spec);
         }
         node.value = std::monostate{};
     }
@@ -425,7 +435,7 @@ private:
         std::vector<std::string_view> known = names_of(keys_of(spec, variant));
         const std::vector<std::string_view> nearest = nearest_absent(member.key, known, node);
         if (variant != nullptr) known.emplace_back("type");
-        report_unknown(member, path, nearest, known);
+        report_unknown(member, path, nearest, known, spec);
         excused.insert(nearest.begin(), nearest.end());
         if (nearest.size() == 1 && node.find(nearest[0]) == nullptr) member.key = nearest[0];
     }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <concepts>
+#include <functional>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -128,6 +129,9 @@ struct Unit {
 struct Expected {
     std::string_view words;
 };
+struct Presence {
+    bool is_required = false;
+};
 /// Key that must be present together with this one.
 struct Needs {
     std::string_view key;
@@ -144,6 +148,7 @@ using Choices = std::vector<Choice>;
 
 void set_option(KeySpec& key, Rule rule);
 inline void set_option(KeySpec& key, Without without) { key.without = without.words; }
+inline void set_option(KeySpec& key, Presence presence) { key.required = presence.is_required; }
 inline void set_option(KeySpec& key, Unit unit) { key.unit = unit.name; }
 inline void set_option(KeySpec& key, Expected expected) { key.expected = expected.words; }
 inline void set_option(KeySpec& key, Needs needs) { key.needs = needs.key; }
@@ -215,18 +220,26 @@ private:
 template <class Struct>
 using Fields = std::vector<Field<Struct>>;
 
-/// Returns the keys of a table of settings. The options apply to all of them.
+/// Returns the keys of a table of settings for a part of a struct, which `part_of` returns. The options apply to all of
+/// them.
 template <class Struct>
-[[nodiscard]] Fields<Struct> fields_of(const auto& table, auto... options) {
+[[nodiscard]] Fields<Struct> fields_of_part(auto part_of, const auto& table, auto... options) {
     Fields<Struct> fields;
     for (const auto& line : table) {
         const auto add = [&](auto member) {
-            fields.push_back(
-                {line.name, member, line.range, line.unit, line.meaning, Without{line.without}, options...});
+            const auto value_of = [=](Struct & object) -> auto& { return std::invoke(part_of, object).*member; };
+            fields.push_back({line.name, value_of, line.range, line.unit, line.meaning, Without{line.without},
+                              Presence{line.is_required}, Needs{line.needs}, options...});
         };
         std::visit(add, line.member);
     }
     return fields;
+}
+
+/// Returns the keys of a table of settings. The options apply to all of them.
+template <class Struct>
+[[nodiscard]] Fields<Struct> fields_of(const auto& table, auto... options) {
+    return fields_of_part<Struct>(std::identity{}, table, options...);
 }
 
 template <class Struct>

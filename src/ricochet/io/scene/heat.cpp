@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/io/scene/context.h"
 #include "ricochet/simulation/validation.h"
 
@@ -18,14 +19,9 @@ const ObjectSpec& convection_spec() {
         "Heat exchange between spheres and the medium, by a coefficient or by the correlation of Ranz and Marshall: Nu "
         "= 2 + 0.6 Re^(1/2) Pr^(1/3). Re uses the speed relative to the flow. The defaults describe air at 20 degrees "
         "C.",
-        {{"coefficient", &C::coefficient, kNotNegative, "W/(m^2 K)",
-          "Coefficient h in dT/dt = -h A (T - Ta) / (m c). It excludes all other keys.", Without{"the correlation"}},
-         {"conductivity", &C::conductivity, kPositive, "W/(m K)", "Thermal conductivity of the medium."},
-         {"fluid_density", &C::density, kNotNegative, "kg/m^3", "Density of the medium."},
-         {"viscosity", &C::viscosity, kPositive, "Pa s", "Dynamic viscosity of the medium."},
-         {"prandtl", &C::prandtl, kPositive, "", "Prandtl number of the medium."},
-         {"flow", ValueType::named_object, "Motion of the medium: a flow, or the name of one in `flows`.", &flow_spec(),
-          NamedIn{"flows"}, Without{"at rest"}}});
+        joined<C>({fields_of<C>(kConvectionTable),
+                   {{"flow", ValueType::named_object, "Motion of the medium: a flow, or the name of one in `flows`.",
+                     &flow_spec(), NamedIn{"flows"}, Without{"at rest"}}}}));
     return spec;
 }
 
@@ -37,17 +33,10 @@ const ObjectSpec& heat_spec() {
         "heat",
         "Processes that change the attribute `temperature` (K) of all particles. The attribute must be declared. The "
         "temperature is uniform inside a particle.",
-        {{"specific_heat", &H::specific_heat, between(1e-3, 1e12), "J/(kg K)", "Specific heat of the particles.",
-          kRequired},
-         {"ambient_temperature", &H::ambient_temperature, kNotNegative, "K",
-          "Temperature of the medium, and of the surroundings that particles exchange radiation with."},
-         {"convection", &H::convection, "Heat exchange with the medium.", &convection_spec(), Without{"none"}},
-         {"emissivity", &H::emissivity, kFraction, "",
-          "Heat that spheres radiate and absorb, divided by that of black bodies."},
-         {"impact_fraction", &H::impact_fraction, kFraction, "",
-          "Fraction of the energy lost along the normal at impacts, by restitution, that heats the particle."},
-         {"friction_fraction", &H::friction_fraction, kFraction, "",
-          "Fraction of the energy lost by friction, in impacts and in contact, that heats the particle."}});
+        joined<H>(
+            {fields_of<H>(kHeatTable),
+             {{"convection", &H::convection, "Heat exchange with the medium.", &convection_spec(), Without{"none"}}},
+             fields_of<H>(kHeatFractionTable)}));
     return spec;
 }
 

@@ -10,6 +10,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/dynamics/settings_table.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/io/scene/context.h"
@@ -45,35 +46,14 @@ struct ClothKeys : ClothSettings {
 
 constexpr Range kElements = between(1.0, 1e8);
 
-// Table lines that several tables share.
-
-template <class Struct>
-Field<Struct> damping() {
-    return {"damping", &Struct::damping, kLengthOrZero, "N s/m",
-            "Damping force of a spring divided by the rate of change of its length."};
-}
-template <class Struct>
-Field<Struct> breaking_stretch() {
-    constexpr std::string_view kMeaning =
-        "Stretch, as a fraction of the rest length, beyond which a spring breaks permanently.";
-    return {"breaking_stretch", &Struct::breaking_stretch, kPositive, "", kMeaning, Without{"it never breaks"}};
-}
-template <class Struct>
-Field<Struct> radius() {
-    return {"radius", &Struct::radius, kLengthOrZero, "m", "Radius of its particles."};
-}
-
 const ObjectSpec& spring_spec() {
     using S = Spring;
-    static const ObjectSpec spec =
-        object<S>("spring", "A spring between two particles.",
-                  {{"first", &S::first, kCount, "", "Number of the particle at one end.", kRequired},
-                   {"second", &S::second, kCount, "", "Number of the particle at the other end.", kRequired},
-                   {"rest_length", &S::rest_length, kLengthOrZero, "m", "Length at which it neither pulls nor pushes.",
-                    Without{"the distance of its ends at the start"}},
-                   {"stiffness", &S::stiffness, kLengthOrZero, "N/m", "Force divided by stretch.", kRequired},
-                   damping<S>(),
-                   breaking_stretch<S>()});
+    static const ObjectSpec spec = object<S>(
+        "spring", "A spring between two particles.",
+        joined<S>({{{"first", &S::first, kCount, "", "Number of the particle at one end.", kRequired},
+                    {"second", &S::second, kCount, "", "Number of the particle at the other end.", kRequired}},
+                   fields_of<S>(kSpringTable),
+                   fields_of<S>(kDampingTable<S>)}));
     return spec;
 }
 
@@ -91,40 +71,27 @@ Variant list_variant() {
                             {{"springs", ValueType::list, "The springs.", &spring_spec(), kRequired}});
 }
 
-Fields<RopeKeys> rope_ends() {
-    return {{"from", &RopeKeys::from, kCoordinate, "m", "Position of its first particle.", kRequired},
-            {"to", &RopeKeys::to, kCoordinate, "m", "Position of its last particle.", kRequired}};
-}
-
 // Keys that ropes and chains share.
 Fields<RopeKeys> rope_fields() {
     using R = RopeKeys;
-    return {{"mass", &R::mass, kMass, "kg", "Total mass.", kRequired},
-            radius<R>(),
-            {"stiffness", &R::stiffness, kLengthOrZero, "N/m", "Stiffness of every segment."},
-            {"axial_stiffness", &R::axial_stiffness, kLengthOrZero, "N",
-             "Stiffness E A of the material. The stiffness of a segment is this value divided by its rest length."},
-            damping<R>(),
-            breaking_stretch<R>(),
-            {"sag", &R::sag, kCoordinate, "",
-             "Direction in which it hangs at first, if it is longer than the distance of its ends.", kNotZero,
-             Without{"along the uniform forces, or -z"}},
-            {"pinned", &R::pinned, "Ends that never move.",
-             Choices{choice(PinnedEnds::none, "none", "both are free"),
-                     choice(PinnedEnds::from, "from", "the first particle"),
-                     choice(PinnedEnds::to, "to", "the last particle"),
-                     choice(PinnedEnds::both, "both", "the first and the last particle")}}};
+    return joined<R>({fields_of<R>(kRopeTable),
+                      fields_of<R>(kDampingTable<RopeSettings>),
+                      {{"sag", &R::sag, kCoordinate, "",
+                        "Direction in which it hangs at first, if it is longer than the distance of its ends.",
+                        kNotZero, Without{"along the uniform forces, or -z"}},
+                       {"pinned", &R::pinned, "Ends that never move.",
+                        Choices{choice(PinnedEnds::none, "none", "both are free"),
+                                choice(PinnedEnds::from, "from", "the first particle"),
+                                choice(PinnedEnds::to, "to", "the last particle"),
+                                choice(PinnedEnds::both, "both", "the first and the last particle")}}}});
 }
 
 Variant rope_variant() {
     using R = RopeKeys;
     return variant("rope", "Particles at equal distances along a line, with springs between neighbours.",
-                   joined<R>({rope_ends(),
-                              {{"nodes", &R::nodes, between(2.0, 1e8), "", "Number of its particles.", kRequired},
-                               {"length", &R::length, kLength, "m",
-                                "Rest length. A rope longer than the distance of its ends starts as a catenary. A "
-                                "shorter rope starts straight and under tension.",
-                                Without{"the distance of its ends"}}},
+                   joined<R>({fields_of<R>(kRopeEndsTable),
+                              {{"nodes", &R::nodes, between(2.0, 1e8), "", "Number of its particles.", kRequired}},
+                              fields_of<R>(kRopeLengthTable),
                               rope_fields()}),
                    {"stiffness", "axial_stiffness"});
 }
@@ -134,7 +101,7 @@ Variant chain_variant() {
     return variant(
         "chain",
         "A rope described by its links. It starts as a catenary if it is longer than the distance of its ends.",
-        joined<R>({rope_ends(),
+        joined<R>({fields_of<R>(kRopeEndsTable),
                    {{"links", &R::links, kElements, "", "Number of springs in a row. The chain has one particle more.",
                      kRequired},
                     {"link_length", &R::link_length, kLength, "m", "Rest length of a link.", kRequired}},
@@ -145,17 +112,13 @@ Variant chain_variant() {
 // Keys that cloth and sheets share.
 Fields<ClothKeys> cloth_fields() {
     using C = ClothKeys;
-    return {{"mass", &C::total_mass, kMass, "kg", "Total mass."},
-            {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass per area."},
-            radius<C>(),
-            {"stiffness", &C::stiffness, kLengthOrZero, "N/m", "Stiffness of the springs along the edges.", kRequired},
-            {"bending_stiffness", &C::bending_stiffness, kLengthOrZero, "N/m",
-             "Stiffness of the springs that resist bending. They join the corners across every edge between two "
-             "triangles."},
-            damping<C>(),
-            breaking_stretch<C>(),
-            {"pinned", &C::pinned_vertices, "Numbers, from 0, of vertices that never move.", Without{"none"}},
-            {"pin_boxes", ValueType::list, "Boxes in which vertices never move.", &pin_box_spec()}};
+    return joined<C>(
+        {{{"mass", &C::total_mass, kMass, "kg", "Total mass."},
+          {"mass_per_area", &C::area_mass, kPositive, "kg/m^2", "Mass per area."}},
+         fields_of<C>(kClothTable),
+         fields_of<C>(kDampingTable<ClothSettings>),
+         {{"pinned", &C::pinned_vertices, "Numbers, from 0, of vertices that never move.", Without{"none"}},
+          {"pin_boxes", ValueType::list, "Boxes in which vertices never move.", &pin_box_spec()}}});
 }
 
 Variant cloth_variant() {

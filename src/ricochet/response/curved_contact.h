@@ -39,8 +39,9 @@ public:
     struct State {
         Vec3 position;
         Motion motion;
-        double work = 0.0;    ///< over the mass, m^2/s^2, by the change of the forces since the start
-        double turned = 0.0;  ///< rad, upper bound of the turn of shapes under a sphere since the start
+        double work = 0.0;  ///< over the mass, m^2/s^2, by the change of the forces since the start
+        double turned =
+            0.0;  ///< turn of a shape's normal below a sphere since the start: chord of the largest one, 0 to 2
     };
 
     CurvedContact(const SurfaceGeometry& geometry, const ForceField& forces, const ForceInput& particle,

@@ -19,8 +19,8 @@
 namespace ricochet {
 namespace {
 
-/// Particles are numbered by 32 bits; what is born is retired again, so more may be born than live at a time. Local: a
-/// limit of input values.
+/// Most births of an emitter. Living particles have 32-bit indices, but particles retire, so more can be born than live
+/// at a time. Local: a limit of input values.
 constexpr double kMostBirths = 1e12;
 
 void validate(const SimulationOptions& options) {

@@ -1,4 +1,4 @@
-// What changes temperatures, and what it needs of the rest of a setup.
+// Validates the settings of heat, and the parts of a setup that they need.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ void validate_numbers(const HeatSettings& heat, const Subject& subject) {
                    "at least one of them: nothing would change a temperature");
 }
 
-/// Returns its column.
+/// Returns the column of the temperature among the attributes.
 std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subject, const char* why) {
     const auto& all = setup.attributes;
     const auto found = std::find_if(all.begin(), all.end(), [](const AttributeDescription& column) {
@@ -67,7 +67,7 @@ void validate_particles(const SimulationSetup& setup, std::size_t column) {
     }
 }
 
-/// Who knows what surfaces take of a particle's motion.
+/// Refuses heat from surfaces if the energy that surfaces take from particles is not known.
 void validate_friction(const SimulationSetup& setup, const Subject& heat) {
     const auto refuse = [&](bool refused, std::string_view found, std::string_view expected) {
         if (refused) heat.refuse("impact_fraction and friction_fraction", found, expected);

@@ -1,4 +1,4 @@
-// Spheres that meet each other: what they do to each other, their materials, and what does not know them.
+// Validates contacts of spheres with each other: settings, materials, and parts of a setup that exclude them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,7 +80,8 @@ void validate_column(const SimulationSetup& setup, const Subject& subject) {
     }
 }
 
-/// Contacts would part what springs hold together, and stretch them, step after step.
+/// Refuses springs between overlapping spheres. Contacts would separate the spheres and stretch the springs in every
+/// step.
 void validate_joined(const SimulationSetup& setup, const Subject& subject) {
     for (const Spring& spring : setup.springs) {
         if (std::max(spring.first, spring.second) >= setup.particles.size()) continue;
@@ -97,7 +98,7 @@ void validate_joined(const SimulationSetup& setup, const Subject& subject) {
     }
 }
 
-/// Impact by impact nothing holds what forces drive together.
+/// Refuses the method of single impacts if forces press spheres together: it has no lasting contact.
 void validate_method(const SimulationSetup& setup, const Subject& subject) {
     const bool is_pulled = !setup.springs.empty() || !setup.particles_forces.empty();
     if (!is_pulled || setup.options.particle_contacts->method != PairMethod::events) return;
@@ -106,7 +107,7 @@ void validate_method(const SimulationSetup& setup, const Subject& subject) {
                    "these where each impact is for itself");
 }
 
-/// What does not know spheres that meet.
+/// Refuses parts of a setup that exclude contacts of spheres.
 void validate_company(const SimulationSetup& setup, const Subject& subject) {
     if (setup.options.response != ResponseKind::exact) {
         subject.refuse("response", name_of(setup.options.response), "exact: the others move each particle for itself");

@@ -1,4 +1,4 @@
-// What the parts of a setup, each of which may be right, cannot do together.
+// Refuses parts of a setup that are valid by themselves but exclude each other.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace ricochet {
 namespace {
 
-/// What flows carry has the flow's velocity and no friction.
+/// Refuses moving wall materials in a flow. A particle in a flow has the flow's velocity and no friction.
 void validate_flow_walls(const SimulationSetup& setup) {
     if (setup.options.flow == nullptr) return;
     for (std::size_t k = 0; k < setup.materials.size(); ++k) {
@@ -23,7 +23,7 @@ void validate_flow_walls(const SimulationSetup& setup) {
     }
 }
 
-/// Forces between particles, and what cannot be together with them.
+/// Validates forces between particles, and refuses parts that exclude them.
 void validate_particles_forces(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.particles_forces.size(); ++k) {
         const ParticlesForceEntry& entry = setup.particles_forces[k];
@@ -85,7 +85,7 @@ void validate_moving_colliders(const SimulationSetup& setup) {
     }
 }
 
-/// Bodies that impulses move, and what cannot be together with them.
+/// Validates dynamic bodies, and refuses parts that exclude them.
 void validate_bodies(const SimulationSetup& setup) {
     for (std::size_t k = 0; k < setup.bodies.size(); ++k) {
         const std::string& name = setup.bodies[k].frame;
@@ -154,7 +154,7 @@ void validate_clouds(const SimulationSetup& setup) {
     }
 }
 
-/// What one process must do alone.
+/// Refuses parts of a setup that a run of several processes cannot have.
 void validate_ranks(const SimulationSetup& setup) {
     if (!setup.ranks || setup.ranks->size() < 2) return;
     const auto refuse = [&](const char* what, const char* why) {

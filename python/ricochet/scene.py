@@ -38,6 +38,7 @@ class Scene(Thing):
     attributes: User-defined values of particles, by name.
     reference_camera: Camera for emitter rates per screen area.
     bounds: Box outside which particles are retired.
+    counters: Disks that count the particles that pass them.
     output: Files that a run writes.
     camera: Camera of pictures.
     picture: Light and surroundings of pictures.
@@ -323,6 +324,17 @@ class Convection(Thing):
     viscosity: Dynamic viscosity of the medium. Unit: Pa s. Default: 1.82e-05.
     prandtl: Prandtl number of the medium. Default: 0.713.
     flow: Motion of the medium: a flow, or the name of one in `flows`.
+    """
+
+
+class Counter(Thing):
+    """A disk at rest that counts the particles whose centres pass it. Particles do not feel it.
+
+    name: Name of the counter, different from the names of other counters. Required.
+    center: Centre of the disk. Unit: m. Required.
+    normal: Direction that counts as forward, of any length. The disk itself belongs to the side that it points to.
+        Required.
+    radius: Radius of the disk. The rim belongs to it. Unit: m. Required.
     """
 
 

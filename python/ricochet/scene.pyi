@@ -31,6 +31,7 @@ class Scene(Thing):
         attributes: Optional[Mapping[str, Any]] = ...,
         reference_camera: Any = ...,
         bounds: Any = ...,
+        counters: Optional[Sequence[Any]] = ...,
         output: Any = ...,
         camera: Any = ...,
         picture: Any = ...,
@@ -262,6 +263,16 @@ class Convection(Thing):
         viscosity: Optional[float] = ...,
         prandtl: Optional[float] = ...,
         flow: Any = ...,
+    ) -> None: ...
+
+class Counter(Thing):
+    def __init__(
+        self,
+        *,
+        name: str,
+        center: Vector,
+        normal: Vector,
+        radius: float,
     ) -> None: ...
 
 class Curve(Thing):

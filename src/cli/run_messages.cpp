@@ -45,6 +45,11 @@ void print_groups(const ColliderSummary& collider) {
     print("  hits on {} by group: {}\n", printable(collider.name, 60), line);
 }
 
+void print_counter(const CounterTotals& counter) {
+    print("  counter {}: {} forward ({:.6g} kg), {} backward ({:.6g} kg)\n", printable(counter.name, 60),
+          counter.forward, counter.forward_mass, counter.backward, counter.backward_mass);
+}
+
 /// Overlap relative to the smaller radius. Solved dense contact leaves smaller overlaps.
 constexpr double kLargeOverlap = 0.05;
 
@@ -130,6 +135,7 @@ void print_report(const RunSummary& summary, const std::string& output) {
               statistics.pair_impacts == 1 ? "impact" : "impacts");
     }
     for (const ColliderSummary& collider : summary.colliders) print_groups(collider);
+    for (const CounterTotals& counter : summary.counters) print_counter(counter);
     print_notes(statistics);
     print_impulse_share(summary.impulse_sizes());
     if (summary.verified) {

@@ -50,6 +50,7 @@
 #include "ricochet/response/pair_record.h"
 #include "ricochet/response/settings.h"
 #include "ricochet/simulation.h"
+#include "ricochet/simulation/counters/counter.h"
 #include "ricochet/simulation/options.h"
 #include "ricochet/simulation/statistics.h"
 #include "ricochet/verify/impact_audit.h"

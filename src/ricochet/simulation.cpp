@@ -143,6 +143,11 @@ TriangleTotals Simulation::triangle_totals(std::size_t i) const {
 
 const std::vector<ColliderTotals>& Simulation::collider_totals() const { return impl().recorder.loads(); }
 
+const std::vector<CounterTotals>& Simulation::counters() const {
+    static const std::vector<CounterTotals> none;
+    return impl().counters ? impl().counters->totals() : none;
+}
+
 std::vector<BodyState> Simulation::bodies() const {
     std::vector<BodyState> states;
     for (const DrivenBody& body : impl().driven.bodies()) {

@@ -31,6 +31,7 @@
 #include "ricochet/response/contact_record.h"
 #include "ricochet/response/material.h"
 #include "ricochet/response/pair_record.h"
+#include "ricochet/simulation/counters/counter.h"
 #include "ricochet/simulation/options.h"
 #include "ricochet/simulation/statistics.h"
 #include "ricochet/verify/verifier.h"
@@ -64,6 +65,7 @@ struct SimulationSetup {
     std::optional<ReferenceCamera> reference_camera;  ///< reference for emission rates per screen area
     /// Processes that change the attribute `temperature`; nothing: it is constant.
     std::optional<HeatSettings> heat = std::nullopt;
+    std::vector<CounterDescription> counters = {};  ///< disks that count the particles that pass them
     /// Processes that share the particles, each with the same setup; null: a single process has all. See show_whole().
     std::shared_ptr<Ranks> ranks = {};
 };
@@ -272,6 +274,8 @@ public:
     /// Returns the totals of all colliders, in their order. They are zero for colliders without a moving frame or
     /// surface. The list is empty if all colliders are of that kind.
     [[nodiscard]] const std::vector<ColliderTotals>& collider_totals() const;
+    /// Returns the totals of the setup's counters, in its order.
+    [[nodiscard]] const std::vector<CounterTotals>& counters() const;
     /// Returns the states of the setup's bodies, in its order.
     [[nodiscard]] std::vector<BodyState> bodies() const;
     /// Returns the number of triangles of all mesh colliders, degenerate ones included.

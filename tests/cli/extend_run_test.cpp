@@ -21,14 +21,15 @@ namespace RICOCHET_FILE {
 using test::ProgramResult;
 using test::TemporaryFolder;
 
-/// Rain on a floor, with a contact log.
+/// Rain on a floor, with a contact log and a counter.
 constexpr const char* kRain = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],
   "materials": {"m": {"restitution": 0.7, "friction": 0.2}},
   "colliders": [{"name": "floor", "type": "plane", "point": [0, 0, 0], "normal": [0, 0, 1], "material": "m"}],
   "emitters": [{"name": "cloud", "type": "box", "center": [0, 0, 0.5], "size": [1, 1, 0.4], "rate": [300, 100],
                 "particle_radius": 0.01, "lifetime": [0.4, 0.1]},
                {"type": "child", "parent": "cloud", "on": "impact", "share": false, "count": 2, "speed": 1,
-                "lifetime": 0.1}])";
+                "lifetime": 0.1}],
+  "counters": [{"name": "outlet", "center": [0, 0, 0.3], "normal": [0, 0, -1], "radius": 0.4}])";
 
 /// Spheres that pile up and fall asleep on a moving table.
 constexpr const char* kPile = R"("forces": [{"type": "gravity", "acceleration": [0, 0, -9.81]}],

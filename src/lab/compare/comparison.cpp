@@ -60,15 +60,16 @@ SetupCopies::SetupCopies(SimulationSetup setup) : setup_(std::move(setup)) {
 // Copies the members one by one, in their order. A new member does not compile until it is copied here.
 SimulationSetup SetupCopies::make(const SimulationOptions& options) const {
     const auto& [own_options, acceleration, no_forces, materials, colliders, frames, bodies, emitters, particles,
-                 springs, spring_faces, particles_forces, solver, bounds, attributes, reference_camera, heat, ranks] =
-        setup_;
+                 springs, spring_faces, particles_forces, solver, bounds, attributes, reference_camera, heat, counters,
+                 ranks] = setup_;
     (void)own_options;
     (void)no_forces;
     std::vector<std::unique_ptr<Force>> forces;
     for (const auto& force : forces_) forces.push_back(std::make_unique<SharedForce>(force));
     return {options, acceleration, std::move(forces), materials,        colliders,    frames,
             bodies,  emitters,     particles,         springs,          spring_faces, particles_forces,
-            solver,  bounds,       attributes,        reference_camera, heat,         ranks};
+            solver,  bounds,       attributes,        reference_camera, heat,         counters,
+            ranks};
 }
 
 namespace {

@@ -233,6 +233,14 @@ namespace {
 /// Returns null if the surfaces received no impulse.
 Json share_of(const ImpulseSizes& sizes) { return sizes.any() ? Json(sizes.share_of_impacts()) : Json(nullptr); }
 
+Json json_of(const CounterTotals& counter) {
+    return {{"name", counter.name},
+            {"forward", counter.forward},
+            {"backward", counter.backward},
+            {"forward_mass", counter.forward_mass},
+            {"backward_mass", counter.backward_mass}};
+}
+
 Json json_of(const GroupTotals& group) {
     return {{"name", group.name},
             {"triangles", group.triangles},
@@ -324,6 +332,7 @@ RunSummary summarize(const Simulation& simulation, const std::vector<TriangleGro
         summary.colliders.push_back(collider_summary(simulation, i, i < groups.size() ? groups[i] : TriangleGroups{}));
     }
     summary.bodies = simulation.bodies();
+    summary.counters = simulation.counters();
     return summary;
 }
 
@@ -359,6 +368,7 @@ std::string summary_text(const RunSummary& summary) {
     json["colliders"] = Json::array();
     for (const ColliderSummary& collider : summary.colliders) json["colliders"].push_back(json_of(collider));
     for (const BodyState& body : summary.bodies) json["bodies"].push_back(json_of(body));
+    for (const CounterTotals& counter : summary.counters) json["counters"].push_back(json_of(counter));
     // Names come from files and can contain invalid UTF-8. Such bytes are replaced, so that the summary is never lost.
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -102,7 +102,8 @@ struct RunSummary {
     std::uint64_t state_hash = 0;
     std::uint64_t peak_memory_bytes = 0;  ///< sum of the peaks of all processes
     std::vector<ColliderSummary> colliders;
-    std::vector<BodyState> bodies;  ///< final states of the dynamic bodies
+    std::vector<BodyState> bodies;        ///< final states of the dynamic bodies
+    std::vector<CounterTotals> counters;  ///< in the order of the scene
 
     /// Returns the sum over all colliders.
     [[nodiscard]] ImpulseSizes impulse_sizes() const;

@@ -256,6 +256,7 @@ void EventIsland::commit(std::size_t m) {
     if (has_left_bounds) member.moving.planned = nullptr;
     if (has_left_bounds || member.moving.state.coupling != nullptr) append_to(member.trajectory, prediction.flown);
     if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
+    if (member.keeps_path && member.trajectory.empty()) member.path_alone = prediction.flown;
     member.moving = prediction.moved;
     if (has_left_bounds) member.moving.planned = nullptr;
     add(member.outcome, prediction.outcome);

@@ -47,7 +47,13 @@ struct IslandMember {
     Box3 swept{};                 ///< bounding box of the whole sphere on its whole trajectory
     /// Its whole trajectory, if it has met other members, or if others act on it from a distance.
     std::vector<FlownPiece> trajectory{};
+    bool keeps_path = false;  ///< input: path() is needed
+    /// Its whole path, if it has met no other member and keeps_path is set. Apart from `trajectory`, because an empty
+    /// trajectory means that it has kept to its declared bounds.
+    std::vector<FlownPiece> path_alone{};
 
+    /// Returns the pieces of its path in the step, if keeps_path was set.
+    [[nodiscard]] std::span<const FlownPiece> path() const { return trajectory.empty() ? path_alone : trajectory; }
     /// Returns true if the member no longer moves: it is absorbed or frozen.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
     /// Returns the rest of its part of the step, in s. At the start of its planned flight, this is the exact duration

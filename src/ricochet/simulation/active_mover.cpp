@@ -101,9 +101,10 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     scratch.motions.clear();
     scratch.impacts.clear();
     const RecordedMotion before{particle.state.position, particle.state.velocity, particle.spin};
-    scratch.record_flown = as_planned && parts_.coupled.wants_deviation_of(i);
+    const bool wants_deviation = as_planned && parts_.coupled.wants_deviation_of(i);
+    scratch.record_flown = wants_deviation || parts_.passages != nullptr;
     const MoveOutcome outcome = parts_.response.move(particle, duration, scratch);
-    if (scratch.record_flown)
+    if (wants_deviation)
         record_deviation(i, particle, outcome, scratch.flown, impulse_of(std::span(scratch.hits).subspan(first_hit)));
     if (parts_.meter != nullptr) {
         parts_.meter->note(i, particle.state, scratch, first_record, first_load, record.heat);
@@ -119,7 +120,21 @@ void ActiveMover::move_one(std::size_t i, const TimeSpan& step, MoveScratch& scr
     }
     if (i < bounces_.size()) bounces_[i] += outcome.meetings();
     const MoveImpulses impulses{std::span(scratch.hits).subspan(first_hit), {}, {}};
+    const Vec3 from = parts_.store.particles().position[i];
     write_back(i, particle, outcome, life.end, impulses, record, lead != nullptr);
+    note_passages(i, from, scratch.flown, scratch.segments, record);
+}
+
+void ActiveMover::note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
+                                std::span<const Segment> segments, BlockRecord& record) const {
+    if (parts_.passages == nullptr) return;
+    const Particles& particles = parts_.store.particles();
+    const MovedParticle moved{particles.id[i], particles.mass[i], from, particles.position[i]};
+    if (parts_.passages->needs_segments()) {
+        parts_.passages->trace(moved, segments, record.passages);
+    } else {
+        parts_.passages->trace(moved, flown, record.passages);
+    }
 }
 
 void ActiveMover::apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration,
@@ -159,6 +174,7 @@ bool ActiveMover::set_out(std::size_t i, const TimeSpan& step, IslandMember& mem
     member.end = life.end;
     member.is_fixed = parts_.store.is_fixed(i);
     member.is_free = parts_.schedule.is_in_free_flight(i);
+    member.keeps_path = parts_.passages != nullptr;
     return true;
 }
 
@@ -188,7 +204,9 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
     }
     // A sphere that slept on walls alone has pressed on them until now.
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
+    const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
+    note_passages(i, from, member.path(), member.lists.segments, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
@@ -220,7 +238,9 @@ void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& ste
             std::vector<FlownPiece> flown;
             record_deviation(i, moved.particle, moved.outcome, flown, moved.surface_impulse);
         }
+        const Vec3 from = parts_.store.particles().position[i];
         write_back(i, moved.particle, moved.outcome, moved.stop, {{}, moved.surface_impulse, {}}, record);
+        note_passages(i, from, {}, moved.segments, record);
     }
     for (std::size_t k = 0; k < blocks.size(); ++k) record_lists(scratch[k], blocks[k]);
 }
@@ -354,7 +374,8 @@ void ActiveMover::prepare(MoveScratch& scratch) const {
     scratch.loads.clear();
     scratch.record_loads = parts_.recorder.collects_loads();
     scratch.record_contacts = parts_.recorder.collects_contacts();
-    scratch.record_segments = parts_.check != nullptr;
+    const bool traces_segments = parts_.passages != nullptr && parts_.passages->needs_segments();
+    scratch.record_segments = parts_.check != nullptr || traces_segments;
     scratch.record_motions = parts_.check != nullptr || parts_.meter != nullptr;
 }
 

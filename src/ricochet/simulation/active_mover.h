@@ -85,9 +85,10 @@ struct MoverParts {
     RunRecorder& recorder;
     const Response& response;
     CoupledMotion& coupled;
-    const Offspring* offspring;            ///< null if no particles spawn others
-    RunCheck* check;                       ///< null without options.verify
-    const FrictionMeter* meter = nullptr;  ///< null if surfaces do not heat
+    const Offspring* offspring;               ///< null if no particles spawn others
+    RunCheck* check;                          ///< null without options.verify
+    const FrictionMeter* meter = nullptr;     ///< null if surfaces do not heat
+    const PassageFinder* passages = nullptr;  ///< null without counters
 };
 
 /// Moves particles by the response. Stores their new states, the forecasts of their next queries, and the records of
@@ -170,6 +171,9 @@ private:
                           std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
     [[nodiscard]] static Vec3 impulse_of(std::span<const SurfaceHit> hits);
+    /// Records the passages of particle i past counters, from a stored position in m to its present one.
+    void note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
+                       std::span<const Segment> segments, BlockRecord& record) const;
     void record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
                       std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);

@@ -141,6 +141,7 @@ std::uint64_t Simulation::Impl::settings_hash() const {
         hash.add(bounds->lower);
         hash.add(bounds->upper);
     }
+    if (counters) counters->add_to(hash);
     return hash.value();
 }
 
@@ -149,7 +150,7 @@ void Simulation::Impl::archive(Archive& a) {
     expect(a, kStateFormat, "not a state that this version can read");
     if (!known_collider_hash) known_collider_hash = collider_hash();
     expect(a, *known_collider_hash, "the state belongs to other colliders");
-    expect(a, settings_hash(), "the state belongs to other options, materials, bodies or bounds");
+    expect(a, settings_hash(), "the state belongs to other options, materials, bodies, bounds or counters");
     expect(a, static_cast<std::uint64_t>(emitters.size()), "the state belongs to other emitters");
     expect(a, static_cast<std::uint64_t>(coupled.springs().springs().size()), "the state belongs to other springs");
     expect(a, static_cast<std::uint64_t>(particles().attributes.columns().size()),

@@ -23,8 +23,8 @@ std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
 }
 
 MoverParts parts_with(const MoverParts& parts, const Response& response) {
-    return {parts.store,   parts.schedule,  parts.recorder, response,
-            parts.coupled, parts.offspring, parts.check,    parts.meter};
+    return {parts.store,     parts.schedule, parts.recorder, response,      parts.coupled,
+            parts.offspring, parts.check,    parts.meter,    parts.passages};
 }
 
 }  // namespace

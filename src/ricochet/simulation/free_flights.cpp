@@ -15,16 +15,17 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
     const std::optional<Vec3>& common = forces_.common_acceleration();
     const FreeFlight shared(integrator_, common.value_or(Vec3{}), step.end - step.begin);
     std::vector<std::size_t> sizes(blocks_of(range.size()));
-    if (check_ != nullptr) blocks.resize(std::max(blocks.size(), sizes.size()));
+    const bool records = check_ != nullptr || passages_ != nullptr;
+    if (records) blocks.resize(std::max(blocks.size(), sizes.size()));
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         begin += range.begin;
         end += range.begin;
         sizes[block] = schedule_.count_active(begin, end);
         if (deferred_) return;
-        if (common && check_ == nullptr) {
+        if (common && !records) {
             advance_together(begin, end, shared);
         } else {
-            advance_each(begin, end, step, check_ != nullptr ? &blocks[block].violations : nullptr);
+            advance_each(begin, end, step, records ? &blocks[block] : nullptr);
         }
     });
     ActiveSet active(std::move(sizes));
@@ -49,10 +50,9 @@ void FreeFlights::advance_together(std::size_t begin, std::size_t end, const Fre
     }
 }
 
-void FreeFlights::advance_each(std::size_t begin, std::size_t end, const TimeSpan& step,
-                               std::vector<Violation>* violations) {
+void FreeFlights::advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record) {
     for (std::size_t i = begin; i < end; ++i) {
-        if (schedule_.is_in_free_flight(i)) advance_one(i, flight_of(i, step), step, violations);
+        if (schedule_.is_in_free_flight(i)) advance_one(i, flight_of(i, step), step, record);
     }
 }
 
@@ -62,8 +62,7 @@ FreeFlight FreeFlights::flight_of(std::size_t i, const TimeSpan& step) const {
             step.end - step.begin};
 }
 
-void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step,
-                              std::vector<Violation>* violations) {
+void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, BlockRecord* record) {
     Particles& particles = store_.particles();
     const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
     if (check_ != nullptr) {
@@ -71,10 +70,25 @@ void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const Tim
         ForceInput moved = store_.force_input(i, step.end);
         moved.position = end.position;
         moved.velocity = end.velocity;
-        check_->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, *violations);
+        check_->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
     }
+    if (passages_ != nullptr) note_passages(i, end, flight.duration(), *record);
     particles.position[i] = end.position;
     particles.velocity[i] = end.velocity;
+}
+
+/// Finds the passages of a particle past counters before its flight is stored. end: its state at the end.
+void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const {
+    const Particles& particles = store_.particles();
+    const Vec3& from = particles.position[i];
+    const Vec3& velocity = particles.velocity[i];
+    // A parabola lies at most an eighth of its change of velocity times its duration from its chord.
+    if (!passages_->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
+    const bool is_line = kicks_first(integrator_.kind) || integrator_.kind == IntegratorKind::forward_euler;
+    const Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
+                              : hermite_path(from, velocity, end.position, end.velocity, duration);
+    const FlownPiece piece{path, 0.0, duration, velocity, end.velocity, true};
+    passages_->trace({particles.id[i], particles.mass[i], from, end.position}, {&piece, 1}, record.passages);
 }
 
 void FreeFlights::begin_deferring() {

@@ -98,10 +98,15 @@ private:
 /// Advances the particles in free flight, and finds the others. Every step begins with this pass over all particles.
 class FreeFlights {
 public:
-    /// All must outlive it; check may be null.
+    /// All must outlive it. check and passages may be null.
     FreeFlights(ParticleStore& store, const QuerySchedule& schedule, const ForceField& forces,
-                const Integrator& integrator, RunCheck* check)
-        : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), check_(check) {}
+                const Integrator& integrator, RunCheck* check, const PassageFinder* passages)
+        : store_(store),
+          schedule_(schedule),
+          forces_(forces),
+          integrator_(integrator),
+          check_(check),
+          passages_(passages) {}
 
     /// Advances the particles of the range that are in free flight. Returns the others that need a query, in ascending
     /// order, with one block for kParticleBlock particles of the range.
@@ -127,8 +132,9 @@ public:
 
 private:
     void advance_together(std::size_t begin, std::size_t end, const FreeFlight& flight);
-    void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, std::vector<Violation>* violations);
-    void advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, std::vector<Violation>* violations);
+    void advance_each(std::size_t begin, std::size_t end, const TimeSpan& step, BlockRecord* record);
+    void advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, BlockRecord* record);
+    void note_passages(std::size_t i, const PhaseState& end, double duration, BlockRecord& record) const;
     [[nodiscard]] FreeFlight flight_of(std::size_t i, const TimeSpan& step) const;
     void catch_up(std::size_t i);
     void catch_up_active(std::span<const std::uint32_t> active);
@@ -139,6 +145,7 @@ private:
     const ForceField& forces_;
     Integrator integrator_;
     RunCheck* check_;
+    const PassageFinder* passages_;
     std::optional<DeferredSteps> deferred_;
 };
 

@@ -21,6 +21,7 @@
 #include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/births.h"
 #include "ricochet/simulation/cloud_motion.h"
+#include "ricochet/simulation/counters/counter_tally.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/free_flights.h"
@@ -210,6 +211,7 @@ struct Simulation::Impl {
     std::unique_ptr<RunCheck> check;                   ///< null without options.verify
     std::optional<std::uint64_t> known_collider_hash;  ///< once it is known; it does not change
     std::unique_ptr<HeatStage> heat;                   ///< null if temperatures do not change
+    std::unique_ptr<CounterTally> counters;            ///< null without counters
     RunRecorder recorder;
     std::vector<BirthRecord> birth_records;  ///< of the step, if particles spawn others
     FreeFlights free_flights;

@@ -7,6 +7,7 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/simulation/cloud_motion.h"
+#include "ricochet/simulation/counters/counter_tally.h"
 #include "ricochet/simulation/coupled_motion.h"
 #include "ricochet/simulation/driven_motion.h"
 #include "ricochet/simulation/heat_stage.h"
@@ -299,6 +300,7 @@ ModuleList make_modules(const ModuleParts& parts) {
     if (parts.coupled.is_active() || parts.share.keeps_together()) modules.add(std::make_unique<SpringsModule>(parts));
     if (parts.driven.is_active()) modules.add(std::make_unique<BodiesModule>(parts));
     if (parts.check != nullptr) modules.add(std::make_unique<VerificationModule>(*parts.check, parts));
+    if (parts.counters != nullptr) modules.add(std::make_unique<CountersModule>(*parts.counters));
     return modules;
 }
 

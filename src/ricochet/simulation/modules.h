@@ -7,6 +7,7 @@
 namespace ricochet {
 
 class CloudMotion;
+class CounterTally;
 class CoupledMotion;
 class DrivenMotion;
 class HeatStage;
@@ -37,6 +38,7 @@ struct ModuleParts {
     CoupledMotion& coupled;
     PairMotion* pairs;
     RunCheck* check;
+    CounterTally* counters;
 };
 
 /// Returns the modules of a run, in the order of their calls.

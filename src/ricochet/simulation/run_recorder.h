@@ -18,6 +18,7 @@
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation.h"
+#include "ricochet/simulation/counters/passages.h"
 #include "ricochet/simulation/query_schedule.h"
 #include "ricochet/verify/impact_audit.h"
 #include "ricochet/verify/sphere_overlaps.h"
@@ -114,6 +115,7 @@ struct BlockRecord {
     std::vector<ContactRecord> contact_records;
     std::vector<ColliderLoad> loads;
     std::vector<HeatGain> heat;
+    std::vector<Passage> passages;
     std::vector<Violation> violations;
     std::optional<Runaway> runaway;  ///< the first particle that has exceeded kMaxSpeed
 

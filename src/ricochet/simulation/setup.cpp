@@ -145,6 +145,12 @@ std::unique_ptr<HeatStage> make_heat(std::optional<HeatSettings>& heat, const Pa
     return std::make_unique<HeatStage>(std::move(*heat), column.value(), forces, bodies);
 }
 
+/// Returns null without counters.
+std::unique_ptr<CounterTally> make_counters(const SimulationSetup& setup) {
+    if (setup.counters.empty()) return nullptr;
+    return std::make_unique<CounterTally>(setup.counters, setup.options.response == ResponseKind::exact);
+}
+
 bool keeps_origin(const std::vector<Emitter>& emitters, const std::vector<ParticlesForceEntry>& mutual) {
     const bool asks_for_emitters = std::any_of(
         mutual.begin(), mutual.end(), [](const ParticlesForceEntry& entry) { return !entry.emitters.empty(); });
@@ -284,23 +290,24 @@ Simulation::Impl::Impl(SimulationSetup setup)
       schedule(clock),
       check(options.verify ? std::make_unique<RunCheck>(world, bodies.get()) : nullptr),
       heat(make_heat(setup.heat, store, forces, bodies.get())),
+      counters(make_counters(setup)),
       recorder(options.triangle_totals ? world.surface_count() : 0,
                count_with_loads(bodies.get(), materials, *colliders), options.record_contacts,
                offspring != nullptr || (heat && heat->meter() != nullptr)),
-      free_flights(store, schedule, forces, options.integrator, check.get()),
+      free_flights(store, schedule, forces, options.integrator, check.get(), counters ? &counters->finder() : nullptr),
       mover({store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
-             heat ? heat->meter() : nullptr}),
-      clouds(make_clouds(
-          emitters,
-          {store, schedule, recorder, *response, coupled, offspring.get(), check.get(), heat ? heat->meter() : nullptr},
-          mover)),
+             heat ? heat->meter() : nullptr, counters ? &counters->finder() : nullptr}),
+      clouds(make_clouds(emitters,
+                         {store, schedule, recorder, *response, coupled, offspring.get(), check.get(),
+                          heat ? heat->meter() : nullptr, counters ? &counters->finder() : nullptr},
+                         mover)),
       pairs(make_pairs(options, store, schedule, mover, *response, coupled)),
       retirement(store, schedule, bounds) {
     connect();
     if (!share.is_alone()) keep_springs_together();
-    modules =
-        make_modules({store, recorder, mover, clock, world, materials, options, bounds, retirement, share, bodies.get(),
-                      offspring.get(), heat.get(), clouds.get(), driven, coupled, pairs.get(), check.get()});
+    modules = make_modules({store, recorder, mover, clock, world, materials, options, bounds, retirement, share,
+                            bodies.get(), offspring.get(), heat.get(), clouds.get(), driven, coupled, pairs.get(),
+                            check.get(), counters.get()});
     add_first(setup.particles);
     if (!share.is_alone()) keep_share();
     bind_modules();

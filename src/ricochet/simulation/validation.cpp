@@ -149,6 +149,15 @@ void validate_springs(const SimulationSetup& setup) {
     }
 }
 
+/// Counters need names, because the summary and messages call them by their names.
+void validate(const CounterDescription& counter, std::size_t number) {
+    const Subject subject("counter", number, counter.name);
+    if (counter.name.empty()) subject.refuse("name", "none", "a name");
+    subject.require(counter.center, kCoordinate, "center", "m");
+    subject.require_direction(counter.normal, "normal");
+    subject.require(counter.radius, kLength, "radius", "m");
+}
+
 void validate(const Box3& bounds) {
     const Subject subject("bounds");
     for (int axis = 0; axis < 3; ++axis) {
@@ -217,6 +226,8 @@ const SimulationSetup& validated(const SimulationSetup& setup) {
     validate_together(setup);
     validate_names(setup.colliders, "collider");
     validate_names(setup.emitters, "emitter");
+    for (std::size_t k = 0; k < setup.counters.size(); ++k) validate(setup.counters[k], k);
+    validate_names(setup.counters, "counter");
     validate_emitters(setup);
     validate_springs(setup);
     validate_heat(setup);

@@ -164,6 +164,7 @@ void validate_ranks(const SimulationSetup& setup) {
     if (setup.solver) refuse("solver", "it steps all particles together");
     if (!setup.particles_forces.empty()) refuse("particle_forces", "each particle pulls at all others");
     if (setup.options.particle_contacts) refuse("particle_contacts", "spheres that meet move together");
+    if (!setup.counters.empty()) refuse("counters", "each process counts only its own particles");
     if (!setup.bodies.empty()) refuse("bodies", "what all particles do to a body moves it within a step");
     if (std::any_of(setup.emitters.begin(), setup.emitters.end(), is_cloud)) {
         refuse("cloud", "children fly along what their parents have flown");

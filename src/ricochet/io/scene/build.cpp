@@ -174,6 +174,7 @@ Fields<Unbound> scene_fields() {
         {"reference_camera", ValueType::object, "Camera for emitter rates per screen area.", &reference_camera_spec(),
          Without{"no such rates"}},
         {"bounds", ValueType::object, "Box outside which particles are retired.", &bounds_spec(), Without{"no box"}},
+        {"counters", ValueType::list, "Disks that count the particles that pass them.", &counter_spec()},
         {"output", ValueType::object, "Files that a run writes.", &output_spec(), Without{kDefaults}},
         {"camera", ValueType::object, "Camera of pictures.", &camera_spec(), Without{"a camera that sees everything"}},
         {"picture", ValueType::object, "Light and surroundings of pictures.", &picture_spec(), Without{"a clear day"}}};
@@ -305,6 +306,7 @@ SceneDescription build_scene(const JsonNode& root, const std::filesystem::path& 
     build_particle_forces(context, scene.setup);
     check_clouds(context, scene.setup);
     build_heat(context, forces, scene.setup);
+    build_counters(context, scene.setup);
     warn_of_forces_on_nobody(context, scene.setup);
     warn_of_forces_without_radius(context, scene.setup);
     const auto output = context.root().object("output").read<OutputKeys>();

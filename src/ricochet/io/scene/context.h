@@ -108,6 +108,7 @@ private:
 /// Table of {"file": ...}, which can replace a list of particles.
 [[nodiscard]] const ObjectSpec& particle_file_spec();
 [[nodiscard]] const ObjectSpec& springs_spec();
+[[nodiscard]] const ObjectSpec& counter_spec();
 [[nodiscard]] const ObjectSpec& camera_spec();
 [[nodiscard]] const ObjectSpec& picture_spec();
 [[nodiscard]] const ObjectSpec& collider_looks_spec();
@@ -266,6 +267,8 @@ void build_heat(const SceneContext& context, const ForceBuilder& forces, Simulat
                                                           const ObjectView& view);
 /// Builds the springs. Appends the particles of ropes, chains and cloth to the particles of the scene.
 void build_springs(SceneContext& context, SimulationSetup& setup);
+/// Builds the counters. Reports names that are taken.
+void build_counters(const SceneContext& context, SimulationSetup& setup);
 /// Sets the memory that a run needs. If it exceeds the limit of this process, reports the part that needs most. Warns
 /// of bursts above the largest population.
 void check_memory(const SceneContext& context, SceneDescription& scene);

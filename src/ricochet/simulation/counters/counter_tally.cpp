@@ -1,0 +1,53 @@
+#include "ricochet/simulation/counters/counter_tally.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/core/hash.h"
+
+namespace ricochet {
+
+CounterTally::CounterTally(std::span<const CounterDescription> counters, bool has_pieces)
+    : counters_(counters.begin(), counters.end()), finder_(counters, has_pieces) {
+    for (const CounterDescription& counter : counters) totals_.push_back({counter.name});
+}
+
+void CounterTally::add(std::vector<Passage> passages) {
+    std::stable_sort(passages.begin(), passages.end(),
+                     [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
+    for (const Passage& passage : passages) {
+        CounterTotals& totals = totals_[passage.counter];
+        ++(passage.is_forward ? totals.forward : totals.backward);
+        (passage.is_forward ? totals.forward_mass : totals.backward_mass) += passage.mass;
+    }
+}
+
+void CounterTally::add_to(StateHash& hash) const {
+    for (const CounterDescription& counter : counters_) {
+        hash.add(counter.center);
+        hash.add(counter.normal);
+        hash.add(counter.radius);
+    }
+}
+
+const char* CounterTally::fault() const {
+    const auto is_sound = [](double mass) { return mass >= 0.0 && std::isfinite(mass); };
+    const bool all = std::all_of(totals_.begin(), totals_.end(), [&](const CounterTotals& totals) {
+        return is_sound(totals.forward_mass) && is_sound(totals.backward_mass);
+    });
+    return all ? nullptr : "a counter with a mass that none can have";
+}
+
+void CountersModule::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
+                            std::vector<ColliderLoad>& /*loads*/) {
+    std::vector<Passage> passages;
+    for (const BlockRecord& block : blocks) {
+        passages.insert(passages.end(), block.passages.begin(), block.passages.end());
+    }
+    counters_.add(std::move(passages));
+}
+
+const char* CountersModule::fault(double /*time*/) const { return counters_.fault(); }
+
+}  // namespace ricochet

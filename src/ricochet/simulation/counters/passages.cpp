@@ -1,0 +1,136 @@
+#include "ricochet/simulation/counters/passages.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "ricochet/geometry/sweep/path.h"
+
+namespace ricochet {
+namespace {
+
+/// Halvings of the time of a passage. Local: a double has no more bits, and more halvings would change nothing.
+constexpr int kPassageHalvings = 64;
+
+/// Times within a piece at which its height above a plane is extreme, in s, in ascending order.
+struct Extremes {
+    std::array<double, 2> time{};
+    int count = 0;
+
+    void add(double s, double duration) {
+        if (s > 0.0 && s < duration) time[static_cast<std::size_t>(count++)] = s;
+    }
+};
+
+/// Returns the extremes of the height along a path. Between them the height rises or falls.
+Extremes extremes_of(const Path& path, const Vec3& normal, double duration) {
+    const double a = 3.0 * dot(normal, path.c[3]);
+    const double b = 2.0 * dot(normal, path.c[2]);
+    const double c = dot(normal, path.c[1]);
+    Extremes extremes;
+    const double discriminant = b * b - 4.0 * a * c;
+    if (!(discriminant > 0.0)) return extremes;
+    // The root with the larger magnitude has no cancellation; the other follows from the product of both.
+    const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+    double first = a != 0.0 ? q / a : -1.0;
+    double second = q != 0.0 ? c / q : -1.0;
+    if (first > second) std::swap(first, second);
+    extremes.add(first, duration);
+    extremes.add(second, duration);
+    return extremes;
+}
+
+bool is_still(const FlownPiece& piece) {
+    return !(piece.duration > 0.0) ||
+           (piece.path.c[1] == Vec3{} && piece.path.c[2] == Vec3{} && piece.path.c[3] == Vec3{});
+}
+
+/// Follows one particle past one disk.
+class DiskTrace {
+public:
+    DiskTrace(const CounterDisk& disk, const Vec3& from) : disk_(disk), is_in_front_(disk.is_in_front(from)) {}
+
+    /// Follows a path for a duration, in s. next: stored position at which the particle continues; it replaces the end
+    /// of the path, from which it differs by the distance of a safe position from a contact.
+    template <class Report>
+    void follow(const Path& path, double duration, const Vec3& next, const Report& report) {
+        double from = 0.0;
+        const Extremes extremes = extremes_of(path, disk_.normal(), duration);
+        for (int k = 0; k < extremes.count; ++k) {
+            const double to = extremes.time[static_cast<std::size_t>(k)];
+            pass(path, from, to, disk_.is_in_front(path.position(to)), report);
+            from = to;
+        }
+        pass(path, from, duration, disk_.is_in_front(next), report);
+    }
+
+private:
+    template <class Report>
+    void pass(const Path& path, double from, double to, bool is_in_front, const Report& report) {
+        if (is_in_front == is_in_front_) return;
+        for (int k = 0; k < kPassageHalvings; ++k) {
+            const double middle = 0.5 * (from + to);
+            (disk_.is_in_front(path.position(middle)) == is_in_front ? to : from) = middle;
+        }
+        is_in_front_ = is_in_front;
+        if (disk_.contains(path.position(to))) report(is_in_front);
+    }
+
+    const CounterDisk& disk_;
+    bool is_in_front_;
+};
+
+}  // namespace
+
+CounterDisk::CounterDisk(const CounterDescription& counter)
+    : center_(counter.center), normal_(normalized(counter.normal / max_abs(counter.normal))), radius_(counter.radius) {}
+
+bool CounterDisk::contains(const Vec3& position) const {
+    const Vec3 offset = position - center_;
+    return length(offset - dot(normal_, offset) * normal_) <= radius_;
+}
+
+PassageFinder::PassageFinder(std::span<const CounterDescription> counters, bool has_pieces)
+    : disks_(counters.begin(), counters.end()), has_pieces_(has_pieces) {}
+
+bool PassageFinder::may_pass(const Vec3& from, const Vec3& to, double margin) const {
+    return std::any_of(disks_.begin(), disks_.end(), [&](const CounterDisk& disk) {
+        const double a = disk.height(from);
+        const double b = disk.height(to);
+        return !(std::min(a, b) > margin) && !(std::max(a, b) < -margin);
+    });
+}
+
+void PassageFinder::trace(const MovedParticle& moved, std::span<const FlownPiece> pieces,
+                          std::vector<Passage>& passages) const {
+    if (!is_finite(moved.from) || !is_finite(moved.to)) return;
+    const auto next_moving = [&](std::size_t k) {
+        while (k < pieces.size() && is_still(pieces[k])) ++k;
+        return k;
+    };
+    const std::size_t first = next_moving(0);
+    for (std::uint32_t n = 0; n < disks_.size(); ++n) {
+        const auto report = [&](bool is_forward) { passages.push_back({n, is_forward, moved.id, moved.mass}); };
+        DiskTrace trace(disks_[n], moved.from);
+        const Vec3& start = first < pieces.size() ? pieces[first].path.c[0] : moved.to;
+        if (start != moved.from) trace.follow(line_path(moved.from, start - moved.from, 1.0), 1.0, start, report);
+        for (std::size_t k = first; k < pieces.size();) {
+            const std::size_t next = next_moving(k + 1);
+            const Vec3& end = next < pieces.size() ? pieces[next].path.c[0] : moved.to;
+            trace.follow(pieces[k].path, pieces[k].duration, end, report);
+            k = next;
+        }
+    }
+}
+
+void PassageFinder::trace(const MovedParticle& moved, std::span<const Segment> segments,
+                          std::vector<Passage>& passages) const {
+    std::vector<FlownPiece> pieces;
+    for (const Segment& segment : segments) {
+        pieces.push_back({line_path(segment.from, segment.to - segment.from, 1.0), 0.0, 1.0, {}, {}, false});
+    }
+    trace(moved, pieces, passages);
+}
+
+}  // namespace ricochet

@@ -1,0 +1,75 @@
+/// \file
+/// Private to the simulation: passages of particles through the disks of counters.
+///
+/// The side of a stored position decides all. A path between two stored positions passes the plane of a disk as often
+/// as its side changes there, in turns forward and backward. The side of a stored position is computed in the same way
+/// in the step that ends there and in the step that begins there. So no passage is lost or counted twice.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ricochet/core/segment.h"
+#include "ricochet/core/vec3.h"
+#include "ricochet/dynamics/coupled_member.h"
+#include "ricochet/simulation/counters/counter.h"
+
+namespace ricochet {
+
+/// A particle has passed the disk of a counter.
+struct Passage {
+    std::uint32_t counter = 0;   ///< index in the setup
+    bool is_forward = false;     ///< along the normal
+    std::uint64_t particle = 0;  ///< id
+    double mass = 0.0;           ///< kg
+};
+
+/// A particle that has moved between two stored positions.
+struct MovedParticle {
+    std::uint64_t id = 0;
+    double mass = 0.0;  ///< kg
+    Vec3 from;          ///< m, stored position at the start of the move
+    Vec3 to;            ///< m, stored position at its end
+};
+
+/// The disk of a counter.
+class CounterDisk {
+public:
+    explicit CounterDisk(const CounterDescription& counter);
+
+    /// Returns the height of a position above the disk's plane, in m. It is negative behind the disk.
+    [[nodiscard]] double height(const Vec3& position) const { return dot(normal_, position - center_); }
+    /// Returns true if a position belongs to the front side.
+    [[nodiscard]] bool is_in_front(const Vec3& position) const { return height(position) >= 0.0; }
+    /// Returns true if the projection of a position onto the plane lies in the disk or on its rim.
+    [[nodiscard]] bool contains(const Vec3& position) const;
+    [[nodiscard]] const Vec3& normal() const { return normal_; }
+
+private:
+    Vec3 center_;
+    Vec3 normal_;  // of length 1
+    double radius_;
+};
+
+/// Finds the passages of moved particles. Any number of threads can use it at once.
+class PassageFinder {
+public:
+    /// has_pieces: the response reports the pieces of paths; otherwise it moves particles along segments.
+    PassageFinder(std::span<const CounterDescription> counters, bool has_pieces);
+
+    /// Returns true if trace() needs the segments of a move instead of its pieces.
+    [[nodiscard]] bool needs_segments() const { return !has_pieces_; }
+    /// Appends the passages of a particle along the pieces of its path.
+    void trace(const MovedParticle& moved, std::span<const FlownPiece> pieces, std::vector<Passage>& passages) const;
+    /// Appends the passages of a particle along segments.
+    void trace(const MovedParticle& moved, std::span<const Segment> segments, std::vector<Passage>& passages) const;
+    /// Returns false if no path between two positions passes a plane, if it lies within `margin`, in m, of its chord.
+    [[nodiscard]] bool may_pass(const Vec3& from, const Vec3& to, double margin) const;
+
+private:
+    std::vector<CounterDisk> disks_;
+    bool has_pieces_;
+};
+
+}  // namespace ricochet

@@ -1,9 +1,10 @@
 /// \file
 /// Private to the simulation: an optional capability of a run, called at the stages of a step.
 ///
-/// A module keeps its own state and reaches the particles through the objects that it was made with. The stages call
-/// it once for all particles of a generation or a block, never for a single particle. The list in modules.cpp has all
-/// modules in the order of their calls. A new module needs its class, a line in that list, and tests.
+/// Simulation::Impl owns the objects with the state of modules, and a module refers to them through ModuleParts. The
+/// stages call it once for all particles of a generation or a block, never for a single particle. The list in
+/// modules.cpp has all modules in the order of their calls. A new module needs its class, a line in that list, and
+/// tests.
 #pragma once
 
 #include <algorithm>

@@ -40,6 +40,14 @@ class Simulation(unittest.TestCase):
         self.assertEqual(ricochet.Simulation(bouncing(), verify=True).statistics["violations"], 0)
         self.assertIn("unsimulated_time: time lost because a budget was spent, in s, summed over particles", lines)
 
+    def test_counters_count_the_passages_of_a_falling_ball(self):
+        self.assertEqual(ricochet.Simulation(bouncing()).counters, [])
+        gate = {"name": "gate", "center": [0, 0, 0.9], "normal": [0, 0, -1], "radius": 10}
+        simulation = ricochet.Simulation(bouncing(counters=[gate]))
+        simulation.run(until=0.2)  # the lower ball falls from 1 m to 0.8 m, the upper one from 2 m to 1.8 m
+        self.assertEqual(simulation.counters, [{"name": "gate", "forward": 1, "backward": 0,
+                                                "forward_mass": simulation.particles.mass[0], "backward_mass": 0.0}])
+
     def test_steps_and_runs_give_the_same_bits(self):
         one, other = ricochet.Simulation(bouncing()), ricochet.Simulation(bouncing())
         one.advance(100)

@@ -227,6 +227,18 @@ py::list bodies_of(const Handle& handle) {
     });
 }
 
+py::list counters_of(const Handle& handle) {
+    return handle.read([](const Simulation& simulation) {
+        py::list list;
+        for (const CounterTotals& c : simulation.counters()) {
+            list.append(py::dict(py::arg("name") = c.name, py::arg("forward") = c.forward,
+                                 py::arg("backward") = c.backward, py::arg("forward_mass") = c.forward_mass,
+                                 py::arg("backward_mass") = c.backward_mass));
+        }
+        return list;
+    });
+}
+
 py::dict statistics_of(const Handle& handle) {
     const auto [statistics, is_verified] = handle.read(
         [](const Simulation& simulation) { return std::pair(simulation.statistics(), simulation.options().verify); });
@@ -335,6 +347,9 @@ void bind_state(py::class_<Handle>& type) {
         .def_property_readonly("colliders", &colliders_of, "List of the colliders' names.")
         .def_property_readonly("bodies", &bodies_of,
                                "List with a dictionary for each dynamic body: position and motion, in SI units.")
+        .def_property_readonly("counters", &counters_of,
+                               "List with a dictionary for each counter of the scene: name, passages forward and "
+                               "backward, and their masses in kg.")
         .def("__len__",
              [](const Handle& handle) { return handle.read([](const Simulation& s) { return s.particles().size(); }); })
         .def("__repr__", [](const Handle& handle) {

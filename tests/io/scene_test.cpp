@@ -330,7 +330,8 @@ const std::vector<Spoiled> kSpoiled = {
      "s.json:1:17: gravity: unknown key; known keys: \"ricochet\", \"$schema\", \"simulation\", \"forces\", "
      "\"particle_forces\", \"flows\", \"materials\", \"colliders\", \"frames\", \"emitters\", \"particles\", "
      "\"springs\", "
-     "\"particle_contacts\", \"heat\", \"attributes\", \"reference_camera\", \"bounds\", \"output\", \"camera\", "
+     "\"particle_contacts\", \"heat\", \"attributes\", \"reference_camera\", \"bounds\", \"counters\", \"output\", "
+     "\"camera\", "
      "\"picture\""},
     {R"("emitters": [{"type": "box", "size": [1, 1, 1], "radius": 2, "burst": 1}])",
      "s.json:1:65: emitters[0].radius: not a key of type \"box\", it belongs to \"disk\", \"sphere\"; did you mean "

@@ -102,15 +102,19 @@ TEST(MeshTopology, CountsAnEdgeOfThreeFaces) {
     EXPECT_EQ(report.shells, 1U);
 }
 
-TEST(MeshTopology, KeepsTwoCubesOnACommonEdgeClosed) {
+/// Returns the faces of two cubes with 14 vertices that share the edge 0-1.
+auto two_cubes_on_an_edge() {
     auto both = kCube;
-    // The second cube's own vertices are 8 to 13. The common edge is 0-1.
     const std::uint32_t renamed[] = {1, 0, 8, 9, 10, 11, 12, 13};
     for (const auto& face : kCube) {
         both.emplace_back();
         for (const std::uint32_t v : face) both.back().push_back(renamed[v]);
     }
-    const TopologyReport report = report_of(14, both);
+    return both;
+}
+
+TEST(MeshTopology, KeepsTwoCubesOnACommonEdgeClosed) {
+    const TopologyReport report = report_of(14, two_cubes_on_an_edge());
     EXPECT_TRUE(report.closed);
     EXPECT_EQ(report.nonmanifold_edges, 1U);
     EXPECT_EQ(report.boundary_loops, 0U);
@@ -119,12 +123,7 @@ TEST(MeshTopology, KeepsTwoCubesOnACommonEdgeClosed) {
 }
 
 TEST(MeshTopology, CountsTheEdgesOfATurnedFaceAlsoWhereTwoCubesTouch) {
-    auto both = kCube;
-    const std::uint32_t renamed[] = {1, 0, 8, 9, 10, 11, 12, 13};
-    for (const auto& face : kCube) {
-        both.emplace_back();
-        for (const std::uint32_t v : face) both.back().push_back(renamed[v]);
-    }
+    auto both = two_cubes_on_an_edge();
     std::reverse(both[0].begin(), both[0].end());
     EXPECT_EQ(report_of(14, both).inconsistent_edges, 4U);
 }

@@ -47,8 +47,7 @@ inline constexpr Setting<Struct> kSphereContactTable[] = {
 inline constexpr Setting<PairContactSettings> kPairBudgetTable[] = {
     {"impact_budget", &PairContactSettings::impact_budget, kCountFromOne, "",
      "Largest number of impacts of one sphere on others in one step. A sphere that spends the budget stops for the "
-     "rest "
-     "of the step, and the omitted time is counted."},
+     "rest of the step, and the omitted time is counted."},
 };
 
 inline constexpr Setting<ErrorTolerance> kToleranceTable[] = {

@@ -169,7 +169,7 @@ double ParticleMover::planned_duration(bool is_first) const {
     return is_planned ? particle_.planned->path.duration : step_.remaining() + particle_.beyond;
 }
 
-/// Takes back what a kick has added for the time left, at an impact on a moving surface. From then on the forces act on
+/// Subtracts the impulse of a kick for the time left, at an impact on a moving surface. From then on the forces act on
 /// the flight itself.
 void ParticleMover::retract_kick(const Flight& flight) {
     if (!flies_anew_) {

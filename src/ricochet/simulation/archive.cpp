@@ -177,35 +177,35 @@ void Simulation::Impl::require_sound_state() const {
     };
     const auto require_none = [&](const char* fault) { require(fault == nullptr, fault); };
     const auto in_range = [](const Vec3& v) { return is_finite(v) && max_abs(v) <= kLargestCoordinate; };
-    require(p.size() < kNoSupport, "more particles than there can be");
+    require(p.size() < kNoSupport, "too many particles");
     require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
-            "particles that are not in the order of their ids");
-    require(p.id.empty() || p.id.back() < store.next_id(), "an id that is not given yet");
+            "particles out of the order of their ids");
+    require(p.id.empty() || p.id.back() < store.next_id(), "an id above the last one of the run");
     for (std::size_t i = 0; i < p.size(); ++i) {
         for (const SurfaceId surface : p.support[i]) {
-            require(surface == kNoSupport || surface < world.surface_count(), "a particle on no surface");
+            require(surface == kNoSupport || surface < world.surface_count(), "a particle on an unknown surface");
             const bool may_sleep_there =
                 surface == kNoSupport || !bodies || bodies->body_of(surface) == kWorldBody || p.held[i] == 0;
-            require(may_sleep_there, "a particle that sleeps on a surface that moves");
+            require(may_sleep_there, "a particle that sleeps on a moving surface");
         }
         const bool moves = p.frozen[i] == 0;
         require(!moves || (in_range(p.position[i]) && in_range(p.velocity[i]) && in_range(p.spin[i])),
-                "a particle that moves and is nowhere");
+                "a moving particle with a position, velocity or spin out of range");
         require(p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate,
-                "a mass or a radius that none can have");
+                "a mass or radius out of range");
         modules.each([&](const Module& module) { require_none(module.fault_of(i)); });
         const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
-        require(!is_released || bodies, "a particle that a body has let go, without bodies");
-        require(store.is_sound(i), "a particle with a history that none can have");
+        require(!is_released || bodies, "a particle released by a body, without bodies");
+        require(store.is_sound(i), "a particle with an impossible history");
     }
     const double now = clock.time_at(recorder.statistics().steps);
     modules.each([&](const Module& module) { require_none(module.fault(now)); });
     for (const DrivenBody& body : driven.bodies()) {
         require(in_range(body.center()) && in_range(body.velocity()) && in_range(body.angular_velocity()),
-                "a body that is nowhere");
+                "a body with a position or velocity out of range");
     }
     for (const Origin& origin : p.origin) {
-        require(origin.emitter == kNoEmitter || origin.emitter < emitters.size(), "a particle of no emitter");
+        require(origin.emitter == kNoEmitter || origin.emitter < emitters.size(), "a particle of an unknown emitter");
     }
 }
 

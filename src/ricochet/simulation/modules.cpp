@@ -77,7 +77,7 @@ public:
     void append() override { clouds_.append(); }
     void compact(const std::vector<std::uint8_t>& keep) override { clouds_.compact(keep); }
     [[nodiscard]] const char* fault_of(std::size_t i) const override {
-        return clouds_.is_sound(i, store_.next_id()) ? nullptr : "a particle of a cloud that there is not";
+        return clouds_.is_sound(i, store_.next_id()) ? nullptr : "a particle of an unknown cloud";
     }
 
 private:
@@ -108,10 +108,10 @@ public:
     void count(SimulationStatistics& statistics) const override { statistics.unsolved_steps += pairs_.unsolved(); }
     void wake_all(double time) override { pairs_.wake_all(time); }
     [[nodiscard]] const char* fault_of(std::size_t i) const override {
-        return pairs_.has_material(i) ? nullptr : "a particle of no material";
+        return pairs_.has_material(i) ? nullptr : "a particle of an unknown material";
     }
     [[nodiscard]] const char* fault(double /*time*/) const override {
-        return pairs_.is_sound(store_.next_id()) ? nullptr : "contacts or sleepers that there cannot be";
+        return pairs_.is_sound(store_.next_id()) ? nullptr : "impossible contacts or sleeping particles";
     }
 
 private:
@@ -222,7 +222,7 @@ public:
     }
     [[nodiscard]] bool allows_deferred_steps() const override { return true; }
     [[nodiscard]] const char* fault(double time) const override {
-        return parts_.driven.is_sound(time) ? nullptr : "a body with a path that none can have";
+        return parts_.driven.is_sound(time) ? nullptr : "a body with an impossible path";
     }
 
 private:

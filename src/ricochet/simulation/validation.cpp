@@ -103,7 +103,8 @@ void validate(const ColliderShape& shape, const Subject& subject, std::size_t ma
     }
 }
 
-/// What it gives birth to by itself, at most; rates per screen area are left out.
+/// Returns the largest number of particles that an emitter without parents can emit in a run, without those of its
+/// rate per screen area.
 double most_births(const EmitterDescription& emitter, const SimulationOptions& options) {
     if (emitter.parent) return 0.0;
     const double rate = emitter.rate.mean + emitter.rate.spread +
@@ -202,7 +203,7 @@ void validate(const ColliderDescription& collider, std::size_t number, std::size
 
 namespace {
 
-/// What has a name has one of its own.
+/// Refuses two equal names; empty names may repeat.
 template <class Named>
 void validate_names(const std::vector<Named>& all, std::string_view kind) {
     std::set<std::string_view> taken;

@@ -39,7 +39,7 @@ std::size_t validate_attribute(const SimulationSetup& setup, const Subject& subj
     return static_cast<std::size_t>(found - all.begin());
 }
 
-/// What has no surface exchanges no heat.
+/// Refuses convection and radiation for particles without a surface. least: smallest radius, in m.
 void validate_radius(const Subject& subject, const HeatSettings& heat, double least) {
     if (!heat.exchanges() || least > 0.0) return;
     subject.refuse("radius", least,

@@ -36,7 +36,7 @@ const char* CounterTally::fault() const {
     const bool all = std::all_of(totals_.begin(), totals_.end(), [&](const CounterTotals& totals) {
         return is_sound(totals.forward_mass) && is_sound(totals.backward_mass);
     });
-    return all ? nullptr : "a counter with a mass that none can have";
+    return all ? nullptr : "a counter with a mass out of range";
 }
 
 void CountersModule::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,

@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const std::vector<CounterTotals>& totals() const { return totals_; }
     /// Adds the passages of a substep. Their order does not matter, because they are added in the order of particles.
     void add(std::vector<Passage> passages);
-    /// Adds what a saved state depends on to its fingerprint.
+    /// Adds the settings of the counters to the fingerprint of a saved state.
     void add_to(StateHash& hash) const;
     /// Returns the reason why no run can have these totals, or null.
     [[nodiscard]] const char* fault() const;

@@ -31,7 +31,7 @@ struct Case {
         RandomSequence random(seed, 7, 0);
         surfaces[0].normal = {-0.96440577544029349, -0.14867308172598356, -0.21867284940637974};
         surfaces[1].normal = {0.29606246011059029, 0.29606246011059029, 0.90812666485822902};
-        for (SupportSurface& surface : surfaces) surface.friction = 2.0;
+        for (SupportSurface& surface : surfaces) surface.friction = 4.0;
         surfaces[0].curvature = -1200.0 * random.uniform();
         forces = 4000.0 * random.unit_vector();
         motion = along_surfaces({50.0 * random.unit_vector(), 2000.0 * random.unit_vector()}, kRadius, surfaces, {});

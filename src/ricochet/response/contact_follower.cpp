@@ -69,6 +69,7 @@ ContactFollower::Stop ContactFollower::advance(const Pull& pull, double duration
         return {std::nullopt, false, true};
     }
     if (!manifold_.is_curved() && !manifold_.is_turned(surfaces())) {
+        if (const auto slip = plan_turning_slip(pull, duration)) return follow_flat(*slip, pull);
         const ContactInterval interval = plan(pull, duration);
         if (interval.at_rest) {
             particle().spin = interval.motion.spin;
@@ -127,9 +128,26 @@ ContactInterval ContactFollower::plan(const Pull& pull, double duration) {
     return interval;
 }
 
+/// Plans an interval in which friction turns, and loads the manifold: one flat surface resists nothing but slip, and
+/// forces are constant. Returns std::nullopt if another plan describes the interval better.
+std::optional<FlatInterval> ContactFollower::plan_turning_slip(const Pull& pull, double duration) {
+    const bool has_constant_forces = !pull.acts || rules().forces.is_uniform_for(state());
+    if (manifold_.size() != 1 || rules().frame != nullptr || !has_constant_forces) return std::nullopt;
+    const SupportSurface surface = manifold_.supports(surfaces()).surfaces[0];
+    const double radius = state().radius;
+    if (radius > 0.0 && (surface.rolling_friction > 0.0 || surface.spinning_friction > 0.0)) return std::nullopt;
+    const Motion motion = along_surfaces({state().velocity, particle().spin}, radius, {&surface, 1}, {});
+    const TurningSlip slip(motion, radius, surface, pull.forces, pull.pressure);
+    const double lasts = slip.longest(duration);
+    if (!(lasts >= std::min(duration, step_.duration() / kShortestIntervals))) return std::nullopt;
+    ContactInterval interval{motion, {}, {}, lasts, false, 0.0, false, {slip.reaction()}, {}};
+    manifold_.load(interval);
+    return FlatInterval({interval, pull.forces}, slip);
+}
+
 /// Follows one interval on flat surfaces.
 ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, const Pull& pull) {
-    const FlatPath trajectory = path_along(flat);
+    FlatPath trajectory = path_along(flat, flat.duration());
     if (trajectory.path.duration <= 0.0) return {std::nullopt, true, false};
     step_.log().note_impact();
     const double before = step_.remaining();
@@ -137,7 +155,17 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     const Vec3 from = state().position;
     const double most = twice_kinetic({state().velocity, particle().spin}, state().radius);
     held_.find();
-    Stop stop{follow_path(step_, trajectory.path, held_.all()), trajectory.leaves_surface, false};
+    RefinementBudget looks;
+    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+        if (!flat.turns() || !(time > 0.0)) return std::nullopt;
+        const FlatPath refined = path_along(flat, time);
+        const double offset = step_.geometry().contact_offset(refined.path.end);
+        if (!looks.may_improve(tried.position(time), refined.path.end, offset)) return std::nullopt;
+        trajectory = refined;
+        return refined.path;
+    };
+    std::optional<Contact> contact = follow_path(step_, trajectory.path, held_.all(), closer);
+    Stop stop{std::move(contact), trajectory.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
     const bool is_over = !stop.is_early() || elapsed >= interval.duration;
@@ -159,18 +187,19 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     return stop;
 }
 
-/// Returns the path of an interval, up to the end of a surface. The path's end keeps the contact offset.
-ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval) const {
-    Path path = interval.path(state().position, interval.duration());
+/// Returns the path of the first `time` seconds of an interval, up to the end of a surface. The path's end keeps the
+/// contact offset.
+ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interval, double time) const {
+    Path path = interval.path(state().position, time);
     if (!is_finite(path.end)) return {path, false};
     const double slack = kEdgeOffsets * step_.geometry().contact_offset(state().position);
-    double on = interval.duration();
+    double on = time;
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
         of_contact_point.c[0] -= state().radius * manifold_[k].normal;
         on = std::min(on, rules().world.time_over(manifold_[k].surface, of_contact_point, slack));
     }
-    const bool leaves = on < interval.duration();
+    const bool leaves = on < time;
     if (leaves) path = interval.path(state().position, on);
     if (path.duration > 0.0) keep_offset(path, interval);
     return {path, leaves};

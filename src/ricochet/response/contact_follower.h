@@ -63,8 +63,9 @@ private:
     [[nodiscard]] bool needs_arc() const;
     [[nodiscard]] Vec3 forces_in_middle(const ContactInterval& interval) const;
     [[nodiscard]] FlatInterval plan_by_middle(PlannedInterval begin, double pressure, double duration);
+    [[nodiscard]] std::optional<FlatInterval> plan_turning_slip(const Pull& pull, double duration);
     [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
-    [[nodiscard]] FlatPath path_along(const FlatInterval& interval) const;
+    [[nodiscard]] FlatPath path_along(const FlatInterval& interval, double time) const;
     void keep_offset(Path& path, const FlatInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);
     [[nodiscard]] std::optional<CurvedPath> path_along(const CurvedContact& arc) const;

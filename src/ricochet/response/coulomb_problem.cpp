@@ -25,6 +25,12 @@ constexpr std::size_t kShortStarts = 3;
 /// search.
 constexpr std::array kOthersAt{kStiffCompliance, 1e-8, 1e-6};
 constexpr std::array kSweepsToOther{30, 300};
+/// Compliances at which a short search begins, and sweeps before its second attempt. Reason: of 1600 problems of a ball
+/// that rolls over concave edges this solves all, and the way from soft contacts half. Of random problems that both
+/// solve, one in eighty has several answers and gets another one. Local: starts of this search, whose result is
+/// checked.
+constexpr std::array kStiffAtOnce{1e-6, kStiffCompliance};
+constexpr int kSweepsAtOnce = 3;
 /// Local: the fastest stiffening of a short search; parts of the friction, and sweeps for each. kCoulombResidual
 /// decides when the problem is solved.
 constexpr double kSomeStiffening = 0.2;
@@ -39,7 +45,7 @@ bool CoulombProblem::solve(Effort effort, double friction) {
     if (scale == 0.0) return true;
     if (equations_.are_independent()) {
         residual_ = equations_.solve_independent();
-    } else if (contacts() > 1 || !solve_single()) {
+    } else if (!(contacts() > 1 ? effort == Effort::some && solve_at_once() : solve_single())) {
         follow({}, effort);
         if (effort == Effort::all && runs_away_ && !(residual_ <= kNearlySolved)) look_elsewhere();
     }
@@ -59,6 +65,25 @@ double CoulombProblem::solve_with_most(Effort effort, double friction) {
 /// false if Newton's method does not find the answer without initial forces.
 bool CoulombProblem::solve_single() {
     if (equations_.newton({}, kCoulombStage)) {
+        make_rigid();
+        residual_ = equations_.find_defects({});
+        if (residual_ <= kCoulombResidual) return true;
+    }
+    equations_.set_forces({});
+    return false;
+}
+
+/// Solves almost rigid contacts without the way from soft ones. The first compliance leaves no internal stress. Returns
+/// false if that finds no answer.
+bool CoulombProblem::solve_at_once() {
+    const auto solve_stiff = [&](double compliance) { return equations_.newton({compliance, {}}, kCoulombStage); };
+    bool is_found = solve_stiff(kStiffAtOnce.front());
+    if (!is_found) {
+        equations_.set_forces({});
+        static_cast<void>(equations_.relax({kStiffAtOnce.front(), {}}, kSweepsAtOnce));
+        is_found = solve_stiff(kStiffAtOnce.front());
+    }
+    if (is_found && solve_stiff(kStiffAtOnce.back())) {
         make_rigid();
         residual_ = equations_.find_defects({});
         if (residual_ <= kCoulombResidual) return true;

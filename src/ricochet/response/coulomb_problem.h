@@ -4,7 +4,7 @@
 ///
 /// Rigid contacts can share their load in more than one way, and friction can hold a particle by wedging. The answer is
 /// the limit of the answers of compliant contacts as they become stiff. It has no internal stress without a cause, and
-/// it is the same every time.
+/// it is the same every time. A short search (Effort::some) takes any answer of almost rigid contacts.
 ///
 /// Source: R. T. Rockafellar, "Monotone operators and the proximal point algorithm", SIAM J. Control and Optimization
 /// 14 (1976), for the way from compliant to rigid contacts.
@@ -74,6 +74,7 @@ private:
     };
 
     [[nodiscard]] bool solve_single();
+    [[nodiscard]] bool solve_at_once();
     void follow(const Reached& reached, Effort effort);
     [[nodiscard]] bool make_stiff(Reached reached, Effort effort);
     void look_elsewhere();

@@ -5,6 +5,10 @@ namespace ricochet {
 Path FlatInterval::path(const Vec3& x, double time) const {
     const Vec3& v = motion().velocity;
     const Vec3& a = begin_.interval.acceleration;
+    if (slip_) {
+        const TurningSlip::State end = slip_->at(time);
+        return hermite_path(x, v, x + end.displacement, end.velocity, time);
+    }
     if (!varies_) return parabola_path(x, v, a, time);
     const Vec3 turned = middle_.interval.acceleration - a;
     const Vec3 end = x + time * (v + time * (0.5 * a + (time / (3.0 * duration())) * turned));
@@ -12,6 +16,13 @@ Path FlatInterval::path(const Vec3& x, double time) const {
 }
 
 PlannedInterval FlatInterval::mean_until(double time) const {
+    if (slip_) {
+        PlannedInterval result = middle_;
+        const TurningSlip::State end = slip_->at(time);
+        result.interval.acceleration = end.acceleration;
+        result.interval.spin_acceleration = slip_->spin_acceleration(end.friction);
+        return result;
+    }
     if (!varies_) return middle_;
     const double part = time / duration();
     const auto mean = [&](const Vec3& begin, const Vec3& middle) { return begin + part * (middle - begin); };

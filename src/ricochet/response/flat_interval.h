@@ -2,8 +2,11 @@
 /// Private to the exact response: a contact interval on flat surfaces, under forces that may vary in it.
 #pragma once
 
+#include <optional>
+
 #include "ricochet/geometry/sweep/path.h"
 #include "ricochet/response/contact_interval.h"
+#include "ricochet/response/turning_slip.h"
 
 namespace ricochet {
 
@@ -15,18 +18,22 @@ struct PlannedInterval {
 
 /// A contact interval along flat surfaces, planned with the forces at its start and in its middle. Accelerations change
 /// linearly between them. This is the midpoint rule if the interval is completed, and of second order if it ends
-/// earlier.
+/// earlier. If friction turns on one surface, the interval follows the equations of the slip instead, under constant
+/// forces.
 class FlatInterval {
 public:
     /// For constant forces.
-    explicit FlatInterval(const PlannedInterval& plan) : begin_(plan), middle_(plan), varies_(false) {}
+    explicit FlatInterval(const PlannedInterval& plan) : begin_(plan), middle_(plan) {}
     FlatInterval(const PlannedInterval& begin, const PlannedInterval& middle)
         : begin_(begin), middle_(middle), varies_(true) {}
+    FlatInterval(const PlannedInterval& plan, const TurningSlip& slip) : begin_(plan), middle_(plan), slip_(slip) {}
 
     [[nodiscard]] double duration() const { return middle_.interval.duration; }
     [[nodiscard]] const Motion& motion() const { return middle_.interval.motion; }
     /// Returns true if surface k presses on the particle in the middle of the interval.
     [[nodiscard]] bool is_held_by(std::size_t k) const { return middle_.interval.reaction[k] != Vec3{}; }
+    /// Returns true if the path only approximates the motion between its ends, to fourth order.
+    [[nodiscard]] bool turns() const { return slip_.has_value(); }
     /// Returns the path from x in the first `time` seconds.
     [[nodiscard]] Path path(const Vec3& x, double time) const;
     /// Returns the same motion after `time` seconds, but with constant accelerations and forces.
@@ -37,7 +44,8 @@ public:
 private:
     PlannedInterval begin_;
     PlannedInterval middle_;
-    bool varies_;
+    bool varies_ = false;
+    std::optional<TurningSlip> slip_{};
 };
 
 }  // namespace ricochet

@@ -154,6 +154,19 @@ Roots crossings_of_parabola(const Height& g, bool ends_on_same_side, double dura
     return {{std::min(2.0 * g.g0 / q, duration), std::min(q / (2.0 * g.g2), duration)}, 2};
 }
 
+/// Returns the first time in [0, duration] at which a height g0 + g1 s + g2 s^2 + g3 s^3, with g0 >= 0, becomes
+/// negative, else the duration.
+double first_fall_of_cubic(const Height& g, double g3, double duration) {
+    Polynomial height;
+    height.coefficients = {DoubleDouble(g.g0), DoubleDouble(g.g1), DoubleDouble(g.g2), DoubleDouble(g3)};
+    height.degree = 3;
+    height.duration = duration;
+    if (g.g0 == 0.0 && g.g1 < 0.0) return 0.0;
+    if (is_certainly_positive(height, duration)) return duration;
+    const Times falls = down_crossings(height, 0.0, duration);
+    return falls.count > 0 ? falls[0] : duration;
+}
+
 /// Returns true if the path crosses the surface around time s, coming from the given exact side. Two points of the path
 /// that bracket s must lie on different sides, and the segment between them must intersect the surface.
 template <class Surface>
@@ -320,6 +333,10 @@ double triangle_exit_time(const Path& path, const Vec3& a, const Vec3& b, const 
         const double rounding = 16.0 * kUnitRoundoff * (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z));
         const Height g{dot(inward, d) + std::max(slack, rounding), dot(inward, path.c[1]), dot(inward, path.c[2])};
         if (g.g0 < 0.0) return 0.0;
+        if (path.degree == 3) {
+            leaves = std::min(leaves, first_fall_of_cubic(g, dot(inward, path.c[3]), path.duration));
+            continue;
+        }
         const bool ends_inside = g.g0 + path.duration * (g.g1 + path.duration * g.g2) >= 0.0;
         const Roots roots = crossings_of_parabola(g, ends_inside, path.duration);
         if (roots.count > 0) leaves = std::min(leaves, roots.time[0]);

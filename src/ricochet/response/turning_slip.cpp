@@ -1,0 +1,57 @@
+#include "ricochet/response/turning_slip.h"
+
+#include <algorithm>
+
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+/// Change of a sphere's slip by friction, over the acceleration of its centre. A mathematical constant.
+constexpr double kSphereSlipRate = 3.5;
+
+}  // namespace
+
+TurningSlip::TurningSlip(const Motion& motion, double radius, const SupportSurface& surface, const Vec3& forces,
+                         double pressure)
+    : start_(motion),
+      radius_(radius),
+      normal_(surface.normal),
+      pressing_(std::max(0.0, -dot(forces, normal_))),
+      friction_(pressure * surface.friction * pressing_),
+      slip_(slip_on(surface, motion, radius)),
+      slip_rate_(radius > 0.0 ? kSphereSlipRate : 1.0),
+      rounding_(kSlowSlip * speed_scale(motion, radius, {&surface, 1})) {
+    along_ = forces + pressing_ * normal_;
+    along_ -= dot(along_, normal_) * normal_;
+}
+
+double TurningSlip::longest(double duration) const {
+    const double speed = length(slip_);
+    if (!(friction_ > 0.0) || !(speed > rounding_)) return 0.0;
+    const Vec3 heading = slip_ / speed;
+    const Vec3 change = along_ + slip_rate_ * friction_on(slip_);
+    const double rate = length(change);
+    const double lasts = rate * duration > kMaxArcAngle * speed ? kMaxArcAngle * speed / rate : duration;
+    const double turning = length(change - dot(change, heading) * heading);
+    return turning * lasts > kMostStraightTurn * speed ? lasts : 0.0;
+}
+
+Vec3 TurningSlip::friction_on(const Vec3& slip) const { return (-friction_ / length(slip)) * slip; }
+
+TurningSlip::State TurningSlip::at(double t) const {
+    const auto friction_after = [&](const Vec3& mean_friction, double time) {
+        return friction_on(slip_ + time * (along_ + slip_rate_ * mean_friction));
+    };
+    const Vec3 first = friction_on(slip_);
+    const Vec3 second = friction_after(first, 0.5 * t);
+    const Vec3 third = friction_after(second, 0.5 * t);
+    const Vec3 fourth = friction_after(third, t);
+    const Vec3 mean = (first + 2.0 * (second + third) + fourth) / 6.0;
+    const Vec3 mean_of_early = (first + second + third) / 3.0;  // weighted by the time that is left
+    const Vec3 acceleration = along_ + mean;
+    return {t * (start_.velocity + (0.5 * t) * (along_ + mean_of_early)), start_.velocity + t * acceleration,
+            acceleration, mean};
+}
+
+}  // namespace ricochet

@@ -118,8 +118,10 @@ void NarrowPhase::test_point(std::uint32_t triangle) {
     const TrianglePlane& plane = geometry_.plane_of(triangle);
     if (stays_on_one_side(path_, plane, margins_.slack)) return;
     scratch_.triangles.push_back(triangle);
+    const SurfaceId surface = world_.surface_of_triangle(triangle);
+    if (is_support(surface)) return;
     const auto crossing = first_crossing(path_, plane, latest_with(first_time_));
-    if (crossing) add_hit({crossing->time, world_.surface_of_triangle(triangle), crossing->side, true, {}});
+    if (crossing) add_hit({crossing->time, surface, crossing->side, true, {}});
 }
 
 double NarrowPhase::test_sphere(std::uint32_t triangle) {
@@ -131,6 +133,7 @@ double NarrowPhase::test_sphere(std::uint32_t triangle) {
     scratch_.triangles.push_back(triangle);
     if (speed > 0.0) return speed;
     const SurfaceId surface = world_.surface_of_triangle(triangle);
+    if (is_support(surface)) return 0.0;
     if (starts_near) {
         const ClosestPointOnTriangle nearest = closest_point_on_triangle(path_.c[0], a, b, c);
         add_overlap(surface, std::sqrt(nearest.distance_squared));
@@ -143,8 +146,12 @@ double NarrowPhase::test_sphere(std::uint32_t triangle) {
     return 0.0;
 }
 
+bool NarrowPhase::is_support(SurfaceId surface) const {
+    return std::find(supports_.begin(), supports_.end(), surface) != supports_.end();
+}
+
 void NarrowPhase::add_hit(const Hit& hit) {
-    if (std::find(supports_.begin(), supports_.end(), hit.surface) != supports_.end()) return;
+    if (is_support(hit.surface)) return;
     scratch_.hits.push_back(hit);
     if (!(hit.time < first_time_)) return;
     first_time_ = hit.time;

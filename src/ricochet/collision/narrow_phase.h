@@ -56,6 +56,7 @@ public:
 private:
     void test_point(std::uint32_t triangle);
     double test_sphere(std::uint32_t triangle);
+    [[nodiscard]] bool is_support(SurfaceId surface) const;
     void add_hit(const ContactScratch::Hit& hit);
     void add_overlap(SurfaceId surface, double distance);
 

@@ -17,8 +17,8 @@
 namespace ricochet {
 namespace {
 
-/// Smallest value that means "no limit", in bytes: version 1 writes the largest whole number of pages. Local: a
-/// convention of the operating system.
+/// From this value on, in bytes, the limit of a group means no limit. Version 1 of cgroup writes the largest multiple
+/// of the page size. Local: a convention of the operating system.
 constexpr double kNoGroupLimit = 0x1p60;
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 

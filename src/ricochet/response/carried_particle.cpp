@@ -181,7 +181,7 @@ bool wait_until(ParticleStep& step, double until) {
     return stored_of(step).time >= until;
 }
 
-/// Moves a particle whose stored time stands still to a position at the present time, if a free segment leads there.
+/// Moves a stalled particle to a position at the current time, if the segment to it is free.
 bool take_late_segment(ParticleStep& step, const Vec3& position) {
     const StoredPosition next{flush_tiny(position), step.state().time};
     const bool is_free = is_segment_free_of_rigid(step, stored_of(step), next) &&

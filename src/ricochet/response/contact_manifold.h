@@ -115,8 +115,8 @@ public:
     [[nodiscard]] SupportList supports(const SurfaceKinematics& surfaces) const;
     /// Returns the limits of friction in a step of this duration, in s. pressure: as FrictionLimits::pressure.
     [[nodiscard]] FrictionLimits grip(double pressure, double step) const;
-    /// Records the velocity change, in m/s, by contact in `elapsed` seconds. Each surface gets its part by its load,
-    /// and the first one also the rest.
+    /// Records the velocity change, in m/s, by contact in `elapsed` seconds. Each surface after the first receives its
+    /// load times `elapsed`. The first one receives the remainder.
     void record_impulse(const Vec3& velocity_change, double elapsed, ImpulseLedger& ledger) const;
 
 private:

@@ -317,7 +317,7 @@ void ContactPhase::lift() {
     state().position += shift_by({normals.data(), manifold_.size()}, {lifts.data(), manifold_.size()});
 }
 
-/// Returns the time, in s, for which the particle rests, at most the rest of the step. Forces in the frame of a moving
+/// Returns how long, in s, the particle stays at rest, limited to the rest of the step. Forces in the frame of a moving
 /// body change with time.
 double ContactPhase::time_at_rest() {
     // Local: samples and halvings of a search for a time, to its last bit.

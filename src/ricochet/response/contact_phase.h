@@ -14,8 +14,8 @@
 namespace ricochet {
 
 /// Lasting contact of one particle in one step. It consists of contact intervals with constant acceleration, and of
-/// curved-contact integration. It ends with the step, or if nothing presses the particle on, or at the end of the
-/// surface, or at another contact.
+/// curved-contact integration. It ends at the end of the step, at the end of the surface, at another contact, or when
+/// nothing presses the particle on.
 class ContactPhase {
 public:
     /// Construct it at the start of the step, which must outlive it.

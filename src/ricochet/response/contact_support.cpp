@@ -84,8 +84,8 @@ Vec3 ContactSupport::velocity_after_rebounds(const Vec3& forces) const {
     return along_all(state().velocity, std::span(normals).first(count));
 }
 
-/// Returns the forces over the mass, in m/s^2, with which the surfaces of the manifold will hold the particle together.
-/// The particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s. A wall may press only
+/// Returns the accelerations, in m/s^2, that the surfaces of the manifold exert if they jointly hold the particle. The
+/// particle then moves along the surfaces that it leaves more slowly than `fastest`, in m/s. A wall may press only
 /// because another one slopes towards it.
 ContactSupport::PointAccelerations ContactSupport::combined_accelerations(const Vec3& forces, double fastest) const {
     bool has_lossless = false;

@@ -16,8 +16,8 @@ namespace ricochet {
                             BodyId body);
 
 /// Returns the speed, in m/s, of the slowest rebound that does not count as contact: the scene's resting speed, or more
-/// for a dynamic body. A rebound from a dynamic body that ends before a substep can end cannot be told from contact.
-/// The particle is given in the world.
+/// for a dynamic body. A rebound from a dynamic body that is over within the shortest substep cannot be distinguished
+/// from contact. The particle is given in the world.
 [[nodiscard]] double slowest_rebound(const ResponseRules& rules, const FrameRules& frame_rules,
                                      const MovingParticle& particle, const Contact& contact);
 

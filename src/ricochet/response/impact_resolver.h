@@ -34,7 +34,8 @@ public:
 
     /// Resolves an impact on all surfaces of a contact together. Returns false, and changes nothing, if none is
     /// approached. For the particle, dynamic bodies change their velocities at once; their positions follow their paths
-    /// until the move ends. is_fast: an impact that ends the substep of a dynamic body; a slow one begins contact.
+    /// until the move ends. is_fast: true for an impact that ends the substep of a dynamic body, false for one that
+    /// begins contact.
     bool reflect(std::span<const ContactSurface> surfaces, bool is_fast = true);
     /// The same without a rebound.
     void land(std::span<const ContactSurface> surfaces);

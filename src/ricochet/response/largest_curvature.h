@@ -13,8 +13,8 @@
 
 namespace ricochet {
 
-/// Returns two unit vectors that span the directions along all surfaces with these normals, at least one. Two surfaces
-/// leave one direction, and the second vector is zero.
+/// Returns two unit vectors that span the directions along all surfaces with these normals, at least one. If two
+/// normals are not parallel, only one direction remains, and the second vector is zero.
 [[nodiscard]] inline std::array<Vec3, 2> directions_along(std::span<const Vec3> normals) {
     for (const Vec3& normal : normals) {
         const Vec3 line = cross(normals.front(), normal);

@@ -147,7 +147,7 @@ std::optional<Contact> ParticleMover::follow_in_frame(BodyId body, Contact* cont
     return next;
 }
 
-/// The same without the correction of recorded impulses.
+/// Like follow_in_frame(), but without the correction of recorded impulses.
 template <class Follow>
 std::optional<Contact> ParticleMover::follow_in_frame_unsettled(BodyId body, Contact* contact, const Follow& follow) {
     step_.enter(body, frame_rules_->rules_of(body), contact);

@@ -117,7 +117,8 @@ ParticleMover::ResolvedImpact ParticleMover::resolve_impact(const Flight& flight
     ledger().set_hits(true);
     ++(is_impact && !is_resumed ? step_.outcome().bounces : step_.outcome().touches);
     if (is_impact) release_speed_.reset();
-    // After a kick the particle lands from its motion before the impact, so the log takes both together.
+    // After a kick, the landing starts from the motion before the impact. Impact and landing are therefore logged as
+    // one.
     if (flight.kick_duration == 0.0) step_.log().note_impact();
     return impact;
 }

@@ -227,7 +227,7 @@ void RollbackMover::leave_surface() {
 /// presses it on.
 bool RollbackMover::will_stay() const {
     const Vec3 a = is_kicked() ? flown_->acceleration : rules_.forces.acceleration(state_);
-    // Surfaces in contact already take their part. The rest may press onto the next surface.
+    // The surfaces already in contact cancel their part of the acceleration. The rest may press onto the next surface.
     const Vec3 pull = project_off(a, manifold_.normals());
     bool pressed = false;
     for (const ContactSurface& hit : hit_) {

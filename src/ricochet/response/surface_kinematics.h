@@ -74,7 +74,7 @@ public:
 
     /// Notes that the particle has given a body a wrench about the centre of its mobility.
     void note_given(BodyId body, const Wrench& wrench) { given_.push_back({body, wrench}); }
-    /// Returns the speed at which a surface advances beside its body's path.
+    /// Returns the normal speed of a dynamic body's surface relative to its planned path; 0 for other surfaces.
     [[nodiscard]] double advance_beside_path(const ContactSurface& surface) const;
     /// Returns the speed of approach to a surface whose body continues along its path. 0 for other surfaces.
     [[nodiscard]] double approach_of_path(const ContactSurface& surface) const;

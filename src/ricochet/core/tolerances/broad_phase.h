@@ -5,9 +5,10 @@
 namespace ricochet {
 
 /// Margin beside a path in free flight for many steps, relative to the largest coordinate involved. Reason: it covers
-/// kCandidateSlack and the rounding of kMaxLookAheadSteps steps. Each step adds some 2^-52 for the position and as much
-/// again, times the number of steps, for the velocity. Smaller than some 2^-38: a particle could pass a surface that a
-/// query would have found. Larger: particles near surfaces need more queries.
+/// kCandidateSlack and the rounding of kMaxLookAheadSteps steps. In each step, rounding of the position adds about
+/// 2^-52. The error of the velocity has accumulated over all steps and adds about 2^-52 times their number. Smaller
+/// than some 2^-38: a particle could pass a surface that a query would have found. Larger: particles near surfaces need
+/// more queries.
 inline constexpr double kLookAheadSlack = 0x1p-36;
 
 /// Largest number of steps of free flight without a new query, on straight paths and on parabolas. Larger:

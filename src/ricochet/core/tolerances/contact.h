@@ -49,9 +49,9 @@ inline constexpr double kProjectionRounding = 0x1p-48;
 /// lost.
 inline constexpr double kStopRounding = 0x1p-40;
 
-/// Part of a step during which a flow has to lead a stopped particle away from a wall before the particle moves.
-/// Smaller: if a flow turns away only at that point, a particle creeps along the wall in ever more hops until its
-/// budget is spent. Larger: it starts later, by less than this part of the step.
+/// Fraction of the step for which a flow must point away from a wall before a stopped particle moves. Smaller: if a
+/// flow turns away only at that point, a particle creeps along the wall in ever more hops until its budget is spent.
+/// Larger: it starts later, by less than this part of the step.
 inline constexpr double kShortestRelease = 1.0 / 64.0;
 
 /// Part of a step below which a path along a wall is skipped if it moves the particle only by rounding. Smaller: the

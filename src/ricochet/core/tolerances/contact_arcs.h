@@ -63,8 +63,9 @@ inline constexpr double kMostSharedTurn = 0.02;
 inline constexpr double kMaxArcPhase = 2.0 * kMaxArcAngle;
 
 /// Ratio of two durations of a contact interval, up to which the plan is accepted: planned with the forces at its
-/// start, and in its middle. Reason: the forces differ by the second order of the duration, like the error of the
-/// midpoint rule. Smaller: more plans per interval. Larger: forces that change quickly are followed less exactly.
+/// start, and in its middle. Reason: up to this ratio the forces differ from those in the true middle by an error of
+/// second order in the duration, like that of the midpoint rule. Smaller: more plans per interval. Larger: forces that
+/// change quickly are followed less exactly.
 inline constexpr double kSameMiddle = 1.25;
 
 /// Number of equal intervals of a step that are not shortened further for a turn of friction. It is the usual value of

@@ -79,8 +79,8 @@ inline constexpr double kSteadyGiving = 0.5;
 inline constexpr double kSteadyChange = 1e-3;
 
 /// Fraction of its friction with which a sliding sphere must have a solution. It jams if only less friction has one.
-/// Reason: with hardly less, rounding or a short search may have missed it. Smaller: wedges that should jam let spheres
-/// slide. Larger: rounding jams spheres.
+/// Reason: if only slightly less friction has a solution, rounding or a short search may have missed the solution with
+/// full friction. Smaller: wedges that should jam let spheres slide. Larger: rounding jams spheres.
 inline constexpr double kJammingFriction = 0.95;
 
 /// Most passes over the surfaces of a corner until none is approached. After that the velocity into the corner is

@@ -15,9 +15,9 @@ inline constexpr double kNetworkEnergyRounding = 1e-12;
 /// overlaps, from hard impacts, eject spheres.
 inline constexpr double kOverlapRelease = 0.5;
 
-/// Over-relaxation factor of normal impulses in sweeps over contact networks. Reason: with 1.2 boxes of 2000 spheres
-/// come to rest with two thirds of the sweeps; with 1.5 friction oscillates. Smaller: more sweeps. Larger: sweeps
-/// diverge at 2.
+/// Over-relaxation factor of normal impulses in sweeps over contact networks. Reason: with a factor of 1.2, boxes of
+/// 2000 spheres come to rest in two thirds of the sweeps. With 1.5, friction oscillates. Smaller: more sweeps. Larger:
+/// sweeps diverge at 2.
 inline constexpr double kNetworkOverRelaxation = 1.2;
 
 /// Overlap, as a fraction of the smallest radius, that a step may leave when sweeps end early. It is the closing speed
@@ -86,13 +86,13 @@ inline constexpr double kNetworkReach = 0.05;
 inline constexpr double kMostParting = 0.01;
 
 /// Ratio of the masses of two touching spheres from which a network is solved directly if sweeps fail; and from which
-/// it is solved directly after only a few sweeps. Reason: the number of sweeps grows with the root of the ratio.
-/// Spheres of half to twice a radius, which sweeps solve faster, stay below. Smaller: the slower method is used more
-/// often. Larger: heavy spheres on light ones overlap.
+/// it is solved directly after only a few sweeps. Reason: the number of sweeps grows with the root of the ratio. Radii
+/// from half to twice a value give mass ratios up to 64. Such networks stay below the limit, and sweeps solve them
+/// faster. Smaller: the slower method is used more often. Larger: heavy spheres on light ones overlap.
 inline constexpr double kUnlikeMasses = 100.0;
 inline constexpr double kVeryUnlikeMasses = 1e4;
 
-/// Error that the direct solver may leave, as a part of the error that suffices. Sweeps remove the rest. Smaller: more
+/// Tolerance of the direct solver, as a fraction of SolverSettings::enough. Sweeps remove the rest. Smaller: more
 /// Newton steps. Larger: the sweeps do not reach their tolerance.
 inline constexpr double kDirectShare = 0.25;
 

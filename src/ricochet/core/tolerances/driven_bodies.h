@@ -39,7 +39,7 @@ inline constexpr double kShortestPart = 1e-4;
 /// bodies gain energy.
 inline constexpr double kImpactEnergyRounding = 1e-14;
 
-/// Number of substeps in one step after which each of the next ones lasts at least kShortestPart of it. Smaller: bodies
+/// After this many substeps in one step, each further substep lasts at least kShortestPart of the step. Smaller: bodies
 /// among hundreds of particles as heavy as they are followed less exactly. Larger: such steps take longer.
 inline constexpr int kManyParts = 1000;
 

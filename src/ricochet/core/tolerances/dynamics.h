@@ -123,8 +123,8 @@ inline constexpr double kLeastCoupledPart = 0x1p-6;
 /// springs. Smaller: more predictions and shorter substeps. Larger: energy may grow by as much.
 inline constexpr double kPredictionEnergy = 1e-5;
 
-/// The same on curved surfaces, as a fraction of the energy that the step dissipates. Smaller: more predictions.
-/// Larger: less energy is lost than should be.
+/// Energy that springs may gain from errors of the predicted positions on curved surfaces, as a fraction of the energy
+/// that the step dissipates. Smaller: more predictions. Larger: less energy is lost than should be.
 inline constexpr double kPredictionLoss = 0.1;
 
 /// Length of the component of a surface's normal across the constraints before it. Below it the surface adds no

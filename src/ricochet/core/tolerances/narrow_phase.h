@@ -9,14 +9,15 @@ namespace ricochet {
 inline constexpr double kSimultaneousUlps = 4.0;
 
 /// One minus the cosine of the angle between the normals of a face and of an edge or vertex. It applies if a sphere
-/// hits both at the same time. Below it the edge is the face's own seam and is ignored. Reason: contacts tie while the
-/// closest point is within sqrt(2 * rounding * radius) of the edge. For coordinates of a thousand radii this is an
-/// angle of 1e-6. Smaller: a grazing sphere is deflected by flat inner edges. Larger: blunt real edges act as faces.
+/// hits both at the same time. Below it the edge is the face's own seam and is ignored. Reason: the face and the edge
+/// have the same rounded time of impact while the closest point is within sqrt(2 * rounding * radius) of the edge. For
+/// coordinates of a thousand radii this is an angle of 1e-6. Smaller: a grazing sphere is deflected by flat inner
+/// edges. Larger: blunt real edges act as faces.
 inline constexpr double kSeamTurn = 1e-11;
 
 /// Lateral distance up to which a sphere that touches an edge or a vertex also touches the face beside it. It is
-/// relative to the largest coordinate involved. Reason: over the seam of a flat plate rounding decides on which side
-/// the closest point is, and the sphere should bounce as off one plate. Smaller than some 2^-50: seams of flat plates
+/// relative to the largest coordinate involved. Reason: near the seam of a flat plate, rounding decides which triangle
+/// has the closest point. The sphere must still bounce as off one plate. Smaller than some 2^-50: seams of flat plates
 /// deflect by rounding errors. Larger: on a convex edge the normal is wrong by up to this length over the radius.
 inline constexpr double kSeamSlack = 0x1p-48;
 

@@ -16,9 +16,9 @@ inline constexpr double kCellSlack = 1.0 + 0x1p-20;
 inline constexpr double kPairApproachRounding = 0x1p-48;
 
 /// Overlap of two spheres, relative to the smaller radius, from which they press on each other. The overlap must have
-/// grown in a step without a common plan. A force then drives them together that no impact resolves. Reason: far above
-/// the rounding of impacts, far below visible overlap. Smaller: rounding causes plans. Larger: spheres overlap by as
-/// much.
+/// grown in a step without a common plan. Then a force presses the spheres together, and impacts alone cannot resolve
+/// that. Reason: far above the rounding of impacts, far below visible overlap. Smaller: rounding alone turns
+/// event-driven islands into contact islands. Larger: spheres overlap by as much.
 inline constexpr double kPressedOverlap = 1e-7;
 
 /// Difference of impact times, in ulp, up to which impacts are simultaneous. Reason: roundings of the times of

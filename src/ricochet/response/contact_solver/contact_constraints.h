@@ -38,7 +38,7 @@ struct alignas(64) ContactConstraint {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     Vec3 normal;
-    double bound = 0.0;  ///< largest approach speed, in m/s; if negative, the least separation speed
+    double bound = 0.0;  ///< largest allowed approach speed, in m/s; -s requires a separation speed of at least s
     double friction = 0.0;
     double strictness = 1.0;    ///< square of SolverContact::exactness
     std::uint32_t rolling = 0;  ///< index of its RollingConstraint, or kNone
@@ -98,8 +98,9 @@ struct SweepChange {
     }
 };
 
+/// Returns the speed, in m/s, at which a and b separate along the normal; negative if they approach.
 template <class Row, class State>
-[[nodiscard]] RICOCHET_INLINE auto approach_of(const Row& row, const State& a, const State& b) {
+[[nodiscard]] RICOCHET_INLINE auto separation_speed_of(const Row& row, const State& a, const State& b) {
     return dot(row.normal, a.velocity - b.velocity);
 }
 
@@ -163,7 +164,7 @@ template <class State>
 template <class Row, class State>
 RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     RowChange<decltype(row.bound)> change;
-    const auto violation = approach_of(row, a, b) + row.bound;
+    const auto violation = separation_speed_of(row, a, b) + row.bound;
     const decltype(row.impulse) step{factor * row.direction.normal, factor * row.direction.tangential};
     const auto inverse_mass = inverse_mass_of(a, b);
     const auto start = row.impulse.normal + step.normal;
@@ -189,8 +190,8 @@ RICOCHET_INLINE auto relax(Row& row, double factor, State& a, State& b) {
     return change;
 }
 
-/// Relaxes the rolling resistance of a row like relax() of the row. Its change of velocity is that of the smaller
-/// sphere's surface.
+/// Relaxes the rolling resistance of a row like relax() of the row. Its velocity change is measured at the surface of
+/// the smaller sphere.
 inline void relax(const ContactConstraint& row, RollingConstraint& rolling, double factor, SolverState& a,
                   SolverState& b, SweepChange& change) {
     const Vec3 step = factor * rolling.direction;
@@ -213,7 +214,7 @@ template <class Row, class State>
     const auto& direction = row.direction.tangential;
     const auto has_rested = (row.impulse.normal == 0.0) & (row.direction.normal == 0.0) & (direction.x == 0.0) &
                             (direction.y == 0.0) & (direction.z == 0.0);
-    return has_rested & (approach_of(row, a, b) + row.bound >= 0.0);
+    return has_rested & (separation_speed_of(row, a, b) + row.bound >= 0.0);
 }
 
 }  // namespace ricochet

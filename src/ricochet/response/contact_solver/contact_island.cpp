@@ -10,9 +10,10 @@
 namespace ricochet {
 namespace {
 
-/// Returns the largest speed, in m/s, that separates an overlap, in m. It is at most the speed of a free fall through
-/// the overlap, because sinking gave no more. Otherwise a small overlap would throw heavy spheres, and shorter steps
-/// would throw them farther. `pull` is in m/s^2, `approach` in m/s.
+/// Returns the largest speed, in m/s, that separates an overlap, in m. The part from forces is at most the speed of a
+/// free fall through the overlap, because sinking gave no more energy. The approach speed is added. Otherwise a small
+/// overlap would throw heavy spheres, and shorter steps would throw them farther. `pull` is in m/s^2, `approach` in
+/// m/s.
 double most_parting(double pull, double radius, double overlap, double approach) {
     if (!(overlap > 0.0)) return std::max(0.0, approach);
     const double fall = std::min(kPartingFall * kPartingFall * radius, 2.0 * overlap);
@@ -196,8 +197,9 @@ void ContactIsland::add_key(const ContactKey& key) {
     warm_start(keys_.size() - 1);
 }
 
-/// Looks up start impulses in three stages, each for an earlier contact. Reason: remembered impulses are scattered in
-/// memory, so each stage prefetches the data of the next one.
+/// Prefetches and copies start impulses, which are scattered in memory, in three stages. For contact `at` it prefetches
+/// the keys. For the contact kPrefetchDistance earlier it finds the impulse and prefetches it. For the contact twice as
+/// far back it copies the impulse.
 void ContactIsland::warm_start(std::size_t at) {
     const std::size_t count = keys_.size();
     if (at < count) __builtin_prefetch(memories_[contacts_[at].a].others.data());

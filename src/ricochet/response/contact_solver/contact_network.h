@@ -17,10 +17,11 @@
 /// at which they separate. That speed is therefore limited, and deep overlaps separate slowly, however short the steps
 /// are.
 ///
-/// Restitution: contacts with P_n > 0 join spheres to connected impacts. A connected impact has one restitution e, the
-/// smallest of its approaching contacts. It is 0 for contacts that already touched in the last step, because they press
-/// and are no impacts. The contacts of the impact then separate with u_n >= -e u_n-, where u_n- is the value before the
-/// impulses. A separate restitution for each contact would multiply energy.
+/// Restitution: contacts with P_n > 0 join spheres to connected impacts. A contact that had an impulse in the last step
+/// presses, and has restitution 0. A connected impact has one restitution e, the smallest of its approaching contacts.
+/// A contact of restitution 0 does not count if its impulse only supports a body (kHoldsOnly). The contacts of the
+/// impact then separate with u_n >= -e u_n-, where u_n- is the value before the impulses. A separate restitution for
+/// each contact would multiply energy.
 ///
 /// The impulses never add kinetic energy in the frame of the walls, apart from the work that separates overlaps. If the
 /// rebounds of a connected impact would add energy, they are suppressed.
@@ -86,7 +87,8 @@ struct SolverSettings {
     double tolerance = 1e-12;  ///< wanted
     double enough = 0.0;       ///< accepted after `sweeps`
     double slip = 0.0;         ///< if larger, applies to slip and rolling, because they cause no overlap
-    double connecting = 0.0;   ///< if larger, applies to the solution without rebound, which only finds connections
+    double connecting =
+        0.0;  ///< if larger, applies to the first solution, without rebound, which only finds connected impacts
     int sweeps = 10000;
     int most_sweeps = 10000;
 };

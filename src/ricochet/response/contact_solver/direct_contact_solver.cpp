@@ -153,7 +153,7 @@ DirectContactSolver::ImpulseResponse DirectContactSolver::response_to(std::size_
     const SolverState& a = parts_.states[row.a];
     const SolverState& b = parts_.states[row.b];
     ImpulseResponse response;
-    response.normal = std::max(0.0, row.impulse.normal - stiffness_ * (approach_of(row, a, b) + row.bound));
+    response.normal = std::max(0.0, row.impulse.normal - stiffness_ * (separation_speed_of(row, a, b) + row.bound));
     if (row.friction > 0.0) {
         response.wish = row.impulse.tangential - stiffness_ * slip_of(row, a, b);
         response.tangential = shortened(response.wish, row.friction * response.normal);

@@ -8,10 +8,10 @@
 ///
 ///     P_n = max(0, p_n - k (u_n + bound)),   P_t = p_t - k u_t, limited to the friction cone
 ///
-/// The friction cone is that of the normal impulses at the same velocities. Each pass finds the velocities at which
-/// these impulses balance the momentum. For fixed limits of friction they minimise a convex function, so Newton's
-/// method finds them. The impulses are the multipliers of the next pass. The stiffness k is a multiple of the heaviest
-/// mass. Each pass therefore removes all but a small part of the violation, however light the other spheres are.
+/// The friction cone uses the normal impulses P_n at the same velocities. Each pass finds the velocities at which these
+/// impulses balance the momentum. For fixed limits of friction they minimise a convex function, so Newton's method
+/// finds them. The impulses are the multipliers of the next pass. The stiffness k is a multiple of the heaviest mass.
+/// Each pass therefore removes all but a small part of the violation, however light the other spheres are.
 ///
 /// Source: P. Alart, A. Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution
 /// methods", Comput. Methods Appl. Mech. Engrg. 92 (1991).
@@ -90,8 +90,8 @@ private:
     double operations_left_ = 0.0;  // budget of the remaining factorizations
     BlockMatrix matrix_;
     std::vector<ImpulseResponse> responses_;  // one per row
-    std::vector<std::uint8_t> ahead_;  // one per row: 1 if the last step, at full length, would press the two together
-    std::vector<double> gradient_;     // in kg m/s, three numbers per unknown
+    std::vector<std::uint8_t> ahead_;         // one per row: 1 if the last Newton step, at full length, would press it
+    std::vector<double> gradient_;            // in kg m/s, three numbers per unknown
 };
 
 }  // namespace ricochet

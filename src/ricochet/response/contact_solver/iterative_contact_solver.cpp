@@ -13,9 +13,9 @@ namespace {
 /// Contacts per block of parallel work. Sums are computed by these blocks for any number of threads.
 constexpr std::size_t kBlock = 512;
 
-/// Number of restarts of the momentum after which each restart is followed by one more sweep without momentum. Friction
-/// can make the iteration circle. Large networks that converge restart a few dozen times. Local: the residual decides
-/// when the iteration ends.
+/// Every time this number of restarts has passed, the number of sweeps without momentum after each restart grows by
+/// one. Friction can make the iteration circle. Large networks that converge restart a few dozen times. Local: the
+/// residual decides when the iteration ends.
 constexpr int kRestartsAPlainSweep = 64;
 
 /// Returns the limits for a tolerance in m/s.
@@ -167,7 +167,8 @@ void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<co
     if (row.impulse.normal == 0.0) return;
     const SolverState& a = states[row.a];
     const SolverState& b = states[row.b];
-    sum += row.impulse.normal * (approach_of(row, a, b) + row.bound) + dot(row.impulse.tangential, slip_of(row, a, b));
+    sum += row.impulse.normal * (separation_speed_of(row, a, b) + row.bound) +
+           dot(row.impulse.tangential, slip_of(row, a, b));
     if (row.rolling == ContactConstraint::kNone) return;
     const RollingConstraint& rolling = rolling_[row.rolling];
     sum += dot(rolling.moment, rolling_of(row, rolling, a, b));
@@ -177,8 +178,8 @@ void IterativeContactSolver::add_gain(const ContactConstraint& row, std::span<co
 /// much and the sweeps do not converge, the direct contact solver is used. More sweeps then check its result, and the
 /// state before it is restored if the residual has grown.
 void IterativeContactSolver::iterate(const SolverSettings& settings, SolverReport& report) {
-    const bool are_few = mass_ratio_ > kVeryUnlikeMasses;
-    const int first = are_few ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
+    const bool are_very_unlike = mass_ratio_ > kVeryUnlikeMasses;
+    const int first = are_very_unlike ? std::min(settings.sweeps, settings.most_sweeps) : settings.most_sweeps;
     if (sweep_until(settings, first, report) || !(mass_ratio_ > kUnlikeMasses)) return;
     const double residual = report.residual;
     const Impulses swept{rows_, rolling_, states_};

@@ -10,17 +10,19 @@ namespace ricochet {
 namespace {
 
 /// Returns the restitution of each connected impact: the smallest of its approaching contacts with an impulse, or 1
-/// without any. `all_own` holds the restitution of each row.
+/// without any. A contact without restitution that only supports a body does not count. `all_own` holds the restitution
+/// of each row.
 std::vector<double> restitutions(const ConnectedImpacts& impacts, std::span<const SolverState> before,
                                  std::span<const ContactConstraint> rows, std::span<const double> all_own) {
     std::vector<double> least(impacts.size(), 1.0);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const ContactConstraint& row = rows[i];
         if (row.impulse.normal == 0.0) continue;
-        const double approach = approach_of(row, before[row.a], before[row.b]);
-        if (!(approach < 0.0)) continue;
+        const double separation = separation_speed_of(row, before[row.a], before[row.b]);
+        if (!(separation < 0.0)) continue;
         const double own = all_own[i];
-        if (own == 0.0 && row.impulse.normal * inverse_mass_of(before[row.a], before[row.b]) <= -kHoldsOnly * approach)
+        if (own == 0.0 &&
+            row.impulse.normal * inverse_mass_of(before[row.a], before[row.b]) <= -kHoldsOnly * separation)
             continue;
         double& e = least[impacts.of(row)];
         e = std::min(e, own);
@@ -64,10 +66,10 @@ bool IterativeContactSolver::apply_restitution() {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
         ContactConstraint& row = rows_[i];
         if (restitutions_[i] == 0.0 || row.impulse.normal == 0.0) continue;
-        const double approach = approach_of(row, before_[row.a], before_[row.b]);
+        const double separation = separation_speed_of(row, before_[row.a], before_[row.b]);
         const double e = least[impacts_.of(row)];
-        if (!(approach < 0.0) || e == 0.0) continue;
-        row.bound = std::min(row.bound, e * approach);
+        if (!(separation < 0.0) || e == 0.0) continue;
+        row.bound = std::min(row.bound, e * separation);
         any = true;
     }
     return any;
@@ -84,7 +86,8 @@ void IterativeContactSolver::find_gains() {
         const auto work_in = [&](const std::vector<SolverState>& states) {
             const SolverState& a = states[row.a];
             const SolverState& b = states[row.b];
-            double work = row.impulse.normal * approach_of(row, a, b) + dot(row.impulse.tangential, slip_of(row, a, b));
+            double work =
+                row.impulse.normal * separation_speed_of(row, a, b) + dot(row.impulse.tangential, slip_of(row, a, b));
             if (row.rolling != ContactConstraint::kNone) {
                 const RollingConstraint& rolling = rolling_[row.rolling];
                 work += dot(rolling.moment, rolling_of(row, rolling, a, b));

@@ -74,6 +74,12 @@ public:
         const auto triangle = world_->triangle_of(surface);
         return triangle ? CollisionWorld::nearest(plane_of(*triangle), p) : world_->nearest(surface, p);
     }
+    [[nodiscard]] double time_over(SurfaceId surface, const Path& path, double slack) const {
+        const auto triangle = world_->triangle_of(surface);
+        if (!triangle) return world_->time_over(surface, path, slack);
+        const TrianglePlane& plane = plane_of(*triangle);
+        return triangle_exit_time(path, plane.a(), plane.b(), plane.c(), plane.unit_normal(), slack);
+    }
     [[nodiscard]] const CollisionWorld& world() const { return *world_; }
 
 private:

@@ -197,7 +197,7 @@ ContactFollower::FlatPath ContactFollower::path_along(const FlatInterval& interv
     for (std::size_t k = 0; k < manifold_.size(); ++k) {
         Path of_contact_point = path;
         of_contact_point.c[0] -= state().radius * manifold_[k].normal;
-        on = std::min(on, rules().world.time_over(manifold_[k].surface, of_contact_point, slack));
+        on = std::min(on, step_.geometry().time_over(manifold_[k].surface, of_contact_point, slack));
     }
     const bool leaves = on < time;
     if (leaves) path = interval.path(state().position, on);

@@ -150,13 +150,12 @@ private:
         return {normal_direction(surface.normal), dot(a_, surface.normal) + surface.curvature};
     }
 
-    /// Returns the closed form for one surface without friction, or with friction that slips; else std::nullopt.
+    /// Returns the closed form for one surface that resists nothing but slip; else std::nullopt.
     [[nodiscard]] std::optional<SingleContactForces> forces_of_single_surface() const {
         if (surfaces_.size() != 1 || count_ > 1) return std::nullopt;
         if (count_ == 0) return solve_single_contact(contact(surfaces_[0]), nullptr, grip_.pressure);
         if (resistances_[0].kind != Kind::slip) return std::nullopt;
         const CoulombResistance slip = resistance(resistances_[0]);
-        if (!slip.is_moving) return std::nullopt;
         return solve_single_contact(contact(surfaces_[0]), &slip, grip_.pressure);
     }
 

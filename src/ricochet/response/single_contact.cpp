@@ -37,6 +37,24 @@ MotionVector change_by(const SingleContactForces& forces, const CoulombContact& 
     return sum;
 }
 
+/// Returns the friction that removes the slip which the forces leave, at most `most`; against the heading of a slip
+/// that moves. scale: of the rates.
+std::array<double, 2> wanted_friction(const CoulombContact& contact, const CoulombResistance& slip,
+                                      const SingleContactForces& forces, double scale, double most) {
+    if (slip.is_moving) return {most * -slip.heading[0], most * -slip.heading[1]};
+    const auto& [first, second] = slip.direction;
+    const double gain = 1.0 / std::max(dot(first, first), dot(second, second));
+    const MotionVector change = change_by(forces, contact, &slip);
+    std::array<double, 2> wanted{};
+    for (std::size_t d = 0; d < 2; ++d) {
+        const double rate = slip.rate[d] / scale + dot(slip.direction[d], change);
+        wanted[d] = forces.tangential[d] - gain * rate;
+    }
+    const double size = std::sqrt(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
+    const double part = size > most ? most / size : 1.0;
+    return {part * wanted[0], part * wanted[1]};
+}
+
 }  // namespace
 
 std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact, const CoulombResistance* slip,
@@ -51,10 +69,14 @@ std::optional<SingleContactForces> solve_single_contact(const CoulombContact& co
     const double rate = contact.rate / scale;
     forces.normal = std::max(0.0, -rate / normal_squared);
     const double most = slip != nullptr ? friction * slip->bound * forces.normal : 0.0;
-    if (slip != nullptr) forces.tangential = {most * -slip->heading[0], most * -slip->heading[1]};
+    if (slip != nullptr) forces.tangential = wanted_friction(contact, *slip, forces, scale, most);
     const double left = rate + dot(contact.direction, change_by(forces, contact, slip));
-    const double residual = forces.normal - std::max(0.0, forces.normal - 1.0 / normal_squared * left);
-    if (!(std::fabs(residual) <= kCoulombResidual)) return std::nullopt;
+    double residual = std::fabs(forces.normal - std::max(0.0, forces.normal - 1.0 / normal_squared * left));
+    if (slip != nullptr) {
+        const std::array<double, 2> wanted = wanted_friction(contact, *slip, forces, scale, most);
+        for (std::size_t d = 0; d < 2; ++d) residual = std::max(residual, std::fabs(forces.tangential[d] - wanted[d]));
+    }
+    if (!(residual <= kCoulombResidual)) return std::nullopt;
     // The heading is a unit vector up to rounding.
     const auto& [first, second] = forces.tangential;
     const double size = std::sqrt(first * first + second * second);

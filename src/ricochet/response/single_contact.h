@@ -19,9 +19,10 @@ struct SingleContactForces {
     MotionVector change{};               ///< change of the motion by both
 };
 
-/// Solves a contact without resistance (`slip` is null), or with friction that slips along its heading. The normal
-/// force cancels the approach, and friction is its multiple against the heading. `friction` is a factor on the bound,
-/// 0..1. Returns std::nullopt if the directions depend on each other, or rounding leaves more than kCoulombResidual.
+/// Solves a contact without resistance (`slip` is null), or with friction. The normal force cancels the approach.
+/// Friction removes the slip up to its bound, or acts with its bound against the heading of a slip that moves.
+/// `friction` is a factor on the bound, 0..1. Returns std::nullopt if the directions depend on each other, or rounding
+/// leaves more than kCoulombResidual.
 [[nodiscard]] std::optional<SingleContactForces> solve_single_contact(const CoulombContact& contact,
                                                                       const CoulombResistance* slip, double friction);
 

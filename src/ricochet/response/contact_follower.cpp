@@ -155,16 +155,7 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     const Vec3 from = state().position;
     const double most = twice_kinetic({state().velocity, particle().spin}, state().radius);
     held_.find();
-    RefinementBudget looks;
-    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
-        if (!flat.turns() || !(time > 0.0)) return std::nullopt;
-        const FlatPath refined = path_along(flat, time);
-        const double offset = step_.geometry().contact_offset(refined.path.end);
-        if (!looks.may_improve(tried.position(time), refined.path.end, offset)) return std::nullopt;
-        trajectory = refined;
-        return refined.path;
-    };
-    std::optional<Contact> contact = follow_path(step_, trajectory.path, held_.all(), closer);
+    std::optional<Contact> contact = move_along(trajectory, flat);
     Stop stop{std::move(contact), trajectory.leaves_surface, false};
     const double elapsed = before - step_.remaining();
     const auto [interval, forces] = flat.mean_until(elapsed);
@@ -185,6 +176,21 @@ ContactFollower::Stop ContactFollower::follow_flat(const FlatInterval& flat, con
     step_.log().note_contact(pull.forces, trajectory.path, pull.acts, held_.all());
     held_.meet(stop.contact);
     return stop;
+}
+
+/// Moves the particle along a path on flat surfaces. If that leads to a contact and friction turns, the path up to the
+/// contact is refined.
+std::optional<Contact> ContactFollower::move_along(FlatPath& trajectory, const FlatInterval& flat) {
+    RefinementBudget looks;
+    const auto closer = [&](double time, const Path& tried) -> std::optional<Path> {
+        if (!flat.turns() || !(time > 0.0)) return std::nullopt;
+        const FlatPath refined = path_along(flat, time);
+        const double offset = step_.geometry().contact_offset(refined.path.end);
+        if (!looks.may_improve(tried.position(time), refined.path.end, offset)) return std::nullopt;
+        trajectory = refined;
+        return refined.path;
+    };
+    return follow_path(step_, trajectory.path, held_.all(), closer);
 }
 
 /// Returns the path of the first `time` seconds of an interval, up to the end of a surface. The path's end keeps the

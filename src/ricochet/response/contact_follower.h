@@ -65,6 +65,7 @@ private:
     [[nodiscard]] FlatInterval plan_by_middle(PlannedInterval begin, double pressure, double duration);
     [[nodiscard]] std::optional<FlatInterval> plan_turning_slip(const Pull& pull, double duration);
     [[nodiscard]] Stop follow_flat(const FlatInterval& flat, const Pull& pull);
+    [[nodiscard]] std::optional<Contact> move_along(FlatPath& trajectory, const FlatInterval& flat);
     [[nodiscard]] FlatPath path_along(const FlatInterval& interval, double time) const;
     void keep_offset(Path& path, const FlatInterval& interval) const;
     [[nodiscard]] Stop follow_arc(const Pull& pull, double duration);

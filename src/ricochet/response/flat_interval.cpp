@@ -5,11 +5,12 @@ namespace ricochet {
 Path FlatInterval::path(const Vec3& x, double time) const {
     const Vec3& v = motion().velocity;
     const Vec3& a = begin_.interval.acceleration;
+    if (!slip_ && !varies_) return parabola_path(x, v, a, time);
+    if (!(time > 0.0)) return line_path(x, v, 0.0);
     if (slip_) {
         const TurningSlip::State end = slip_->at(time);
         return hermite_path(x, v, x + end.displacement, end.velocity, time);
     }
-    if (!varies_) return parabola_path(x, v, a, time);
     const Vec3 turned = middle_.interval.acceleration - a;
     const Vec3 end = x + time * (v + time * (0.5 * a + (time / (3.0 * duration())) * turned));
     return hermite_path(x, v, end, v + time * mean_until(time).interval.acceleration, time);

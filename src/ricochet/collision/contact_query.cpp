@@ -17,54 +17,71 @@ bool NearSurfaces::starts_in_overlap() const {
     return margins_.radius > 0.0 ? !scratch_->overlapped.empty() : blocker(start_, start_).has_value();
 }
 
-bool NearSurfaces::plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const {
+bool NearSurfaces::plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q,
+                                double tolerance) const {
     if (side_of(plane.plane, p) * side_of(plane.plane, q) <= 0) return true;
     if (margins_.radius == 0.0 || is_overlapped(plane.surface)) return false;
     const double nearest =
         std::min(std::fabs(signed_distance(p, plane.plane)), std::fabs(signed_distance(q, plane.plane)));
-    return nearest < margins_.radius - margins_.tolerance;
+    return nearest < margins_.radius - tolerance;
 }
 
-bool NearSurfaces::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const {
+bool NearSurfaces::shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q,
+                                double tolerance) const {
     if (!shape.shape.segment_is_clear(p, q)) return true;
     const auto& overlapped = scratch_->overlapped;
     const bool is_held = std::any_of(overlapped.begin(), overlapped.end(), [&](SurfaceId s) { return shape.owns(s); });
     if (margins_.radius == 0.0 || is_held) return false;
-    return shape.shape.distance_to_segment(p, q) < margins_.radius - margins_.tolerance;
+    return shape.shape.distance_to_segment(p, q) < margins_.radius - tolerance;
 }
 
-bool NearSurfaces::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const {
+bool NearSurfaces::triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q, double tolerance) const {
     if (margins_.radius == 0.0) return geometry_.plane_of(triangle).intersects_segment(p, q);
     const auto [a, b, c] = world().corners_of_triangle(triangle);
     if (segment_intersects_triangle(p, q, a, b, c)) return true;
-    if (sphere_segment_is_clear(p, q, margins_.radius, margins_.tolerance, a, b, c)) return false;
+    if (sphere_segment_is_clear(p, q, margins_.radius, tolerance, a, b, c)) return false;
     return !is_overlapped(world().surface_of_triangle(triangle));
 }
 
 bool NearSurfaces::is_free(const Vec3& p, const Vec3& q) const {
+    const double tolerance = tolerance_of(p, q);
     const auto none = [](const auto& list, const auto& blocks) {
         return std::none_of(list.begin(), list.end(), blocks);
     };
-    return none(scratch_->planes, [&](std::uint32_t k) { return plane_blocks(world().planes()[k], p, q); }) &&
-           none(scratch_->shapes, [&](std::uint32_t k) { return shape_blocks(world().shapes()[k], p, q); }) &&
-           none(scratch_->triangles, [&](std::uint32_t t) { return triangle_blocks(t, p, q); });
+    return none(scratch_->planes,
+                [&](std::uint32_t k) { return plane_blocks(world().planes()[k], p, q, tolerance); }) &&
+           none(scratch_->shapes,
+                [&](std::uint32_t k) { return shape_blocks(world().shapes()[k], p, q, tolerance); }) &&
+           none(scratch_->triangles, [&](std::uint32_t t) { return triangle_blocks(t, p, q, tolerance); });
 }
 
 std::optional<SurfaceId> NearSurfaces::blocker(const Vec3& p, const Vec3& q) const {
+    const double tolerance = tolerance_of(p, q);
     std::optional<SurfaceId> smallest;
     const auto consider = [&](SurfaceId surface) {
         if (!smallest || surface < *smallest) smallest = surface;
     };
     for (const std::uint32_t k : scratch_->planes) {
-        if (plane_blocks(world().planes()[k], p, q)) consider(world().planes()[k].surface);
+        if (plane_blocks(world().planes()[k], p, q, tolerance)) consider(world().planes()[k].surface);
     }
     for (const std::uint32_t k : scratch_->shapes) {
-        if (shape_blocks(world().shapes()[k], p, q)) consider(world().shapes()[k].nearest_to(q));
+        if (shape_blocks(world().shapes()[k], p, q, tolerance)) consider(world().shapes()[k].nearest_to(q));
     }
     for (const std::uint32_t triangle : scratch_->triangles) {
-        if (triangle_blocks(triangle, p, q)) consider(world().surface_of_triangle(triangle));
+        if (triangle_blocks(triangle, p, q, tolerance)) consider(world().surface_of_triangle(triangle));
     }
     return smallest;
+}
+
+std::optional<SurfaceId> NearSurfaces::deepened_overlap(const Vec3& p, const Vec3& q) const {
+    if (margins_.radius == 0.0) return std::nullopt;
+    const double least = margins_.radius - tolerance_of(q, q);
+    for (const SurfaceId surface : scratch_->overlapped) {
+        if (!world().owns(surface)) continue;
+        const double distance = geometry_.nearest(surface, q).distance;
+        if (distance < least && distance < geometry_.nearest(surface, p).distance) return surface;
+    }
+    return std::nullopt;
 }
 
 /// Returns the surfaces in ascending order. Each shape is represented by its part nearest to p.
@@ -113,6 +130,11 @@ bool NearSurfaces::is_segment_free(const PathPoint& p, const PathPoint& q) const
 std::optional<SurfaceId> NearSurfaces::segment_blocker(const PathPoint& p, const PathPoint& q) const {
     const std::optional<SurfaceId> own = blocker(p.position, q.position);
     return own || other_frames_ == nullptr ? own : other_frames_->blocker(p, q);
+}
+
+std::optional<SurfaceId> NearSurfaces::overlap_deepened_by(const PathPoint& p, const PathPoint& q) const {
+    const std::optional<SurfaceId> own = deepened_overlap(p.position, q.position);
+    return own || other_frames_ == nullptr ? own : other_frames_->overlap_deepened_by(p, q);
 }
 
 CollisionWorld::Nearest NearSurfaces::nearest(SurfaceId surface, const PathPoint& p) const {

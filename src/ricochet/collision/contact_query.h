@@ -3,6 +3,7 @@
 /// same query finds how long the path remains free beyond its end. It also certifies segments beside the path.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "ricochet/collision/broad_phase.h"
 #include "ricochet/collision/look_ahead.h"
 #include "ricochet/collision/path_point.h"
+#include "ricochet/core/tolerances.h"
 
 namespace ricochet {
 
@@ -27,11 +29,14 @@ public:
 
     /// Returns true if no surface blocks the closed segment [p, q] of the centre. This is the certificate. A surface
     /// blocks a segment that intersects it; this is decided exactly for planes and triangles. It also blocks a segment
-    /// that comes nearer to it than the radius less sphere_tolerance(). Surfaces that are overlapped from the start
-    /// block only segments that intersect them.
+    /// that comes nearer to it than the radius less sphere_tolerance() of the segment. Supports and surfaces that are
+    /// overlapped from the start block only segments that intersect them.
     [[nodiscard]] bool is_free(const Vec3& p, const Vec3& q) const;
     /// Returns the surface with the smallest number that blocks the segment, or nothing.
     [[nodiscard]] std::optional<SurfaceId> blocker(const Vec3& p, const Vec3& q) const;
+    /// Returns a support, or a surface that is overlapped from the start, that a sphere at q overlaps by more than the
+    /// tolerance and more than a sphere at p. is_free() does not see such an overlap.
+    [[nodiscard]] std::optional<SurfaceId> deepened_overlap(const Vec3& p, const Vec3& q) const;
     /// Returns true if a segment that starts on surfaces leaves all of them and intersects no other.
     [[nodiscard]] bool is_free_after(const Vec3& p, const Vec3& q) const;
 
@@ -47,6 +52,7 @@ public:
     [[nodiscard]] PathPoint point_at(const Vec3& p, double time) const;
     [[nodiscard]] bool is_segment_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> segment_blocker(const PathPoint& p, const PathPoint& q) const;
+    [[nodiscard]] std::optional<SurfaceId> overlap_deepened_by(const PathPoint& p, const PathPoint& q) const;
     /// CollisionWorld's functions of the same names. They accept a surface of any frame and return values in this
     /// frame.
     [[nodiscard]] CollisionWorld::Nearest nearest(SurfaceId surface, const PathPoint& p) const;
@@ -75,9 +81,18 @@ public:
 private:
     [[nodiscard]] std::vector<SurfaceId> surfaces(const Vec3& p) const;
     [[nodiscard]] bool is_overlapped(SurfaceId surface) const;
-    [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q) const;
-    [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q) const;
-    [[nodiscard]] bool triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q) const;
+    /// Returns sphere_tolerance() of a segment, in m; 0 for a point. The path may end far away, and its rounding there
+    /// must not let a sphere sink in here.
+    [[nodiscard]] double tolerance_of(const Vec3& p, const Vec3& q) const {
+        if (margins_.radius == 0.0) return 0.0;
+        return sphere_tolerance(margins_.radius, std::max(max_abs(p), max_abs(q)));
+    }
+    // These functions take tolerance_of() of the segment.
+    [[nodiscard]] bool plane_blocks(const CollisionWorld::PlaneSurface& plane, const Vec3& p, const Vec3& q,
+                                    double tolerance) const;
+    [[nodiscard]] bool shape_blocks(const CollisionWorld::ShapeSurface& shape, const Vec3& p, const Vec3& q,
+                                    double tolerance) const;
+    [[nodiscard]] bool triangle_blocks(std::uint32_t triangle, const Vec3& p, const Vec3& q, double tolerance) const;
 
     SurfaceGeometry geometry_;
     const ContactScratch* scratch_;

@@ -54,7 +54,7 @@ QueryMargins::QueryMargins(const CollisionWorld& world, const Path& path, double
       slack(kCandidateSlack * (largest + radius) + kLargestContactOffsetUlps * kSmallestContactOffset + beside),
       curvature(std::max(0.0, bvh->margin() - radius - 2.0 * beside)),
       boxes_hold(bvh->margin() - radius >= 2.0 * beside && kPathRounding * largest <= bvh->slack()) {
-    if (radius > 0.0) tolerance = sphere_tolerance(radius, largest);
+    if (radius > 0.0) tolerance = sphere_tolerance(radius, max_abs(path.c[0]));
 }
 
 NarrowPhase::NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,

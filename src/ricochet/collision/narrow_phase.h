@@ -23,7 +23,7 @@ struct QueryMargins {
     const TriangleBvh* bvh;  ///< broad phase for the radius
     double radius;           ///< in m, 0 for points
     double beside;           ///< in m, ContactQuery::beside
-    double tolerance;        ///< in m, sphere_tolerance() of the path; 0 for points
+    double tolerance;        ///< in m, sphere_tolerance() of the path's start; 0 for points
     double largest;          ///< in m, largest coordinate that the path reaches
     double slack;            ///< in m, largest distance of certified positions from the path
     double curvature;        ///< in m, margin that the boxes leave for the path's curvature; 0 if boxes_hold is false

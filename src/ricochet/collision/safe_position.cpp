@@ -133,14 +133,17 @@ SafePosition find_safe_position(const NearSurfaces& near, const Path& path, cons
         const Vec3 safe = flush_tiny(position + step);
         if (length(safe - on_path.position) > near.slack()) break;
         const CertifiedPath followed = follow_path(near, path, contact.time, safe, chain);
-        if (!followed.blocker) return {followed.reached, false, std::nullopt};
-        const Vec3 normal = facing_surface(near, *followed.blocker, followed.reached).normal;
+        const std::optional<SurfaceId> obstacle =
+            followed.blocker ? followed.blocker : near.overlap_deepened_by(on_path, followed.reached);
+        if (!obstacle) return {followed.reached, false, std::nullopt};
+        const Vec3 normal = facing_surface(near, *obstacle, followed.reached).normal;
         if (normal != Vec3{} && normals.add(normal)) continue;
         offset *= kContactOffsetWidening;
         ++attempt;
     }
     PathFollower follower(near, path, near.start(), chain);
-    (void)follower.follow_to(near.point_at(position, contact.time), kCertificateDepth);
+    const PathPoint corrected = near.point_at(position, contact.time);
+    (void)follower.follow_to(near.overlap_deepened_by(on_path, corrected) ? on_path : corrected, kCertificateDepth);
     const CertifiedPath& followed = follower.followed();
     return {followed.reached, followed.reached.position == path.c[0], followed.blocker};
 }

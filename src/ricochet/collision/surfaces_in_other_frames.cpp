@@ -36,6 +36,15 @@ std::optional<SurfaceId> SurfacesInOtherFrames::blocker(const PathPoint& p, cons
     return std::nullopt;
 }
 
+/// Considers only rigid bodies. For deforming triangles see DeformingSweep::certified_radius().
+std::optional<SurfaceId> SurfacesInOtherFrames::overlap_deepened_by(const PathPoint& p, const PathPoint& q) const {
+    for (const Body& body : bodies_) {
+        const auto surface = body.near.deepened_overlap(local_position(body, p), local_position(body, q));
+        if (surface) return surface;
+    }
+    return std::nullopt;
+}
+
 bool SurfacesInOtherFrames::cover_chord(double from, double to) const {
     return std::all_of(bodies_.begin(), bodies_.end(),
                        [&](const Body& body) { return body.near.covers_chord(body.path, from, to); });

@@ -53,9 +53,11 @@ public:
     [[nodiscard]] const MovingView& view() const { return view_; }
     [[nodiscard]] const PathPoint& start() const { return start_; }
 
-    /// Like is_segment_free(), segment_blocker() and covers_chord() of NearSurfaces, for the surfaces of other frames.
+    /// Like is_segment_free(), segment_blocker(), overlap_deepened_by() and covers_chord() of NearSurfaces, for the
+    /// surfaces of other frames.
     [[nodiscard]] bool are_free(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] std::optional<SurfaceId> blocker(const PathPoint& p, const PathPoint& q) const;
+    [[nodiscard]] std::optional<SurfaceId> overlap_deepened_by(const PathPoint& p, const PathPoint& q) const;
     [[nodiscard]] bool cover_chord(double from, double to) const;
 
     // Functions for surfaces of other frames, with results in the path's own frame.

@@ -13,10 +13,6 @@
 namespace ricochet {
 namespace {
 
-void append_to(std::vector<FlownPiece>& trajectory, const std::vector<FlownPiece>& more) {
-    trajectory.insert(trajectory.end(), more.begin(), more.end());
-}
-
 PairBody body_of(const IslandMember& member) {
     const MovingParticle& moving = member.moving;
     const double radius = member.radius();
@@ -225,7 +221,7 @@ void EventIsland::go_to(std::size_t m, double time) {
     MoveLists lists;
     lists.take(*scratch_);
     member.lists.append(lists);
-    append_to(member.trajectory, scratch_->flown);
+    member.append_off_bounds(scratch_->flown);
     Box3 box;
     for (const FlownPiece& piece : scratch_->flown) {
         box.include(box_of(piece.path, piece.duration));
@@ -254,9 +250,9 @@ void EventIsland::commit(std::size_t m) {
     member.swept.include(boxes_[m]);
     const bool has_left_bounds = member.impacts > 0;
     if (has_left_bounds) member.moving.planned = nullptr;
-    if (has_left_bounds || member.moving.state.coupling != nullptr) append_to(member.trajectory, prediction.flown);
+    if (has_left_bounds || member.moving.state.coupling != nullptr) member.append_off_bounds(prediction.flown);
     if (member.is_fixed || member.is_cut_off || member.is_gone() || member.is_free) return;
-    if (member.keeps_path && member.trajectory.empty()) member.path_alone = prediction.flown;
+    if (member.keeps_path && !member.has_left_bounds) member.trajectory = prediction.flown;
     member.moving = prediction.moved;
     if (has_left_bounds) member.moving.planned = nullptr;
     add(member.outcome, prediction.outcome);

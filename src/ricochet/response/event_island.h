@@ -45,15 +45,17 @@ struct IslandMember {
     double contact_path = 0.0;    ///< m, length of its trajectory along walls, on arcs
     bool is_cut_off = false;      ///< it has spent its impact budget
     Box3 swept{};                 ///< bounding box of the whole sphere on its whole trajectory
-    /// Its whole trajectory, if it has met other members, or if others act on it from a distance.
+    bool keeps_path = false;      ///< input: the trajectory is needed even if it keeps to its declared bounds
+    /// It has met other members, or others act on it from a distance, so that it may leave its declared bounds.
+    bool has_left_bounds = false;
+    /// Its whole trajectory, if it has left its bounds, or if keeps_path is set.
     std::vector<FlownPiece> trajectory{};
-    bool keeps_path = false;  ///< input: path() is needed
-    /// Its whole path, if it has met no other member and keeps_path is set. Apart from `trajectory`, because an empty
-    /// trajectory means that it has kept to its declared bounds.
-    std::vector<FlownPiece> path_alone{};
 
-    /// Returns the pieces of its path in the step, if keeps_path was set.
-    [[nodiscard]] std::span<const FlownPiece> path() const { return trajectory.empty() ? path_alone : trajectory; }
+    /// Appends a part of the trajectory after the member has left its bounds.
+    void append_off_bounds(const std::vector<FlownPiece>& flown) {
+        trajectory.insert(trajectory.end(), flown.begin(), flown.end());
+        has_left_bounds = !trajectory.empty();
+    }
     /// Returns true if the member no longer moves: it is absorbed or frozen.
     [[nodiscard]] bool is_gone() const { return outcome.is_absorbed() || outcome.is_frozen(); }
     /// Returns the rest of its part of the step, in s. At the start of its planned flight, this is the exact duration

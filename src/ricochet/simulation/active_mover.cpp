@@ -172,7 +172,7 @@ void ActiveMover::write_back(IslandMember& member, const TimeSpan& step, BlockRe
     if (parts_.store.is_asleep(i)) record.counts.lost_impulses += add_weight(i, life.begin, 1.0);
     const Vec3 from = parts_.store.particles().position[i];
     write_back(i, moving, member.outcome, life.end, {member.lists.hits, {}, member.pair_velocity_change}, record);
-    note_passages(i, from, member.path(), member.lists.segments, record);
+    note_passages(i, from, member.trajectory, member.lists.segments, record);
 }
 
 void ActiveMover::move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks) {

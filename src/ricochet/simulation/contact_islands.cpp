@@ -23,10 +23,11 @@ void keep_path(IslandMember& member, const ForceInput& from, const std::vector<F
         member.swept.include(ball.upper);
     }
     const double begin = flown.empty() ? from.time : flown.back().begin + flown.back().duration;
-    if (member.is_gone() || !(begin < member.end)) return;
-    const Vec3& end_position = flown.empty() ? from.position : flown.back().path.end;
-    member.trajectory.push_back(
-        {line_path(end_position, Vec3{}, member.end - begin), begin, member.end - begin, Vec3{}, Vec3{}, false});
+    if (!member.is_gone() && begin < member.end) {
+        const Path path = line_path(flown.empty() ? from.position : flown.back().path.end, Vec3{}, member.end - begin);
+        member.trajectory.push_back({path, begin, member.end - begin, Vec3{}, Vec3{}, false});
+    }
+    member.has_left_bounds = !member.trajectory.empty();
 }
 
 }  // namespace

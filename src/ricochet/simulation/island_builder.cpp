@@ -201,7 +201,7 @@ std::vector<std::vector<std::uint32_t>> IslandBuilder::met_by(const OutOfBoundsM
 
 /// Returns false if both paths are known and do not meet.
 bool IslandBuilder::may_have_met(const IslandMember& first, const IslandMember& second) {
-    if (first.trajectory.empty() || second.trajectory.empty()) return true;
+    if (!first.has_left_bounds || !second.has_left_bounds) return true;
     return first_meeting(first.trajectory, second.trajectory, first.radius() + second.radius(), 0.0).has_value();
 }
 

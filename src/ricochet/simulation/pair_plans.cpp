@@ -262,7 +262,7 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
 
 bool PairPlans::comes_to(const IslandMember& member, std::uint32_t k) const {
     if (!overlap(member.swept, place_of(k))) return false;
-    if (!is_free(k) || member.trajectory.empty()) return true;
+    if (!is_free(k) || !member.has_left_bounds) return true;
     const FlownPiece trajectory = free_path(k);
     const double distance = member.radius() + parts_.store.particles().radius[first_ + k];
     return first_meeting(member.trajectory, {&trajectory, 1}, distance, 0.0).has_value();

@@ -16,16 +16,6 @@ namespace {
 /// Members per unit of parallel work.
 constexpr std::size_t kBlock = 256;
 
-/// Returns an energy, in J, that rounding explains: all springs are stretched by a negligible part of their length.
-double negligible_energy(const SpringNetwork& island) {
-    double sum = 0.0;
-    for (const Spring& spring : island.springs()) {
-        const double stretch = kNegligibleStretch * spring.rest_length;
-        sum += 0.5 * spring.stiffness * stretch * stretch;
-    }
-    return sum;
-}
-
 /// Most predictions of a step among surfaces before half of it is tried. Local, because kPredictionEnergy decides.
 constexpr int kMostForesights = 16;
 
@@ -47,14 +37,6 @@ struct Closeness {
 constexpr Closeness kRough{kRoughNewtonTolerance, kRoughFrictionYield};
 /// After that. Ten times this yield was seen to stretch springs of 1e8 N/m by 0.8 J in a step.
 constexpr Closeness kClose{kNewtonTolerance, kFrictionYield};
-
-double kinetic_energy(const ParticleSystem& system, std::span<const Vec3> velocities) {
-    return ordered_sum(system.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-        double sum = 0.0;
-        for (std::size_t k = begin; k < end; ++k) sum += 0.5 * system.mass(k) * length_squared(velocities[k]);
-        return sum;
-    });
-}
 
 /// Returns the displacements of members under the supports found for a step, minus the predicted ones, in m.
 std::vector<Vec3> missed_paths(const SystemStep& step, std::span<const SupportConstraints> found) {
@@ -102,9 +84,9 @@ CoupledMotion::CoupledMotion(std::vector<Spring> springs, std::vector<ParticlesF
       mutual_(std::move(mutual)),
       solver_(std::move(solver)),
       integrator_(integrator),
-      terms_(terms),
+      time_step_(terms.time_step),
       system_(forces, springs_, mutual_),
-      least_energy_(negligible_energy(springs_)) {}
+      energy_(system_, springs_, terms.knows_implicit) {}
 
 void CoupledMotion::bind(const Particles& particles) { springs_.bind(particles.id); }
 
@@ -155,7 +137,7 @@ double CoupledMotion::plan(const Particles& particles, double time, double durat
     if (!holds_coupling(integrator_.kind))
         system_.expect_reactions(expected_reactions(particles, contact_acceleration));
     const SystemStep step = is_implicit ? among_surfaces(duration, particles, contacts) : stepped(duration);
-    if (!springs_.empty()) watch_energy(step);
+    if (!springs_.empty()) energy_.watch(step);
     is_unsolved_ = is_unsolved_ || !step.solved;
     for (std::size_t k = 0; k < system_.size(); ++k) slots_[system_.members()[k]] = static_cast<std::uint32_t>(k);
     plan_flights(step);
@@ -187,7 +169,7 @@ MutualPull CoupledMotion::mutual_pull(const SystemStep& step, std::size_t k) con
 
 /// Returns the shortest substep, in s. It must advance the clock and the particles.
 double CoupledMotion::shortest_part() const {
-    return std::max(kShortestSubstep * terms_.time_step, 2.0 * ulp(system_.time()));
+    return std::max(kShortestSubstep * time_step_, 2.0 * ulp(system_.time()));
 }
 
 /// Takes the rest of the step at once if all its sub-steps are used up, and counts the step as unsolved.
@@ -221,13 +203,13 @@ SystemStep CoupledMotion::stepped(double duration) {
 SystemStep CoupledMotion::among_surfaces(double duration, const Particles& particles, const PlannedContacts& contacts) {
     std::vector<Vec3> spins;
     for (const std::uint32_t i : system_.members()) spins.push_back(particles.spin[i]);
-    const double first_try = std::max(first_try_, kLeastCoupledPart * terms_.time_step);
+    const double first_try = std::max(first_try_, kLeastCoupledPart * time_step_);
     const bool is_part = first_try_ > 0.0 && first_try < 0.75 * duration;
     SupportPrediction prediction = predict(is_part ? first_try : duration, spins, contacts);
     bool is_cut = false;
     int vain = 0;
     double h = prediction.step.duration;
-    while (!prediction.has_settled && 0.5 * h >= kLeastCoupledPart * terms_.time_step && vain < kMostVainCuts) {
+    while (!prediction.has_settled && 0.5 * h >= kLeastCoupledPart * time_step_ && vain < kMostVainCuts) {
         SupportPrediction half = predict(0.5 * h, spins, contacts);
         h = half.step.duration;
         const bool is_better = half.has_settled || half.residual < kWorthCutting * prediction.residual;
@@ -257,7 +239,7 @@ CoupledMotion::SupportPrediction CoupledMotion::predict(double duration, std::sp
         const Vec3& v = system_.velocities()[k];
         step.velocities[k] += duration * system_.own_acceleration(k, system_.time(), system_.positions()[k], v);
     }
-    const double negligible = kPredictionEnergy * kinetic_energy(system_, step.velocities) + least_energy_;
+    const double negligible = kPredictionEnergy * kinetic_energy(system_, step.velocities) + energy_.least();
     bool is_close = false;
     std::vector<SupportConstraints> held =
         contacts.find(system_, step.velocities, spins, duration, kRough.least_compliance);
@@ -299,64 +281,8 @@ double CoupledMotion::lost_in(const SystemStep& step) const {
             system_.own_acceleration(k, system_.time() + step.duration, step.positions[k], step.velocities[k]);
         work += system_.mass(k) * dot(pull, step.positions[k] - system_.positions()[k]);
     }
-    const double before = energy(system_.positions(), system_.velocities());
-    return before + work - energy(step.positions, step.velocities);
-}
-
-double CoupledMotion::energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const {
-    return kinetic_energy(system_, velocities) + system_.spring_energy(positions);
-}
-
-// Adds up the energy that the method creates, and reports a divergence. Energy comes from the start, from forces and
-// from walls. More is an error of the method, and far more makes the motion nonsense. The work of a step is computed by
-// the trapezoid rule, whose error is of the size of the work.
-void CoupledMotion::watch_energy(const SystemStep& step) {
-    const double before = energy(system_.positions(), system_.velocities());
-    const double after = energy(step.positions, step.velocities);
-    given_ += watching_ ? std::max(0.0, before - energy_after_plan_) : before;
-    const auto work_of = [&](std::size_t k) {
-        if (system_.is_pinned(k)) return 0.0;
-        const Vec3& v0 = system_.velocities()[k];
-        const Vec3& v1 = step.velocities[k];
-        Vec3 pull = system_.own_acceleration(k, system_.time(), system_.positions()[k], v0) +
-                    system_.own_acceleration(k, system_.time() + step.duration, step.positions[k], v1);
-        pull += 2.0 * system_.expected_reaction(k);
-        if (!step.mutual_start.empty()) pull += step.mutual_start[k];
-        if (!step.mutual_start.empty()) pull += (step.mutual_end.empty() ? step.mutual_start : step.mutual_end)[k];
-        // Uses the path that the velocities give. The path of forward Euler starts without the forces, which would do
-        // no work.
-        return 0.25 * step.duration * system_.mass(k) * dot(pull, v0 + v1);
-    };
-    const auto sum = [&](auto&& term) {
-        return ordered_sum(system_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
-            double partial = 0.0;
-            for (std::size_t k = begin; k < end; ++k) partial += term(work_of(k));
-            return partial;
-        });
-    };
-    gained_ += after - before - sum([](double work) { return work; });
-    given_ += sum([](double work) { return std::fabs(work); });
-    energy_after_plan_ = after;
-    watching_ = true;
-    if (!(gained_ <= kDivergedGain * (given_ + least_energy_))) report_divergence(step);
-}
-
-void CoupledMotion::report_divergence(const SystemStep& step) const {
-    const auto speed_of = [&](std::size_t k) {
-        const double speed = length(step.velocities[k]);
-        return std::isfinite(speed) ? speed : INFINITY;
-    };
-    std::size_t fastest = 0;
-    for (std::size_t k = 1; k < system_.size(); ++k) {
-        if (speed_of(k) > speed_of(fastest)) fastest = k;
-    }
-    throw DivergedError(
-        fmt::format("at t = {:.6g} s the motion has diverged: particle {} would reach {:.3g} m/s, and springs and "
-                    "particles hold over {} times the energy that forces and walls have given them; use a shorter "
-                    "time step, {}",
-                    system_.time() + step.duration, system_.id(fastest), speed_of(fastest), kDivergedGain,
-                    terms_.knows_implicit ? "more damping, or the integrator implicit_euler"
-                                          : "more damping, or weaker springs and forces between particles"));
+    const double before = energy_.of(system_.positions(), system_.velocities());
+    return before + work - energy_.of(step.positions, step.velocities);
 }
 
 CoupledMotion::Correction CoupledMotion::correct_velocities(Particles& particles) {

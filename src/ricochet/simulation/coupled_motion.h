@@ -14,6 +14,7 @@
 #include "ricochet/dynamics/mutual_forces.h"
 #include "ricochet/dynamics/particle_system.h"
 #include "ricochet/dynamics/system_integrator.h"
+#include "ricochet/simulation/energy_watch.h"
 #include "ricochet/simulation/planned_contacts.h"
 
 namespace ricochet {
@@ -103,10 +104,7 @@ public:
         springs_.archive(a);
         a(first_try_);
         a(unsolved_steps_);
-        a(given_);
-        a(gained_);
-        a(energy_after_plan_);
-        a(watching_);
+        energy_.archive(a);
     }
 
     [[nodiscard]] const SpringNetwork& springs() const { return springs_; }
@@ -139,15 +137,12 @@ private:
                                             const PlannedContacts& contacts) const;
     [[nodiscard]] double lost_in(const SystemStep& step) const;
     void plan_flights(const SystemStep& step);
-    [[nodiscard]] double energy(const std::vector<Vec3>& positions, const std::vector<Vec3>& velocities) const;
-    void watch_energy(const SystemStep& step);
-    [[noreturn]] void report_divergence(const SystemStep& step) const;
 
     SpringNetwork springs_;
     MutualForces mutual_;
     SystemSolver solver_;
     Integrator integrator_;
-    Terms terms_;
+    double time_step_;  // s
     ParticleSystem system_;
     std::vector<std::uint32_t> slots_;    // of every particle: its index among the members, or kNoSlot
     std::vector<Flight> flights_;         // of the members
@@ -160,13 +155,7 @@ private:
     std::uint32_t substeps_ = 0;  // of an adaptive method in the present step
     bool is_disabled_ = false;
     std::function<void()> between_;
-
-    // Energy from the start, from forces and from walls, and energy that the method has created, in J.
-    double given_ = 0.0;
-    double gained_ = 0.0;
-    double energy_after_plan_ = 0.0;
-    double least_energy_ = 0.0;
-    bool watching_ = false;
+    EnergyWatch energy_;
 };
 
 }  // namespace ricochet

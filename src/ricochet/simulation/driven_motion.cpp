@@ -14,49 +14,37 @@
 namespace ricochet {
 namespace {
 
-bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
-
-/// Returns true if a path begins with another velocity than that at the end of the path before.
-bool jumps(const BodyPath& before, const BodyPath& after) {
-    const MovingPose came = before.at(before.end);
-    const MovingPose goes = after.at(after.begin);
-    return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
-}
-
 /// Returns the power, in W, that a wrench (N, N m) about its moment_center() gives a body.
 double power_of(const DrivenBody& body, const Wrench& load) {
     const double turning = dot(load.moment, body.angular_velocity());
     return body.description().joint == JointKind::hinge ? turning : turning + dot(load.impulse, body.velocity());
 }
 
+std::vector<DrivenBody> make_bodies(std::vector<BodyDescription> descriptions, const FrameTree* frames) {
+    std::vector<DrivenBody> bodies;
+    for (BodyDescription& description : descriptions) {
+        const auto frame = frames == nullptr ? std::nullopt : frames->find(description.frame);
+        if (!frame || !frames->description(*frame).is_driven) {
+            throw InputError(fmt::format("body '{}': there is no driven frame of that name", description.frame));
+        }
+        bodies.emplace_back(std::move(description), frames->at(*frame, 0.0).world_from_frame);
+    }
+    return bodies;
+}
+
 }  // namespace
 
 DrivenMotion::DrivenMotion(std::vector<BodyDescription> bodies, FrameTree* frames, MovingColliders* colliders,
                            const ForceField& forces, const ResponseSettings& settings)
-    : frames_(frames),
-      colliders_(colliders),
-      forces_(forces),
+    : bodies_(make_bodies(std::move(bodies), frames)),
+      paths_(bodies_, frames, colliders, forces),
       slow_(settings.resting_speed),
       time_step_(settings.time_step),
-      shortest_part_(kShortestPart * settings.time_step) {
-    for (BodyDescription& description : bodies) {
-        const auto frame = frames_ == nullptr ? std::nullopt : frames_->find(description.frame);
-        if (!frame || !frames_->description(*frame).is_driven) {
-            throw InputError(fmt::format("body '{}': there is no driven frame of that name", description.frame));
-        }
-        bodies_.emplace_back(std::move(description), frames_->at(*frame, 0.0).world_from_frame);
-        frame_of_.push_back(*frame);
-        BodyId id = 0;
-        while (colliders_ != nullptr && id < colliders_->size() && colliders_->frame_of(id) != *frame) ++id;
-        collider_of_.push_back(colliders_ != nullptr && id < colliders_->size() ? id : kWorldBody);
-        if (collider_of_.back() != kWorldBody) colliders_->set_mobility(id, bodies_.back().mobility());
-    }
-    loads_.resize(bodies_.size());
-    resting_loads_.resize(bodies_.size());
-    contacts_.resize(bodies_.size());
-    relaxations_.resize(bodies_.size());
-    shares_.resize(bodies_.size(), 1.0);
-}
+      shortest_part_(kShortestPart * settings.time_step),
+      loads_(bodies_.size()),
+      resting_loads_(bodies_.size()),
+      contacts_(bodies_.size()),
+      relaxations_(bodies_.size()) {}
 
 void DrivenMotion::begin_step() {
     for (std::size_t k = 0; k < bodies_.size() && resting_time_ > 0.0; ++k) {
@@ -72,7 +60,7 @@ void DrivenMotion::begin_step() {
 double DrivenMotion::work_by_yielding(const ColliderLoad& load) const {
     const auto body = loads_on_bodies().body_of(load);
     if (!body) return 0.0;
-    const AffineMap map = planned(*body).at(load.time).world_from_frame;
+    const AffineMap map = paths_.planned(*body).at(load.time).world_from_frame;
     const Mobility mobility = bodies_[*body].mobility().seen_by(map);
     return mobility.energy_by(wrench_of(load, mobility.center));
 }
@@ -84,29 +72,14 @@ double DrivenMotion::next_substep_end(double begin, double end) const {
 }
 
 void DrivenMotion::plan(double begin, double end, double oldest) {
-    oldest_ = oldest;
-    set_shares({});
+    paths_.set_shares({});
+    paths_.set_oldest(oldest);
     was_shortened_ = was_cut_ = has_given_up_ = false;
-    plan_paths(begin, end);
-}
-
-/// Sets factors on the bodies' inverse masses and inertias. Impacts at one time, or too near in time to be told apart,
-/// share their effect: the body reacts to each of them as to all together.
-void DrivenMotion::set_shares(std::vector<double> shares) {
-    shares.resize(bodies_.size(), 1.0);
-    if (shares == shares_) return;
-    shares_ = std::move(shares);
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        if (collider_of_[k] == kWorldBody) continue;
-        Mobility mobility = bodies_[k].mobility();
-        mobility.of_mass = shares_[k] * mobility.of_mass;
-        mobility.of_inertia = shares_[k] * mobility.of_inertia;
-        colliders_->set_mobility(collider_of_[k], mobility);
-    }
+    paths_.plan(loads_, begin, end);
 }
 
 std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> preview, double end) const {
-    std::vector<ImpactTally> tallies = no_impacts();
+    std::vector<ImpactTally> tallies = paths_.no_impacts();
     for (const ColliderLoad& load : preview) {
         const auto body = load.impact && load.time <= end ? loads_on_bodies().body_of(load) : std::nullopt;
         if (body) tallies[*body].add(load);
@@ -114,51 +87,6 @@ std::vector<double> DrivenMotion::shares_of(std::span<const ColliderLoad> previe
     std::vector<double> shares;
     for (const ImpactTally& tally : tallies) shares.push_back(tally.share(end));
     return shares;
-}
-
-void DrivenMotion::plan_paths(double begin, double end) {
-    planned_loads_ = loads_;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const BodyPath next = bodies_[k].plan(forces_, loads_[k], begin, end);
-        if (is_planned_) {
-            frames_->replace_last_path(frame_of_[k], next);
-        } else {
-            frames_->append_path(frame_of_[k], next);
-        }
-        frames_->forget_paths(frame_of_[k], oldest_);
-        const double size = max_abs(next.at(end).world_from_frame.translation);
-        // A body may turn only about its own centre. Sweeps along such fast rotations would not end.
-        const MotionBounds motion = next.bounds(begin, end);
-        if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
-            throw DivergedError(fmt::format(
-                "by t = {:.6g} s the body '{}' has left the range of the arithmetic: its motion has diverged; use a "
-                "shorter time step or weaker forces",
-                end, bodies_[k].description().frame));
-        }
-        publish_velocity_jump(k, paths_of(k).size() - 1);
-    }
-    is_planned_ = true;
-}
-
-void DrivenMotion::end_at(double time) {
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        BodyPath path = planned(k);
-        const bool is_cut = time < path.end;
-        path.end = time;
-        // The force of a spring is known only at the ends of a substep, so the path is planned again.
-        const JointSettings& joint = bodies_[k].description().settings;
-        const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
-        if (is_cut && is_sprung) path = bodies_[k].plan(forces_, planned_loads_[k], path.begin, time);
-        frames_->replace_last_path(frame_of_[k], path);
-    }
-}
-
-std::vector<ImpactTally> DrivenMotion::no_impacts() const {
-    std::vector<ImpactTally> tallies;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        tallies.emplace_back(bodies_[k], planned(k), colliders_, collider_of_[k]);
-    }
-    return tallies;
 }
 
 double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
@@ -169,13 +97,13 @@ double DrivenMotion::cut_by(std::vector<ColliderLoad> preview) const {
     std::stable_sort(preview.begin(), preview.end(), [](const ColliderLoad& a, const ColliderLoad& b) {
         return std::tie(a.time, a.particle) < std::tie(b.time, b.particle);
     });
-    const double end = planned(0).end;
-    const double begin = planned(0).begin;
+    const double end = paths_.planned(0).end;
+    const double begin = paths_.planned(0).begin;
     const auto end_of = [&](const std::vector<ImpactTally>& taken, double time, double next) {
         const double least = parts_ < kManyParts ? begin : begin + shortest_part_;
         return std::min(end, std::max(least, end_after(taken, time, next, begin, shortest_part_)));
     };
-    std::vector<ImpactTally> tallies = no_impacts();
+    std::vector<ImpactTally> tallies = paths_.no_impacts();
     for (std::size_t first = 0, next = 0; first < preview.size(); first = next) {
         const std::vector<ImpactTally> before = tallies;
         bool is_heavy = false;
@@ -227,7 +155,7 @@ double DrivenMotion::change_by(std::size_t body, const Wrench& load, double dura
 /// waits for a body after an impact keeps its momentum but does not move along it. The resulting couple turns the body
 /// in proportion to the time.
 double DrivenMotion::end_of_waits(std::span<const ColliderLoad> preview, double end) const {
-    const double begin = planned(0).begin;
+    const double begin = paths_.planned(0).begin;
     for (std::size_t i = 0; i < preview.size(); ++i) {
         const ColliderLoad& load = preview[i];
         const bool waits = !load.impact && load.impulse == Vec3{} && load.couple != Vec3{};
@@ -270,7 +198,7 @@ bool DrivenMotion::is_cut_in_contact(std::span<const ColliderLoad> preview, doub
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         if (!(loads_on_bodies().left_at(k, preview) > end)) continue;
         const RestingLoad resting_load = resting_load_on(k, preview, planned_end());
-        const double duration = planned_end() - planned(k).begin;
+        const double duration = planned_end() - paths_.planned(k).begin;
         if (resting_load.heaviness > 0.0 &&
             (relaxations_[k].concerns(resting_load) || !fit_of(k, resting_load, duration).is_near))
             return true;
@@ -287,20 +215,20 @@ bool DrivenMotion::begin_round(std::span<const ColliderLoad> preview, double end
     if (round > 0 && !was_cut_) return true;
     was_cut_ = false;
     std::vector<double> shares = shares_of(preview, end);
-    const bool are_same = shares == shares_;
-    set_shares(std::move(shares));
+    const bool are_same = shares == paths_.shares();
+    paths_.set_shares(std::move(shares));
     return are_same;
 }
 
 bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut, int round) {
-    const double begin = planned(0).begin;
+    const double begin = paths_.planned(0).begin;
     // A substep that has been cut once is not cut again at the same impact.
     double end = round == 0 || cut < begin + 0.5 * (planned_end() - begin) ? cut : planned_end();
     end = end_of_waits(preview, end);
     bool fits = begin_round(preview, end, round);
     if (is_cut_in_contact(preview, end)) {
         was_cut_ = true;
-        plan_paths(begin, end);
+        paths_.plan(loads_, begin, end);
         return true;
     }
     if (has_given_up_) {
@@ -336,16 +264,16 @@ bool DrivenMotion::plan_again(std::span<const ColliderLoad> preview, double cut,
             if (relaxations_[k].is_searching()) loads_[k] = relaxations_[k].shortened((end - begin) / duration);
         }
     }
-    plan_paths(begin, end);
+    paths_.plan(loads_, begin, end);
     return true;
 }
 
 /// Returns true if a planned load and the load of the preview together give a body more energy than particles lose to
 /// it.
 bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> preview, double end) const {
-    const Wrench& planned_load = planned_loads_[body];
+    const Wrench& planned_load = paths_.load(body);
     if (planned_load.impulse == Vec3{} && planned_load.moment == Vec3{}) return false;
-    BodyPath path = planned(body);
+    BodyPath path = paths_.planned(body);
     const bool is_whole = end >= path.end;
     path.end = end;
     const double duration = end - path.begin;
@@ -368,9 +296,9 @@ bool DrivenMotion::gains_energy(std::size_t body, std::span<const ColliderLoad> 
 
 /// Keeps the plan up to a time, in s.
 void DrivenMotion::accept(std::span<const ColliderLoad> preview, double end) {
-    const double duration = end - planned(0).begin;
+    const double duration = end - paths_.planned(0).begin;
     for (std::size_t k = 0; k < bodies_.size(); ++k) relaxations_[k].end_substep(resting_load_on(k, preview, end));
-    end_at(end);
+    paths_.end_at(end);
     limit_next_substep(duration);
 }
 
@@ -383,7 +311,7 @@ bool DrivenMotion::plan_without_loads(std::span<const ColliderLoad> preview, dou
         loads_[k] = {};
         has_given_up_ = true;
     }
-    if (has_given_up_) plan_paths(begin, end);
+    if (has_given_up_) paths_.plan(loads_, begin, end);
     return has_given_up_;
 }
 
@@ -410,42 +338,23 @@ void DrivenMotion::follow(std::span<const ColliderLoad> loads) {
         if (!load.impact) resting_loads_[*body] += wrench_of(load, bodies_[*body].moment_center());
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-        const BodyPath& path = planned(k);
+        const BodyPath& path = paths_.planned(k);
         const double lain = path.end - path.begin;
         contacts_[k].add(touching[k]);
         contacts_[k].taken += wrenches[k];
         // If the search for loads was given up, the loads for the next plan differ from the loads of the path.
-        const Wrench& load = planned_loads_[k];
+        const Wrench& load = paths_.load(k);
         contacts_[k].taken += {-lain * load.impulse, -lain * load.moment};
         bodies_[k].follow(path, load, wrenches[k]);
     }
-    if (!bodies_.empty()) resting_time_ += planned(0).end - planned(0).begin;
-    is_planned_ = false;
+    if (!bodies_.empty()) resting_time_ += paths_.planned(0).end - paths_.planned(0).begin;
+    paths_.set_followed();
     ++parts_;
 }
 
 void DrivenMotion::take(std::span<const ColliderLoad> loads) {
     const std::vector<Wrench> wrenches = loads_on_bodies().sums(loads);
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].take(wrenches[k]);
-}
-
-double DrivenMotion::repeat_substep(double time) {
-    set_shares({});
-    const std::vector<BodyPath>& paths = paths_of(0);
-    std::size_t path = 0;
-    while (path + 1 < paths.size() && paths[path + 1].begin <= time) ++path;
-    for (std::size_t k = 0; k < bodies_.size(); ++k) publish_velocity_jump(k, path);
-    return paths[path].end;
-}
-
-/// Sets a flag on a body's colliders if its velocity jumps at the start of a path. All bodies have the same substeps.
-void DrivenMotion::publish_velocity_jump(std::size_t body, std::size_t path) const {
-    if (collider_of_[body] == kWorldBody) return;
-    const std::vector<BodyPath>& paths = paths_of(body);
-    const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
-    const bool is_free = bodies_[body].description().joint == JointKind::free;
-    colliders_->set_motion(collider_of_[body], has_jumped,
-                           is_free ? std::optional(bodies_[body].angular_momentum()) : std::nullopt);
 }
 
 }  // namespace ricochet

@@ -20,6 +20,7 @@
 #include "ricochet/core/mobility.h"
 #include "ricochet/dynamics/driven_body.h"
 #include "ricochet/response/response.h"
+#include "ricochet/simulation/body_paths.h"
 #include "ricochet/simulation/impact_tally.h"
 #include "ricochet/simulation/load_relaxation.h"
 #include "ricochet/simulation/loads_on_bodies.h"
@@ -43,14 +44,12 @@ public:
     void plan(double begin, double end, double oldest);
     /// Returns the time, in s, at which the planned substep must end if these are the loads on the bodies in it.
     [[nodiscard]] double cut_by(std::vector<ColliderLoad> preview) const;
-    /// Ends the plan at an earlier time, in s.
-    void end_at(double time);
     /// Plans the substep again if a load that rests on a body is heavy compared with it. The new plan contains the load
     /// of a preview. It ends earlier if that load would change the body's velocity by much. cut: result of cut_by().
     /// round: number of earlier calls for this substep. Returns false if the plan is kept, which then ends at the cut.
     [[nodiscard]] bool plan_again(std::span<const ColliderLoad> preview, double cut, int round);
     /// Returns the end of the plan, in s.
-    [[nodiscard]] double planned_end() const { return planned(0).end; }
+    [[nodiscard]] double planned_end() const { return paths_.planned(0).end; }
     /// Moves the bodies along their paths, and applies the loads of that time.
     void follow(std::span<const ColliderLoad> loads);
     /// Applies loads of an earlier substep of the step.
@@ -63,22 +62,19 @@ public:
     [[nodiscard]] double work_by_yielding(const ColliderLoad& load) const;
     /// Selects the substep that begins at a time, in s, for particles that move through this step later. Returns its
     /// end, in s.
-    double repeat_substep(double time);
+    double repeat_substep(double time) { return paths_.repeat(time); }
 
     /// Saves or restores the motion of the bodies; a: an archive of core/binary_archive.h.
     template <class Archive>
     void archive(Archive& a) {
         for (DrivenBody& body : bodies_) body.archive(a);
-        for (const std::size_t frame : frame_of_) {
-            std::vector<BodyPath> paths = frames_->paths(frame);
-            archive_entries(a, paths, [&](BodyPath& path) { path.archive(a); });
-            if (!paths.empty()) frames_->set_paths(frame, std::move(paths));
-        }
+        paths_.archive(a);
         for (Wrench& wrench : resting_loads_) a(wrench.impulse), a(wrench.moment);
         for (BodyContacts& contacts : contacts_) archive_entries(a, contacts.now, [&](std::uint64_t& id) { a(id); });
         a(resting_time_);
         for (LoadRelaxation& relaxation : relaxations_) relaxation.archive(a);
-        a(is_planned_), a(longest_part_);
+        paths_.archive_plan(a);
+        a(longest_part_);
     }
 
     /// Returns false if no run leaves the bodies in this state at a time, in s.
@@ -93,18 +89,8 @@ private:
         bool is_near = true;  // the difference of the loads changes the body's motion by little
     };
 
-    /// Returns the paths of a body, as far back as they may be needed. The last one is planned.
-    [[nodiscard]] const std::vector<BodyPath>& paths_of(std::size_t body) const {
-        return frames_->paths(frame_of_[body]);
-    }
-    [[nodiscard]] const BodyPath& planned(std::size_t body) const { return paths_of(body).back(); }
-    [[nodiscard]] bool has_sound_paths(std::size_t body) const;
-    [[nodiscard]] std::vector<ImpactTally> no_impacts() const;
-    void plan_paths(double begin, double end);
-    void set_shares(std::vector<double> shares);
     [[nodiscard]] std::vector<double> shares_of(std::span<const ColliderLoad> preview, double end) const;
-    void publish_velocity_jump(std::size_t body, std::size_t path) const;
-    [[nodiscard]] LoadsOnBodies loads_on_bodies() const { return {bodies_, collider_of_, colliders_, slow_}; }
+    [[nodiscard]] LoadsOnBodies loads_on_bodies() const { return paths_.loads_on_bodies(slow_); }
     [[nodiscard]] RestingLoad resting_load_on(std::size_t body, std::span<const ColliderLoad> preview,
                                               double until) const;
     [[nodiscard]] bool begin_round(std::span<const ColliderLoad> preview, double end, int round);
@@ -121,11 +107,7 @@ private:
     [[nodiscard]] Fit fit_of(std::size_t body, const RestingLoad& resting_load, double duration) const;
 
     std::vector<DrivenBody> bodies_;
-    std::vector<std::size_t> frame_of_;  // of each body
-    std::vector<BodyId> collider_of_;    // of each body: its colliders
-    FrameTree* frames_;
-    MovingColliders* colliders_;
-    const ForceField& forces_;
+    BodyPaths paths_;
     double slow_;                                                    // m/s, of impacts that end bounces
     double time_step_;                                               // s
     double shortest_part_;                                           // s
@@ -134,15 +116,11 @@ private:
     bool was_cut_ = false;                     // the last plan of this substep, by an impact while loads rest on bodies
     bool has_given_up_ = false;                // no load fits in this substep
     std::vector<Wrench> loads_;                // of each body, N and N m: resting load for the next plan
-    std::vector<Wrench> planned_loads_;        // in the planned paths
     std::vector<Wrench> resting_loads_;        // of each body, N s and N m s, by lasting contact in this step so far
     double resting_time_ = 0.0;                // s, of this step so far
     std::vector<BodyContacts> contacts_;       // of each body
     std::vector<LoadRelaxation> relaxations_;  // of each body
-    std::vector<double> shares_;               // of each body: factor on its inverse mass and inertia in this substep
-    double oldest_ = 0.0;                      // s, see plan()
     int parts_ = 0;                            // substeps of this step so far
-    bool is_planned_ = false;                  // the last plan has not been followed
 };
 
 }  // namespace ricochet

@@ -46,18 +46,18 @@ bool is_body(const DrivenBody& body) {
 
 }  // namespace
 
-bool DrivenMotion::has_sound_paths(std::size_t body) const {
-    const std::vector<BodyPath>& paths = paths_of(body);
+bool BodyPaths::is_sound(std::size_t body) const {
+    const std::vector<BodyPath>& paths = of(body);
     const auto leaves_gap = [](const BodyPath& a, const BodyPath& b) { return a.end != b.begin; };
     return std::all_of(paths.begin(), paths.end(), is_path) &&
-           std::adjacent_find(paths.begin(), paths.end(), leaves_gap) == paths.end() &&
-           paths.size() == paths_of(0).size() && (!is_planned_ || !paths.empty());
+           std::adjacent_find(paths.begin(), paths.end(), leaves_gap) == paths.end() && paths.size() == of(0).size() &&
+           (!is_planned_ || !paths.empty());
 }
 
 bool DrivenMotion::is_sound(double time) const {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
         const std::vector<std::uint64_t>& ids = contacts_[k].now;
-        const bool is_whole = is_body(bodies_[k]) && has_sound_paths(k) && is_finite(resting_loads_[k]) &&
+        const bool is_whole = is_body(bodies_[k]) && paths_.is_sound(k) && is_finite(resting_loads_[k]) &&
                               relaxations_[k].is_sound() && std::is_sorted(ids.begin(), ids.end());
         if (!is_whole) return false;
     }

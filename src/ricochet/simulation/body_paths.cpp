@@ -1,0 +1,116 @@
+#include "ricochet/simulation/body_paths.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "ricochet/core/error.h"
+#include "ricochet/core/tolerances.h"
+
+namespace ricochet {
+namespace {
+
+bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
+
+/// Returns true if a path begins with another velocity than that at the end of the path before.
+bool jumps(const BodyPath& before, const BodyPath& after) {
+    const MovingPose came = before.at(before.end);
+    const MovingPose goes = after.at(after.begin);
+    return differ(came.velocity, goes.velocity) || differ(came.angular_velocity, goes.angular_velocity);
+}
+
+}  // namespace
+
+BodyPaths::BodyPaths(const std::vector<DrivenBody>& bodies, FrameTree* frames, MovingColliders* colliders,
+                     const ForceField& forces)
+    : bodies_(bodies), frames_(frames), colliders_(colliders), forces_(forces), shares_(bodies.size(), 1.0) {
+    for (const DrivenBody& body : bodies) {
+        const std::size_t frame = frames_->find(body.description().frame).value();
+        frame_of_.push_back(frame);
+        BodyId id = 0;
+        while (colliders_ != nullptr && id < colliders_->size() && colliders_->frame_of(id) != frame) ++id;
+        const bool has_colliders = colliders_ != nullptr && id < colliders_->size();
+        collider_of_.push_back(has_colliders ? id : kWorldBody);
+        if (has_colliders) colliders_->set_mobility(id, body.mobility());
+    }
+}
+
+void BodyPaths::set_shares(std::vector<double> shares) {
+    shares.resize(bodies_.size(), 1.0);
+    if (shares == shares_) return;
+    shares_ = std::move(shares);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        if (collider_of_[k] == kWorldBody) continue;
+        Mobility mobility = bodies_[k].mobility();
+        mobility.of_mass = shares_[k] * mobility.of_mass;
+        mobility.of_inertia = shares_[k] * mobility.of_inertia;
+        colliders_->set_mobility(collider_of_[k], mobility);
+    }
+}
+
+void BodyPaths::plan(const std::vector<Wrench>& loads, double begin, double end) {
+    loads_ = loads;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const BodyPath next = bodies_[k].plan(forces_, loads_[k], begin, end);
+        if (is_planned_) {
+            frames_->replace_last_path(frame_of_[k], next);
+        } else {
+            frames_->append_path(frame_of_[k], next);
+        }
+        frames_->forget_paths(frame_of_[k], oldest_);
+        const double size = max_abs(next.at(end).world_from_frame.translation);
+        // A body may turn only about its own centre. Sweeps along such fast rotations would not end.
+        const MotionBounds motion = next.bounds(begin, end);
+        if (!(size <= kLargestCoordinate) || !(std::max(motion.origin[1], motion.rotation[1]) < kMaxSpeed)) {
+            throw DivergedError(fmt::format(
+                "by t = {:.6g} s the body '{}' has left the range of the arithmetic: its motion has diverged; use a "
+                "shorter time step or weaker forces",
+                end, bodies_[k].description().frame));
+        }
+        publish_velocity_jump(k, of(k).size() - 1);
+    }
+    is_planned_ = true;
+}
+
+void BodyPaths::end_at(double time) {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        BodyPath path = planned(k);
+        const bool is_cut = time < path.end;
+        path.end = time;
+        // The force of a spring is known only at the ends of a substep, so the path is planned again.
+        const JointSettings& joint = bodies_[k].description().settings;
+        const bool is_sprung = joint.spring > 0.0 || joint.damping > 0.0;
+        if (is_cut && is_sprung) path = bodies_[k].plan(forces_, loads_[k], path.begin, time);
+        frames_->replace_last_path(frame_of_[k], path);
+    }
+}
+
+std::vector<ImpactTally> BodyPaths::no_impacts() const {
+    std::vector<ImpactTally> tallies;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        tallies.emplace_back(bodies_[k], planned(k), colliders_, collider_of_[k]);
+    }
+    return tallies;
+}
+
+double BodyPaths::repeat(double time) {
+    set_shares({});
+    const std::vector<BodyPath>& paths = of(0);
+    std::size_t path = 0;
+    while (path + 1 < paths.size() && paths[path + 1].begin <= time) ++path;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) publish_velocity_jump(k, path);
+    return paths[path].end;
+}
+
+/// Sets a flag on a body's colliders if its velocity jumps at the start of a path. All bodies have the same substeps.
+void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const {
+    if (collider_of_[body] == kWorldBody) return;
+    const std::vector<BodyPath>& paths = of(body);
+    const bool has_jumped = path > 0 && jumps(paths[path - 1], paths[path]);
+    const bool is_free = bodies_[body].description().joint == JointKind::free;
+    colliders_->set_motion(collider_of_[body], has_jumped,
+                           is_free ? std::optional(bodies_[body].angular_momentum()) : std::nullopt);
+}
+
+}  // namespace ricochet

@@ -9,11 +9,26 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/simulation/bodies_module.h"
+#include "ricochet/simulation/children_module.h"
+#include "ricochet/simulation/cloud_motion.h"
+#include "ricochet/simulation/counters/counter_tally.h"
 #include "ricochet/simulation/impl.h"
+#include "ricochet/simulation/shared_run.h"
+#include "ricochet/simulation/springs_module.h"
 
 namespace ricochet {
-Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(std::move(setup))) {}
+namespace {
+
+/// Returns true if particle i takes part in energies. A state that is not finite counts as frozen, because the next
+/// step will freeze it.
+bool has_energy(const Particles& p, std::size_t i) {
+    return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
+}
+
+}  // namespace
+
+Simulation::Simulation(SimulationSetup setup) : impl_(std::make_unique<Impl>(setup, bytes_per_particle(setup))) {}
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
@@ -37,7 +52,7 @@ AttributeTable Simulation::shown_attributes() const {
     if (!particles.keeps_origin || shown.empty()) return shown;
     for (std::size_t i = 0; i < particles.size(); ++i) {
         if (particles.origin[i].emitter == kNoEmitter) continue;
-        const auto& curves = impl().emitters[particles.origin[i].emitter].description().curves;
+        const auto& curves = impl().emission.emitters()[particles.origin[i].emitter].description().curves;
         if (curves.empty()) continue;
         for (std::size_t k = 0; k < shown.columns().size(); ++k) {
             const double age = time() - particles.birth_time[i];
@@ -48,96 +63,71 @@ AttributeTable Simulation::shown_attributes() const {
     return shown;
 }
 std::optional<std::vector<std::int64_t>> Simulation::cloud_parents() const {
-    if (!impl().clouds) return std::nullopt;
-    return impl().clouds->parents();
+    const CloudMotion* const clouds = impl().modules.observers().clouds;
+    return clouds != nullptr ? std::optional(clouds->parents()) : std::nullopt;
 }
-const std::vector<SpringFace>& Simulation::spring_faces() const { return impl().spring_faces; }
-RankBalance Simulation::rank_balance() const { return impl().balancer.balance(); }
-std::uint64_t Simulation::common_memory_bytes() const { return impl().common_memory_bytes; }
+const std::vector<SpringFace>& Simulation::spring_faces() const {
+    return impl().modules.find<SpringsModule>()->faces();
+}
+RankBalance Simulation::rank_balance() const {
+    const SharedRun* const shared = impl().modules.find<SharedRun>();
+    return shared != nullptr ? shared->balance() : RankBalance{};
+}
+std::uint64_t Simulation::common_memory_bytes() const { return impl().scene.shared_bytes(); }
 void Simulation::have_meshes_in_common() {
-    if (!impl().share.is_alone()) impl().have_meshes_in_common();
+    if (!impl().share.is_alone()) impl().scene.share_meshes(impl().share.ranks());
 }
 const SimulationStatistics& Simulation::statistics() const { return impl().recorder.statistics(); }
-const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().world.colliders(); }
-std::span<const Material> Simulation::materials() const { return impl().materials; }
-const SpringNetwork& Simulation::springs() const { return impl().coupled.springs(); }
+const std::vector<ColliderDescription>& Simulation::colliders() const { return impl().scene.list().all(); }
+std::span<const Material> Simulation::materials() const { return impl().scene.materials(); }
+const SpringNetwork& Simulation::springs() const { return impl().coupled().springs(); }
 std::optional<TriangleMesh> Simulation::collider_mesh(std::size_t i) const {
-    require_index(i, impl().world.colliders().size(), "collider");
-    const ColliderShape& shape = impl().world.colliders()[i].shape;
-    if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
-    if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
-        return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
-    }
-    if (impl().bodies && impl().bodies->deforming().is_mesh(i)) {
-        return impl().bodies->deforming().mesh_at(i, time());
-    }
-    return impl().world_of(i).mesh_of(i);
+    require_index(i, colliders().size(), "collider");
+    return impl().scene.mesh_of(i, time());
 }
 MovingPose Simulation::collider_pose(std::size_t i, double time) const {
-    require_index(i, impl().world.colliders().size(), "collider");
-    return impl().bodies ? impl().bodies->pose(impl().bodies->body_of_collider(i), time) : MovingPose{};
+    require_index(i, colliders().size(), "collider");
+    return impl().scene.pose_of(i, time);
 }
-std::size_t Simulation::triangle_count() const {
-    std::size_t count = impl().world.triangles().size();
-    for (BodyId body = 0; impl().bodies && body < impl().bodies->size(); ++body) {
-        count += impl().bodies->world(body).triangles().size();
-    }
-    for (std::size_t i = 0; impl().bodies && i < colliders().size(); ++i) {
-        const DeformingColliders& deforming = impl().bodies->deforming();
-        if (deforming.is_mesh(i)) count += deforming.triangles_of(i).size();
-    }
-    return count;
-}
-std::size_t Simulation::degenerate_triangles() const {
-    std::size_t count = impl().world.degenerate_triangles();
-    for (BodyId body = 0; impl().bodies && body < impl().bodies->size(); ++body) {
-        count += impl().bodies->world(body).degenerate_triangles();
-    }
-    return count;
-}
+std::size_t Simulation::triangle_count() const { return impl().scene.triangle_count(); }
+std::size_t Simulation::degenerate_triangles() const { return impl().scene.degenerate_triangles(); }
 
 const std::vector<ContactRecord>& Simulation::contact_records() const { return impl().recorder.contact_records(); }
 const std::vector<PairImpactRecord>& Simulation::pair_records() const { return impl().recorder.pair_records(); }
-bool Simulation::spawns_children() const { return impl().offspring != nullptr; }
-const std::vector<BirthRecord>& Simulation::birth_records() const { return impl().birth_records; }
+bool Simulation::spawns_children() const { return impl().modules.observers().offspring != nullptr; }
+const std::vector<BirthRecord>& Simulation::birth_records() const {
+    static const std::vector<BirthRecord> none;
+    const ChildrenModule* const children = impl().modules.find<ChildrenModule>();
+    return children != nullptr ? children->births() : none;
+}
 SurfacePosition Simulation::contact_point(const ContactRecord& record) const {
-    require_index(record.surface, impl().world.surface_count(), "surface");
-    const std::uint32_t collider = impl().world.name_of(record.surface).collider;
-    const MovingPose pose = collider_pose(collider, record.time);
-    if (impl().bodies && impl().bodies->deforming().is_mesh(collider)) {
-        const auto [a, b, c] = impl().bodies->deforming().corners_at(record.surface, record.time);
-        const ClosestPointOnTriangle closest = closest_point_on_triangle(record.position, a, b, c);
-        return {closest.point, barycentric_coordinates(closest, a, b, c)};
-    }
-    const CollisionWorld& world = impl().world_of(collider);
-    if (&world == &impl().world) return world.closest_point_on(record.surface, record.position);
-    SurfacePosition position = world.closest_point_on(record.surface, pose.local_position(record.position));
-    position.point = pose.point(position.point);
-    return position;
+    require_index(record.surface, impl().scene.list().surface_count(), "surface");
+    return impl().scene.closest_point(record.surface, record.position, record.time);
 }
 SurfaceName Simulation::surface_name(SurfaceId surface) const {
-    require_index(surface, impl().world.surface_count(), "surface");
-    return impl().world.name_of(surface);
+    require_index(surface, impl().scene.list().surface_count(), "surface");
+    return impl().scene.list().name_of(surface);
 }
 
 TriangleTotals Simulation::triangle_totals(std::size_t i) const {
-    require_index(i, impl().world.colliders().size(), "collider");
+    require_index(i, colliders().size(), "collider");
     TriangleTotals result;
-    if (impl().recorder.totals().empty()) return result;
+    const SurfaceTotals& totals = impl().recorder.totals();
+    if (totals.empty()) return result;
     // Adds the weights of sleeping particles to the totals for the time of this call. They are removed exactly.
-    impl().add_weights_of_sleepers(1.0);
-    const std::size_t first = impl().world.first_surface_of(i);
-    for (std::size_t k = 0; k < impl().world.surface_count_of(i); ++k) {
+    impl().mover.add_weights(time(), 1.0);
+    const ColliderList& list = impl().scene.list();
+    for (SurfaceId surface = list.first_surface_of(i); surface < list.first_surface_of(i + 1); ++surface) {
         // All parts of a shape share one entry.
-        const std::size_t at = impl().world.name_of(static_cast<SurfaceId>(first + k)).triangle;
+        const std::size_t at = list.name_of(surface).triangle;
         result.hits.resize(at + 1);
         result.impulse.resize(at + 1);
         result.lasting_impulse.resize(at + 1);
-        result.hits[at] += impl().recorder.totals().hits(first + k);
-        result.impulse[at] += impl().recorder.totals().impulse(first + k);
-        result.lasting_impulse[at] += impl().recorder.totals().lasting_impulse(first + k);
+        result.hits[at] += totals.hits(surface);
+        result.impulse[at] += totals.impulse(surface);
+        result.lasting_impulse[at] += totals.lasting_impulse(surface);
     }
-    impl().add_weights_of_sleepers(-1.0);
+    impl().mover.add_weights(time(), -1.0);
     return result;
 }
 
@@ -145,12 +135,13 @@ const std::vector<ColliderTotals>& Simulation::collider_totals() const { return 
 
 const std::vector<CounterTotals>& Simulation::counters() const {
     static const std::vector<CounterTotals> none;
-    return impl().counters ? impl().counters->totals() : none;
+    const CounterTally* const counters = impl().modules.find<CounterTally>();
+    return counters != nullptr ? counters->totals() : none;
 }
 
 std::vector<BodyState> Simulation::bodies() const {
     std::vector<BodyState> states;
-    for (const DrivenBody& body : impl().driven.bodies()) {
+    for (const DrivenBody& body : impl().modules.find<BodiesModule>()->bodies()) {
         states.push_back({body.description().frame, body.center(), body.velocity(), body.angular_velocity(),
                           body.angular_momentum(), body.description().mass, body.coordinate(), body.rate(),
                           body.kinetic_energy(), body.world_from_frame()});
@@ -161,26 +152,15 @@ std::vector<BodyState> Simulation::bodies() const {
 const std::vector<Violation>& Simulation::last_violations() const { return impl().recorder.last_violations(); }
 
 bool Simulation::is_penetrating(std::size_t i) const {
-    require_index(i, impl().store.size(), "particle");
-    const std::span<const SideMemory> sides = impl().store.sides_of(i);
+    require_index(i, impl().population.store().size(), "particle");
+    const std::span<const SideMemory> sides = impl().population.store().sides_of(i);
     return std::any_of(sides.begin(), sides.end(), [](const SideMemory& memory) { return memory.penetrating; });
 }
 
-const std::vector<std::string>& Simulation::warnings() const { return impl().warnings; }
+const std::vector<std::string>& Simulation::warnings() const { return impl().warnings.texts(); }
 
-bool Simulation::has_spheres() const { return impl().has_spheres; }
+bool Simulation::has_spheres() const { return impl().emission.has_spheres(); }
 
-// Impulses too large for the totals are counted when the weight is added permanently.
-void Simulation::Impl::add_weights_of_sleepers(double sign) {
-    const double now = clock.time_at(recorder.statistics().steps);
-    for (std::size_t i = 0; i < store.size(); ++i) (void)mover.add_weight(i, now, sign);
-}
-
-// A state that is not finite counts as frozen, because the next step will freeze it.
-bool Simulation::Impl::has_energy(std::size_t i) const {
-    const Particles& p = particles();
-    return p.frozen[i] == 0 && is_finite(p.position[i]) && is_finite(p.velocity[i]);
-}
 const std::vector<Violation>& Simulation::violations() const { return impl().recorder.violations(); }
 
 double Simulation::kinetic_energy() const {
@@ -190,7 +170,7 @@ double Simulation::kinetic_energy() const {
         double sum = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = order[k];
-            if (!impl().has_energy(i)) continue;
+            if (!has_energy(particles, i)) continue;
             const double r = particles.radius[i];
             const double turning = 0.4 * r * r * length_squared(particles.spin[i]);  // solid sphere, 2/5 m r^2
             sum += 0.5 * particles.mass[i] * (length_squared(particles.velocity[i]) + turning);
@@ -206,15 +186,15 @@ std::optional<double> Simulation::potential_energy() const {
     const double sum = ordered_sum(order.size(), kParticleBlock, [&](std::size_t begin, std::size_t end) {
         double partial = 0.0;
         for (std::size_t k = begin; k < end; ++k) {
-            if (!impl().has_energy(order[k])) continue;
-            const auto energy = impl().forces.potential_energy(impl().store.force_input(order[k], now));
+            if (!has_energy(particles(), order[k])) continue;
+            const auto energy = impl().forces.potential_energy(impl().population.store().force_input(order[k], now));
             if (!energy) defined = false;
             partial += energy.value_or(0.0);
         }
         return partial;
     });
-    const double stored = impl().coupled.springs().potential_energy(particles().position);
-    const std::optional<double> mutual = impl().coupled.mutual_energy(particles(), now);
+    const double stored = impl().coupled().springs().potential_energy(particles().position);
+    const std::optional<double> mutual = impl().coupled().mutual_energy(particles(), now);
     return defined && mutual ? std::optional(sum + stored + *mutual) : std::nullopt;
 }
 

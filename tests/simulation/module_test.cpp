@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ricochet {
@@ -60,6 +61,41 @@ TEST(ModuleList, DefersStepsOnlyIfEachModuleAllowsIt) {
     EXPECT_FALSE(modules.allow_deferred_steps());
 }
 
+TEST(ModuleList, FindsAModuleByItsClass) {
+    class Other final : public Module {};
+    std::string calls;
+    ModuleList modules;
+    EXPECT_EQ(modules.find<LetterModule>(), nullptr);
+    modules.add(std::make_unique<LetterModule>('a', 1.0, true, calls));
+    ASSERT_NE(modules.find<LetterModule>(), nullptr);
+    modules.find<LetterModule>()->begin_step({0.0, 1.0});
+    EXPECT_EQ(calls, "a");
+    EXPECT_EQ(modules.find<Other>(), nullptr);
+}
+
+TEST(ModuleList, AsksAllModulesForSpawnedParticles) {
+    class Parent final : public Module {
+    public:
+        explicit Parent(bool has_children) : has_children_(has_children) {}
+        bool spawn(const TimeSpan& /*step*/) override {
+            ++calls;
+            return has_children_;
+        }
+        int calls = 0;
+
+    private:
+        bool has_children_;
+    };
+    ModuleList modules;
+    EXPECT_FALSE(modules.spawn({0.0, 1.0}));
+    modules.add(std::make_unique<Parent>(true));
+    auto childless = std::make_unique<Parent>(false);
+    const Parent& last = *childless;
+    modules.add(std::move(childless));
+    EXPECT_TRUE(modules.spawn({0.0, 1.0}));
+    EXPECT_EQ(last.calls, 1);
+}
+
 TEST(Module, DoesNothingByDefault) {
     class Idle final : public Module {};
     Idle idle;
@@ -69,10 +105,12 @@ TEST(Module, DoesNothingByDefault) {
     EXPECT_EQ(idle.plan({}, {0.0, 0.5}), 0.5);
     idle.after_substep({}, {0.0, 0.5}, blocks);
     idle.record({}, blocks, loads);
-    idle.count(statistics);
+    idle.correct({}, {0.0, 0.5}, blocks);
+    idle.end_step(statistics);
     EXPECT_EQ(blocks.size(), 1U);
     EXPECT_EQ(loads.size(), 2U);
     EXPECT_EQ(statistics.unsolved_steps, 0U);
+    EXPECT_FALSE(idle.spawn({0.0, 0.5}));
     EXPECT_EQ(idle.fault_of(0), nullptr);
     EXPECT_EQ(idle.fault(0.0), nullptr);
     EXPECT_FALSE(idle.allows_deferred_steps());

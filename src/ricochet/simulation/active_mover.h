@@ -2,6 +2,7 @@
 /// Private to the simulation: the active set, and the loop that moves it by the response.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -78,25 +79,43 @@ private:
     std::vector<std::size_t> ends_;  // of the blocks
 };
 
+/// Returns the part of a step in which particle i lives.
+inline TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpan& step) {
+    return {std::max(step.begin, particles.birth_time[i]),
+            std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
+}
+
+/// Objects that take part in the motion of single particles, each owned by a module. Null: the run does not have it.
+struct MoveObservers {
+    CoupledMotion* coupled = nullptr;  ///< null only before the first step
+    const Offspring* offspring = nullptr;
+    const CloudMotion* clouds = nullptr;                ///< move() skips the particles that follow a parent
+    const SleepingIslands* sleeping_islands = nullptr;  ///< compute the weights of their sleepers
+    RunCheck* check = nullptr;
+    const FrictionMeter* meter = nullptr;
+    const PassageFinder* passages = nullptr;
+};
+
 /// Parts of the simulation that the mover uses and changes. All must outlive the mover.
 struct MoverParts {
     ParticleStore& store;
     QuerySchedule& schedule;
     RunRecorder& recorder;
-    const Response& response;
-    CoupledMotion& coupled;
-    const Offspring* offspring;               ///< null if no particles spawn others
-    RunCheck* check;                          ///< null without options.verify
-    const FrictionMeter* meter = nullptr;     ///< null if surfaces do not heat
-    const PassageFinder* passages = nullptr;  ///< null without counters
+    const MoveObservers& observers;
 };
+
+/// Returns the sum of the impulses of surfaces on a particle, in N s.
+[[nodiscard]] Vec3 impulse_of(std::span<const SurfaceHit> hits);
 
 /// Moves particles by the response. Stores their new states, the forecasts of their next queries, and the records of
 /// their blocks.
 class ActiveMover {
 public:
-    explicit ActiveMover(const MoverParts& parts) : parts_(parts) {}
+    ActiveMover(const MoverParts& parts, const Response& response) : parts_(parts), response_(response) {}
 
+    [[nodiscard]] const Response& response() const { return response_; }
+    /// Returns a mover of the same particles by another response, which must outlive it.
+    [[nodiscard]] ActiveMover with(const Response& response) const { return {parts_, response}; }
     /// Must be called at the start of a step that dynamic bodies or coupled motion may divide into substeps. The
     /// bounces of all its substeps count together.
     void begin_step() { bounces_.assign(parts_.store.size(), 0); }
@@ -114,10 +133,13 @@ public:
     /// forces in the `duration` seconds before. Surfaces that support the particle take their part.
     void apply_velocity_change(std::size_t i, const Vec3& change, double time, double duration, const Coupling& pull,
                                MoveScratch& scratch);
-    /// Records the hits, loads and contacts since prepare().
-    void record_lists(const MoveScratch& scratch, BlockRecord& record);
-    /// Sets the clouds. move() skips the particles that follow a parent. Must outlive the mover.
-    void set_clouds(const CloudMotion* clouds) { clouds_ = clouds; }
+    /// Records the hits, loads and contacts of moves. lists: MoveScratch since prepare(), or MoveLists.
+    template <class Lists>
+    void record_lists(const Lists& lists, BlockRecord& record) {
+        record.counts.lost_impulses += parts_.recorder.totals().add(lists.hits);
+        record.loads.insert(record.loads.end(), lists.loads.begin(), lists.loads.end());
+        record.contact_records.insert(record.contact_records.end(), lists.records.begin(), lists.records.end());
+    }
 
     /// Moves the particles of the range as one system with a common rollback, see rollback.h.
     void move_as_system(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
@@ -153,10 +175,10 @@ public:
     /// s. sign -1 subtracts exactly the same. Returns the number of impulses that were too large for the totals.
     /// Several threads may call it for different particles.
     std::uint64_t add_weight(std::size_t i, double until, double sign);
+    /// Adds the weights of all sleeping particles in this way.
+    void add_weights(double until, double sign);
     /// Adds impulses to the totals of surfaces.
     void press(std::span<const SurfaceHit> hits);
-    /// Sets the sleeping islands, which compute the weights of their sleepers. Must outlive the mover.
-    void set_sleeping_islands(const SleepingIslands* sleeping_islands) { sleeping_islands_ = sleeping_islands; }
     /// Wakes a sphere that has slept on others, from a time on, in s. Must be called before the sleeping islands forget
     /// it.
     void wake(std::size_t i, double time);
@@ -164,18 +186,13 @@ public:
     void check_sleeper(std::size_t i, const TimeSpan& step, BlockRecord& record) const;
 
 private:
-    void move_block(std::span<const std::uint32_t> active, const TimeSpan& step, BlockRecord& record);
-    [[nodiscard]] bool is_near_dynamic_body(const ForceInput& state, double duration) const;
-    [[nodiscard]] TimeSpan life_in(std::size_t i, const TimeSpan& step) const;
+    [[nodiscard]] CoupledMotion& coupled() const { return *parts_.observers.coupled; }
     void record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                           std::vector<FlownPiece>& flown, const Vec3& impulse);
     void record_deviation(IslandMember& member);
-    [[nodiscard]] static Vec3 impulse_of(std::span<const SurfaceHit> hits);
     /// Records the passages of particle i past counters, from a stored position in m to its present one.
     void note_passages(std::size_t i, const Vec3& from, std::span<const FlownPiece> flown,
                        std::span<const Segment> segments, BlockRecord& record) const;
-    void record_lists(std::span<const SurfaceHit> hits, std::span<const ColliderLoad> loads,
-                      std::span<const ContactRecord> contacts, BlockRecord& record);
     void grow_core(std::size_t i, double time);
     [[nodiscard]] MovingParticle load(std::size_t i, double start);
     /// Impulses of surfaces and other spheres on a particle in a move.
@@ -191,12 +208,9 @@ private:
     void schedule_query(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, double until,
                         bool is_pulled);
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
-    void prefetch_triangles(std::size_t i) const;
-    void prefetch_vertices(std::size_t i) const;
 
     MoverParts parts_;
-    const SleepingIslands* sleeping_islands_ = nullptr;
-    const CloudMotion* clouds_ = nullptr;
+    const Response& response_;
     std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
 };
 

@@ -7,7 +7,7 @@
 
 #include "ricochet/core/algorithms.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/simulation/offspring.h"
+#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
 namespace {

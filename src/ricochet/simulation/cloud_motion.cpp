@@ -22,11 +22,6 @@ std::unique_ptr<Response> response_of_clouds(const ResponseRules& rules) {
     return make_response(ResponseKind::exact, own);
 }
 
-MoverParts parts_with(const MoverParts& parts, const Response& response) {
-    return {parts.store,     parts.schedule, parts.recorder, response,      parts.coupled,
-            parts.offspring, parts.check,    parts.meter,    parts.passages};
-}
-
 }  // namespace
 
 /// A child on its way through a step.
@@ -37,12 +32,14 @@ struct CloudMotion::Journey {
     Track* track = nullptr;
 };
 
-CloudMotion::CloudMotion(const std::vector<Emitter>& emitters, const MoverParts& parts, ActiveMover& mover)
+CloudMotion::CloudMotion(const std::vector<Emitter>& emitters, ParticleStore& store, ActiveMover& mover,
+                         const Retirement& retirement)
     : emitters_(emitters),
-      store_(parts.store),
+      store_(store),
+      retirement_(retirement),
       free_mover_(mover),
-      response_(response_of_clouds(parts.response.rules())),
-      mover_(parts_with(parts, *response_)),
+      response_(response_of_clouds(mover.response().rules())),
+      mover_(mover.with(*response_)),
       has_children_(emitters.size(), 0) {
     for (const Emitter& emitter : emitters) {
         const auto& parent = emitter.description().parent;
@@ -74,17 +71,22 @@ bool CloudMotion::is_parent(std::size_t i) const {
     return emitter != kNoEmitter && has_children_[emitter] != 0;
 }
 
-bool CloudMotion::is_sound(std::size_t i, std::uint64_t next_id) const {
+const char* CloudMotion::fault_of(std::size_t i) const {
+    return is_sound(i) ? nullptr : "a particle of an unknown cloud";
+}
+
+bool CloudMotion::is_sound(std::size_t i) const {
     if (!leads(i)) return true;
     const std::uint32_t emitter = store_.particles().origin[i].emitter;
-    if (emitter >= emitters_.size() || members_[i].parent >= next_id || !is_finite(members_[i].offset)) return false;
+    if (emitter >= emitters_.size() || members_[i].parent >= store_.next_id() || !is_finite(members_[i].offset))
+        return false;
     const auto& parent = emitters_[emitter].description().parent;
     return parent && parent->cloud;
 }
 
 void CloudMotion::compact(const std::vector<std::uint8_t>& keep) { keep_marked(members_, keep); }
 
-void CloudMotion::before_move(const ParticleRange& spawn_generation) {
+void CloudMotion::before_generation(const ParticleRange& spawn_generation, const TimeSpan& /*step*/) {
     const Particles& particles = store_.particles();
     starts_.resize(spawn_generation.size());
     for (std::size_t i = spawn_generation.begin; i < spawn_generation.end; ++i) {
@@ -106,7 +108,7 @@ void CloudMotion::note_tracks(const ParticleRange& spawn_generation, const TimeS
         const std::uint64_t id = particles.id[i];
         tracks_[id] = {
             flight_knots(particles, i, starts_[i - spawn_generation.begin], step.begin, step.end, records.of(id)),
-            store_.has_ended(i, step.end)};
+            has_ended(particles, i, step.end)};
     }
 }
 
@@ -127,7 +129,8 @@ std::vector<std::vector<std::size_t>> CloudMotion::levels_of(const ParticleRange
     return levels;
 }
 
-void CloudMotion::move(const ParticleRange& spawn_generation, const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+void CloudMotion::after_substep(const ParticleRange& spawn_generation, const TimeSpan& step,
+                                std::vector<BlockRecord>& blocks) {
     note_tracks(spawn_generation, step, blocks);
     for (const std::vector<std::size_t>& level : levels_of(spawn_generation)) {
         const std::size_t first = blocks.size();
@@ -162,7 +165,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
     if (is_alone && particles.absorbed[i] == 0) {
         part(i, journey.now);
         const std::size_t first = scratch.records.size();
-        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !store_.has_ended(i, journey.now)) {
+        if (journey.now < journey.until && !leads(i) && !store_.is_fixed(i) && !has_ended(particles, i, journey.now)) {
             free_mover_.move_one(i, {journey.now, journey.until}, scratch, record);
             journey.now = journey.until;
         }
@@ -175,7 +178,7 @@ void CloudMotion::move_child(std::size_t i, const TimeSpan& step, MoveScratch& s
         }
     }
     if (journey.track == nullptr) return;
-    track.ends = store_.has_ended(i, step.end);
+    track.ends = has_ended(particles, i, step.end);
     if (particles.absorbed[i] != 0) return;
     track.knots.push_back({journey.now, particles.position[i], particles.velocity[i], particles.velocity[i]});
 }
@@ -273,7 +276,8 @@ void CloudMotion::part(std::size_t i, double time) {
     while (lifetime > 0.0 && birth + lifetime > time) lifetime = std::nextafter(lifetime, 0.0);
 }
 
-void CloudMotion::part_from_leavers(const Retirement& retirement, double time) {
+void CloudMotion::retire(double time) {
+    if (!retirement_.has_bounds()) return;
     std::unordered_map<std::uint64_t, std::size_t> parents;
     for (std::size_t i = 0; i < store_.size(); ++i) {
         if (is_parent(i)) parents[store_.particles().id[i]] = i;
@@ -282,7 +286,7 @@ void CloudMotion::part_from_leavers(const Retirement& retirement, double time) {
         for (const std::size_t i : level) {
             const auto parent = parents.find(members_[i].parent);
             const bool stays =
-                parent != parents.end() && retirement.removal_reason(parent->second, time) == RemovalReason::none;
+                parent != parents.end() && retirement_.removal_reason(parent->second, time) == RemovalReason::none;
             if (!stays) part(i, time);
         }
     }

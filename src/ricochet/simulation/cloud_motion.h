@@ -18,19 +18,19 @@
 
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/dynamics/cloud.h"
-#include "ricochet/simulation/active_mover.h"
 #include "ricochet/simulation/flight_knots.h"
+#include "ricochet/simulation/module.h"
 #include "ricochet/simulation/offspring.h"
 #include "ricochet/simulation/retirement.h"
 
 namespace ricochet {
 
 /// The clouds of a run.
-class CloudMotion {
+class CloudMotion final : public Module {
 public:
-    /// mover: the mover of all other particles, which also moves particles that leave a cloud. parts: of that mover.
-    /// All must outlive the object.
-    CloudMotion(const std::vector<Emitter>& emitters, const MoverParts& parts, ActiveMover& mover);
+    /// mover: of all other particles; it also moves particles that leave a cloud. All must outlive the object.
+    CloudMotion(const std::vector<Emitter>& emitters, ParticleStore& store, ActiveMover& mover,
+                const Retirement& retirement);
 
     /// Returns true if the particle moves with a parent.
     [[nodiscard]] bool leads(std::size_t i) const { return members_[i].parent != kNobody; }
@@ -39,27 +39,22 @@ public:
     /// Returns the path of a parent in this step. It is empty for a particle that is no parent, or has not moved yet.
     [[nodiscard]] std::span<const FlightKnot> knots_of(std::uint64_t id) const;
 
-    void begin_step() { tracks_.clear(); }
-    /// Keeps the states of parents before they move.
-    void before_move(const ParticleRange& spawn_generation);
-    /// Moves the children of a generation after all its other particles, parents before their children.
-    void move(const ParticleRange& spawn_generation, const TimeSpan& step, std::vector<BlockRecord>& blocks);
-    /// Releases or ends the children of parents that leave the bounds, at the end of a step.
-    void part_from_leavers(const Retirement& retirement, double time);
-
-    // As for Particles.
-    void append() { members_.emplace_back(); }
-    void compact(const std::vector<std::uint8_t>& keep);
     /// Makes an appended particle move with its parent.
     void join(std::size_t i, const CloudMembership& offset) { members_[i] = {offset.parent, offset.offset}; }
-    /// Saves or restores the parents of particles. a: an archive of core/binary_archive.h.
-    template <class Archive>
-    void archive(Archive& a, std::size_t particles) {
-        const auto member = [&](Member& m) { a(m.parent), a(m.offset); };
-        archive_entries(a, members_, member, particles);
-    }
-    /// Returns false for a parent that no run can give particle i.
-    [[nodiscard]] bool is_sound(std::size_t i, std::uint64_t next_id) const;
+
+    void begin_step(const TimeSpan& /*step*/) override { tracks_.clear(); }
+    /// Keeps the states of parents before they move.
+    void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
+    /// Moves the children of a generation after all its other particles, parents before their children.
+    void after_substep(const ParticleRange& generation, const TimeSpan& substep,
+                       std::vector<BlockRecord>& blocks) override;
+    /// Releases or ends the children of parents that leave the bounds.
+    void retire(double time) override;
+    void append() override { members_.emplace_back(); }
+    void compact(const std::vector<std::uint8_t>& keep) override;
+    [[nodiscard]] const char* fault_of(std::size_t i) const override;
+    void archive_particles(BinaryWriter& a) override { archive_members(a); }
+    void archive_particles(BinaryReader& a) override { archive_members(a); }
 
 private:
     static constexpr std::uint64_t kNobody = std::numeric_limits<std::uint64_t>::max();
@@ -73,6 +68,12 @@ private:
     };
     struct Journey;
 
+    template <class Archive>
+    void archive_members(Archive& a) {
+        const auto member = [&](Member& m) { a(m.parent), a(m.offset); };
+        archive_entries(a, members_, member, store_.size());
+    }
+    [[nodiscard]] bool is_sound(std::size_t i) const;
     [[nodiscard]] const CloudRule& rule_of(std::size_t i) const;
     [[nodiscard]] bool is_parent(std::size_t i) const;
     [[nodiscard]] std::vector<std::vector<std::size_t>> levels_of(const ParticleRange& spawn_generation) const;
@@ -90,6 +91,7 @@ private:
 
     const std::vector<Emitter>& emitters_;
     ParticleStore& store_;
+    const Retirement& retirement_;
     ActiveMover& free_mover_;
     std::unique_ptr<Response> response_;
     ActiveMover mover_;

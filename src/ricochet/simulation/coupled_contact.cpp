@@ -28,8 +28,7 @@ bool is_as_planned(const Flight& plan, const MovingParticle& moved, std::span<co
 
 }  // namespace
 
-/// Returns the sum of the impulses of surfaces on a particle, in N s.
-Vec3 ActiveMover::impulse_of(std::span<const SurfaceHit> hits) {
+Vec3 impulse_of(std::span<const SurfaceHit> hits) {
     Vec3 sum;
     for (const SurfaceHit& hit : hits) sum -= hit.impulse;
     return sum;
@@ -39,29 +38,29 @@ Vec3 ActiveMover::impulse_of(std::span<const SurfaceHit> hits) {
 void ActiveMover::record_deviation(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
                                    std::vector<FlownPiece>& flown, const Vec3& impulse) {
     if (outcome.is_absorbed() || outcome.is_frozen() || outcome.unsimulated_time != 0.0) return;
-    const Flight& plan = *parts_.coupled.flight_of(i);
+    const Flight& plan = *coupled().flight_of(i);
     note_flown(plan, moved, flown);
     if (moved.planned == nullptr || outcome.meetings() > 0 || !is_as_planned(plan, moved, flown)) {
-        parts_.coupled.add_deviation(i, flown, impulse / moved.state.mass);
+        coupled().add_deviation(i, flown, impulse / moved.state.mass);
     }
 }
 
 void ActiveMover::record_deviation(IslandMember& member) {
     const std::size_t i = member.particle;
-    if (!parts_.coupled.wants_deviation_of(i)) return;
+    if (!coupled().wants_deviation_of(i)) return;
     const MovingParticle& moving = member.moving;
     const Vec3 impulse = impulse_of(member.lists.hits) + moving.state.mass * member.pair_velocity_change;
     const bool is_there = !member.is_gone() && member.outcome.unsimulated_time == 0.0;
     if (!member.is_planned) {
         record_deviation(i, moving, member.outcome, member.trajectory, impulse);
     } else if (is_there) {
-        parts_.coupled.record_planned_contact(i, impulse / moving.state.mass);
+        coupled().record_planned_contact(i, impulse / moving.state.mass);
     }
 }
 
 Vec3 ActiveMover::supported_acceleration(std::size_t i, double time, const Vec3& pull) {
     MovingParticle particle = parts_.store.load(i, time, !parts_.schedule.is_without_contact(i));
-    return parts_.response.supported_acceleration(particle, pull).acceleration;
+    return response_.supported_acceleration(particle, pull).acceleration;
 }
 
 void ActiveMover::apply_correction(std::span<const CoupledMotion::VelocityCorrection> corrections, const TimeSpan& part,
@@ -75,7 +74,7 @@ void ActiveMover::apply_correction(std::span<const CoupledMotion::VelocityCorrec
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = corrections[k].particle;
             MovingParticle particle = load(i, part.end);
-            parts_.response.apply_correction(particle, corrections[k].change, part.end - part.begin, scratch);
+            response_.apply_correction(particle, corrections[k].change, part.end - part.begin, scratch);
             particles.velocity[i] = particle.state.velocity;
             particles.spin[i] = parts_.store.spin_of(i, particle);
         }

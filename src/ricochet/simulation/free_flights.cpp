@@ -15,7 +15,7 @@ ActiveSet FreeFlights::advance(const ParticleRange& range, const TimeSpan& step,
     const std::optional<Vec3>& common = forces_.common_acceleration();
     const FreeFlight shared(integrator_, common.value_or(Vec3{}), step.end - step.begin);
     std::vector<std::size_t> sizes(blocks_of(range.size()));
-    const bool records = check_ != nullptr || passages_ != nullptr;
+    const bool records = observers_.check != nullptr || observers_.passages != nullptr;
     if (records) blocks.resize(std::max(blocks.size(), sizes.size()));
     parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         begin += range.begin;
@@ -65,14 +65,14 @@ FreeFlight FreeFlights::flight_of(std::size_t i, const TimeSpan& step) const {
 void FreeFlights::advance_one(std::size_t i, const FreeFlight& flight, const TimeSpan& step, BlockRecord* record) {
     Particles& particles = store_.particles();
     const PhaseState end = flight.step(particles.position[i], particles.velocity[i]);
-    if (check_ != nullptr) {
+    if (observers_.check != nullptr) {
         const Segment segment{particles.position[i], end.position, step.begin};
         ForceInput moved = store_.force_input(i, step.end);
         moved.position = end.position;
         moved.velocity = end.velocity;
-        check_->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
+        observers_.check->check(i, particles, moved, {step.end, step.end}, {&segment, 1}, record->violations);
     }
-    if (passages_ != nullptr) note_passages(i, end, flight.duration(), *record);
+    if (observers_.passages != nullptr) note_passages(i, end, flight.duration(), *record);
     particles.position[i] = end.position;
     particles.velocity[i] = end.velocity;
 }
@@ -83,12 +83,12 @@ void FreeFlights::note_passages(std::size_t i, const PhaseState& end, double dur
     const Vec3& from = particles.position[i];
     const Vec3& velocity = particles.velocity[i];
     // A parabola lies at most an eighth of its change of velocity times its duration from its chord.
-    if (!passages_->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
+    if (!observers_.passages->may_pass(from, end.position, duration * length(end.velocity - velocity) / 8.0)) return;
     const bool is_line = kicks_first(integrator_.kind) || integrator_.kind == IntegratorKind::forward_euler;
     const Path path = is_line ? line_path(from, (end.position - from) / duration, duration)
                               : hermite_path(from, velocity, end.position, end.velocity, duration);
     const FlownPiece piece{path, 0.0, duration, velocity, end.velocity, true};
-    passages_->trace({particles.id[i], particles.mass[i], from, end.position}, {&piece, 1}, record.passages);
+    observers_.passages->trace({particles.id[i], particles.mass[i], from, end.position}, {&piece, 1}, record.passages);
 }
 
 void FreeFlights::begin_deferring() {

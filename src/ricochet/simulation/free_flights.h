@@ -98,15 +98,10 @@ private:
 /// Advances the particles in free flight, and finds the others. Every step begins with this pass over all particles.
 class FreeFlights {
 public:
-    /// All must outlive it. check and passages may be null.
+    /// All must outlive it.
     FreeFlights(ParticleStore& store, const QuerySchedule& schedule, const ForceField& forces,
-                const Integrator& integrator, RunCheck* check, const PassageFinder* passages)
-        : store_(store),
-          schedule_(schedule),
-          forces_(forces),
-          integrator_(integrator),
-          check_(check),
-          passages_(passages) {}
+                const Integrator& integrator, const MoveObservers& observers)
+        : store_(store), schedule_(schedule), forces_(forces), integrator_(integrator), observers_(observers) {}
 
     /// Advances the particles of the range that are in free flight. Returns the others that need a query, in ascending
     /// order, with one block for kParticleBlock particles of the range.
@@ -144,8 +139,7 @@ private:
     const QuerySchedule& schedule_;
     const ForceField& forces_;
     Integrator integrator_;
-    RunCheck* check_;
-    const PassageFinder* passages_;
+    const MoveObservers& observers_;
     std::optional<DeferredSteps> deferred_;
 };
 

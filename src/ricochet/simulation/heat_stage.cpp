@@ -21,11 +21,6 @@ double lost_along_normal(const ContactRecord& record) {
     return 0.5 * record.mass * (before * before - after * after);
 }
 
-TimeSpan life_in(const Particles& particles, std::size_t i, const TimeSpan& step) {
-    return {std::max(step.begin, particles.birth_time[i]),
-            std::min(step.end, particles.birth_time[i] + particles.lifetime[i])};
-}
-
 }  // namespace
 
 void FrictionMeter::note(std::size_t i, const ForceInput& moved, const MoveScratch& scratch, std::size_t first_record,
@@ -82,22 +77,27 @@ double FrictionMeter::work_of_forces(const MotionPart& part, const ForceInput& m
             dot(forces[2], part.end.velocity));
 }
 
-HeatStage::HeatStage(HeatSettings heat, std::size_t column, const ForceField& forces, const MovingColliders* bodies)
-    : heat_(std::move(heat)), column_(column), meter_(heat_, forces, bodies) {}
+HeatStage::HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders* bodies)
+    : heat_(std::move(heat)),
+      store_(store),
+      column_(store.particles().attributes.find(kTemperatureAttribute).value()),
+      meter_(heat_, forces, bodies) {}
 
-void HeatStage::before_move(const Particles& particles, const ParticleRange& range, const TimeSpan& step) {
+void HeatStage::before_generation(const ParticleRange& generation, const TimeSpan& step) {
+    gains_.clear();
     if (!heat_.convection || heat_.convection->coefficient) return;
-    coefficients_.resize(range.size());
-    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    coefficients_.resize(generation.size());
+    parallel_for_blocks(generation.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = range.begin + k;
-            coefficients_[k] = coefficient(particles, i, life_in(particles, i, step).begin);
+            const std::size_t i = generation.begin + k;
+            coefficients_[k] = coefficient(i, life_in(store_.particles(), i, step).begin);
         }
     });
 }
 
 /// W/(m^2 K), where a particle is at a time, s.
-double HeatStage::coefficient(const Particles& particles, std::size_t i, double time) const {
+double HeatStage::coefficient(std::size_t i, double time) const {
+    const Particles& particles = store_.particles();
     const double radius = particles.radius[i];
     if (!heat_.convection || !(radius > 0.0)) return 0.0;
     const Convection& convection = *heat_.convection;
@@ -106,28 +106,32 @@ double HeatStage::coefficient(const Particles& particles, std::size_t i, double 
     return heat_transfer_coefficient(convection, radius, length(relative));
 }
 
-void HeatStage::after_move(Particles& particles, const ParticleRange& range, const TimeSpan& step,
-                           std::vector<HeatGain> gains) const {
+void HeatStage::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
+                       std::vector<ColliderLoad>& /*loads*/) {
+    for (const BlockRecord& block : blocks) gains_.insert(gains_.end(), block.heat.begin(), block.heat.end());
+}
+
+void HeatStage::after_generation(const ParticleRange& generation, const TimeSpan& step) {
     const auto is_before = [](const HeatGain& a, const HeatGain& b) { return a.particle < b.particle; };
-    std::stable_sort(gains.begin(), gains.end(), is_before);
-    parallel_for_blocks(range.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::stable_sort(gains_.begin(), gains_.end(), is_before);
+    Particles& particles = store_.particles();
+    parallel_for_blocks(generation.size(), kParticleBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = range.begin + k;
+            const std::size_t i = generation.begin + k;
             const TimeSpan life = life_in(particles, i, step);
             if (particles.frozen[i] != 0 || particles.absorbed[i] == 1 || life.end <= life.begin) continue;
-            const auto [first, last] = std::equal_range(gains.begin(), gains.end(), HeatGain{i, 0.0, 0.0}, is_before);
+            const auto [first, last] = std::equal_range(gains_.begin(), gains_.end(), HeatGain{i, 0.0, 0.0}, is_before);
             const double before = coefficients_.empty() ? 0.0 : coefficients_[k];
-            const double value = changed(particles, i, life, before, {first, last});
-            particles.attributes.set(column_, i, {value, 0.0, 0.0});
+            particles.attributes.set(column_, i, {changed(i, life, before, {first, last}), 0.0, 0.0});
         }
     });
 }
 
 /// K. Convection by the mean of both ends of the step. before: the coefficient at its begin, where that is not given.
-double HeatStage::changed(const Particles& particles, std::size_t i, const TimeSpan& life, double before,
-                          std::span<const HeatGain> gains) const {
+double HeatStage::changed(std::size_t i, const TimeSpan& life, double before, std::span<const HeatGain> gains) const {
+    const Particles& particles = store_.particles();
     const double mass = particles.mass[i];
-    double h = coefficient(particles, i, life.end);
+    double h = coefficient(i, life.end);
     if (!coefficients_.empty()) h = 0.5 * (before + h);
     const CoolingRates rates = cooling_rates(heat_, mass, particles.radius[i], h);
     double temperature = std::max(0.0, particles.attributes.value(column_, i).x);

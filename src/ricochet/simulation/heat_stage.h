@@ -10,9 +10,8 @@
 #include "ricochet/dynamics/forces.h"
 #include "ricochet/dynamics/heat.h"
 #include "ricochet/response/response.h"
-#include "ricochet/simulation/active_mover.h"
+#include "ricochet/simulation/module.h"
 #include "ricochet/simulation/particle_store.h"
-#include "ricochet/simulation/run_recorder.h"
 
 namespace ricochet {
 
@@ -38,32 +37,32 @@ private:
 };
 
 /// Changes the temperatures of the particles that have moved.
-class HeatStage {
+class HeatStage final : public Module {
 public:
-    /// column: index of the temperature among the attributes. Other arguments: see FrictionMeter.
-    HeatStage(HeatSettings heat, std::size_t column, const ForceField& forces, const MovingColliders* bodies);
-    HeatStage(const HeatStage&) = delete;
-    HeatStage& operator=(const HeatStage&) = delete;
+    /// store: with the attribute of the temperature; must outlive it. Other arguments: see FrictionMeter.
+    HeatStage(HeatSettings heat, ParticleStore& store, const ForceField& forces, const MovingColliders* bodies);
 
     /// Returns null if surfaces do not heat particles.
     [[nodiscard]] const FrictionMeter* meter() const { return heat_.is_heated_by_surfaces() ? &meter_ : nullptr; }
 
-    /// Keeps the coefficients of convection of the particles of a range before they move.
-    void before_move(const Particles& particles, const ParticleRange& range, const TimeSpan& step);
-    /// Cools each particle of the range for the time that it has lived in the step, and heats it at the times of its
-    /// gains. gains: of all substeps; the gains of one particle are in the order of time.
-    void after_move(Particles& particles, const ParticleRange& range, const TimeSpan& step,
-                    std::vector<HeatGain> gains) const;
+    /// Keeps the coefficients of convection of the particles before they move.
+    void before_generation(const ParticleRange& generation, const TimeSpan& step) override;
+    void record(const ParticleRange& generation, const std::vector<BlockRecord>& blocks,
+                std::vector<ColliderLoad>& loads) override;
+    /// Cools each particle for the time that it has lived in the step, and heats it at the times of its gains.
+    void after_generation(const ParticleRange& generation, const TimeSpan& step) override;
 
 private:
-    [[nodiscard]] double coefficient(const Particles& particles, std::size_t i, double time) const;
-    [[nodiscard]] double changed(const Particles& particles, std::size_t i, const TimeSpan& life, double before,
+    [[nodiscard]] double coefficient(std::size_t i, double time) const;
+    [[nodiscard]] double changed(std::size_t i, const TimeSpan& life, double before,
                                  std::span<const HeatGain> gains) const;
 
     HeatSettings heat_;
-    std::size_t column_;
+    ParticleStore& store_;
+    std::size_t column_;  // of the temperature
     FrictionMeter meter_;
     std::vector<double> coefficients_;  // W/(m^2 K), per particle before its move; empty if the scene gives one value
+    std::vector<HeatGain> gains_;       // in this generation; those of one particle are in the order of time
 };
 
 }  // namespace ricochet

@@ -8,9 +8,27 @@
 #include "ricochet/simulation/sleep_rules.h"
 
 namespace ricochet {
+namespace {
+
+bool is_pinned(const ParticleStore& store, std::uint64_t particle) {
+    const std::optional<std::size_t> i = store.index_of(particle);
+    return i && store.is_fixed(*i);
+}
+
+/// Returns the gap between the spheres of a pair, over the smaller radius. It is infinite if one of them is gone.
+double relative_gap(const ParticleStore& store, const ContactKey& key) {
+    const std::optional<std::size_t> i = store.index_of(key.particle);
+    const std::optional<std::size_t> k = store.index_of(key.other);
+    if (!i || !k) return INFINITY;
+    const Particles& p = store.particles();
+    const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];
+    return gap / std::min(p.radius[*i], p.radius[*k]);
+}
+
+}  // namespace
 
 bool LastingContacts::is_sound(std::uint64_t next_id) const {
-    const std::size_t surfaces = parts_.response.rules().world.surface_count();
+    const std::size_t surfaces = rules().world.surface_count();
     return memory_.is_sound(next_id, surfaces) && sleeping_islands_.is_sound(next_id, surfaces);
 }
 
@@ -31,7 +49,7 @@ void LastingContacts::begin(const ParticleRange& range, const TimeSpan& step) {
         traces_.is_asleep[*i] = 1;
         parts_.schedule.leave_alone(*i);
         const Particles& particles = parts_.store.particles();
-        if (is_beside_movers(particles.position[*i], particles.radius[*i])) carried.push_back(particle);
+        if (is_beside_movers(rules(), particles.position[*i], particles.radius[*i])) carried.push_back(particle);
     }
     // A sphere on a moving surface goes with it, however slowly.
     wake_alone(sleeping_islands_.islands_of_sleepers(carried), step.begin);
@@ -46,13 +64,13 @@ void LastingContacts::wake(const std::vector<std::uint64_t>& particles, double t
     std::vector<std::uint64_t> held;
     for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
         const std::uint64_t sleeper = sleeper_of(entry.key);
-        if (is_pinned(entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
+        if (is_pinned(parts_.store, entry.key.particle + entry.key.other - sleeper)) held.push_back(sleeper);
     }
     for (const SleepingIslands::Weight& weight : sleeping_islands_.weights()) {
         const std::optional<std::size_t> i = parts_.store.index_of(weight.particle);
         if (!i) continue;
-        const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(*i, time));
-        if (holds(weight.surface, -weight.force, pull)) held.push_back(weight.particle);
+        const Vec3 pull = rules().forces.acceleration(parts_.store.force_input(*i, time));
+        if (holds(rules(), weight.surface, -weight.force, pull)) held.push_back(weight.particle);
     }
     wake_alone(sleeping_islands_.not_joined_to(held), time);
 }
@@ -70,7 +88,7 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
     // effect.
     const auto has_lain = [&](std::uint64_t particle) {
         return std::binary_search(woken.begin(), woken.end(), particle) || sleeping_islands_.has(particle) ||
-               is_pinned(particle);
+               is_pinned(parts_.store, particle);
     };
     std::erase_if(contacts, [&](const WarmStartMemory::Entry& entry) {
         const ContactKey& key = entry.key;
@@ -79,11 +97,6 @@ void LastingContacts::wake_alone(const std::vector<std::uint64_t>& woken, double
                !(key.is_wall() || has_lain(key.other));
     });
     memory_.add(contacts);
-}
-
-bool LastingContacts::is_pinned(std::uint64_t particle) const {
-    const std::optional<std::size_t> i = parts_.store.index_of(particle);
-    return i && parts_.store.is_fixed(*i);
 }
 
 void LastingContacts::wake_all(double time) { wake_alone(sleeping_islands_.particles(), time); }
@@ -122,14 +135,14 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
     const Particles& particles = parts_.store.particles();
     const double duration = step.end - step.begin;
     ForceInput state = parts_.store.force_input(hitting, step.begin);
-    const double pull = length(parts_.response.rules().forces.acceleration(state));
+    const double pull = length(rules().forces.acceleration(state));
     state.coupling = parts_.coupled.coupling_of(hitting);
-    const double gained = duration * length(parts_.response.rules().forces.acceleration(state));
+    const double gained = duration * length(rules().forces.acceleration(state));
     const Vec3& velocity = particles.velocity[hitting];
     const Vec3 towards = particles.position[sleeping] - particles.position[hitting];
     const double gap = length(towards) - particles.radius[hitting] - particles.radius[sleeping];
     if (gap > duration * (length(velocity) + gained)) return false;  // not in this step
-    const double resting = parts_.response.rules().settings.resting_speed;
+    const double resting = rules().settings.resting_speed;
     const double slow = std::max(resting, std::sqrt(2.0 * pull * kWakingFall * particles.radius[hitting]));
     if (length(velocity) > slow) return true;
     return is_aside(sleeping, towards, step.begin) && dot(velocity, towards) > resting * length(towards);
@@ -137,7 +150,7 @@ bool LastingContacts::hits_sleeper(std::size_t hitting, std::size_t sleeping, co
 
 /// Returns true if a push in a direction moves a sleeper that only friction holds in that direction.
 bool LastingContacts::is_aside(std::size_t sleeping, const Vec3& direction, double time) const {
-    const Vec3 pull = parts_.response.rules().forces.acceleration(parts_.store.force_input(sleeping, time));
+    const Vec3 pull = rules().forces.acceleration(parts_.store.force_input(sleeping, time));
     return pull == Vec3{} || dot(direction, pull) < kOntoSupports * length(direction) * length(pull);
 }
 
@@ -168,7 +181,7 @@ std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const Pair
     if (sleeping_islands_.empty() || are_children_) return loaded;
     for (const PairImpactRecord& impact : impacts) {
         if (sleeping_islands_.has(impact.first) == sleeping_islands_.has(impact.second)) continue;
-        if (impact.approach > parts_.response.rules().settings.resting_speed)
+        if (impact.approach > rules().settings.resting_speed)
             loaded.push_back(sleeping_islands_.has(impact.first) ? impact.first : impact.second);
     }
     for (const WarmStartMemory::Entry& entry : trace.pressed) {
@@ -177,64 +190,24 @@ std::vector<std::uint64_t> LastingContacts::loaded_sleepers(std::span<const Pair
     return loaded;
 }
 
-/// Returns true if a driven material, such as a belt, pushes the sphere. Such a push does not end.
-bool LastingContacts::is_carried_by_material(const ContactIsland& island, std::size_t index) const {
-    const ResponseRules& rules = parts_.response.rules();
-    const std::vector<WallImpulse> impulses = island.impulses_of(index);
-    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
-        return rules.materials[rules.world.material_of(wall_impulse.surface)].drives();
-    });
-}
-
-bool LastingContacts::is_supported_by_surfaces(const ContactIslandMember& member, const ContactIsland& island,
-                                               std::size_t index) const {
-    const std::vector<WallImpulse> impulses = island.impulses_of(index);
-    const Vec3 pull = parts_.response.rules().forces.acceleration(member.moving->state);
-    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
-        return holds(wall_impulse.surface, wall_impulse.velocity_change, pull);
-    });
-}
-
-/// Returns true if a surface supports a sphere against the acceleration by forces with the impulse that it gives the
-/// sphere. A surface with friction always can.
-bool LastingContacts::holds(SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) const {
-    const ResponseRules& rules = parts_.response.rules();
-    const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
-    return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kSupportingCosine * length(wall_impulse) * length(pull);
-}
-
-/// Returns true if the member lives through the whole step, and no moving collider is near.
-bool LastingContacts::may_sleep(const ContactIslandMember& member, const TimeSpan& step) const {
-    const bool is_acted_on = member.moving->state.coupling != nullptr;  // at a distance, by particles that may move
-    const bool is_moved = !member.is_fixed && !member.is_pinched && member.duration == step.end - step.begin;
-    if (is_acted_on || !is_moved) return false;
-    return !is_beside_movers(member.moving->state.position, member.radius);
-}
-
-/// Returns true if a moving collider may touch a sphere at this position in the step.
-bool LastingContacts::is_beside_movers(const Vec3& center, double radius) const {
-    const MovingColliders* const bodies = parts_.response.rules().bodies;
-    return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
-}
-
 void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, ContactIsland& island,
                                  const TimeSpan& step, ContactIslandTrace& trace) const {
-    if (are_children_ || !parts_.response.rules().forces.is_steady()) return;
+    if (are_children_ || !rules().forces.is_steady()) return;
     const bool beside_movers = std::any_of(members.begin(), members.end(), [&](const ContactIslandMember& member) {
-        return is_beside_movers(member.moving->state.position, member.radius);
+        return is_beside_movers(rules(), member.moving->state.position, member.radius);
     });
     std::vector<std::uint8_t> sleepy(members.size(), 0);
     bool is_any_sleepy = false;
     for (std::size_t i = 0; i < members.size(); ++i) {
         sleepy[i] = members[i].is_fixed ? 1 : 0;
-        if (!is_slow(members[i], island.planned(i), beside_movers) || !may_sleep(members[i], step)) continue;
-        const double pull = length(parts_.response.rules().forces.acceleration(members[i].moving->state));
+        if (!is_slow(members[i], island.planned(i), beside_movers) || !may_sleep(rules(), members[i], step)) continue;
+        const double pull = length(rules().forces.acceleration(members[i].moving->state));
         if (!is_at_rest(members[i], island.planned(i), pull)) continue;
         const std::uint64_t id = members[i].moving->id;
         const std::uint32_t enough = steps_to_sleep(members[i], pull);
         const std::uint32_t steps = std::min(sleeping_islands_.sleep_counter(id) + 1, enough);
         trace.still.push_back({id, steps});
-        sleepy[i] = steps == enough && !is_carried_by_material(island, i) ? 1 : 0;
+        sleepy[i] = steps == enough && !is_carried_by_material(rules(), island, i) ? 1 : 0;
         is_any_sleepy = is_any_sleepy || sleepy[i] != 0;
     }
     if (!is_any_sleepy) return;
@@ -246,7 +219,8 @@ void LastingContacts::plan_sleep(std::span<const ContactIslandMember> members, C
     }
     std::vector<std::uint8_t> is_held(members.size(), 0);
     for (std::size_t i = 0; i < members.size(); ++i) {
-        if (falls[i] != 0) is_held[i] = members[i].is_fixed || is_supported_by_surfaces(members[i], island, i) ? 1 : 0;
+        if (falls[i] != 0)
+            is_held[i] = members[i].is_fixed || is_supported_by_surfaces(rules(), members[i], island, i) ? 1 : 0;
     }
     keep_supported(falls, is_held, pressing);
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -330,7 +304,7 @@ void LastingContacts::put_to_sleep(std::span<const ContactIslandTrace* const> tr
 
 /// Needed only among moving colliders, where the verifier follows the time of every particle.
 void LastingContacts::check_sleepers(const TimeSpan& step, std::vector<BlockRecord>& blocks) const {
-    if (sleeping_islands_.empty() || are_children_ || parts_.response.rules().bodies == nullptr) return;
+    if (sleeping_islands_.empty() || are_children_ || rules().bodies == nullptr) return;
     BlockRecord& record = blocks.emplace_back();
     for (std::size_t k = 0; k < traces_.is_asleep.size(); ++k) {
         if (is_asleep(static_cast<std::uint32_t>(k))) parts_.mover.check_sleeper(k, step, record);
@@ -352,7 +326,7 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     const std::optional<std::size_t> other = parts_.store.index_of(entry.key.particle + entry.key.other - sleeper);
     if (!i || !other) return false;
     const ForceInput state = parts_.store.force_input(*i, step.begin);
-    const double pull = length(parts_.response.rules().forces.acceleration(state));
+    const double pull = length(rules().forces.acceleration(state));
     const std::vector<Vec3>& position = parts_.store.particles().position;
     const bool goes_aside = is_aside(*i, position[*i] - position[*other], step.begin);
     const double weights =
@@ -360,25 +334,15 @@ bool LastingContacts::is_pressed_more(const WarmStartMemory::Entry& entry, const
     return entry.impulse.normal > kMorePressed * (sleeping_islands_.load_of(sleeper) + weights);
 }
 
-/// Returns the gap between the spheres of a pair, over the smaller radius. It is infinite if one of them is gone.
-double LastingContacts::relative_gap(const ContactKey& key) const {
-    const std::optional<std::size_t> i = parts_.store.index_of(key.particle);
-    const std::optional<std::size_t> k = parts_.store.index_of(key.other);
-    if (!i || !k) return INFINITY;
-    const Particles& p = parts_.store.particles();
-    const double gap = length(p.position[*i] - p.position[*k]) - p.radius[*i] - p.radius[*k];
-    return gap / std::min(p.radius[*i], p.radius[*k]);
-}
-
 /// Wakes sleepers that have lost a sphere that leant on them or held them, and sleepers that others overlap.
 void LastingContacts::wake_unsupported(const TimeSpan& step) {
     if (sleeping_islands_.empty()) return;
     std::vector<std::uint64_t> left;
     for (const WarmStartMemory::Entry& entry : sleeping_islands_.edges()) {
-        if (relative_gap(entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
+        if (relative_gap(parts_.store, entry.key) > kWakingFall) left.push_back(sleeper_of(entry.key));
     }
     for (const WarmStartMemory::Entry& entry : memory_.entries()) {
-        if (is_at_edge_of_sleep(entry.key) && relative_gap(entry.key) < -kWakingOverlap)
+        if (is_at_edge_of_sleep(entry.key) && relative_gap(parts_.store, entry.key) < -kWakingOverlap)
             left.push_back(sleeper_of(entry.key));
     }
     wake(left, step.end);

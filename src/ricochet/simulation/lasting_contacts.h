@@ -35,10 +35,9 @@ struct ContactIslandTrace {
 
 class LastingContacts {
 public:
-    explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) {
-        parts_.mover.set_sleeping_islands(&sleeping_islands_);
-    }
+    explicit LastingContacts(const PairParts& parts) : parts_(parts), loads_(parts) {}
 
+    [[nodiscard]] const SleepingIslands& sleeping_islands() const { return sleeping_islands_; }
     /// Begins a step for the particles of a range, and finds the sleepers among them. Wakes sleepers next to one that
     /// is gone, and sleepers that colliders come near.
     void begin(const ParticleRange& range, const TimeSpan& step);
@@ -85,25 +84,18 @@ public:
     [[nodiscard]] bool is_sound(std::uint64_t next_id) const;
 
 private:
+    [[nodiscard]] const ResponseRules& rules() const { return parts_.response.rules(); }
     [[nodiscard]] bool is_asleep(std::uint32_t k) const { return traces_.is_asleep[k] != 0; }
     [[nodiscard]] std::vector<SleeperImpulse> impulses_on_sleepers(std::span<const ContactIslandTrace* const> traces,
                                                                    std::span<const PairImpactRecord> impacts) const;
     void wake_alone(const std::vector<std::uint64_t>& woken, double time);
-    [[nodiscard]] bool is_pinned(std::uint64_t particle) const;
     [[nodiscard]] bool hits_sleeper(std::size_t hitting, std::size_t sleeping, const TimeSpan& step) const;
     [[nodiscard]] bool is_aside(std::size_t sleeping, const Vec3& direction, double time) const;
-    [[nodiscard]] bool may_sleep(const ContactIslandMember& member, const TimeSpan& step) const;
-    [[nodiscard]] bool is_beside_movers(const Vec3& center, double radius) const;
-    [[nodiscard]] bool is_supported_by_surfaces(const ContactIslandMember& member, const ContactIsland& island,
-                                                std::size_t index) const;
-    [[nodiscard]] bool holds(SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) const;
-    [[nodiscard]] bool is_carried_by_material(const ContactIsland& island, std::size_t index) const;
     void put_to_sleep(std::span<const ContactIslandTrace* const> traces, const TimeSpan& step);
     void wake_unsupported(const TimeSpan& step);
     [[nodiscard]] std::uint64_t sleeper_of(const ContactKey& key) const;
     [[nodiscard]] bool is_at_edge_of_sleep(const ContactKey& key) const;
     [[nodiscard]] bool is_pressed_more(const WarmStartMemory::Entry& entry, const TimeSpan& step) const;
-    [[nodiscard]] double relative_gap(const ContactKey& key) const;
 
     PairParts parts_;
     std::size_t first_ = 0;      // first particle of the range; numbers count from it

@@ -221,12 +221,16 @@ double bytes_per_particle(const SimulationSetup& setup) {
     return bytes;
 }
 
-void refuse_to_grow(std::uint64_t living, double bytes_each) {
+void ParticleMemory::measure(std::uint64_t living) {
+    most_ = living + static_cast<std::uint64_t>(std::min(memory_limit().bytes / bytes_each_, 0x1p63));
+}
+
+void ParticleMemory::refuse_to_grow(std::uint64_t living) const {
     const MemoryLimit limit = memory_limit();
     throw RunError(fmt::format(
         "more particles are born than memory holds: {} live, at about {} each, and {} are left ({}); ask for fewer, or "
         "lower simulation.most_particles, beyond which births are refused",
-        living, memory_text(bytes_each), memory_text(limit.bytes), limit.source));
+        living, memory_text(bytes_each_), memory_text(limit.bytes), limit.source));
 }
 
 double bytes_of_springs(double particles, double springs, IntegratorKind integrator) {

@@ -5,8 +5,10 @@
 /// up. They count only certain needs: particles that surfaces, bounds or shattering may remove count for one step.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "ricochet/simulation.h"
@@ -43,9 +45,30 @@ void require_memory(const SimulationSetup& setup);
 /// Returns the bytes of an additional particle in a simulation of this setup.
 [[nodiscard]] double bytes_per_particle(const SimulationSetup& setup);
 
-/// Throws RunError, because births would make more particles, of so many bytes each, than the memory holds. living:
-/// number of particles that live already.
-[[noreturn]] void refuse_to_grow(std::uint64_t living, double bytes_each);
+/// Returns how many more fit below a limit.
+[[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
+    return most - std::min(most, living);
+}
+
+/// The number of particles that the memory holds. It decides only whether a run continues, never its results.
+class ParticleMemory {
+public:
+    /// bytes_each: of an additional particle. Until measure() is called, any number of particles fits.
+    explicit ParticleMemory(double bytes_each) : bytes_each_(bytes_each) {}
+
+    [[nodiscard]] double bytes_each() const { return bytes_each_; }
+    /// Measures the free memory. living: number of particles that live already.
+    void measure(std::uint64_t living);
+    /// Returns the number of particles that may live at a time; one more ends the run.
+    [[nodiscard]] std::uint64_t most() const { return most_; }
+    [[nodiscard]] std::uint64_t room(std::uint64_t living) const { return room_below(most_, living); }
+    /// Throws RunError, because births would make more particles than fit.
+    [[noreturn]] void refuse_to_grow(std::uint64_t living) const;
+
+private:
+    double bytes_each_;
+    std::uint64_t most_ = std::numeric_limits<std::uint64_t>::max();
+};
 
 /// Returns the bytes of particles joined by springs, and of these springs, from their construction on.
 [[nodiscard]] double bytes_of_springs(double particles, double springs, IntegratorKind integrator);

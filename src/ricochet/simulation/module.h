@@ -1,9 +1,9 @@
 /// \file
-/// Private to the simulation: an optional capability of a run, called at the stages of a step.
+/// Private to the simulation: a part of a run that the stages of a step call, and the list of these parts.
 ///
-/// Simulation::Impl owns the objects with the state of modules, and a module refers to them through ModuleParts. The
-/// stages call it once for all particles of a generation or a block, never for a single particle. The list in
-/// modules.cpp has all modules in the order of their calls. A new module needs its class, a line in that list, and
+/// A module owns the objects of its capability. The stages call it once for all particles of a generation or a block,
+/// never for a single particle. Objects that take part in the motion of single particles are in MoveObservers. The list
+/// in modules.cpp has all modules in the order of their calls. A new module needs its class, a line in that list, and
 /// tests.
 #pragma once
 
@@ -21,9 +21,11 @@
 
 namespace ricochet {
 
+class StateHash;
+
 /// See the top of this file. Every function does nothing unless a module overrides it. A step calls them in the order
-/// of declaration; before_generation() to after_generation() once for each spawn generation, and before_substep() to
-/// record() once for each of its substeps.
+/// of declaration; before_generation() to spawn() once for each spawn generation, and plan() to record() once for each
+/// of its substeps.
 class Module {
 public:
     Module() = default;
@@ -42,16 +44,22 @@ public:
     /// All other particles of the generation have been moved. blocks: records of the substep so far.
     virtual void after_substep(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
                                std::vector<BlockRecord>& /*blocks*/) {}
+    /// All particles of the generation have been moved. Corrects their velocities, or throws if the result is no state
+    /// with which a run can continue.
+    virtual void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
+                         std::vector<BlockRecord>& /*blocks*/) {}
     /// Takes the records of the substep. loads: of all blocks; modules can complete them before they are recorded.
     virtual void record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& /*blocks*/,
                         std::vector<ColliderLoad>& /*loads*/) {}
     virtual void after_generation(const ParticleRange& /*generation*/, const TimeSpan& /*step*/) {}
-    /// Particles are about to be removed, at the end of a step.
-    virtual void before_removal(double /*time*/) {}
+    /// Adds the particles that the generation has spawned. Returns true if there are any, on any rank.
+    virtual bool spawn(const TimeSpan& /*step*/) { return false; }
+    /// Removes particles at the end of a step, at a time in s, or prepares that others remove them.
+    virtual void retire(double /*time*/) {}
     /// Checks the state at the end of a step.
     virtual void verify(const TimeSpan& /*step*/) {}
-    /// Writes the module's counts into the statistics of the run.
-    virtual void count(SimulationStatistics& /*statistics*/) const {}
+    /// Ends a step, and writes the module's counts into the statistics of the run.
+    virtual void end_step(SimulationStatistics& /*statistics*/) {}
 
     // Changes of the population. The store has changed already.
 
@@ -74,7 +82,12 @@ public:
     [[nodiscard]] virtual const char* fault_of(std::size_t /*i*/) const { return nullptr; }
     /// Returns the reason why no run can leave the module in its restored state at a time, in s, or null.
     [[nodiscard]] virtual const char* fault(double /*time*/) const { return nullptr; }
-    /// Saves or restores the module's state.
+    /// Adds the settings of the module to the fingerprint of a saved state.
+    virtual void add_to_fingerprint(StateHash& /*hash*/) const {}
+    /// Saves or restores the state of particles, beside that of the store.
+    virtual void archive_particles(BinaryWriter& /*a*/) {}
+    virtual void archive_particles(BinaryReader& /*a*/) {}
+    /// Saves or restores the rest of the module's state.
     virtual void archive(BinaryWriter& /*a*/) {}
     virtual void archive(BinaryReader& /*a*/) {}
 };
@@ -88,6 +101,14 @@ public:
     void each(const Call& call) const {
         for (const std::unique_ptr<Module>& module : modules_) call(*module);
     }
+    /// Returns the module of a class, or null if the run does not have it.
+    template <class Kind>
+    [[nodiscard]] Kind* find() const {
+        for (const std::unique_ptr<Module>& module : modules_) {
+            if (auto* const found = dynamic_cast<Kind*>(module.get())) return found;
+        }
+        return nullptr;
+    }
     /// Returns true if no module needs the positions of particles in free flight in every step.
     [[nodiscard]] bool allow_deferred_steps() const {
         return std::all_of(modules_.begin(), modules_.end(),
@@ -98,9 +119,19 @@ public:
         for (const std::unique_ptr<Module>& module : modules_) rest.end = module->plan(generation, rest);
         return rest;
     }
+    /// Adds the particles that a generation has spawned. Returns true if there are any, on any rank.
+    [[nodiscard]] bool spawn(const TimeSpan& step) const {
+        bool has_spawned = false;
+        for (const std::unique_ptr<Module>& module : modules_) has_spawned = module->spawn(step) || has_spawned;
+        return has_spawned;
+    }
+    /// Returns the objects of the modules that take part in the motion of single particles.
+    [[nodiscard]] MoveObservers& observers() { return observers_; }
+    [[nodiscard]] const MoveObservers& observers() const { return observers_; }
 
 private:
     std::vector<std::unique_ptr<Module>> modules_;
+    MoveObservers observers_;
 };
 
 }  // namespace ricochet

@@ -2,46 +2,32 @@
 /// Private to the simulation: the list of its modules.
 #pragma once
 
+#include <vector>
+
+#include "ricochet/simulation.h"
 #include "ricochet/simulation/module.h"
+#include "ricochet/simulation/population.h"
+#include "ricochet/simulation/rank_share.h"
+#include "ricochet/simulation/start_warnings.h"
 
 namespace ricochet {
 
-class CloudMotion;
-class CounterTally;
-class CoupledMotion;
-class DrivenMotion;
-class HeatStage;
-class MovingColliders;
-class Offspring;
-class PairMotion;
-class RankShare;
-class Retirement;
-
-/// Objects of a run that modules use. Pointers are null if the run does not have the capability. All must outlive the
-/// modules.
+/// Parts of a run that modules use. All must outlive the modules.
 struct ModuleParts {
-    ParticleStore& store;
-    RunRecorder& recorder;
-    ActiveMover& mover;
-    const StepClock& clock;
-    const CollisionWorld& world;
-    const std::vector<Material>& materials;
     const SimulationOptions& options;
-    const std::optional<Box3>& bounds;
-    const Retirement& retirement;
-    const RankShare& share;
-    MovingColliders* bodies;
-    Offspring* offspring;
-    HeatStage* heat;
-    CloudMotion* clouds;
-    DrivenMotion& driven;
-    CoupledMotion& coupled;
-    PairMotion* pairs;
-    RunCheck* check;
-    CounterTally* counters;
+    const StartWarnings& warnings;
+    const StepClock& clock;
+    RankShare& share;
+    CollisionScene& scene;
+    const Response& response;
+    RunRecorder& recorder;
+    Population& population;
+    const std::vector<Emitter>& emitters;
+    ActiveMover& mover;
+    MoveObservers& observers;  ///< modules enter their objects
 };
 
-/// Returns the modules of a run, in the order of their calls.
-[[nodiscard]] ModuleList make_modules(const ModuleParts& parts);
+/// Adds the modules of a run, in the order of their calls. setup: gives the settings of modules away.
+void add_modules(ModuleList& modules, SimulationSetup& setup, const ModuleParts& parts);
 
 }  // namespace ricochet

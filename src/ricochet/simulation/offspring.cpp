@@ -14,7 +14,6 @@
 #include "ricochet/simulation/clear_segment.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/flight_knots.h"
-#include "ricochet/simulation/memory_estimate.h"
 
 namespace ricochet {
 namespace {
@@ -63,12 +62,12 @@ Particle Offspring::Trajectory::at(double time, const CollisionWorld& world, Con
     return at(a, a.after);
 }
 
-Offspring::Offspring(const std::vector<Emitter>& emitters, const OffspringLimits& limits)
-    : emitters_(emitters), limits_(limits), children_of_(emitters.size()) {
+Offspring::Offspring(const Parts& parts, const OffspringLimits& limits)
+    : parts_(parts), limits_(limits), children_of_(parts.emitters.size()) {
+    const std::vector<Emitter>& emitters = parts.emitters;
     for (const Emitter& emitter : emitters) {
         const auto& rule = emitter.description().parent;
         if (!rule) continue;
-        empty_ = false;
         if (rule->emitter >= emitters.size()) {
             throw InputError(fmt::format("emitter '{}': its parent is not there", emitter.description().name));
         }
@@ -94,7 +93,7 @@ double Offspring::shatter_impulse(const Particles& particles, std::size_t i) con
         return std::numeric_limits<double>::infinity();
     }
     for (const std::uint32_t child : children_of_[origin.emitter]) {
-        const ParentRule& rule = *emitters_[child].description().parent;
+        const ParentRule& rule = *parts_.emitters[child].description().parent;
         if (rule.share && rule.on == BirthEvent::impact) return rule.threshold_impulse;
     }
     return std::numeric_limits<double>::infinity();
@@ -128,13 +127,13 @@ Offspring::Trajectory Offspring::trajectory_of(const Particles& particles, std::
 
 // Puts the births beyond `most` into one spawn generation. They are all refused, because the earlier ones take all the
 // room.
-void Offspring::add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory,
-                         std::uint64_t most, std::vector<SpawnGeneration>& spawn_generations) const {
+void Offspring::add_life(const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
+                         std::vector<SpawnGeneration>& spawn_generations) const {
     thread_local ContactScratch scratch;
     const LifeBirths births = births_in_life(emitter, trajectory.particle, trajectory.begin(), trajectory.end(), most);
     for (const LifeBirth& birth : births.first) {
         spawn_generations.push_back({birth.time, emitter.number(), birth.ordinal, 1, false,
-                                     trajectory.at(birth.time, world, scratch), trajectory.entry});
+                                     trajectory.at(birth.time, parts_.scene.world(), scratch), trajectory.entry});
     }
     if (births.more == 0) return;
     const double time = births.first.empty() ? trajectory.end() : births.first.back().time;
@@ -188,14 +187,13 @@ void Offspring::add_birth(const Emitter& emitter, const Trajectory& trajectory,
                                  trajectory.at(first, first.after), trajectory.entry});
 }
 
-std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles& particles, double from, double to,
-                                         std::vector<ContactRecord> records, const RankShare& share,
-                                         OffspringCounts& counts) const {
+std::vector<Child> Offspring::after_move(Particles& particles, double from, double to,
+                                         std::vector<ContactRecord> records, OffspringCounts& counts) const {
     const RecordsByParticle sorted(std::move(records));
     const std::size_t count = positions_.size();
     std::vector<std::vector<SpawnGeneration>> blocks((count + kBlock - 1) / kBlock);
-    const std::uint64_t room = room_below(limits_.most_particles, share.living(particles.size()));
-    const std::uint64_t fitting = room_below(most_that_fit_, particles.size());
+    const std::uint64_t room = room_below(limits_.most_particles, parts_.share.living(particles.size()));
+    const std::uint64_t fitting = parts_.memory.room(particles.size());
     std::atomic<std::uint64_t> gathered{0};
     parallel_for_blocks(count, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         std::size_t counted = 0;
@@ -205,10 +203,10 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
                 continue;
             const Trajectory trajectory = trajectory_of(particles, i, from, to, sorted.of(particles.id[i]));
             for (const std::uint32_t child : children_of_[origin.emitter]) {
-                const Emitter& emitter = emitters_[child];
+                const Emitter& emitter = parts_.emitters[child];
                 const BirthEvent on = emitter.description().parent->on;
                 if (on == BirthEvent::life) {
-                    add_life(world, emitter, trajectory, std::min(room, fitting + 1), blocks[block]);
+                    add_life(emitter, trajectory, std::min(room, fitting + 1), blocks[block]);
                 }
                 if (on == BirthEvent::impact) add_impacts(emitter, trajectory, origin, blocks[block]);
                 if (on == BirthEvent::death) add_death(emitter, trajectory, blocks[block]);
@@ -219,7 +217,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
             // A SpawnGeneration takes no more memory than a particle that it makes.
             const std::uint64_t more = blocks[block].size() - std::exchange(counted, blocks[block].size());
             if (gathered.fetch_add(more, std::memory_order_relaxed) + more > fitting + count) {
-                refuse_to_grow(particles.size(), bytes_each_);
+                parts_.memory.refuse_to_grow(particles.size());
             }
         }
     });
@@ -228,7 +226,7 @@ std::vector<Child> Offspring::after_move(const CollisionWorld& world, Particles&
         spawn_generations.insert(spawn_generations.end(), std::make_move_iterator(block.begin()),
                                  std::make_move_iterator(block.end()));
     }
-    return spawn(spawn_generations, particles.size(), share, counts);
+    return spawn(spawn_generations, particles.size(), counts);
 }
 
 std::vector<Offspring::Claim> Offspring::claims_of(const std::vector<SpawnGeneration>& spawn_generations) {
@@ -258,7 +256,7 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
             std::min<std::uint64_t>({claim.count, most, std::max<std::uint64_t>(room, claim.share ? 1 : 0)}));
         claim.first = counts.children;
         counts.refused_by_population += claim.count - claim.allowed;
-        if (claim.allowed > room_below(most_that_fit, living)) refuse_to_grow(living, bytes_each_);
+        if (claim.allowed > room_below(most_that_fit, living)) parts_.memory.refuse_to_grow(living);
         living += claim.allowed;
         counts.children += claim.allowed;
     }
@@ -266,30 +264,29 @@ void Offspring::allot(std::vector<Claim>& claims, std::uint64_t living, std::uin
 
 /// Decides like allot() if ranks share the run: each rank decides for all of them. A parent's spawn generations are on
 /// one rank.
-void Offspring::allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
-                               OffspringCounts& counts) const {
-    const auto rank = static_cast<std::uint32_t>(share.ranks().rank());
+void Offspring::allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const {
+    const auto rank = static_cast<std::uint32_t>(parts_.share.ranks().rank());
     for (std::size_t k = 0; k < mine.size(); ++k) mine[k].rank = rank, mine[k].spawn_generation = k;
-    std::vector<Claim> all = gather_list_to_all(share.ranks(), mine);
+    std::vector<Claim> all = gather_list_to_all(parts_.share.ranks(), mine);
     std::stable_sort(all.begin(), all.end(), [](const Claim& a, const Claim& b) {
         return std::tuple(a.time, a.parent, a.emitter, a.first_ordinal) <
                std::tuple(b.time, b.parent, b.emitter, b.first_ordinal);
     });
-    allot(all, share.living(here), std::numeric_limits<std::uint64_t>::max(), counts);
+    allot(all, parts_.share.living(here), std::numeric_limits<std::uint64_t>::max(), counts);
     std::uint64_t born_here = 0;
     for (const Claim& claim : all) {
         if (claim.rank != rank) continue;
         mine[claim.spawn_generation] = claim;
         born_here += claim.allowed;
     }
-    if (born_here > room_below(most_that_fit_, here)) refuse_to_grow(here, bytes_each_);
+    if (born_here > parts_.memory.room(here)) parts_.memory.refuse_to_grow(here);
 }
 
 Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& particle, std::uint64_t number) const {
     const std::size_t colliders = positions_.empty() ? 0 : sides_.size() / positions_.size();
     const auto sides = std::span(sides_).subspan(spawn_generation.entry * colliders, colliders);
-    const bool is_fragment =
-        spawn_generation.share && emitters_[spawn_generation.emitter].description().parent->on == BirthEvent::impact;
+    const bool is_fragment = spawn_generation.share &&
+                             parts_.emitters[spawn_generation.emitter].description().parent->on == BirthEvent::impact;
     return {std::move(particle), positions_[spawn_generation.entry], sides, is_fragment, number, std::nullopt};
 }
 
@@ -297,10 +294,10 @@ Child Offspring::child_of(const SpawnGeneration& spawn_generation, Particle&& pa
 void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::uint32_t ordinal, std::uint64_t number,
                                 std::vector<Child>& children, OffspringCounts& counts) const {
     const auto has_place = [&](const Particle& child) {
-        return !spawn_test_ || spawn_test_(spawn_generation.parent, child);
+        return parts_.scene.has_room_beside(spawn_generation.parent, child);
     };
-    std::optional<CloudChild> made = make_cloud_child(emitters_[spawn_generation.emitter], spawn_generation.parent,
-                                                      ordinal, spawn_generation.time, has_place);
+    std::optional<CloudChild> made = make_cloud_child(
+        parts_.emitters[spawn_generation.emitter], spawn_generation.parent, ordinal, spawn_generation.time, has_place);
     if (!made) {
         ++counts.refused_by_overlap;
         return;
@@ -310,17 +307,17 @@ void Offspring::add_cloud_child(const SpawnGeneration& spawn_generation, std::ui
 }
 
 std::vector<Child> Offspring::spawn(std::vector<SpawnGeneration>& spawn_generations, std::size_t here,
-                                    const RankShare& share, OffspringCounts& counts) const {
+                                    OffspringCounts& counts) const {
     std::stable_sort(spawn_generations.begin(), spawn_generations.end(),
                      [](const SpawnGeneration& a, const SpawnGeneration& b) {
                          return std::tuple(a.time, a.parent.id, a.emitter, a.first_ordinal) <
                                 std::tuple(b.time, b.parent.id, b.emitter, b.first_ordinal);
                      });
     std::vector<Claim> claims = claims_of(spawn_generations);
-    if (share.is_alone()) {
-        allot(claims, here, most_that_fit_, counts);
+    if (parts_.share.is_alone()) {
+        allot(claims, here, parts_.memory.most(), counts);
     } else {
-        allot_together(claims, share, here, counts);
+        allot_together(claims, here, counts);
     }
     std::vector<Child> children;
     std::size_t born_here = 0;
@@ -330,7 +327,7 @@ std::vector<Child> Offspring::spawn(std::vector<SpawnGeneration>& spawn_generati
         const SpawnGeneration& spawn_generation = spawn_generations[i];
         const Claim& claim = claims[i];
         if (claim.allowed == 0) continue;
-        const Emitter& emitter = emitters_[spawn_generation.emitter];
+        const Emitter& emitter = parts_.emitters[spawn_generation.emitter];
         std::uint64_t number = claim.first;
         if (spawn_generation.share) {
             for (Particle& fragment : make_fragments(emitter, spawn_generation.parent, claim.allowed,

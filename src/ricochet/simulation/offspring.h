@@ -10,26 +10,21 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "ricochet/collision/collision_world.h"
 #include "ricochet/dynamics/child_emitter.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/response/response.h"
+#include "ricochet/simulation/collision_scene.h"
+#include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/options.h"
 #include "ricochet/simulation/rank_share.h"
 
 namespace ricochet {
-
-/// Returns how many more fit below a limit.
-[[nodiscard]] inline std::uint64_t room_below(std::uint64_t most, std::uint64_t living) {
-    return most - std::min(most, living);
-}
 
 /// Limits of hierarchies of particles.
 struct OffspringLimits {
@@ -44,9 +39,6 @@ struct CloudMembership {
     std::uint64_t parent = 0;  ///< id
     Vec3 offset;               ///< m, from the parent, at the child's birth
 };
-
-/// Test of whether a child may be born at its position, away from its parent.
-using SpawnTest = std::function<bool(const Particle& parent, const Particle& child)>;
 
 /// A particle spawned by another.
 struct Child {
@@ -69,23 +61,19 @@ struct OffspringCounts {
 /// Spawns the children of a simulation's particles.
 class Offspring {
 public:
-    /// emitters: all of the scene; must outlive it. Throws InputError for a missing parent, and for two emitters that
-    /// share out one parent at the same event.
-    Offspring(const std::vector<Emitter>& emitters, const OffspringLimits& limits);
+    /// Parts of a run that spawning needs. All must outlive it. memory: if more particles would live than it holds,
+    /// after_move() throws RunError.
+    struct Parts {
+        const std::vector<Emitter>& emitters;  ///< all of the scene
+        const CollisionScene& scene;
+        const RankShare& share;
+        const ParticleMemory& memory;
+    };
+    /// Throws InputError for a missing parent, and for two emitters that share out one parent at the same event.
+    Offspring(const Parts& parts, const OffspringLimits& limits);
 
-    /// Returns true if no emitter has a parent.
-    [[nodiscard]] bool empty() const { return empty_; }
-    /// Sets the number of particles, of so many bytes each, that the memory holds. If more would live, after_move()
-    /// throws RunError.
-    void set_memory(std::uint64_t most_that_fit, double bytes_each) {
-        most_that_fit_ = most_that_fit;
-        bytes_each_ = bytes_each;
-    }
-    /// Sets the clouds, which know the paths of parents and must outlive it, and the test for each child of a cloud.
-    void set_clouds(const CloudMotion* clouds, SpawnTest test) {
-        clouds_ = clouds;
-        spawn_test_ = std::move(test);
-    }
+    /// Sets the clouds, which know the paths of parents and must outlive it.
+    void set_clouds(const CloudMotion* clouds) { clouds_ = clouds; }
     /// Returns the impulse, in N s, of an impact that shatters particle i; infinity if no impact does.
     [[nodiscard]] double shatter_impulse(const Particles& particles, std::size_t i) const;
 
@@ -95,9 +83,8 @@ public:
     /// Returns the children that the stored entries have spawned in [from, to), in the order of (time, parent,
     /// ordinal). records: impacts of these entries, in the order of time for each particle. counts: of all ranks, on
     /// each.
-    [[nodiscard]] std::vector<Child> after_move(const CollisionWorld& world, Particles& particles, double from,
-                                                double to, std::vector<ContactRecord> records, const RankShare& share,
-                                                OffspringCounts& counts) const;
+    [[nodiscard]] std::vector<Child> after_move(Particles& particles, double from, double to,
+                                                std::vector<ContactRecord> records, OffspringCounts& counts) const;
 
 private:
     /// Children of one event, or one child during a life.
@@ -129,7 +116,7 @@ private:
 
     [[nodiscard]] Trajectory trajectory_of(const Particles& particles, std::size_t i, double from, double to,
                                            std::span<const ContactRecord> records) const;
-    void add_life(const CollisionWorld& world, const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
+    void add_life(const Emitter& emitter, const Trajectory& trajectory, std::uint64_t most,
                   std::vector<SpawnGeneration>& spawn_generations) const;
     void add_impacts(const Emitter& emitter, const Trajectory& trajectory, Origin& origin,
                      std::vector<SpawnGeneration>& spawn_generations) const;
@@ -142,21 +129,16 @@ private:
     [[nodiscard]] static std::vector<Claim> claims_of(const std::vector<SpawnGeneration>& spawn_generations);
     void allot(std::vector<Claim>& claims, std::uint64_t living, std::uint64_t most_that_fit,
                OffspringCounts& counts) const;
-    void allot_together(std::vector<Claim>& mine, const RankShare& share, std::size_t here,
-                        OffspringCounts& counts) const;
+    void allot_together(std::vector<Claim>& mine, std::size_t here, OffspringCounts& counts) const;
     [[nodiscard]] Child child_of(const SpawnGeneration& spawn_generation, Particle&& particle,
                                  std::uint64_t number) const;
     [[nodiscard]] std::vector<Child> spawn(std::vector<SpawnGeneration>& spawn_generations, std::size_t here,
-                                           const RankShare& share, OffspringCounts& counts) const;
+                                           OffspringCounts& counts) const;
 
-    const std::vector<Emitter>& emitters_;
+    Parts parts_;
     OffspringLimits limits_;
-    std::uint64_t most_that_fit_ = std::numeric_limits<std::uint64_t>::max();
-    double bytes_each_ = 0.0;
     std::vector<std::vector<std::uint32_t>> children_of_;  // emitters by the emitter of their parents
     const CloudMotion* clouds_ = nullptr;
-    SpawnTest spawn_test_;
-    bool empty_ = true;
     std::size_t first_ = 0;
     std::vector<Vec3> positions_;
     std::vector<Vec3> velocities_;

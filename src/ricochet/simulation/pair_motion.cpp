@@ -41,16 +41,29 @@ verify::ImpactAudit books_of(const PairParts& parts) {
 
 }  // namespace
 
-PairMotion::PairMotion(const PairParts& parts)
-    : parts_(parts), contacts_(parts), plans_(parts), islands_(parts, plans_, contacts_), books_(books_of(parts)) {}
-
-bool PairMotion::has_material(std::size_t particle) const {
-    if (!parts_.material_column) return true;
-    return is_material(parts_.store.particles().attributes.value(*parts_.material_column, particle),
-                       parts_.materials.count());
+PairMotion::PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers)
+    : parts_(parts),
+      recorder_(recorder),
+      observers_(observers),
+      contacts_(parts),
+      plans_(parts),
+      islands_(parts, plans_, contacts_),
+      books_(books_of(parts)) {
+    observers.sleeping_islands = &contacts_.sleeping_islands();
 }
 
-void PairMotion::solve(const ParticleRange& range, const TimeSpan& step) {
+const char* PairMotion::fault_of(std::size_t i) const {
+    const bool is_known =
+        !parts_.material_column ||
+        is_material(parts_.store.particles().attributes.value(*parts_.material_column, i), parts_.materials.count());
+    return is_known ? nullptr : "a particle of an unknown material";
+}
+
+const char* PairMotion::fault(double /*time*/) const {
+    return contacts_.is_sound(parts_.store.next_id()) ? nullptr : "impossible contacts or sleeping particles";
+}
+
+void PairMotion::before_substep(const ParticleRange& range, const TimeSpan& step) {
     first_ = range.begin;
     contacts_.begin(range, step);
     do {
@@ -76,27 +89,38 @@ bool PairMotion::wake_loaded_sleepers(const TimeSpan& step) {
     return !loaded.empty();
 }
 
-void PairMotion::write_back(const TimeSpan& step, std::vector<BlockRecord>& blocks) {
+void PairMotion::after_substep(const ParticleRange& /*generation*/, const TimeSpan& step,
+                               std::vector<BlockRecord>& blocks) {
     std::vector<IslandBuilder::Island>& islands = islands_.all();
     const std::size_t first_block = blocks.size();
     blocks.resize(first_block + (islands.size() + kPairMotionBlock - 1) / kPairMotionBlock);
     parallel_for_blocks(islands.size(), kPairMotionBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) write_back(islands[n].members, step, blocks[first_block + block]);
     });
-    impacts_.clear();
-    meetings_.clear();
+    std::vector<PairImpactRecord> impacts;
+    std::vector<PairMeeting> meetings;
     std::vector<const ContactIslandTrace*> traces;
     for (const IslandBuilder::Island& island : islands) {
-        impacts_.insert(impacts_.end(), island.impacts.begin(), island.impacts.end());
-        meetings_.insert(meetings_.end(), island.meetings.begin(), island.meetings.end());
+        impacts.insert(impacts.end(), island.impacts.begin(), island.impacts.end());
+        meetings.insert(meetings.end(), island.meetings.begin(), island.meetings.end());
         if (island.is_contact_island) traces.push_back(&island.trace);
         unsolved_ += island.trace.is_unsolved ? 1 : 0;
     }
     contacts_.check_sleepers(step, blocks);
-    contacts_.end(traces, impacts_, step);
-    counts_ = {impacts_.size(), 0.0};
-    measure_overlaps(step.end);
+    contacts_.end(traces, impacts, step);
+    record_impacts(impacts, meetings, step.end);
     islands.clear();
+}
+
+/// Records the impacts of a substep, island by island. meetings: the same impacts for the verifier. time: end of the
+/// substep, in s.
+void PairMotion::record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
+                                double time) {
+    SimulationStatistics& statistics = recorder_.statistics();
+    statistics.pair_impacts += impacts.size();
+    statistics.overlap_largest = std::max(statistics.overlap_largest, largest_overlap(time));
+    recorder_.add_pair_impacts(impacts);
+    if (observers_.check != nullptr) recorder_.add_pair_violations(RunCheck::check_meetings(meetings, books_));
 }
 
 void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record) {
@@ -109,18 +133,20 @@ void PairMotion::write_back(std::vector<IslandMember>& members, const TimeSpan& 
     }
 }
 
-/// Measures the largest overlap of spheres that live at the end of a step.
-void PairMotion::measure_overlaps(double time) {
+/// Returns the largest overlap of spheres that live at the end of a step, over the smaller radius.
+double PairMotion::largest_overlap(double time) const {
     const Particles& particles = parts_.store.particles();
-    const auto measure = [&](std::size_t i, std::size_t j) {
+    double largest = 0.0;
+    for (const NeighbourPair& pair : plans_.pairs()) {
+        const std::size_t i = first_ + pair.first;
+        const std::size_t j = first_ + pair.second;
         const double distance = length(particles.position[i] - particles.position[j]);
         const double overlap = particles.radius[i] + particles.radius[j] - distance;
         const double part = overlap / std::min(particles.radius[i], particles.radius[j]);
-        if (!(part > counts_.largest_overlap)) return;
-        if (parts_.store.has_ended(i, time) || parts_.store.has_ended(j, time)) return;
-        counts_.largest_overlap = part;
-    };
-    for (const NeighbourPair& pair : plans_.pairs()) measure(first_ + pair.first, first_ + pair.second);
+        if (!(part > largest) || has_ended(particles, i, time) || has_ended(particles, j, time)) continue;
+        largest = part;
+    }
+    return largest;
 }
 
 }  // namespace ricochet

@@ -11,72 +11,56 @@
 #include "ricochet/response/event_island.h"
 #include "ricochet/simulation/island_builder.h"
 #include "ricochet/simulation/lasting_contacts.h"
+#include "ricochet/simulation/module.h"
 #include "ricochet/simulation/pair_parts.h"
 #include "ricochet/simulation/pair_plans.h"
 #include "ricochet/verify/impact_audit.h"
 
 namespace ricochet {
 
-/// Results of contacts between spheres in a step.
-struct PairCounts {
-    std::uint64_t impacts = 0;
-    double largest_overlap = 0.0;  ///< at the end of the step, over the smaller radius
-};
-
-class PairMotion {
+/// Moves spheres that meet each other.
+class PairMotion final : public Module {
 public:
-    explicit PairMotion(const PairParts& parts);
-
-    /// Solves the islands among the particles of the range. Their members are not moved otherwise in this step.
-    void solve(const ParticleRange& range, const TimeSpan& step);
-    /// Stores the results of the members. Must be called after the others have moved.
-    void write_back(const TimeSpan& step, std::vector<BlockRecord>& blocks);
-
-    /// Returns the counts of the last step's islands.
-    [[nodiscard]] const PairCounts& counts() const { return counts_; }
-    /// Returns the impacts of the last step's islands, island by island.
-    [[nodiscard]] const std::vector<PairImpactRecord>& impacts() const { return impacts_; }
-    /// Returns these impacts for the verifier, if there is one.
-    [[nodiscard]] const std::vector<PairMeeting>& meetings() const { return meetings_; }
-    /// Returns the rules by which the verifier checks them.
-    [[nodiscard]] const verify::ImpactAudit& books() const { return books_; }
-    /// Returns the number of contact islands, in all steps, that were not solved to the tolerance.
-    [[nodiscard]] std::uint64_t unsolved() const { return unsolved_; }
-
-    /// Returns true if a particle's attribute is the number of a material, or if there are no materials.
-    [[nodiscard]] bool has_material(std::size_t particle) const;
+    /// All must outlive it.
+    PairMotion(const PairParts& parts, RunRecorder& recorder, MoveObservers& observers);
 
     /// Returns a flag per particle: others, or walls together with others, have supported it in the last step.
     [[nodiscard]] std::vector<std::uint8_t> pressing() const { return contacts_.pressing(); }
 
-    /// Wakes all spheres that sleep on others, at a time, in s, because their supports may change.
-    void wake_all(double time) { contacts_.wake_all(time); }
+    /// Solves the islands among the particles of the generation. Their members are not moved otherwise in this step.
+    void before_substep(const ParticleRange& generation, const TimeSpan& substep) override;
+    /// Stores the results of the members.
+    void after_substep(const ParticleRange& generation, const TimeSpan& substep,
+                       std::vector<BlockRecord>& blocks) override;
+    void end_step(SimulationStatistics& statistics) override { statistics.unsolved_steps += unsolved_; }
+    /// Wakes all spheres that sleep on others, because their supports may change.
+    void wake_all(double time) override { contacts_.wake_all(time); }
+    [[nodiscard]] const char* fault_of(std::size_t i) const override;
+    [[nodiscard]] const char* fault(double time) const override;
+    void archive(BinaryWriter& a) override { archive_contacts(a); }
+    void archive(BinaryReader& a) override { archive_contacts(a); }
 
-    /// Saves or restores the state between steps; a: an archive of core/binary_archive.h.
+private:
     template <class Archive>
-    void archive(Archive& a) {
+    void archive_contacts(Archive& a) {
         contacts_.archive(a);
         a(unsolved_);
     }
-
-    /// Returns false for contacts and sleepers that no run leaves behind. next_id: id of the next particle.
-    [[nodiscard]] bool is_sound(std::uint64_t next_id) const { return contacts_.is_sound(next_id); }
-
-private:
     [[nodiscard]] bool wake_loaded_sleepers(const TimeSpan& step);
     void write_back(std::vector<IslandMember>& members, const TimeSpan& step, BlockRecord& record);
-    void measure_overlaps(double time);
+    void record_impacts(const std::vector<PairImpactRecord>& impacts, const std::vector<PairMeeting>& meetings,
+                        double time);
+    [[nodiscard]] double largest_overlap(double time) const;
 
     PairParts parts_;
-    std::size_t first_ = 0;  // first particle of the range
+    RunRecorder& recorder_;
+    const MoveObservers& observers_;
+    std::size_t first_ = 0;  // first particle of the generation
     LastingContacts contacts_;
     PairPlans plans_;
     IslandBuilder islands_;
     verify::ImpactAudit books_;
-    std::vector<PairImpactRecord> impacts_;
-    std::vector<PairMeeting> meetings_;
-    PairCounts counts_;
-    std::uint64_t unsolved_ = 0;
+    std::uint64_t unsolved_ = 0;  // contact islands, in all steps, that were not solved to the tolerance
 };
 
 }  // namespace ricochet

@@ -69,8 +69,19 @@ std::span<const SideMemory> ParticleStore::sides_of(std::size_t i) const {
 
 MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact) {
     MovingParticle particle{force_input(i, start), particles_.spin[i], particles_.id[i], particles_.draws[i], {}};
-    if (cores_.has(i)) load_core(i, particle);
-    if (in_contact) load_contact(i, particle.contact);
+    if (cores_.has(i)) {
+        // Forces see the whole sphere, the rest of the response its core.
+        particle.state.whole_radius = particles_.radius[i];
+        particle.state.radius = cores_.radius(i);
+        particle.spin = OverlapCores::spin_of_core(particle.spin, cores_.radius(i), particles_.radius[i]);
+    }
+    if (in_contact) {
+        ContactState& contact = particle.contact;
+        for (const SurfaceId surface : particles_.support[i]) {
+            if (surface != kNoSupport) contact.surfaces[contact.count++] = surface;
+        }
+        contact.cascade_left = particles_.cascade_left[i];
+    }
     particle.sides = sides_of(i);
     particle.stored_time = start;
     if (keeps_attachments_) {
@@ -79,13 +90,6 @@ MovingParticle ParticleStore::load(std::size_t i, double start, bool in_contact)
         if (known.is_attached != 0) particle.attachment = known.attachment;
     }
     return particle;
-}
-
-/// Forces see the whole sphere, the rest of the response its core.
-void ParticleStore::load_core(std::size_t i, MovingParticle& particle) const {
-    particle.state.whole_radius = particles_.radius[i];
-    particle.state.radius = cores_.radius(i);
-    particle.spin = OverlapCores::spin_of_core(particle.spin, cores_.radius(i), particles_.radius[i]);
 }
 
 /// Converts the spin of a core to that of the sphere. An unchanged spin keeps its bits.
@@ -97,13 +101,6 @@ Vec3 ParticleStore::spin_of(std::size_t i, const MovingParticle& moved) const {
     return (core / particles_.radius[i]) * moved.spin;
 }
 
-void ParticleStore::load_contact(std::size_t i, ContactState& contact) const {
-    for (const SurfaceId surface : particles_.support[i]) {
-        if (surface != kNoSupport) contact.surfaces[contact.count++] = surface;
-    }
-    contact.cascade_left = particles_.cascade_left[i];
-}
-
 void ParticleStore::store(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool in_contact,
                           bool may_be_supported) {
     particles_.position[i] = moved.state.position;
@@ -112,21 +109,19 @@ void ParticleStore::store(std::size_t i, const MovingParticle& moved, const Move
     if (particles_.draws[i] != moved.draws) particles_.draws[i] = moved.draws;
     if (outcome.bounces > 0) particles_.contacts[i] = saturating_sum(particles_.contacts[i], outcome.bounces);
     if (outcome.unsimulated_time > 0.0) particles_.unsimulated_time[i] += outcome.unsimulated_time;
-    // An attached particle goes where its body goes.
-    if (in_contact) store_contact(i, moved, outcome, may_be_supported && !moved.attachment);
+    if (in_contact) {
+        // An attached particle goes where its body goes.
+        const bool is_held = outcome.end == MoveEnd::held && may_be_supported && !moved.attachment;
+        particles_.resting[i] = outcome.is_resting() ? 1 : 0;
+        particles_.held[i] = is_held ? 1 : 0;
+        particles_.frozen[i] = outcome.is_frozen() ? 1 : 0;
+        particles_.absorbed[i] = outcome.end == MoveEnd::shattered ? kShattered : outcome.is_absorbed() ? 1 : 0;
+        set_contact(i, moved.contact);
+    }
     if (!keeps_attachments_) return;
     attachments_[i] = {};
     if (moved.stored_time < moved.step_end) attachments_[i].stored_time = moved.stored_time;
     if (moved.attachment) attachments_[i].is_attached = 1, attachments_[i].attachment = *moved.attachment;
-}
-
-void ParticleStore::store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome,
-                                  bool may_be_supported) {
-    particles_.resting[i] = outcome.is_resting() ? 1 : 0;
-    particles_.held[i] = outcome.end == MoveEnd::held && may_be_supported ? 1 : 0;
-    particles_.frozen[i] = outcome.is_frozen() ? 1 : 0;
-    particles_.absorbed[i] = outcome.end == MoveEnd::shattered ? kShattered : outcome.is_absorbed() ? 1 : 0;
-    set_contact(i, moved.contact);
 }
 
 void ParticleStore::set_contact(std::size_t i, const ContactState& contact) {

@@ -38,12 +38,9 @@ public:
     /// Sets the contacts of a particle at the start of its next step.
     void set_contact(std::size_t i, const ContactState& contact);
 
-    /// Returns the cores of spheres in overlap.
+    /// Returns the cores of spheres in overlap, which collide as their cores.
     [[nodiscard]] const OverlapCores& cores() const { return cores_; }
-    /// Lets a sphere collide as its core from now on. core: radius, in m.
-    void set_core(std::size_t i, double core) { cores_.set(i, core, size()); }
-    /// Lets a sphere collide as itself from now on.
-    void release_from_overlap(std::size_t i) { cores_.release(i); }
+    [[nodiscard]] OverlapCores& cores() { return cores_; }
 
     [[nodiscard]] std::span<SideMemory> sides_of(std::size_t i);
     [[nodiscard]] std::span<const SideMemory> sides_of(std::size_t i) const;
@@ -62,10 +59,6 @@ public:
     void wake(std::size_t i) { particles_.held[i] = 0; }
     /// Returns the index of the particle with an id, or nothing if it is gone.
     [[nodiscard]] std::optional<std::size_t> index_of(std::uint64_t id) const;
-    /// Returns true if the life of a particle is over at a time, in s, or if a surface has absorbed or shattered it.
-    [[nodiscard]] bool has_ended(std::size_t i, double time) const {
-        return particles_.absorbed[i] != 0 || particles_.birth_time[i] + particles_.lifetime[i] <= time;
-    }
     /// Returns the state of a particle for forces at a time, in s.
     [[nodiscard]] ForceInput force_input(std::size_t i, double time) const {
         ForceInput input{particles_.position[i], particles_.velocity[i], particles_.mass[i], particles_.radius[i], time,
@@ -108,10 +101,6 @@ public:
     [[nodiscard]] Vec3 spin_of(std::size_t i, const MovingParticle& moved) const;
 
 private:
-    void load_core(std::size_t i, MovingParticle& particle) const;
-    void load_contact(std::size_t i, ContactState& contact) const;
-    void store_contact(std::size_t i, const MovingParticle& moved, const MoveOutcome& outcome, bool may_be_supported);
-
     Particles particles_;
     OverlapCores cores_;
     /// State of a particle that is kept if colliders move.
@@ -128,6 +117,11 @@ private:
     bool may_sleep_;
     std::optional<std::size_t> temperature_column_;  // among the attributes, if there is one
 };
+
+/// Returns true if the life of particle i is over at a time, in s, or if a surface has absorbed or shattered it.
+[[nodiscard]] inline bool has_ended(const Particles& particles, std::size_t i, double time) {
+    return particles.absorbed[i] != 0 || particles.birth_time[i] + particles.lifetime[i] <= time;
+}
 
 /// Prefetches a vector, which may lie across two cache lines.
 inline void prefetch_vector(const Vec3& v) {

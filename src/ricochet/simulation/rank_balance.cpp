@@ -5,9 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "ricochet/core/merging_reader.h"
-#include "ricochet/simulation/impl.h"
-
 namespace ricochet {
 namespace {
 
@@ -95,67 +92,6 @@ std::uint32_t TransferChoice::next(Cost cost) {
         left -= gifts_[rank];
     }
     return kStays;
-}
-
-// Particles change ranks after they have made their deferred steps. Nothing else uses the rank of a particle.
-void Simulation::Impl::balance_ranks() {
-    if (share.is_alone()) return;
-    std::optional<RankTransfers> gifts = balancer.look(share.ranks(), store.size());
-    if (!gifts) return;
-    const bool defers = free_flights.is_deferring();
-    free_flights.end_deferring();
-    give_away(TransferChoice(std::move(*gifts)));
-    if (defers) free_flights.begin_deferring();
-}
-
-void Simulation::Impl::give_away(TransferChoice choice) {
-    std::vector<std::uint32_t> goes_to(store.size());
-    std::vector<std::uint8_t> keep(store.size(), 1);
-    for (std::size_t i = 0; i < store.size(); ++i) {
-        const bool flies = schedule.is_in_free_flight(i);
-        const auto cost = schedule.is_left_alone(i) ? TransferChoice::Cost::idle
-                          : flies                   ? TransferChoice::Cost::flying
-                                                    : TransferChoice::Cost::queried;
-        goes_to[i] = share.stays(particles().id[i]) ? TransferChoice::kStays : choice.next(cost);
-        keep[i] = goes_to[i] == TransferChoice::kStays ? 1 : 0;
-    }
-    std::vector<std::vector<std::byte>> gifts(share.ranks().size());
-    for (std::uint32_t rank = 0; rank < gifts.size(); ++rank) {
-        if (std::find(goes_to.begin(), goes_to.end(), rank) == goes_to.end()) continue;
-        std::vector<std::uint8_t> given(store.size());
-        for (std::size_t i = 0; i < given.size(); ++i) given[i] = goes_to[i] == rank ? 1 : 0;
-        ParticleStore part = store;
-        part.compact(given);
-        gifts[rank] = bytes_of(part);
-    }
-    const std::size_t before = store.size();
-    compact(keep);
-    balancer.add_moved(before - store.size());
-    std::vector<std::vector<std::byte>> parts = share.ranks().exchange(gifts);
-    std::erase_if(parts, [](const auto& part) { return part.empty(); });
-    if (!parts.empty()) insert_particles(std::move(parts));
-}
-
-// Inserts particles in the order of ids, as everywhere. The schedule of the particles that are here is kept.
-void Simulation::Impl::insert_particles(std::vector<std::vector<std::byte>> parts) {
-    const std::vector<std::uint64_t> here = particles().id;
-    parts.insert(parts.begin(), bytes_of(store));
-    ParticleStore all = store.empty_copy();
-    MergingReader reader(parts);
-    all.archive(reader);
-    store = std::move(all);
-    std::vector<std::size_t> from(store.size(), QuerySchedule::kNew);
-    std::size_t next = 0;
-    for (std::size_t i = 0; i < from.size() && next < here.size(); ++i) {
-        if (particles().id[i] == here[next]) from[i] = next++;
-    }
-    schedule.rearrange(from);
-    bind_modules();
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        if (from[i] != QuerySchedule::kNew) continue;
-        prepare_radius(particles().radius[i]);
-        if (store.is_fixed(i) || store.is_asleep(i)) schedule.leave_alone(i);
-    }
 }
 
 }  // namespace ricochet

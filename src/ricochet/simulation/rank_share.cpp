@@ -38,6 +38,7 @@ void RankShare::end_step(std::size_t living_here, const ColliderList& colliders)
 }
 
 std::optional<std::string> RankShare::first_message(const std::optional<std::string>& message, std::uint64_t id) const {
+    if (is_alone()) return message;
     constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
     std::array<std::uint64_t, 1> least{message ? id : kNone};
     ranks_->least(least);

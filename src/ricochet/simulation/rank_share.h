@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "ricochet/collision/collider_list.h"
+#include "ricochet/core/binary_archive.h"
 #include "ricochet/core/ranks.h"
 #include "ricochet/response/response.h"
 #include "ricochet/simulation/run_recorder.h"
@@ -111,6 +112,15 @@ private:
     double unsimulated_time_ = 0.0;
     std::vector<ColliderTotals> loads_;
 };
+
+/// Returns an object as its archive function writes it.
+template <class Archived>
+[[nodiscard]] std::vector<std::byte> archived_bytes(Archived& object) {
+    std::vector<std::byte> bytes;
+    BinaryWriter writer([&](std::span<const std::byte> part) { bytes.insert(bytes.end(), part.begin(), part.end()); });
+    object.archive(writer);
+    return bytes;
+}
 
 /// Returns the lists of all ranks, one after the other, on the first rank. T must allow copies byte by byte.
 template <class T>

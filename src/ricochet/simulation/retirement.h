@@ -1,5 +1,5 @@
 /// \file
-/// Private to the simulation: the particles that leave at the end of a step, and the reasons.
+/// Private to the simulation: removes the particles that leave at the end of a step.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,7 @@
 #include <optional>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/simulation/particle_store.h"
-#include "ricochet/simulation/query_schedule.h"
+#include "ricochet/simulation/population.h"
 
 namespace ricochet {
 
@@ -21,34 +20,40 @@ enum class RemovalReason : std::uint8_t {
     out_of_bounds,  ///< it is outside the bounds
 };
 
-/// Counts at the end of a step. Particles that leave count only as leaving.
-struct EndOfStepCounts {
-    std::uint64_t leaving = 0;
-    std::uint64_t resting = 0;
-    std::uint64_t held = 0;  ///< resting particles that friction and support hold
-};
-
-/// Tests all particles once per step. Particles in free flight are tested only if there are bounds.
-class Retirement {
+/// Removes particles. It tests all of them once per step; particles in free flight only if there are bounds.
+class Retirement final : public Module {
 public:
     /// All must outlive it.
-    Retirement(const ParticleStore& store, const QuerySchedule& schedule, const std::optional<Box3>& bounds)
-        : store_(store), schedule_(schedule), bounds_(bounds) {}
+    Retirement(const std::optional<Box3>& bounds, Population& population, ActiveMover& mover, RunRecorder& recorder)
+        : bounds_(bounds), population_(population), mover_(mover), recorder_(recorder) {}
 
+    [[nodiscard]] bool has_bounds() const { return bounds_.has_value(); }
     /// time: end of the step, in s.
     [[nodiscard]] RemovalReason removal_reason(std::size_t i, double time) const;
-    /// Counts all particles, on all threads.
-    [[nodiscard]] EndOfStepCounts count(double time) const;
+
+    void retire(double time) override;
+    [[nodiscard]] bool allows_deferred_steps() const override { return !bounds_; }
+    void add_to_fingerprint(StateHash& hash) const override;
 
 private:
-    [[nodiscard]] bool is_outside(std::size_t i) const {
-        return bounds_ && !bounds_->contains(store_.particles().position[i]);
-    }
-    [[nodiscard]] EndOfStepCounts count_block(std::size_t begin, std::size_t end, double time) const;
+    /// Counts at the end of a step. Particles that leave count only as leaving.
+    struct Counts {
+        std::uint64_t leaving = 0;
+        std::uint64_t resting = 0;
+        std::uint64_t held = 0;  ///< resting particles that friction and support hold
+    };
 
-    const ParticleStore& store_;
-    const QuerySchedule& schedule_;
-    const std::optional<Box3>& bounds_;
+    [[nodiscard]] bool is_outside(std::size_t i) const {
+        return bounds_ && !bounds_->contains(population_.particles().position[i]);
+    }
+    [[nodiscard]] Counts count(double time) const;
+    [[nodiscard]] Counts count_block(std::size_t begin, std::size_t end, double time) const;
+    void remove_leavers(double time);
+
+    std::optional<Box3> bounds_;
+    Population& population_;
+    ActiveMover& mover_;
+    RunRecorder& recorder_;
 };
 
 }  // namespace ricochet

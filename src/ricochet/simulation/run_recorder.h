@@ -178,7 +178,6 @@ public:
     static void put_in_order(std::vector<ContactRecord>& records);
 
     [[nodiscard]] bool collects_contacts() const { return shows_contacts_ || collects_contacts_; }
-    [[nodiscard]] const std::vector<ContactRecord>& contact_records() const { return contacts_; }
     [[nodiscard]] std::vector<ContactRecord>& contact_records() { return contacts_; }
     [[nodiscard]] const std::vector<ContactRecord>& batch_contacts() const { return batch_contacts_; }
     [[nodiscard]] const std::vector<Violation>& violations() const { return violations_; }
@@ -189,7 +188,6 @@ public:
     [[nodiscard]] SurfaceTotals& totals() { return totals_; }
     [[nodiscard]] bool collects_loads() const { return !loads_.empty(); }
     /// Returns the loads of all colliders, since the start.
-    [[nodiscard]] const std::vector<ColliderTotals>& loads() const { return loads_; }
     [[nodiscard]] std::vector<ColliderTotals>& loads() { return loads_; }
     /// Adds the impacts of a substep.
     void add_pair_impacts(const std::vector<PairImpactRecord>& impacts);

@@ -1,12 +1,9 @@
-// Ends a run in which a particle exceeds the speed of light.
-#include <fmt/format.h>
+#include "ricochet/simulation/runaways.h"
 
-#include <optional>
-#include <string>
+#include <fmt/format.h>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/simulation/impl.h"
 
 namespace ricochet {
 
@@ -16,30 +13,45 @@ RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impul
     const Particles& particles = parts_.store.particles();
     const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
     const Vec3 by_surfaces = (impulse_of(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
-    const bool may_throw = parts_.recorder.collects_loads() || parts_.response.keeps_sides();
+    const bool may_throw = parts_.recorder.collects_loads() || response_.keeps_sides();
     if (may_throw && is_slow_without(by_surfaces)) return RunawayCause::surface;
     if (is_slow_without(impulses.by_spheres) || is_slow_without(impulses.by_spheres + by_surfaces)) {
         return RunawayCause::spheres;
     }
-    return parts_.coupled.holds(i) ? RunawayCause::others : RunawayCause::forces;
+    return coupled().holds(i) ? RunawayCause::others : RunawayCause::forces;
 }
 
+void Runaways::before_generation(const ParticleRange& /*generation*/, const TimeSpan& step) { step_end_ = step.end; }
+
 // If ranks share the run, all of them end in the same step, with the same message as a single process.
-void Simulation::Impl::stop_runaways(const std::vector<BlockRecord>& blocks, double time) const {
+void Runaways::correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
+                       std::vector<BlockRecord>& blocks) {
     const std::optional<Runaway> runaway = first_runaway(blocks);
-    if (!runaway && share.is_alone()) return;
     std::optional<std::string> message;
-    if (runaway) message = runaway_message(*runaway, time);
-    if (!share.is_alone()) message = share.first_message(message, runaway ? particles().id[runaway->particle] : 0);
+    if (runaway) message = message_of(*runaway);
+    const std::uint64_t id = runaway ? parts_.population.particles().id[runaway->particle] : 0;
+    message = parts_.share.first_message(message, id);
     if (message) throw DivergedError(*message);
 }
 
-std::string Simulation::Impl::runaway_message(const Runaway& runaway, double time) const {
+void Runaways::note_speed(std::size_t i) {
+    const Particles& particles = parts_.population.particles();
+    const double speed = length(particles.velocity[i]);
+    if (!faster_than_light_ && speed > kMaxSpeed) faster_than_light_ = {particles.id[i], speed};
+}
+
+void Runaways::append() { note_speed(parts_.population.size() - 1); }
+
+void Runaways::archive(BinaryReader& /*a*/) {
+    for (std::size_t i = 0; i < parts_.population.size(); ++i) note_speed(i);
+}
+
+std::string Runaways::message_of(const Runaway& runaway) const {
     const auto told = [&](const char* cause, const char* verb, const std::string& advice) {
-        return fmt::format("by t = {:.6g} s {} {} {} {:.3g} m/s, beyond the speed of light{}", time, cause,
-                           particles().id[runaway.particle], verb, runaway.speed, advice);
+        return fmt::format("by t = {:.6g} s {} {} {} {:.3g} m/s, beyond the speed of light{}", step_end_, cause,
+                           parts_.population.particles().id[runaway.particle], verb, runaway.speed, advice);
     };
-    if (runaway.cause == RunawayCause::surface && recorder.collects_loads()) {
+    if (runaway.cause == RunawayCause::surface && parts_.recorder.collects_loads()) {
         return told("a surface has thrown particle", "at", ": let the colliders, or their materials, move more slowly");
     }
     if (runaway.cause == RunawayCause::surface) {
@@ -47,21 +59,21 @@ std::string Simulation::Impl::runaway_message(const Runaway& runaway, double tim
                     ": the penalty response has diverged; use a shorter time step, more substeps or softer contacts");
     }
     const bool is_alone = runaway.cause == RunawayCause::forces;
-    if (!is_alone && faster_than_light) {
+    if (!is_alone && faster_than_light_) {
         return told(
             "particle", "has come to",
             fmt::format(", and particle {} has set out at {:.3g} m/s: let no particle set out faster than light",
-                        faster_than_light->first, faster_than_light->second));
+                        faster_than_light_->first, faster_than_light_->second));
     }
     if (runaway.cause == RunawayCause::spheres) {
         return told("another sphere has thrown particle", "at",
                     ": use a shorter time step, slower spheres or weaker forces");
     }
     // A method that chooses its own steps has found no step that is short enough.
-    const bool is_adaptive = options.integrator.kind == IntegratorKind::dormand_prince;
+    const bool is_adaptive = parts_.options.integrator.kind == IntegratorKind::dormand_prince;
     const std::string advice = fmt::format(": the motion has diverged; use {}{}or weaker forces",
                                            is_adaptive ? "softening, " : "a shorter time step, ",
-                                           knows_implicit ? "the integrator implicit_euler, " : "");
+                                           parts_.warnings.knows_implicit() ? "the integrator implicit_euler, " : "");
     return is_alone ? told("forces have brought particle", "to", advice)
                     : told("springs or forces between particles have brought particle", "to", advice);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "ricochet/core/box_tools.h"
 #include "ricochet/core/tolerances.h"
 
 namespace ricochet {
@@ -29,6 +30,39 @@ std::uint32_t steps_to_sleep(const ContactIslandMember& member, double pull) {
     const double time = pull > 0.0 ? kRestingTime * std::sqrt(member.radius / pull) : 0.0;
     const double steps = std::min(std::ceil(time / member.duration), 1e9);  // fits into 32 bits
     return std::max(kStepsToSleep, static_cast<std::uint32_t>(steps));
+}
+
+bool is_carried_by_material(const ResponseRules& rules, const ContactIsland& island, std::size_t index) {
+    const std::vector<WallImpulse> impulses = island.impulses_of(index);
+    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+        return rules.materials[rules.world.material_of(wall_impulse.surface)].drives();
+    });
+}
+
+bool is_supported_by_surfaces(const ResponseRules& rules, const ContactIslandMember& member,
+                              const ContactIsland& island, std::size_t index) {
+    const std::vector<WallImpulse> impulses = island.impulses_of(index);
+    const Vec3 pull = rules.forces.acceleration(member.moving->state);
+    return std::any_of(impulses.begin(), impulses.end(), [&](const WallImpulse& wall_impulse) {
+        return holds(rules, wall_impulse.surface, wall_impulse.velocity_change, pull);
+    });
+}
+
+bool holds(const ResponseRules& rules, SurfaceId surface, const Vec3& wall_impulse, const Vec3& pull) {
+    const bool rubs = rules.materials[rules.world.material_of(surface)].friction > 0.0;
+    return rubs || pull == Vec3{} || -dot(wall_impulse, pull) > kSupportingCosine * length(wall_impulse) * length(pull);
+}
+
+bool may_sleep(const ResponseRules& rules, const ContactIslandMember& member, const TimeSpan& step) {
+    const bool is_acted_on = member.moving->state.coupling != nullptr;  // at a distance, by particles that may move
+    const bool is_moved = !member.is_fixed && !member.is_pinched && member.duration == step.end - step.begin;
+    if (is_acted_on || !is_moved) return false;
+    return !is_beside_movers(rules, member.moving->state.position, member.radius);
+}
+
+bool is_beside_movers(const ResponseRules& rules, const Vec3& center, double radius) {
+    const MovingColliders* const bodies = rules.bodies;
+    return bodies != nullptr && !bodies->all_stay_out(ball_box(center, (1.0 + kWakingFall) * radius));
 }
 
 void keep_supported(std::vector<std::uint8_t>& falls, const std::vector<std::uint8_t>& is_held,

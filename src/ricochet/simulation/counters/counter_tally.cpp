@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "ricochet/core/hash.h"
 
@@ -13,7 +12,13 @@ CounterTally::CounterTally(std::span<const CounterDescription> counters, bool ha
     for (const CounterDescription& counter : counters) totals_.push_back({counter.name});
 }
 
-void CounterTally::add(std::vector<Passage> passages) {
+// The order of the passages does not matter, because they are added in the order of particles.
+void CounterTally::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
+                          std::vector<ColliderLoad>& /*loads*/) {
+    std::vector<Passage> passages;
+    for (const BlockRecord& block : blocks) {
+        passages.insert(passages.end(), block.passages.begin(), block.passages.end());
+    }
     std::stable_sort(passages.begin(), passages.end(),
                      [](const Passage& a, const Passage& b) { return a.particle < b.particle; });
     for (const Passage& passage : passages) {
@@ -23,7 +28,7 @@ void CounterTally::add(std::vector<Passage> passages) {
     }
 }
 
-void CounterTally::add_to(StateHash& hash) const {
+void CounterTally::add_to_fingerprint(StateHash& hash) const {
     for (const CounterDescription& counter : counters_) {
         hash.add(counter.center);
         hash.add(counter.normal);
@@ -31,23 +36,12 @@ void CounterTally::add_to(StateHash& hash) const {
     }
 }
 
-const char* CounterTally::fault() const {
+const char* CounterTally::fault(double /*time*/) const {
     const auto is_sound = [](double mass) { return mass >= 0.0 && std::isfinite(mass); };
     const bool all = std::all_of(totals_.begin(), totals_.end(), [&](const CounterTotals& totals) {
         return is_sound(totals.forward_mass) && is_sound(totals.backward_mass);
     });
     return all ? nullptr : "a counter with a mass out of range";
 }
-
-void CountersModule::record(const ParticleRange& /*generation*/, const std::vector<BlockRecord>& blocks,
-                            std::vector<ColliderLoad>& /*loads*/) {
-    std::vector<Passage> passages;
-    for (const BlockRecord& block : blocks) {
-        passages.insert(passages.end(), block.passages.begin(), block.passages.end());
-    }
-    counters_.add(std::move(passages));
-}
-
-const char* CountersModule::fault(double /*time*/) const { return counters_.fault(); }
 
 }  // namespace ricochet

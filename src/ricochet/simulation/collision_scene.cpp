@@ -1,0 +1,155 @@
+#include "ricochet/simulation/collision_scene.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "ricochet/core/hash.h"
+#include "ricochet/core/tolerances.h"
+#include "ricochet/geometry/mesh/triangle_mesh.h"
+#include "ricochet/geometry/sweep/closest_point.h"
+#include "ricochet/simulation/clear_segment.h"
+
+namespace ricochet {
+
+bool is_in_range(const Vec3& position) { return is_finite(position) && max_abs(position) <= kLargestCoordinate; }
+
+CollisionScene::CollisionScene(std::vector<ColliderDescription> colliders, std::vector<Material> materials,
+                               const std::shared_ptr<const FrameTree>& frames, double chord_margin)
+    : materials_(std::move(materials)),
+      list_(std::make_shared<ColliderList>(std::move(colliders))),
+      world_(std::make_shared<CollisionWorld>(list_, std::string_view(), chord_margin)),
+      frames_(frames ? std::make_shared<FrameTree>(*frames) : nullptr),
+      moving_(std::make_unique<MovingColliders>(*world_, list_, frames_, kChordMargin)) {
+    if (moving_->empty()) moving_.reset();
+}
+
+bool CollisionScene::has_loads() const {
+    return moving_ || std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.drives(); });
+}
+
+void CollisionScene::set_culling(bool culls) {
+    world_->set_culling(culls);
+    if (moving_) moving_->set_culling(culls);
+}
+
+void CollisionScene::begin_step(const TimeSpan& step) {
+    if (moving_) moving_->begin_step(step.begin, step.end);
+}
+
+void CollisionScene::prepare_radius(double radius) {
+    world_->prepare_radius(radius);
+    if (moving_) moving_->prepare_radius(radius);
+}
+
+std::optional<Overlap> CollisionScene::overlap_of(const Particle& particle) const {
+    const Vec3 position = flush_tiny(particle.position);
+    if (!is_in_range(position)) return std::nullopt;
+    return deepest_overlap(*world_, moving_.get(), position, particle.radius, particle.birth_time);
+}
+
+bool CollisionScene::has_room_beside(const Particle& parent, const Particle& child) const {
+    const Vec3 position = flush_tiny(child.position);
+    return is_clear_at(*world_, moving_.get(), child.birth_time, parent.position, position) && !overlap_of(child);
+}
+
+const CollisionWorld& CollisionScene::world_of(std::size_t collider) const {
+    return moving_ && !is_deforming(collider) ? moving_->world(moving_->body_of_collider(collider)) : *world_;
+}
+
+std::optional<TriangleMesh> CollisionScene::mesh_of(std::size_t collider, double time) const {
+    const ColliderShape& shape = world_->colliders()[collider].shape;
+    if (const auto* ball = std::get_if<BallShape>(&shape)) return ball_mesh(ball->radius, ball->placement);
+    if (const auto* cylinder = std::get_if<CylinderShape>(&shape)) {
+        return cylinder_mesh(cylinder->radius, cylinder->height, cylinder->placement);
+    }
+    if (is_deforming(collider)) return moving_->deforming().mesh_at(collider, time);
+    return world_of(collider).mesh_of(collider);
+}
+
+MovingPose CollisionScene::pose_of(std::size_t collider, double time) const {
+    return moving_ ? moving_->pose(moving_->body_of_collider(collider), time) : MovingPose{};
+}
+
+SurfacePosition CollisionScene::closest_point(SurfaceId surface, const Vec3& position, double time) const {
+    const std::uint32_t collider = world_->name_of(surface).collider;
+    if (is_deforming(collider)) {
+        const auto [a, b, c] = moving_->deforming().corners_at(surface, time);
+        const ClosestPointOnTriangle closest = closest_point_on_triangle(position, a, b, c);
+        return {closest.point, barycentric_coordinates(closest, a, b, c)};
+    }
+    const CollisionWorld& own = world_of(collider);
+    if (&own == world_.get()) return own.closest_point_on(surface, position);
+    const MovingPose pose = pose_of(collider, time);
+    SurfacePosition closest = own.closest_point_on(surface, pose.local_position(position));
+    closest.point = pose.point(closest.point);
+    return closest;
+}
+
+template <class Visit>
+void CollisionScene::visit_worlds(const Visit& visit) const {
+    visit(*world_);
+    for (BodyId body = 0; moving_ && body < moving_->size(); ++body) visit(moving_->world(body));
+}
+
+std::size_t CollisionScene::triangle_count() const {
+    std::size_t count = 0;
+    visit_worlds([&](const CollisionWorld& of) { count += of.triangles().size(); });
+    for (std::size_t k = 0; k < list_->all().size(); ++k) {
+        if (is_deforming(k)) count += moving_->deforming().triangles_of(k).size();
+    }
+    return count;
+}
+
+std::size_t CollisionScene::degenerate_triangles() const {
+    std::size_t count = 0;
+    visit_worlds([&](const CollisionWorld& of) { count += of.degenerate_triangles(); });
+    return count;
+}
+
+std::uint64_t CollisionScene::hash() const {
+    if (!hash_) hash_ = computed_hash();
+    return *hash_;
+}
+
+// A changed mesh file is a changed setup.
+std::uint64_t CollisionScene::computed_hash() const {
+    StateHash hash;
+    const auto add_triangles = [&](const auto& triangles) {
+        for (const Triangle& triangle : triangles) {
+            for (const std::uint32_t corner : triangle) hash.add(static_cast<std::uint64_t>(corner));
+        }
+    };
+    const auto add = [&](const CollisionWorld& of) {
+        for (const Vec3& vertex : of.vertices()) hash.add(vertex);
+        add_triangles(of.triangles());
+    };
+    add(*world_);
+    for (BodyId body = 0; moving_ && body < moving_->size(); ++body) {
+        add(moving_->world(body));
+        hash.add(moving_->frames()->hash(moving_->frame_of(body)));
+    }
+    for (std::size_t k = 0; moving_ && k < list_->all().size(); ++k) {
+        hash.add(static_cast<std::uint64_t>(moving_->body_of_collider(k)));
+    }
+    for (std::size_t k = 0; k < list_->all().size(); ++k) {
+        if (!is_deforming(k)) continue;
+        const MeshMotion& motion = moving_->deforming().motion_of(k);
+        hash.add(static_cast<double>(motion.ends() == MeshEnds::repeat));
+        add_triangles(moving_->deforming().triangles_of(k));
+        for (std::size_t key = 0; key < motion.key_count(); ++key) {
+            hash.add(motion.times()[key]);
+            for (const Vec3& vertex : motion.positions(key)) hash.add(vertex);
+        }
+    }
+    hash.add(static_cast<std::uint64_t>(world_->surface_count()));
+    return hash.value();
+}
+
+void CollisionScene::share_meshes(Ranks& ranks) {
+    std::vector<std::span<const std::byte>> pages;
+    visit_worlds([&](const CollisionWorld& of) { of.add_pages_to(pages); });
+    shared_bytes_ = ranks.have_in_common(pages);
+}
+
+}  // namespace ricochet

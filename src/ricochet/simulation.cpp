@@ -9,13 +9,9 @@
 #include "ricochet/core/parallel.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/simulation/bodies_module.h"
-#include "ricochet/simulation/children_module.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/counters/counter_tally.h"
 #include "ricochet/simulation/impl.h"
-#include "ricochet/simulation/shared_run.h"
-#include "ricochet/simulation/springs_module.h"
 
 namespace ricochet {
 namespace {

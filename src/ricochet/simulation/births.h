@@ -1,5 +1,6 @@
 /// \file
-/// Private to the simulation: the births of a step by emitters, made by all threads and by all ranks.
+/// Private to the simulation: the births of a step by emitters, made by all threads and by all ranks, and the emitters
+/// of a run.
 ///
 /// A birth depends only on its emitter and its number there, so any thread and any rank can make it. All ranks must
 /// know which births there are: ids are given in the order of (time, emitter, number), and a refused birth gets none.
@@ -13,9 +14,13 @@
 #include <vector>
 
 #include "ricochet/dynamics/emitter.h"
+#include "ricochet/simulation/population.h"
 #include "ricochet/simulation/rank_share.h"
+#include "ricochet/simulation/spawn_occupancy.h"
 
 namespace ricochet {
+
+struct SimulationSetup;
 
 /// Tests that decide whether a birth takes place. Empty functions refuse nothing.
 struct BirthTests {
@@ -84,6 +89,36 @@ private:
     std::uint64_t count_ = 0;
     std::uint64_t refused_by_overlap_ = 0;
     std::uint64_t refused_by_population_ = 0;
+};
+
+/// Adds particles to a population: those of the setup at the start, and those of emitters in each step.
+class Emission {
+public:
+    /// setup: gives its emitters away. parts: of the population; all must outlive it.
+    Emission(SimulationSetup& setup, Population& population, const PopulationParts& parts, RankShare& share);
+
+    [[nodiscard]] const std::vector<Emitter>& emitters() const { return emitters_; }
+    /// Replaces the emitters by the same ones at an earlier time.
+    void go_back(const std::vector<Emitter>& emitters) { emitters_ = emitters; }
+    /// Returns true if particles of the setup or of its emitters can be spheres.
+    [[nodiscard]] bool has_spheres() const { return has_spheres_; }
+
+    /// Adds the particles of the setup, which are moved out of it.
+    void add_first(std::vector<Particle>& first);
+    /// Adds the particles that emitters emit in a step. All ranks call it.
+    void emit(const TimeSpan& step);
+    /// Repeats the births until a time, in s, after a number of steps, without adding particles.
+    void replay(std::uint64_t steps, double time);
+
+private:
+    [[nodiscard]] BirthTests tests_in(const TimeSpan& step, std::optional<SpawnOccupancy>& occupancy) const;
+    [[nodiscard]] SpawnOccupancy occupancy_of(const TimeSpan& step) const;
+
+    std::vector<Emitter> emitters_;
+    bool has_spheres_;
+    Population& population_;
+    PopulationParts parts_;
+    RankShare& share_;
 };
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/bodies_module.h"
+#include "ricochet/simulation/modules.h"
 
 #include <algorithm>
 #include <utility>

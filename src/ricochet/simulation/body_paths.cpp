@@ -1,8 +1,9 @@
-#include "ricochet/simulation/body_paths.h"
+#include "ricochet/simulation/driven_motion.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "ricochet/core/error.h"
@@ -10,6 +11,38 @@
 
 namespace ricochet {
 namespace {
+
+/// Largest entry of the product of a rotation and its transpose, minus the unit matrix. A step adds a few roundings of
+/// 1e-16, so a run of 1e9 steps stays below. Larger: stretched shapes would be accepted. Local: a limit of input
+/// values.
+constexpr double kMostSkew = 1e-6;
+
+bool is_unit(const Vec3& v) { return std::fabs(dot(v, v) - 1.0) <= kMostSkew; }
+
+/// Returns true for a rotation with a translation.
+bool is_rigid(const AffineMap& map) {
+    const double skew = std::max({std::fabs(dot(map.row_x, map.row_y)), std::fabs(dot(map.row_y, map.row_z)),
+                                  std::fabs(dot(map.row_z, map.row_x))});
+    return is_unit(map.row_x) && is_unit(map.row_y) && is_unit(map.row_z) && skew <= kMostSkew && !map.mirrors() &&
+           is_finite(map.translation);
+}
+
+bool is_path(const BodyPath& path) {
+    const bool is_path_finite =
+        std::all_of(path.center_path.begin(), path.center_path.end(), [](const Vec3& v) { return is_finite(v); });
+    const bool is_turn_finite =
+        std::all_of(path.turns.begin(), path.turns.end(), [](double x) { return std::isfinite(x); });
+    return std::isfinite(path.begin) && std::isfinite(path.end) && path.begin <= path.end && is_path_finite &&
+           is_turn_finite && std::isfinite(path.degrees) && is_finite(path.carrier) && is_unit(path.axis) &&
+           is_rigid(path.at_begin);
+}
+
+/// Speeds are limited as at the start of a scene.
+bool is_body(const DrivenBody& body) {
+    return is_rigid(body.world_from_frame()) && is_finite(body.center()) && length(body.velocity()) <= kMaxSpeed &&
+           length(body.angular_velocity()) <= kMaxSpeed && std::isfinite(body.coordinate()) &&
+           std::fabs(body.rate()) <= kMaxSpeed;
+}
 
 bool differ(const Vec3& a, const Vec3& b) { return length(a - b) > kSameVelocity * (length(a) + length(b)); }
 
@@ -111,6 +144,14 @@ void BodyPaths::publish_velocity_jump(std::size_t body, std::size_t path) const 
     const bool is_free = bodies_[body].description().joint == JointKind::free;
     colliders_->set_motion(collider_of_[body], has_jumped,
                            is_free ? std::optional(bodies_[body].angular_momentum()) : std::nullopt);
+}
+
+bool BodyPaths::is_sound(std::size_t body) const {
+    const std::vector<BodyPath>& paths = of(body);
+    const auto leaves_gap = [](const BodyPath& a, const BodyPath& b) { return a.end != b.begin; };
+    return is_body(bodies_[body]) && std::all_of(paths.begin(), paths.end(), is_path) &&
+           std::adjacent_find(paths.begin(), paths.end(), leaves_gap) == paths.end() && paths.size() == of(0).size() &&
+           (!is_planned_ || !paths.empty());
 }
 
 }  // namespace ricochet

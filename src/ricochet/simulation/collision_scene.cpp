@@ -8,9 +8,32 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
 #include "ricochet/geometry/sweep/closest_point.h"
-#include "ricochet/simulation/clear_segment.h"
 
 namespace ricochet {
+namespace {
+
+/// Also tests the colliders in moving frames, with their poses at a time, in s. bodies: null if there are none.
+bool is_clear_at(const CollisionWorld& world, const MovingColliders* bodies, double time, const Vec3& from,
+                 const Vec3& to) {
+    ContactScratch scratch;
+    if (!is_clear(world, scratch, from, to)) return false;
+    if (bodies == nullptr) return true;
+    Box3 box;
+    box.include(from);
+    box.include(to);
+    std::vector<BodyId> near;
+    bodies->near_at(box, time, near);
+    for (const BodyId body : near) {
+        ContactScratch own;
+        if (!is_clear(bodies->world(body), own, bodies->local_position(body, from, time),
+                      bodies->local_position(body, to, time))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
 
 bool is_in_range(const Vec3& position) { return is_finite(position) && max_abs(position) <= kLargestCoordinate; }
 
@@ -150,6 +173,13 @@ void CollisionScene::share_meshes(Ranks& ranks) {
     std::vector<std::span<const std::byte>> pages;
     visit_worlds([&](const CollisionWorld& of) { of.add_pages_to(pages); });
     shared_bytes_ = ranks.have_in_common(pages);
+}
+
+bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to) {
+    const SurfaceGeometry geometry(world, scratch.plane_cache);
+    const Path path = line_path(from, to - from, 1.0);
+    const ContactQueryResult found = find_first_contact(geometry, {path, 0.0}, scratch);
+    return !found.contact && found.near.is_free(from, to);
 }
 
 }  // namespace ricochet

@@ -10,6 +10,7 @@
 
 #include "ricochet/collision/collider_list.h"
 #include "ricochet/collision/collision_world.h"
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/collision/moving_colliders.h"
 #include "ricochet/collision/overlap.h"
 #include "ricochet/core/ranks.h"
@@ -89,5 +90,8 @@ private:
 
 /// Returns true if a stored position is within the range of the arithmetic.
 [[nodiscard]] bool is_in_range(const Vec3& position);
+
+/// Returns true if no surface intersects the closed segment. Exact.
+[[nodiscard]] bool is_clear(const CollisionWorld& world, ContactScratch& scratch, const Vec3& from, const Vec3& to);
 
 }  // namespace ricochet

@@ -357,4 +357,16 @@ void DrivenMotion::take(std::span<const ColliderLoad> loads) {
     for (std::size_t k = 0; k < bodies_.size(); ++k) bodies_[k].take(wrenches[k]);
 }
 
+bool DrivenMotion::is_sound(double time) const {
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+        const std::vector<std::uint64_t>& ids = contacts_[k].now;
+        const bool is_whole = paths_.is_sound(k) && is_finite(resting_loads_[k].impulse) &&
+                              is_finite(resting_loads_[k].moment) && relaxations_[k].is_sound() &&
+                              std::is_sorted(ids.begin(), ids.end());
+        if (!is_whole) return false;
+    }
+    // A substep that does not advance the time would be repeated without end.
+    return resting_time_ >= 0.0 && std::isfinite(resting_time_) && time + longest_part_ > time;
+}
+
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/energy_warnings.h"
+#include "ricochet/simulation/start_warnings.h"
 
 #include <fmt/format.h>
 

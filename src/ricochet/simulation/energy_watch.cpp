@@ -1,4 +1,4 @@
-#include "ricochet/simulation/energy_watch.h"
+#include "ricochet/simulation/coupled_motion.h"
 
 #include <fmt/format.h>
 

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "ricochet/simulation.h"
+#include "ricochet/simulation/births.h"
 #include "ricochet/simulation/collision_scene.h"
-#include "ricochet/simulation/contact_reporter.h"
-#include "ricochet/simulation/emission.h"
 #include "ricochet/simulation/modules.h"
 #include "ricochet/simulation/state_archive.h"
 #include "ricochet/simulation/step_control.h"
@@ -37,8 +36,8 @@ struct Simulation::Impl {
     [[nodiscard]] double now() const { return clock.time_at(recorder.statistics().steps); }
     [[nodiscard]] const Particles& particles() const { return population.particles(); }
     [[nodiscard]] const CoupledMotion& coupled() const { return *modules.observers().coupled; }
-    [[nodiscard]] StateArchive state();
-    void read_state(const ByteSource& source);
+    [[nodiscard]] StateParts state();
+    void restore(const ByteSource& source);
     void wake_all_sleepers();
 
     SimulationOptions options;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kIslandBlock = 16;
 
 /// Number of members between the prefetch of a member and its use, because neighbours in space are scattered in memory.
-constexpr std::size_t kPrefetchDistance = 6;
+constexpr std::size_t kIslandPrefetchDistance = 6;
 
 /// Rounds that join only spheres that have met. Later rounds also join spheres that touch the joined ones. Otherwise
 /// each round would find one more layer of a pile, and solve all layers below it again. Local, because only the cost
@@ -129,7 +129,8 @@ void IslandBuilder::collect_members(Island& island, const TimeSpan& step) {
     island.members.clear();
     island.members.reserve(order.size());
     for (std::size_t n = 0; n < order.size(); ++n) {
-        if (n + kPrefetchDistance < order.size()) parts_.mover.prefetch(first_ + order[n + kPrefetchDistance].number);
+        if (n + kIslandPrefetchDistance < order.size())
+            parts_.mover.prefetch(first_ + order[n + kIslandPrefetchDistance].number);
         const std::uint32_t k = order[n].number;
         IslandMember& member = island.members.emplace_back();
         if (!parts_.mover.set_out(first_ + k, step, member)) {
@@ -158,8 +159,8 @@ IslandBuilder::OutOfBoundsMembers IslandBuilder::members_out_of_bounds() const {
         if (!is_new && island.round == 0) continue;
         const std::vector<IslandMember>& members = island.members;
         for (std::size_t m = 0; m < members.size(); ++m) {
-            if (m + kPrefetchDistance < members.size()) {
-                const IslandMember& later = members[m + kPrefetchDistance];
+            if (m + kIslandPrefetchDistance < members.size()) {
+                const IslandMember& later = members[m + kIslandPrefetchDistance];
                 prefetch_whole(later.swept);
                 prefetch_whole(plans_.box(static_cast<std::uint32_t>(later.particle - first_)));
             }

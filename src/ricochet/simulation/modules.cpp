@@ -6,16 +6,11 @@
 #include <utility>
 
 #include "ricochet/core/tolerances.h"
-#include "ricochet/simulation/bodies_module.h"
-#include "ricochet/simulation/children_module.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/counters/counter_tally.h"
 #include "ricochet/simulation/heat_stage.h"
 #include "ricochet/simulation/pair_motion.h"
 #include "ricochet/simulation/retirement.h"
-#include "ricochet/simulation/runaways.h"
-#include "ricochet/simulation/shared_run.h"
-#include "ricochet/simulation/springs_module.h"
 #include "ricochet/verify/sphere_overlaps.h"
 
 namespace ricochet {
@@ -154,7 +149,7 @@ void add_modules(ModuleList& modules, SimulationSetup& setup, const ModuleParts&
     add(parts.options.verify ? std::make_unique<VerificationModule>(parts) : nullptr);
     add(make_counters(setup, parts));
     add(parts.share.is_alone() ? nullptr : std::make_unique<SharedRun>(parts));
-    add(std::make_unique<Runaways>(parts));
+    add(make_runaways(parts));
 }
 
 }  // namespace ricochet

@@ -11,7 +11,6 @@
 #include "ricochet/collision/contact_query.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/simulation/clear_segment.h"
 #include "ricochet/simulation/cloud_motion.h"
 #include "ricochet/simulation/flight_knots.h"
 

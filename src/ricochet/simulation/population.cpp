@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "ricochet/collision/contact_query.h"
 #include "ricochet/core/merging_reader.h"
+#include "ricochet/core/parallel.h"
+#include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/rank_share.h"
 
 namespace ricochet {
@@ -12,19 +15,69 @@ namespace {
 /// Number of arrivals in memory at a time. An arrival takes as much memory as a particle.
 constexpr std::size_t kArrivals = 16384;
 
+/// Number of particles that a thread examines at a time, in some hundred microseconds.
+constexpr std::size_t kArrivalBlock = 64;
+
 /// Contacts at a birth continue only if particles slide and rest exactly.
 bool finds_contacts(const SimulationOptions& options, const Response& response) {
     return options.response == ResponseKind::exact && !options.flow && !response.keeps_sides();
 }
 
+/// Returns true for a point on a surface. A sphere whose centre lies on a surface is in overlap.
+bool starts_on_surface(const CollisionScene& scene, const Particle& particle) {
+    const Vec3 position = flush_tiny(particle.position);
+    if (particle.radius > 0.0 || !is_in_range(position)) return false;
+    ContactScratch scratch;
+    const SurfaceGeometry geometry(scene.world(), scratch.plane_cache);
+    const Path path = line_path(position, Vec3{}, 0.0);
+    return find_first_contact(geometry, {path, 0.0}, scratch).near.starts_in_overlap();
+}
+
+/// Returns the contact with the surfaces of one frame, in which the particle is at a position. Nothing if it touches
+/// none.
+std::optional<ContactState> contact_in(const CollisionScene& scene, const CollisionWorld& of_frame,
+                                       const Particle& particle, const Vec3& position) {
+    ContactState contact;
+    const double reach = kTouchingOffsets * contact_offset(position);
+    for (const SurfaceId surface : surfaces_touched(of_frame, position, particle.radius, reach)) {
+        // A random reflection answers each touch.
+        if (scene.materials()[scene.world().material_of(surface)].is_random()) return ContactState{};
+        contact.surfaces[0] = surface;
+        contact.count = 1;
+        contact.cascade_left = ContactState::kPlaced;
+    }
+    return contact.count > 0 ? std::optional(contact) : std::nullopt;
+}
+
+/// Returns the contact of a particle that touches surfaces at its birth.
+ContactState contact_of(const CollisionScene& scene, const Particle& particle) {
+    const Vec3 position = flush_tiny(particle.position);
+    if (!is_in_range(position) || particle.pinned) return {};
+    if (const auto contact = contact_in(scene, scene.world(), particle, position)) return *contact;
+    if (scene.moving() == nullptr) return {};
+    const MovingColliders& moving = *scene.moving();
+    const double time = std::max(0.0, particle.birth_time);
+    for (const BodyId body : bodies_near(moving, position, particle.radius, time)) {
+        const Vec3 local_position = moving.pose(body, time).local_position(position);
+        if (const auto contact = contact_in(scene, moving.world(body), particle, local_position)) return *contact;
+    }
+    return {};
+}
+
 }  // namespace
+
+/// Findings about a new particle. They depend only on surfaces, not on other new particles.
+struct Population::Arrival {
+    std::optional<Overlap> overlap;  ///< with a surface
+    bool starts_inside = false;      ///< in overlap, on a surface, or moved off one
+    ContactState contact;            ///< with surfaces that touch the particle
+};
 
 Population::Population(ParticleStore store, const AccelerationSwitches& acceleration, double particle_bytes,
                        const PopulationParts& parts)
     : store_(std::move(store)),
       schedule_(parts.clock),
       flights_(store_, schedule_, parts.response.rules().forces, parts.options.integrator, parts.modules.observers()),
-      arrivals_(parts.scene, finds_contacts(parts.options, parts.response)),
       acceleration_(acceleration),
       memory_(particle_bytes),
       parts_(parts) {
@@ -46,12 +99,35 @@ void Population::add(std::span<Particle* const> added, const std::function<void(
     for (const Particle* const particle : added) parts_.scene.prepare_radius(particle->radius);
     for (std::size_t first = 0; first < added.size(); first += kArrivals) {
         const auto part = added.subspan(first, std::min(kArrivals, added.size() - first));
-        const std::vector<Arrival> arrivals = arrivals_.examine(part);
+        const std::vector<Arrival> arrivals = examine(part);
         for (std::size_t k = 0; k < part.size(); ++k) {
             insert(std::move(*part[k]), arrivals[k]);
             if (after) after(first + k);
         }
     }
+}
+
+/// Examines particles on all threads, and moves them off surfaces of moving colliders on which they lie.
+std::vector<Population::Arrival> Population::examine(std::span<Particle* const> added) const {
+    std::vector<Arrival> arrivals(added.size());
+    parallel_for_blocks(arrivals.size(), kArrivalBlock, [&](std::size_t /*block*/, std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) arrivals[k] = arrival_of(*added[k]);
+    });
+    return arrivals;
+}
+
+Population::Arrival Population::arrival_of(Particle& particle) const {
+    Arrival arrival;
+    if (parts_.scene.moving() != nullptr && is_in_range(particle.position)) {
+        const auto off =
+            off_bodies(*parts_.scene.moving(), flush_tiny(particle.position), std::max(0.0, particle.birth_time));
+        if (off) particle.position = *off, arrival.starts_inside = true;
+    }
+    arrival.overlap = parts_.scene.overlap_of(particle);
+    if (arrival.overlap || starts_on_surface(parts_.scene, particle)) arrival.starts_inside = true;
+    if (finds_contacts(parts_.options, parts_.response) && !arrival.overlap)
+        arrival.contact = contact_of(parts_.scene, particle);
+    return arrival;
 }
 
 void Population::insert(Particle&& particle, const Arrival& arrival) {

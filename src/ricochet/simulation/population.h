@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "ricochet/simulation/arrivals.h"
+#include "ricochet/simulation/collision_scene.h"
 #include "ricochet/simulation/free_flights.h"
 #include "ricochet/simulation/memory_estimate.h"
 #include "ricochet/simulation/module.h"
@@ -69,12 +69,15 @@ public:
     void allow_sleep();
 
 private:
+    struct Arrival;
+
+    [[nodiscard]] std::vector<Arrival> examine(std::span<Particle* const> added) const;
+    [[nodiscard]] Arrival arrival_of(Particle& particle) const;
     void insert(Particle&& particle, const Arrival& arrival);
 
     ParticleStore store_;
     QuerySchedule schedule_;
     FreeFlights flights_;
-    Arrivals arrivals_;
     AccelerationSwitches acceleration_;
     ParticleMemory memory_;
     PopulationParts parts_;

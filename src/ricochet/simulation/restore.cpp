@@ -7,20 +7,24 @@
 #include "ricochet/core/binary_archive.h"
 #include "ricochet/core/error.h"
 #include "ricochet/simulation/impl.h"
-#include "ricochet/simulation/shared_run.h"
-#include "ricochet/simulation/springs_module.h"
 
 namespace ricochet {
 
-StateArchive Simulation::Impl::state() {
-    return StateArchive({options, clock, scene, modules, recorder, population, emission.emitters().size(),
-                         coupled().springs().springs().size()});
+StateParts Simulation::Impl::state() {
+    return {options,
+            clock,
+            scene,
+            modules,
+            recorder,
+            population,
+            emission.emitters().size(),
+            coupled().springs().springs().size()};
 }
 
 /// Reads a whole state, or throws.
-void Simulation::Impl::read_state(const ByteSource& source) {
+void Simulation::Impl::restore(const ByteSource& source) {
     population.flights().drop_deferred();
-    state().read(source);
+    read_state(state(), source);
     population.forget_queries();
     population.bind();
 }
@@ -30,7 +34,7 @@ void Simulation::save(const ByteSink& sink) const {
     if (!impl().control.is_between_steps()) {
         throw RunError("save: the last step or restore() of this simulation has ended with an error");
     }
-    impl().state().save(sink);
+    save_state(impl().state(), sink);
 }
 
 // A particle that slept when the state was saved may not sleep in this run. Until now it has pressed on its support.
@@ -54,7 +58,7 @@ void Simulation::restore(const ByteSource& source) {
     Impl& run = impl();
     run.control.return_point().invalidate();
     run.control.replace([&] {
-        run.read_state(source);
+        run.restore(source);
         for (const double radius : run.particles().radius) run.scene.prepare_radius(radius);
         run.emission.replay(step_index(), time());
         if (SharedRun* const shared = run.modules.find<SharedRun>()) shared->take_share();
@@ -91,7 +95,7 @@ void Simulation::restore_particles(const ByteSource& source) {
         for (const std::uint64_t id : ids) keep.push_back(impl().share.has_place_for(id) ? 1 : 0);
         part.compact(keep);
         population.merge({archived_bytes(part)});
-        impl().state().require_sound();
+        require_sound_state(impl().state());
         impl().share.add_births(keep.size());
         impl().wake_all_sleepers();
     });

@@ -1,50 +1,55 @@
-#include "ricochet/simulation/runaways.h"
-
+// Ends a run in which a particle exceeds the speed of light.
 #include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <utility>
 
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
+#include "ricochet/simulation/modules.h"
 
 namespace ricochet {
+namespace {
 
-/// Returns the impulses without which the particle would be slower than light, if there are any. Surfaces at rest give
-/// no speed, unless the response has springs, which can diverge.
-RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
-    const Particles& particles = parts_.store.particles();
-    const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
-    const Vec3 by_surfaces = (impulse_of(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
-    const bool may_throw = parts_.recorder.collects_loads() || response_.keeps_sides();
-    if (may_throw && is_slow_without(by_surfaces)) return RunawayCause::surface;
-    if (is_slow_without(impulses.by_spheres) || is_slow_without(impulses.by_spheres + by_surfaces)) {
-        return RunawayCause::spheres;
+/// Throws DivergedError if a particle was accelerated beyond kMaxSpeed. A particle that is born faster than light is
+/// allowed, and can hit others.
+class Runaways final : public Module {
+public:
+    explicit Runaways(const ModuleParts& parts) : parts_(parts) {}
+
+    void before_generation(const ParticleRange& /*generation*/, const TimeSpan& step) override { step_end_ = step.end; }
+    /// If ranks share the run, all of them end in the same step, with the same message as a single process.
+    void correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
+                 std::vector<BlockRecord>& blocks) override {
+        const std::optional<Runaway> runaway = first_runaway(blocks);
+        std::optional<std::string> message;
+        if (runaway) message = message_of(*runaway);
+        const std::uint64_t id = runaway ? parts_.population.particles().id[runaway->particle] : 0;
+        message = parts_.share.first_message(message, id);
+        if (message) throw DivergedError(*message);
     }
-    return coupled().holds(i) ? RunawayCause::others : RunawayCause::forces;
-}
+    void append() override { note_speed(parts_.population.size() - 1); }
+    [[nodiscard]] bool allows_deferred_steps() const override { return true; }
+    void archive(BinaryWriter& /*a*/) override {}
+    /// A restored particle counts like one that is born.
+    void archive(BinaryReader& /*a*/) override {
+        for (std::size_t i = 0; i < parts_.population.size(); ++i) note_speed(i);
+    }
 
-void Runaways::before_generation(const ParticleRange& /*generation*/, const TimeSpan& step) { step_end_ = step.end; }
+private:
+    void note_speed(std::size_t i) {
+        const Particles& particles = parts_.population.particles();
+        const double speed = length(particles.velocity[i]);
+        if (!faster_than_light_ && speed > kMaxSpeed) faster_than_light_ = {particles.id[i], speed};
+    }
+    [[nodiscard]] std::string message_of(const Runaway& runaway) const;
 
-// If ranks share the run, all of them end in the same step, with the same message as a single process.
-void Runaways::correct(const ParticleRange& /*generation*/, const TimeSpan& /*substep*/,
-                       std::vector<BlockRecord>& blocks) {
-    const std::optional<Runaway> runaway = first_runaway(blocks);
-    std::optional<std::string> message;
-    if (runaway) message = message_of(*runaway);
-    const std::uint64_t id = runaway ? parts_.population.particles().id[runaway->particle] : 0;
-    message = parts_.share.first_message(message, id);
-    if (message) throw DivergedError(*message);
-}
-
-void Runaways::note_speed(std::size_t i) {
-    const Particles& particles = parts_.population.particles();
-    const double speed = length(particles.velocity[i]);
-    if (!faster_than_light_ && speed > kMaxSpeed) faster_than_light_ = {particles.id[i], speed};
-}
-
-void Runaways::append() { note_speed(parts_.population.size() - 1); }
-
-void Runaways::archive(BinaryReader& /*a*/) {
-    for (std::size_t i = 0; i < parts_.population.size(); ++i) note_speed(i);
-}
+    ModuleParts parts_;
+    double step_end_ = 0.0;  // s
+    /// Id and speed, in m/s, of the first particle that was faster than light at its birth.
+    std::optional<std::pair<std::uint64_t, double>> faster_than_light_;
+};
 
 std::string Runaways::message_of(const Runaway& runaway) const {
     const auto told = [&](const char* cause, const char* verb, const std::string& advice) {
@@ -77,5 +82,23 @@ std::string Runaways::message_of(const Runaway& runaway) const {
     return is_alone ? told("forces have brought particle", "to", advice)
                     : told("springs or forces between particles have brought particle", "to", advice);
 }
+
+}  // namespace
+
+/// Returns the impulses without which the particle would be slower than light, if there are any. Surfaces at rest give
+/// no speed, unless the response has springs, which can diverge.
+RunawayCause ActiveMover::runaway_cause(std::size_t i, const MoveImpulses& impulses) const {
+    const Particles& particles = parts_.store.particles();
+    const auto is_slow_without = [&](const Vec3& given) { return length(particles.velocity[i] - given) <= kMaxSpeed; };
+    const Vec3 by_surfaces = (impulse_of(impulses.hits) + impulses.by_surfaces) / particles.mass[i];
+    const bool may_throw = parts_.recorder.collects_loads() || response_.keeps_sides();
+    if (may_throw && is_slow_without(by_surfaces)) return RunawayCause::surface;
+    if (is_slow_without(impulses.by_spheres) || is_slow_without(impulses.by_spheres + by_surfaces)) {
+        return RunawayCause::spheres;
+    }
+    return coupled().holds(i) ? RunawayCause::others : RunawayCause::forces;
+}
+
+std::unique_ptr<Module> make_runaways(const ModuleParts& parts) { return std::make_unique<Runaways>(parts); }
 
 }  // namespace ricochet

@@ -4,7 +4,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/simulation/impl.h"
-#include "ricochet/simulation/shared_run.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {

@@ -1,5 +1,4 @@
-#include "ricochet/simulation/shared_run.h"
-
+// Ranks that share a run: division and balance of its particles, and the whole run on the first rank.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -8,6 +7,19 @@
 #include "ricochet/simulation/impl.h"
 
 namespace ricochet {
+
+/// Parts of a whole run. Only requested parts are present.
+struct WholeRun {
+    std::optional<std::vector<ContactRecord>> contacts;
+    std::optional<ParticleStore> store;
+    std::optional<SimulationStatistics> statistics;
+    std::optional<std::vector<ColliderTotals>> loads;
+    std::optional<SurfaceTotals> totals;
+
+    /// Swaps the parts with those of this rank.
+    void exchange(RunRecorder& recorder, Population& population);
+};
+
 namespace {
 
 SimulationStatistics together(const std::vector<SimulationStatistics>& of_ranks, double unsimulated_time) {

@@ -1,4 +1,4 @@
-#include "ricochet/simulation/springs_module.h"
+#include "ricochet/simulation/modules.h"
 
 #include <optional>
 #include <string>

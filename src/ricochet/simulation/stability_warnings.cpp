@@ -1,4 +1,4 @@
-#include "ricochet/simulation/stability_warnings.h"
+#include "ricochet/simulation/start_warnings.h"
 
 #include <fmt/format.h>
 
@@ -16,8 +16,6 @@
 #include "ricochet/dynamics/implicit_euler.h"
 #include "ricochet/dynamics/springs.h"
 #include "ricochet/dynamics/stability.h"
-#include "ricochet/simulation/energy_warnings.h"
-#include "ricochet/simulation/start_rates.h"
 
 namespace ricochet {
 namespace {

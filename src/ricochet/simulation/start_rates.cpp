@@ -1,4 +1,4 @@
-#include "ricochet/simulation/start_rates.h"
+#include "ricochet/simulation/start_warnings.h"
 
 #include <algorithm>
 #include <cmath>

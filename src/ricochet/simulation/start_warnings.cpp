@@ -10,7 +10,6 @@
 #include "ricochet/core/box_tools.h"
 #include "ricochet/dynamics/neighbour_grid.h"
 #include "ricochet/response/penalty.h"
-#include "ricochet/simulation/stability_warnings.h"
 #include "ricochet/verify/sphere_overlaps.h"
 
 namespace ricochet {

@@ -54,11 +54,9 @@ void add_materials(StateHash& hash, const std::vector<Material>& materials) {
     }
 }
 
-}  // namespace
-
 /// Hashes the settings on which results depend. The duration is not one of them.
-std::uint64_t StateArchive::settings_hash() const {
-    const SimulationOptions& options = parts_.options;
+std::uint64_t settings_hash(const StateParts& parts) {
+    const SimulationOptions& options = parts.options;
     StateHash hash;
     add_numbers(hash, options.integrator.kind);
     add_settings(hash, options.integrator.tolerance, kToleranceTable);
@@ -70,78 +68,39 @@ std::uint64_t StateArchive::settings_hash() const {
     add_numbers(hash, options.walls, options.flow != nullptr, options.frame_rate, options.max_depth,
                 options.most_particles);
     if (options.particle_contacts) add_contact_settings(hash, *options.particle_contacts);
-    add_materials(hash, parts_.scene.materials());
-    parts_.modules.each([&](const Module& module) { module.add_to_fingerprint(hash); });
+    add_materials(hash, parts.scene.materials());
+    parts.modules.each([&](const Module& module) { module.add_to_fingerprint(hash); });
     return hash.value();
 }
 
 template <class Archive>
-void StateArchive::archive(Archive& a) {
-    RunRecorder& recorder = parts_.recorder;
-    ParticleStore& store = parts_.population.store();
+void archive(Archive& a, const StateParts& parts) {
+    RunRecorder& recorder = parts.recorder;
+    ParticleStore& store = parts.population.store();
     expect(a, kStateFormat, "not a state that this version can read");
-    expect(a, parts_.scene.hash(), "the state belongs to other colliders");
-    expect(a, settings_hash(), "the state belongs to other options, materials, bodies, bounds or counters");
-    expect(a, static_cast<std::uint64_t>(parts_.emitters), "the state belongs to other emitters");
-    expect(a, static_cast<std::uint64_t>(parts_.springs), "the state belongs to other springs");
+    expect(a, parts.scene.hash(), "the state belongs to other colliders");
+    expect(a, settings_hash(parts), "the state belongs to other options, materials, bodies, bounds or counters");
+    expect(a, static_cast<std::uint64_t>(parts.emitters), "the state belongs to other emitters");
+    expect(a, static_cast<std::uint64_t>(parts.springs), "the state belongs to other springs");
     expect(a, static_cast<std::uint64_t>(store.particles().attributes.columns().size()),
            "the state belongs to other attributes");
     expect(a, static_cast<std::uint64_t>(recorder.totals().size()), "the state belongs to another choice of totals");
-    expect(a, parts_.options.time_step, "the state belongs to another time step");
+    expect(a, parts.options.time_step, "the state belongs to another time step");
     archive_statistics(a, recorder.statistics());
     store.archive(a);
-    parts_.modules.each([&](Module& module) { module.archive_particles(a); });
+    parts.modules.each([&](Module& module) { module.archive_particles(a); });
     recorder.totals().archive(a);
     for (ColliderTotals& load : recorder.loads()) a(load.hits), a(load.impulse), a(load.moment), a(load.work);
-    parts_.modules.each([&](Module& module) { module.archive(a); });
-}
-
-void StateArchive::save(const ByteSink& sink) {
-    StateHash checksum;
-    BinaryWriter writer([&](std::span<const std::byte> bytes) {
-        checksum.add(bytes);
-        sink(bytes);
-    });
-    archive(writer);
-    writer(checksum.value());
-}
-
-void StateArchive::read(const ByteSource& source) {
-    StateHash checksum;
-    BinaryReader reader([&](std::span<std::byte> bytes) {
-        source(bytes);
-        checksum.add(bytes);
-    });
-    archive(reader);
-    expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
-    require_sound();
-}
-
-void StateArchive::require_sound() const {
-    const Particles& p = parts_.population.particles();
-    const auto require_none = [](const char* fault) {
-        if (fault != nullptr) throw InputError(fmt::format("the state is damaged: it has {}", fault));
-    };
-    const auto require = [&](bool sound, const char* fault) { require_none(sound ? nullptr : fault); };
-    require(p.size() < kNoSupport, "too many particles");
-    require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
-            "particles out of the order of their ids");
-    require(p.id.empty() || p.id.back() < parts_.population.store().next_id(), "an id above the last one of the run");
-    for (std::size_t i = 0; i < p.size(); ++i) require_none(fault_of(i));
-    const double now = parts_.clock.time_at(parts_.recorder.statistics().steps);
-    parts_.modules.each([&](const Module& module) { require_none(module.fault(now)); });
-    for (const Origin& origin : p.origin) {
-        require(origin.emitter == kNoEmitter || origin.emitter < parts_.emitters, "a particle of an unknown emitter");
-    }
+    parts.modules.each([&](Module& module) { module.archive(a); });
 }
 
 /// Returns the reason why no run can leave particle i in its restored state, or null.
-const char* StateArchive::fault_of(std::size_t i) const {
-    const Particles& p = parts_.population.particles();
-    const MovingColliders* const moving = parts_.scene.moving();
+const char* fault_of(const StateParts& parts, std::size_t i) {
+    const Particles& p = parts.population.particles();
+    const MovingColliders* const moving = parts.scene.moving();
     for (const SurfaceId surface : p.support[i]) {
         if (surface == kNoSupport) continue;
-        if (surface >= parts_.scene.world().surface_count()) return "a particle on an unknown surface";
+        if (surface >= parts.scene.world().surface_count()) return "a particle on an unknown surface";
         const bool is_moving = moving != nullptr && moving->body_of(surface) != kWorldBody;
         if (is_moving && p.held[i] != 0) return "a particle that sleeps on a moving surface";
     }
@@ -153,11 +112,52 @@ const char* StateArchive::fault_of(std::size_t i) const {
         p.mass[i] > 0.0 && std::isfinite(p.mass[i]) && p.radius[i] >= 0.0 && p.radius[i] <= kLargestCoordinate;
     if (!is_body) return "a mass or radius out of range";
     const char* fault = nullptr;
-    parts_.modules.each([&](const Module& module) { fault = fault != nullptr ? fault : module.fault_of(i); });
+    parts.modules.each([&](const Module& module) { fault = fault != nullptr ? fault : module.fault_of(i); });
     if (fault != nullptr) return fault;
     const bool is_released = p.cascade_left[i] < 0.0 && p.cascade_left[i] != ContactState::kPlaced;
     if (is_released && moving == nullptr) return "a particle released by a body, without bodies";
-    return parts_.population.store().is_sound(i) ? nullptr : "a particle with an impossible history";
+    return parts.population.store().is_sound(i) ? nullptr : "a particle with an impossible history";
+}
+
+}  // namespace
+
+void save_state(const StateParts& parts, const ByteSink& sink) {
+    StateHash checksum;
+    BinaryWriter writer([&](std::span<const std::byte> bytes) {
+        checksum.add(bytes);
+        sink(bytes);
+    });
+    archive(writer, parts);
+    writer(checksum.value());
+}
+
+void read_state(const StateParts& parts, const ByteSource& source) {
+    StateHash checksum;
+    BinaryReader reader([&](std::span<std::byte> bytes) {
+        source(bytes);
+        checksum.add(bytes);
+    });
+    archive(reader, parts);
+    expect(reader, checksum.value(), "the state is damaged: its checksum is wrong");
+    require_sound_state(parts);
+}
+
+void require_sound_state(const StateParts& parts) {
+    const Particles& p = parts.population.particles();
+    const auto require_none = [](const char* fault) {
+        if (fault != nullptr) throw InputError(fmt::format("the state is damaged: it has {}", fault));
+    };
+    const auto require = [&](bool sound, const char* fault) { require_none(sound ? nullptr : fault); };
+    require(p.size() < kNoSupport, "too many particles");
+    require(std::adjacent_find(p.id.begin(), p.id.end(), std::greater_equal<>()) == p.id.end(),
+            "particles out of the order of their ids");
+    require(p.id.empty() || p.id.back() < parts.population.store().next_id(), "an id above the last one of the run");
+    for (std::size_t i = 0; i < p.size(); ++i) require_none(fault_of(parts, i));
+    const double now = parts.clock.time_at(parts.recorder.statistics().steps);
+    parts.modules.each([&](const Module& module) { require_none(module.fault(now)); });
+    for (const Origin& origin : p.origin) {
+        require(origin.emitter == kNoEmitter || origin.emitter < parts.emitters, "a particle of an unknown emitter");
+    }
 }
 
 }  // namespace ricochet

@@ -50,25 +50,11 @@ struct StateParts {
     std::size_t springs;
 };
 
-/// Saves and restores the state between two steps.
-class StateArchive {
-public:
-    explicit StateArchive(const StateParts& parts) : parts_(parts) {}
-
-    /// Writes the state with a checksum.
-    void save(const ByteSink& sink);
-    /// Reads a whole state. Throws InputError if it belongs to another setup or is damaged.
-    void read(const ByteSource& source);
-    /// Throws InputError if a restored state contains values that no run produces, such as indices out of range.
-    void require_sound() const;
-
-private:
-    template <class Archive>
-    void archive(Archive& a);
-    [[nodiscard]] std::uint64_t settings_hash() const;
-    [[nodiscard]] const char* fault_of(std::size_t i) const;
-
-    StateParts parts_;
-};
+/// Writes the state between two steps with a checksum.
+void save_state(const StateParts& parts, const ByteSink& sink);
+/// Reads a whole state. Throws InputError if it belongs to another setup or is damaged.
+void read_state(const StateParts& parts, const ByteSource& source);
+/// Throws InputError if a restored state contains values that no run produces, such as indices out of range.
+void require_sound_state(const StateParts& parts);
 
 }  // namespace ricochet

@@ -1,4 +1,4 @@
-// One step of the simulation, stage by stage.
+// One step of the simulation, stage by stage, and the return from a stopped one to the last whole step.
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -74,6 +74,41 @@ void Simulation::Impl::record(const ParticleRange& generation, const std::vector
     for (const BlockRecord& block : blocks) loads.insert(loads.end(), block.loads.begin(), block.loads.end());
     modules.each([&](Module& module) { module.record(generation, blocks, loads); });
     recorder.add_loads(loads, scene.list());
+}
+
+/// Makes a step. If it is stopped, restores the state before it and throws StoppedError.
+void Simulation::Impl::step_unless_stopped(const std::function<bool()>& goes_on) {
+    if (control.return_point().is_due() && control.is_between_steps()) keep_return_point();
+    try {
+        control.make_stoppable(goes_on, [this] { step(); });
+    } catch (const StoppedError&) {
+        go_back();
+        throw;
+    }
+}
+
+void Simulation::Impl::keep_return_point() {
+    FreeFlights& flights = population.flights();
+    const bool was_deferring = flights.is_deferring();
+    flights.end_deferring();
+    control.return_point().keep([this](const ByteSink& sink) { save_state(state(), sink); },
+                                {emission.emitters(), recorder.violations()});
+    if (was_deferring) flights.begin_deferring();
+}
+
+/// Restores the kept state, and repeats the steps since then without callbacks.
+void Simulation::Impl::go_back() {
+    const ReturnPoint& kept = control.return_point();
+    control.replace([&] {
+        restore(kept.source());
+        emission.go_back(kept.beside().emitters);
+        modules.each([now = now()](Module& module) { module.restart(now); });
+        recorder.forget_step(kept.beside().violations);
+        if (ChildrenModule* const children = modules.find<ChildrenModule>()) children->forget_births();
+    });
+    ContactCallback seen = reporter.take();
+    for (std::uint64_t k = kept.steps(); k > 0; --k) step();
+    reporter.set(std::move(seen));
 }
 
 void Simulation::step() {

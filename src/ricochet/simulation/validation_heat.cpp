@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "ricochet/dynamics/settings_table.h"
-#include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {

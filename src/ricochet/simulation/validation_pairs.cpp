@@ -8,7 +8,6 @@
 
 #include "ricochet/response/pair_materials.h"
 #include "ricochet/response/settings_table.h"
-#include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 #include "ricochet/verify/sphere_overlaps.h"
 

@@ -7,7 +7,6 @@
 
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/cloud.h"
-#include "ricochet/simulation/subject.h"
 #include "ricochet/simulation/validation.h"
 
 namespace ricochet {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet::cli {
 

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "ricochet/io/run_folder.h"
-#include "ricochet/io/surface_groups.h"
 #include "ricochet/io/vtk.h"
+#include "run/run_folder.h"
+#include "run/surface_groups.h"
 
 namespace ricochet::cli {
 

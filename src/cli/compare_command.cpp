@@ -16,7 +16,7 @@
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "cli/run_pictures.h"
 #include "cli/run_turning.h"
-#include "ricochet/io/picture_files.h"
+#include "ricochet/io/scene.h"
 #include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {

@@ -1,7 +1,7 @@
 // Meshes for the particles of a page.
 #pragma once
 
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "view/page/page_shapes.h"
 
 namespace ricochet::cli {

@@ -30,11 +30,11 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/checkpoint.h"
-#include "ricochet/io/run_folder.h"
-#include "ricochet/io/run_report.h"
-#include "ricochet/io/run_writer.h"
 #include "ricochet/io/scene_warnings.h"
+#include "run/checkpoint.h"
+#include "run/run_folder.h"
+#include "run/run_report.h"
+#include "run/run_writer.h"
 
 namespace ricochet {
 namespace {

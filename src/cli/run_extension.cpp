@@ -7,7 +7,7 @@
 #include "cli/arguments.h"
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet::cli {
 

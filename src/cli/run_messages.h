@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cli/terminal.h"
-#include "ricochet/io/run_report.h"
 #include "ricochet/simulation.h"
+#include "run/run_report.h"
 
 namespace ricochet::cli {
 

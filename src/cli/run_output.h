@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "ricochet/core/ranks.h"
-#include "ricochet/io/piece_writer.h"
-#include "ricochet/io/run_folder.h"
-#include "ricochet/io/run_writer.h"
+#include "run/piece_writer.h"
+#include "run/run_folder.h"
+#include "run/run_writer.h"
 
 namespace ricochet::cli {
 

@@ -18,7 +18,6 @@
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/io/picture_files.h"
 #include "view/render/turning.h"
 
 namespace ricochet::cli {

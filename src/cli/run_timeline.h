@@ -10,8 +10,8 @@
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
+#include "run/run_folder.h"
 #include "view/render/motion_path.h"
 
 namespace ricochet::cli {

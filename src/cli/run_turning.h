@@ -10,8 +10,8 @@
 
 #include "ricochet/core/vec3.h"
 #include "ricochet/dynamics/emitter.h"
-#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
+#include "run/run_folder.h"
 #include "view/render/turning.h"
 
 namespace ricochet::cli {

@@ -13,7 +13,7 @@
 #include "cli/terminal.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "view/page/run_page.h"
 
 namespace ricochet {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "io/example_frames.h"
-#include "ricochet/io/frame_writer.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_folder.h"
+#include "run/example_frames.h"
+#include "run/frame_writer.h"
+#include "run/run_folder.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

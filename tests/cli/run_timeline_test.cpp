@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cli/run_program.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {

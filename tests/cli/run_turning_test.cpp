@@ -9,7 +9,7 @@
 
 #include "cli/run_program.h"
 #include "cli/run_timeline.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "support/counts.h"
 
 namespace ricochet::test {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "faults/process_use.h"
-#include "ricochet/io/checkpoint.h"
-#include "ricochet/io/run_folder.h"
-#include "ricochet/io/run_writer.h"
 #include "ricochet/io/scene.h"
+#include "run/checkpoint.h"
+#include "run/run_folder.h"
+#include "run/run_writer.h"
 #include "support/allocation_guard.h"
 #include "support/counts.h"
 #include "support/temporary_folder.h"

@@ -12,8 +12,8 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/hash.h"
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/checkpoint.h"
 #include "ricochet/io/scene.h"
+#include "run/checkpoint.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::fuzz {

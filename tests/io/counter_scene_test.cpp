@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "io/scene_errors.h"
-#include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/simulation.h"
+#include "run/run_report.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

@@ -8,10 +8,10 @@
 
 #include "io/sample_scene.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/context.h"
 #include "ricochet/io/vtk_reader.h"
+#include "run/run_report.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

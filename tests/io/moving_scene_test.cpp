@@ -8,8 +8,8 @@
 
 #include "io/scene_errors.h"
 #include "ricochet/core/frame_tree.h"
-#include "ricochet/io/camera_frames.h"
 #include "ricochet/io/scene.h"
+#include "run/camera_frames.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ricochet/core/error.h"
-#include "ricochet/io/run_report.h"
+#include "run/run_report.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::detail {

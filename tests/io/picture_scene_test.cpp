@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/io/camera_frames.h"
-#include "ricochet/io/picture_files.h"
-#include "ricochet/io/run_folder.h"
-#include "ricochet/io/run_report.h"
 #include "ricochet/io/scene.h"
+#include "run/camera_frames.h"
+#include "run/picture_files.h"
+#include "run/run_folder.h"
+#include "run/run_report.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/io/frames.h"
 #include "ricochet/io/vtk_reader.h"
+#include "run/example_frames.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

@@ -27,19 +27,20 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"verify", {"core", "geometry"}},  // limited further by may_verify()
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
+        {"run", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         // view: pictures, files of other formats, pages
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
-        {"export", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
-        {"page", {"core", "geometry", "dynamics", "io", "render", "export"}},
+        {"export", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "run"}},
+        {"page", {"core", "geometry", "dynamics", "io", "run", "render", "export"}},
         // lab: measurements
-        {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
+        {"compare", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io", "run"}},
         {"generators", {"core", "geometry"}},  // the library of the mesh generator
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"mpi", {"core"}},
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
-         {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "render",
-          "export", "page", "compare", "bench", "mpi"}},
+         {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "run",
+          "render", "export", "page", "compare", "bench", "mpi"}},
     };
     return table;
 }
@@ -78,9 +79,10 @@ constexpr std::array kDoors = {
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
-    Door{"nlohmann/",
-         "src/(ricochet/io|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
-         ".*"},
+    Door{
+        "nlohmann/",
+        "src/(ricochet/io|run|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
+        ".*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // the print() of this header checks formats as fmt does
     Door{"stb/", "src/view/render/image\\.cpp|tests/view/render/image_test\\.cpp"},
@@ -106,6 +108,7 @@ std::optional<std::string> layer_of(const std::string& path) {
     if (path.starts_with("src/cli/")) return "cli";
     if (path.starts_with("src/mpi/")) return "mpi";
     if (path.starts_with("src/python/")) return "python";
+    if (path.starts_with("src/run/")) return "run";
     for (const std::string product : {"src/view/", "src/lab/"}) {
         if (path.starts_with(product))
             return path.substr(product.size(), path.find('/', product.size()) - product.size());

@@ -7,7 +7,7 @@
 
 #include "lab/compare/comparison_files.h"
 #include "lab/compare/gnuplot.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet {
 namespace {

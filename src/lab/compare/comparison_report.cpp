@@ -10,7 +10,7 @@
 #include "lab/compare/comparison.h"
 #include "lab/compare/comparison_files.h"
 #include "lab/compare/comparison_readings.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet {
 namespace {

@@ -100,22 +100,23 @@ struct PictureDescription : ParticleDrawingDescription {
     std::optional<double> time{};             ///< time of a single picture, in s; nothing: the end
 };
 
+/// Attribute of particles that selects one of the scene's drawings, counted from 1; 0 selects the default drawing.
+inline constexpr std::string_view kDrawingAttribute = "drawing";
+
 /// Scene after reading and checking.
 struct SceneDescription {
     SimulationSetup setup;
     OutputOptions output;
     std::optional<CameraDescription> camera;
     std::optional<PictureDescription> picture;
-    /// Appearance of the particles of some emitters. The attribute kDrawingAttribute is an index into this list,
-    /// counted from 1.
-    std::vector<ParticleDrawingDescription> drawings;
-    std::vector<ColliderLooks> looks;          ///< one for each collider of the setup
-    std::vector<TriangleGroups> groups;        ///< one for each collider of the setup; empty without groups
-    std::string file;                          ///< as given by the user
-    std::vector<std::string> warnings;         ///< one line each, with file and source location
-    std::vector<std::string> notes;            ///< one line each: changes made to meshes while reading
-    std::vector<std::filesystem::path> files;  ///< all files that the scene reads, each once
-    double memory_bytes = 0.0;                 ///< estimated peak memory of a run
+    std::vector<ParticleDrawingDescription> drawings;  ///< appearance of the particles of some emitters
+    std::vector<ColliderLooks> looks;                  ///< one for each collider of the setup
+    std::vector<TriangleGroups> groups;                ///< one for each collider of the setup; empty without groups
+    std::string file;                                  ///< as given by the user
+    std::vector<std::string> warnings;                 ///< one line each, with file and source location
+    std::vector<std::string> notes;                    ///< one line each: changes made to meshes while reading
+    std::vector<std::filesystem::path> files;          ///< all files that the scene reads, each once
+    double memory_bytes = 0.0;                         ///< estimated peak memory of a run
     /// Hash of all inputs that determine the run, including the contents of its files but not output and camera. A run
     /// can be resumed if the hashes are equal.
     std::uint64_t fingerprint = 0;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet {
 

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 
 namespace ricochet {
 

@@ -10,7 +10,7 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/transform.h"
 #include "ricochet/geometry/mesh/triangle_mesh.h"
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "view/page/levels.h"
 
 namespace ricochet {

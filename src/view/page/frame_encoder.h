@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "view/page/channel_encoder.h"
 #include "view/page/collider_parts.h"
 #include "view/page/levels.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/io/run_folder.h"
+#include "run/run_folder.h"
 #include "view/page/page_shapes.h"
 #include "view/render/color_map.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "ricochet/core/box3.h"
-#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
+#include "run/run_folder.h"
 #include "view/render/color_map.h"
 
 namespace ricochet {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "io/example_frames.h"
 #include "ricochet/core/error.h"
 #include "ricochet/io/frames.h"
-#include "ricochet/io/run_folder.h"
+#include "run/example_frames.h"
+#include "run/run_folder.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "ricochet/core/transform.h"
-#include "ricochet/io/run_folder.h"
 #include "ricochet/io/vtk.h"
+#include "run/run_folder.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::test {

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "ricochet/core/printable.h"
-#include "ricochet/io/picture_files.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {

@@ -41,7 +41,7 @@ Variant placed_variant(std::string_view name, std::string_view description, cons
     return variant(name, description, joined<Shape>({measures, placement_fields(&Shape::placement)}));
 }
 
-std::vector<Variant> shapes() {
+std::vector<Variant> collider_shapes() {
     using Plane = PlaneShape;
     using Cylinder = CylinderShape;
     constexpr std::string_view kRadius = "Its radius.";
@@ -302,7 +302,7 @@ const ObjectSpec& collider_spec() {
           "\"rotation\": ..., \"scale\": ...}`. They are relative to `frame` if that is given, too. The collider's own "
           "position and rotation are relative to the poses.",
           Without{"it does not move by itself"}, kNotEmpty, &key_pose_spec()}},
-        shapes());
+        collider_shapes());
     return spec;
 }
 

@@ -84,7 +84,7 @@ Variant mesh_variant() {
                    {"file", "collider"});
 }
 
-std::vector<Variant> shapes() {
+std::vector<Variant> emitter_shapes() {
     std::vector<Variant> all = simple_shapes();
     all.insert(all.end() - 1, mesh_variant());
     all.push_back(child_variant());
@@ -253,7 +253,7 @@ const ObjectSpec& emitter_spec() {
     static const ObjectSpec spec = [] {
         ObjectSpec result =
             object("emitter", "A source of particles. A pair [mean, spread] is drawn anew for every particle.",
-                   joined({schedule_fields(), launch_fields()}), shapes());
+                   joined({schedule_fields(), launch_fields()}), emitter_shapes());
         result.keys.insert(result.keys.begin(), emitter_name());
         for (KeySpec& key : emitter_look_keys()) result.keys.push_back(std::move(key));
         return result;

@@ -1,8 +1,10 @@
 // Appearance of a scene: the camera of its pictures, their light and surroundings.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -10,7 +12,6 @@
 #include <utility>
 
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/io/picture_files.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet::detail {
@@ -139,6 +140,20 @@ std::optional<std::string> mesh_problem(const std::filesystem::path& path) {
         return error.what();
     }
     return std::nullopt;
+}
+
+// Returns the reason why a file does not start like a PNG image, or nothing if it does.
+// Source: W3C, "Portable Network Graphics (PNG) Specification", 5.2 and 11.2.2.
+std::optional<std::string> png_problem(const std::filesystem::path& path) {
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+    std::array<char, 24> head{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), head.size());
+    const std::string_view bytes(head.data(), static_cast<std::size_t>(file.gcount()));
+    if (bytes.size() == head.size() && bytes.starts_with(kSignature) && bytes.substr(12, 4) == "IHDR") {
+        return std::nullopt;
+    }
+    return fmt::format("{} is not a PNG file, expected one", path.string());
 }
 
 // Returns the path of the file that a key names. Empty if the key is absent, or after reporting an error.

@@ -14,13 +14,13 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/terminal.h"
+#include "inspect/mesh_report.h"
+#include "inspect/scene_warnings.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/printable.h"
 #include "ricochet/geometry/mesh/face_names.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
-#include "ricochet/io/scene_warnings.h"
 
 namespace ricochet {
 

@@ -14,9 +14,9 @@
 #include "cli/commands.h"
 #include "cli/scene_templates.h"
 #include "cli/terminal.h"
+#include "inspect/mesh_report.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/plausible_size.h"
 #include "ricochet/io/scene.h"
 

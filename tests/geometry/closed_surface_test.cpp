@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "inspect/mesh_report.h"
 #include "ricochet/core/random.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "geometry/mesh_files.h"
+#include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/face_names.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "support/gltf_files.h"
 
 namespace ricochet {

@@ -4,9 +4,9 @@
 #include <sstream>
 #include <string>
 
+#include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/mesh_source.h"
 #include "support/gltf_files.h"
 

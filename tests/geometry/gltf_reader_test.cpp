@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "support/gltf_files.h"
 #include "support/temporary_folder.h"
 

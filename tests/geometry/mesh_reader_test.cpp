@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "geometry/mesh_files.h"
+#include "inspect/mesh_report.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/geometry/mesh/mesh_report.h"
 #include "ricochet/geometry/mesh/mesh_writer.h"
 #include "support/allocation_guard.h"
 #include "support/counts.h"

@@ -27,6 +27,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"verify", {"core", "geometry"}},  // limited further by may_verify()
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
+        {"inspect", {"core", "geometry", "collision", "dynamics", "response", "simulation"}},
         {"run", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         // view: pictures, files of other formats, pages
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
@@ -40,7 +41,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
         {"cli",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "run",
-          "render", "export", "page", "compare", "bench", "mpi"}},
+          "inspect", "render", "export", "page", "compare", "bench", "mpi"}},
     };
     return table;
 }
@@ -108,6 +109,7 @@ std::optional<std::string> layer_of(const std::string& path) {
     if (path.starts_with("src/cli/")) return "cli";
     if (path.starts_with("src/mpi/")) return "mpi";
     if (path.starts_with("src/python/")) return "python";
+    if (path.starts_with("src/inspect/")) return "inspect";
     if (path.starts_with("src/run/")) return "run";
     for (const std::string product : {"src/view/", "src/lab/"}) {
         if (path.starts_with(product))

@@ -13,8 +13,8 @@ namespace RICOCHET_FILE {
 SourceTree planted(const std::string& path, const std::string& name) {
     SourceTree tree;
     tree.files.push_back({path, {{7, name}}});
-    if (name.starts_with("ricochet/") || name.starts_with("run/") || name.starts_with("cli/") ||
-        name.starts_with("view/") || name.starts_with("lab/"))
+    if (name.starts_with("ricochet/") || name.starts_with("run/") || name.starts_with("inspect/") ||
+        name.starts_with("cli/") || name.starts_with("view/") || name.starts_with("lab/"))
         tree.files.push_back({"src/" + name, {}});
     if (name.starts_with("generators/")) tree.files.push_back({"meshes/" + name, {}});
     if (name.starts_with("support/")) tree.files.push_back({"tests/" + name, {}});
@@ -74,6 +74,7 @@ TEST(IncludeGraph, FindsAPlantedViolation) {
         {"src/ricochet/geometry/predicates/predicates.cpp", "boost/multiprecision/cpp_int.hpp"},
         {"src/ricochet/simulation.cpp", "view/export/run_export.h"},             // the engine knows no product
         {"src/ricochet/io/x.cpp", "run/run_folder.h"},                           // nor this one
+        {"src/ricochet/io/x.cpp", "inspect/mesh_report.h"},                      // nor this one
         {"src/run/run_folder.cpp", "view/export/run_export.h"},                  // a folder is written without exports
         {"src/ricochet/simulation.cpp", "lab/bench/cases.h"},                    // nor this one
         {"src/view/render/image.cpp", "lab/compare/plan.h"},                     // products do not know each other
@@ -122,6 +123,8 @@ TEST(IncludeGraph, AllowedIncludesPass) {
         {"src/cli/main.cpp", "cli/run.h"},
         {"src/cli/main.cpp", "lab/bench/cases.h"},
         {"src/cli/main.cpp", "view/export/run_export.h"},
+        {"src/inspect/scene_warnings.cpp", "ricochet/simulation.h"},
+        {"src/cli/inspect_commands.cpp", "inspect/mesh_report.h"},
         {"src/run/run_report.cpp", "nlohmann/json.hpp"},
         {"src/view/export/run_export.cpp", "run/run_folder.h"},
         {"src/lab/compare/comparison.cpp", "run/run_folder.h"},

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "inspect/shells.h"
 #include "ricochet/core/error.h"
 #include "ricochet/core/random.h"
-#include "ricochet/geometry/mesh/shells.h"
 #include "ricochet/queries/mesh_queries.h"
 #include "support/counts.h"
 #include "support/simple_meshes.h"

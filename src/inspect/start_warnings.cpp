@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "inspect/scene_warnings.h"
 #include "ricochet/core/random.h"
 #include "ricochet/core/tolerances.h"
-#include "ricochet/io/scene_warnings.h"
 
 namespace ricochet {
 namespace {

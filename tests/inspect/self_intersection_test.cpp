@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/self_intersections.h"
+#include "inspect/self_intersections.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "ricochet/io/scene_warnings.h"
+#include "inspect/scene_warnings.h"
 
 namespace ricochet {
 namespace {

@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_report.h"
+#include "inspect/mesh_report.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "inspect/self_intersections.h"
+#include "inspect/shells.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
-#include "ricochet/geometry/mesh/self_intersections.h"
-#include "ricochet/geometry/mesh/shells.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

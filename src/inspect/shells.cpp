@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/shells.h"
+#include "inspect/shells.h"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "inspect/self_intersections.h"
 #include "ricochet/core/disjoint_sets.h"
 #include "ricochet/geometry/mesh/closed_surface.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_topology.h"
-#include "ricochet/geometry/mesh/self_intersections.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

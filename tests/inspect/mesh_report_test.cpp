@@ -1,4 +1,4 @@
-#include "ricochet/geometry/mesh/mesh_report.h"
+#include "inspect/mesh_report.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string>
 
+#include "inspect/shells.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
-#include "ricochet/geometry/mesh/shells.h"
 #include "support/shared_meshes.h"
 #include "support/simple_meshes.h"
 

@@ -1,4 +1,4 @@
-#include "ricochet/io/scene_warnings.h"
+#include "inspect/scene_warnings.h"
 
 #include <fmt/format.h>
 
@@ -12,11 +12,11 @@
 #include <utility>
 #include <variant>
 
+#include "inspect/shells.h"
 #include "ricochet/collision_queries.h"
 #include "ricochet/core/tolerances.h"
 #include "ricochet/geometry/mesh/mesh_interior.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
-#include "ricochet/geometry/mesh/shells.h"
 #include "ricochet/geometry/predicates/predicates.h"
 
 namespace ricochet {

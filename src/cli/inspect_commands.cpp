@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/terminal.h"
 #include "inspect/mesh_report.h"
+#include "inspect/scene_schema.h"
 #include "inspect/scene_warnings.h"
 #include "ricochet/core/memory_limit.h"
 #include "ricochet/core/printable.h"

@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "inspect/scene_schema.h"
 #include "python/arrays.h"
 #include "python/gil.h"
 #include "python/help_texts.h"

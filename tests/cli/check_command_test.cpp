@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/run_program.h"
+#include "inspect/scene_schema.h"
 #include "io/sample_scene.h"
-#include "ricochet/io/scene.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "inspect/scene_schema.h"
 #include "io/emitter_scene.h"
 #include "io/force_scene.h"
 #include "io/frame_scene.h"

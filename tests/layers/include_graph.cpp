@@ -27,7 +27,7 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"verify", {"core", "geometry"}},  // limited further by may_verify()
         {"simulation", {"core", "geometry", "collision", "dynamics", "response", "verify"}},
         {"io", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
-        {"inspect", {"core", "geometry", "collision", "dynamics", "response", "simulation"}},
+        {"inspect", {"core", "geometry", "collision", "dynamics", "response", "simulation", "io"}},
         {"run", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation", "io"}},
         // view: pictures, files of other formats, pages
         {"render", {"core", "geometry", "collision", "dynamics", "response", "verify", "simulation"}},
@@ -38,7 +38,8 @@ const std::map<std::string, std::set<std::string>>& allowed_layers() {
         {"generators", {"core", "geometry"}},  // the library of the mesh generator
         {"bench", {"core", "geometry", "collision", "dynamics", "response", "simulation", "generators"}},
         {"mpi", {"core"}},
-        {"python", {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "render"}},
+        {"python",
+         {"core", "geometry", "queries", "collision", "dynamics", "response", "simulation", "io", "inspect", "render"}},
         {"cli",
          {"core", "geometry", "queries", "collision", "dynamics", "response", "verify", "simulation", "io", "run",
           "inspect", "render", "export", "page", "compare", "bench", "mpi"}},
@@ -80,10 +81,10 @@ constexpr std::array kDoors = {
     Door{"OpenMesh/", "src/ricochet/geometry/mesh/mesh_topology\\.cpp"},
     Door{"assimp/", "src/ricochet/geometry/mesh/assimp_reader\\.cpp"},
     Door{"(oneapi/)?tbb/", "src/ricochet/core/parallel\\.cpp|tests/core/parallel_test\\.cpp"},
-    Door{
-        "nlohmann/",
-        "src/(ricochet/io|run|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/gltf_json\\.cpp|tests/"
-        ".*"},
+    Door{"nlohmann/",
+         "src/(ricochet/io|run|inspect|view/export|view/page|lab|cli)/.*\\.cpp|src/ricochet/geometry/mesh/"
+         "gltf_json\\.cpp|tests/"
+         ".*"},
     Door{"CLI/", "src/cli/command_line\\.cpp"},
     Door{"fmt/", ".*\\.cpp|src/cli/terminal\\.h"},  // the print() of this header checks formats as fmt does
     Door{"stb/", "src/view/render/image\\.cpp|tests/view/render/image_test\\.cpp"},

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "inspect/scene_schema.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/simulation.h"
 #include "ricochet/verify/sphere_overlaps.h"

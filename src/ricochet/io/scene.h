@@ -156,11 +156,4 @@ inline constexpr std::uint64_t kLargestSceneFile = std::uint64_t{64} << 20;
 [[nodiscard]] SceneDescription parse_scene(std::string_view text, const std::filesystem::path& file,
                                            const std::vector<std::string>& overrides = {});
 
-/// Returns the JSON Schema (draft 2020-12) of scene files, which docs/scene.schema.json contains. The reader also
-/// checks relations between values (names, files, orders), which a schema cannot express.
-[[nodiscard]] std::string scene_schema();
-
-/// Returns the reference of the scene format in Markdown, which docs/scene-format.md contains.
-[[nodiscard]] std::string scene_reference();
-
 }  // namespace ricochet

@@ -1,14 +1,13 @@
-// JSON Schema and Markdown reference of scene files, generated from the tables of keys.
+#include "inspect/scene_schema.h"
+
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
-#include "ricochet/io/scene.h"
 #include "ricochet/io/scene/context.h"
 
 namespace ricochet {

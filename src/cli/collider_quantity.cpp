@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "ricochet/core/error.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet::cli {
 namespace {

@@ -11,7 +11,6 @@
 #include "cli/run_pictures.h"
 #include "cli/run_turning.h"
 #include "ricochet/io/scene.h"
-#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet::cli {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli/run_pictures.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet::cli {
 namespace {

@@ -11,7 +11,6 @@
 #include "cli/run_pictures.h"
 #include "ricochet/dynamics/particles.h"
 #include "ricochet/io/scene.h"
-#include "ricochet/io/vtk_reader.h"
 #include "view/render/motion_path.h"
 #include "view/render/streaks.h"
 

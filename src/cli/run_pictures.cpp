@@ -13,8 +13,8 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/particles.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/camera_frames.h"
+#include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"
 #include "view/export/moving_meshes.h"
 #include "view/render/black_body.h"

@@ -10,8 +10,8 @@
 #include "ricochet/core/box3.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/camera_frames.h"
+#include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"
 #include "view/export/moving_meshes.h"
 

@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <variant>
 
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"
 #include "view/export/moving_meshes.h"
 

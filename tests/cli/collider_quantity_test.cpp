@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/run_program.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet::cli {

@@ -10,8 +10,8 @@
 #include "cli/run_program.h"
 #include "ricochet/geometry/mesh/mesh_reader.h"
 #include "ricochet/geometry/mesh/point_cache.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/run_folder.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 #include "view/export/moving_meshes.h"
 

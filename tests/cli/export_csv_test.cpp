@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "cli/run_program.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/run_folder.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 #include "view/export/frame_reader.h"
 

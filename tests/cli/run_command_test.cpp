@@ -10,7 +10,7 @@
 
 #include "cli/run_program.h"
 #include "ricochet/core/box3.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

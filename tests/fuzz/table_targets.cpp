@@ -8,7 +8,8 @@
 #include "ricochet/core/tolerances.h"
 #include "ricochet/dynamics/flows.h"
 #include "ricochet/io/scene/context.h"
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/vti_reader.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet::fuzz {
 

@@ -10,7 +10,6 @@
 #include "ricochet/io/frames.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/vtk.h"
-#include "ricochet/io/vtk_reader.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

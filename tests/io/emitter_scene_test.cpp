@@ -10,8 +10,8 @@
 #include "ricochet/io/frames.h"
 #include "ricochet/io/scene.h"
 #include "ricochet/io/scene/context.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/run_report.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet {
 namespace RICOCHET_FILE {

@@ -1,4 +1,4 @@
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/vti_reader.h"
 
 #include <gtest/gtest.h>
 

@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "ricochet/core/parallel.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/run_folder.h"
 #include "run/run_writer.h"
+#include "run/vtp_reader.h"
 #include "support/counts.h"
 #include "support/random_draws.h"
 #include "support/simple_meshes.h"

@@ -13,9 +13,9 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/dynamics/forces.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/example_frames.h"
 #include "run/run_folder.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "ricochet/io/frames.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/example_frames.h"
 #include "run/run_folder.h"
 #include "run/run_writer.h"
+#include "run/vtp_reader.h"
 #include "support/temporary_folder.h"
 
 namespace ricochet {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ricochet/core/error.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 #include "view/export/moving_meshes.h"
 
 namespace ricochet {

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/io/vtk_reader.h"
 #include "run/csv_file.h"
 #include "run/surface_groups.h"
+#include "run/vtp_reader.h"
 #include "view/export/export_folder.h"
 #include "view/export/frame_reader.h"
 #include "view/export/run_export.h"

@@ -10,10 +10,10 @@
 
 #include "ricochet/core/error.h"
 #include "ricochet/geometry/mesh/mesh_writer.h"
-#include "ricochet/geometry/mesh/point_cache.h"
 #include "view/export/export_colliders.h"
 #include "view/export/export_folder.h"
 #include "view/export/frame_reader.h"
+#include "view/export/point_cache_writer.h"
 #include "view/export/run_export.h"
 
 namespace ricochet {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "ricochet/core/regular_file.h"
-#include "ricochet/io/vtk_reader.h"
 #include "ricochet/io/vtk_xml.h"
 #include "run/run_folder.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet {
 namespace {

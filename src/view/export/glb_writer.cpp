@@ -10,10 +10,10 @@
 #include <numbers>
 #include <utility>
 
-#include "ricochet/core/append_bytes.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/box3.h"
 #include "ricochet/core/error.h"
+#include "view/export/append_bytes.h"
 
 namespace ricochet {
 namespace {

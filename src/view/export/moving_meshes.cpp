@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ricochet/core/error.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 
 namespace ricochet {
 

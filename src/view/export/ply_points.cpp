@@ -9,9 +9,9 @@
 #include <string_view>
 #include <variant>
 
-#include "ricochet/core/append_bytes.h"
 #include "ricochet/core/atomic_file.h"
 #include "ricochet/core/error.h"
+#include "view/export/append_bytes.h"
 
 namespace ricochet {
 namespace {

@@ -11,7 +11,7 @@
 #include "ricochet/core/error.h"
 #include "ricochet/core/parallel.h"
 #include "ricochet/geometry/mesh/mesh_openings.h"
-#include "ricochet/io/vtk_reader.h"
+#include "run/vtp_reader.h"
 #include "view/export/frame_reader.h"
 #include "view/export/moving_meshes.h"
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "ricochet/io/scene/context.h"
-#include "ricochet/io/vtk_reader.h"
+#include "ricochet/io/vti_reader.h"
 
 namespace ricochet::detail {
 namespace {

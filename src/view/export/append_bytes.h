@@ -1,5 +1,5 @@
 /// \file
-/// Private to the library: conversion of numbers to the bytes of a little-endian file.
+/// Conversion of numbers to the bytes of a little-endian file.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 /// \file
-/// Readers of VTK files: .vtp files that vtk.h writes, and vector fields from images (.vti).
+/// Reader of vector fields from VTK images (.vti).
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,8 @@
 #include <string_view>
 
 #include "ricochet/dynamics/flows.h"
-#include "ricochet/io/vtk.h"
 
 namespace ricochet {
-
-/// Reads a .vtp file in the layout of write_vtp(); other dialects of the format are refused. Allocations never exceed
-/// the file's size by more than a constant factor. Throws InputError with the file's name, the byte and the expected
-/// content.
-[[nodiscard]] VtkPolyData read_vtp(const std::filesystem::path& path);
 
 /// Size limit of a .vti file, in bytes.
 inline constexpr std::uint64_t kLargestGridFile = std::uint64_t{8} << 30;

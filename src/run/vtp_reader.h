@@ -1,0 +1,16 @@
+/// \file
+/// Reader of .vtp files that io/vtk.h writes.
+#pragma once
+
+#include <filesystem>
+
+#include "ricochet/io/vtk.h"
+
+namespace ricochet {
+
+/// Reads a .vtp file in the layout of write_vtp(); other dialects of the format are refused. Allocations never exceed
+/// the file's size by more than a constant factor. Throws InputError with the file's name, the byte and the expected
+/// content.
+[[nodiscard]] VtkPolyData read_vtp(const std::filesystem::path& path);
+
+}  // namespace ricochet

@@ -43,119 +43,31 @@ private:
     Gust gust_;
 };
 
-// Both profiles rotate about the axis with a rate that depends only on the square of the distance.
-class RankineVortex final : public FlowField {
+/// A steady flow whose velocity is a function of the position.
+template <class Velocity>
+class SteadyFlow final : public FlowField {
 public:
-    explicit RankineVortex(const VortexSettings& settings)
-        : point_(settings.point),
-          axis_(unit_direction(settings.axis, "vortex: the axis")),
-          strength_(settings.circulation / (2.0 * std::numbers::pi)),
-          core_squared_(settings.core_radius * settings.core_radius) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        const Vec3 around = cross(axis_, position - point_);
-        return around * (strength_ / std::max(length_squared(around), core_squared_));
-    }
+    explicit SteadyFlow(Velocity velocity) : velocity_(std::move(velocity)) {}
+    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override { return velocity_(position); }
     [[nodiscard]] bool is_steady() const override { return true; }
 
 private:
-    Vec3 point_;
-    Vec3 axis_;
-    double strength_;  // circulation over 2 pi
-    double core_squared_;
+    Velocity velocity_;
 };
 
-class LambOseenVortex final : public FlowField {
-public:
-    explicit LambOseenVortex(const VortexSettings& settings)
-        : point_(settings.point),
-          axis_(unit_direction(settings.axis, "vortex: the axis")),
-          strength_(settings.circulation / (2.0 * std::numbers::pi)),
-          core_squared_(settings.core_radius * settings.core_radius) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        const Vec3 around = cross(axis_, position - point_);
-        const double q = length_squared(around) / core_squared_;
-        return around * (strength_ / core_squared_ * turned(q));
-    }
-    [[nodiscard]] bool is_steady() const override { return true; }
+template <class Velocity>
+FlowPointer steady_flow(Velocity velocity) {
+    return std::make_shared<SteadyFlow<Velocity>>(std::move(velocity));
+}
 
-private:
-    // Returns (1 - exp(-q)) / q. Near the axis it uses the series, because the difference would cancel.
-    static double turned(double q) {
-        // Local: the series is exact to rounding below it.
-        constexpr double kNearAxis = 1e-2;  // the first omitted term is q^6 / 5040
-        if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
-        return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));
-    }
-
-    Vec3 point_;
-    Vec3 axis_;
-    double strength_;
-    double core_squared_;
-};
-
-class Source final : public FlowField {
-public:
-    Source(const Vec3& center, double strength, double core_radius)
-        : center_(center), strength_(strength / (4.0 * std::numbers::pi)), core_squared_(core_radius * core_radius) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        const Vec3 d = position - center_;
-        const double square = length_squared(d) + core_squared_;
-        return d * (strength_ / (square * std::sqrt(square)));
-    }
-    [[nodiscard]] bool is_steady() const override { return true; }
-
-private:
-    Vec3 center_;
-    double strength_;
-    double core_squared_;
-};
-
-class Rotation final : public FlowField {
-public:
-    Rotation(const Vec3& point, const Vec3& angular_velocity) : point_(point), angular_velocity_(angular_velocity) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        return cross(angular_velocity_, position - point_);
-    }
-    [[nodiscard]] bool is_steady() const override { return true; }
-
-private:
-    Vec3 point_;
-    Vec3 angular_velocity_;
-};
-
-class Shear final : public FlowField {
-public:
-    Shear(const Vec3& point, const Vec3& rate, const Vec3& gradient)
-        : point_(point), rate_(rate), gradient_(gradient) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        return rate_ * dot(position - point_, gradient_);
-    }
-    [[nodiscard]] bool is_steady() const override { return true; }
-
-private:
-    Vec3 point_;
-    Vec3 rate_;
-    Vec3 gradient_;
-};
-
-class FlowPastSphere final : public FlowField {
-public:
-    FlowPastSphere(const Vec3& center, double radius, const Vec3& velocity)
-        : center_(center), radius_(radius), velocity_(velocity) {}
-    [[nodiscard]] Vec3 velocity(const Vec3& position, double) const override {
-        const Vec3 d = (position - center_) / radius_;
-        const double square = length_squared(d);
-        if (square < 1.0) return {};
-        const double half_cube = 0.5 / (square * std::sqrt(square));
-        return velocity_ * (1.0 + half_cube) - d * (3.0 * half_cube * dot(velocity_, d) / square);
-    }
-    [[nodiscard]] bool is_steady() const override { return true; }
-
-private:
-    Vec3 center_;
-    double radius_;
-    Vec3 velocity_;
-};
+// Returns (1 - exp(-q)) / q, the profile of Lamb and Oseen. Near the axis it uses the series, because the difference
+// would cancel.
+double lamb_oseen(double q) {
+    // Local: the series is exact to rounding below it.
+    constexpr double kNearAxis = 1e-2;  // the first omitted term is q^6 / 5040
+    if (q >= kNearAxis) return (1.0 - portable_exp(-q)) / q;
+    return 1.0 - q / 2.0 * (1.0 - q / 3.0 * (1.0 - q / 4.0 * (1.0 - q / 5.0 * (1.0 - q / 6.0))));
+}
 
 class CallableFlow final : public FlowField {
 public:
@@ -221,39 +133,62 @@ FlowPointer make_vortex(const VortexSettings& settings) {
     require_finite(settings.point, "vortex: the point on the axis", "m");
     require_finite(settings.circulation, "vortex: the circulation", "m^2/s");
     require_positive(settings.core_radius, "vortex: the core radius", "m");
-    switch (settings.profile) {
-        case VortexProfile::rankine:
-            return std::make_shared<RankineVortex>(settings);
-        case VortexProfile::lamb_oseen:
-            return std::make_shared<LambOseenVortex>(settings);
+    if (settings.profile != VortexProfile::rankine && settings.profile != VortexProfile::lamb_oseen) {
+        throw InputError("vortex: there is no such profile");
     }
-    throw InputError("vortex: there is no such profile");
+    const Vec3 axis = unit_direction(settings.axis, "vortex: the axis");
+    const double strength = settings.circulation / (2.0 * std::numbers::pi);
+    const double core_squared = settings.core_radius * settings.core_radius;
+    // Both profiles rotate about the axis with a rate that depends only on the square of the distance.
+    if (settings.profile == VortexProfile::rankine) {
+        return steady_flow([point = settings.point, axis, strength, core_squared](const Vec3& position) {
+            const Vec3 around = cross(axis, position - point);
+            return around * (strength / std::max(length_squared(around), core_squared));
+        });
+    }
+    return steady_flow([point = settings.point, axis, strength, core_squared](const Vec3& position) {
+        const Vec3 around = cross(axis, position - point);
+        return around * (strength / core_squared * lamb_oseen(length_squared(around) / core_squared));
+    });
 }
 
 FlowPointer make_source(const Vec3& center, double strength, double core_radius) {
     require_finite(center, "source: the centre", "m");
     require_finite(strength, "source: the strength", "m^3/s");
     require_positive(core_radius, "source: the core radius", "m");
-    return std::make_shared<Source>(center, strength, core_radius);
+    const double per_angle = strength / (4.0 * std::numbers::pi);
+    return steady_flow([center, per_angle, core_squared = core_radius * core_radius](const Vec3& position) {
+        const Vec3 d = position - center;
+        const double square = length_squared(d) + core_squared;
+        return d * (per_angle / (square * std::sqrt(square)));
+    });
 }
 
 FlowPointer make_rotation(const Vec3& point, const Vec3& angular_velocity) {
     require_finite(point, "rotation: the point on the axis", "m");
     require_finite(angular_velocity, "rotation: the angular velocity", "rad/s");
-    return std::make_shared<Rotation>(point, angular_velocity);
+    return steady_flow(
+        [point, angular_velocity](const Vec3& position) { return cross(angular_velocity, position - point); });
 }
 
 FlowPointer make_shear(const Vec3& point, const Vec3& rate, const Vec3& gradient) {
     require_finite(point, "shear: the point at rest", "m");
     require_finite(rate, "shear: the rate", "1/s");
-    return std::make_shared<Shear>(point, rate, unit_direction(gradient, "shear: the gradient"));
+    const Vec3 along = unit_direction(gradient, "shear: the gradient");
+    return steady_flow([point, rate, along](const Vec3& position) { return rate * dot(position - point, along); });
 }
 
 FlowPointer make_flow_past_sphere(const Vec3& center, double radius, const Vec3& velocity) {
     require_finite(center, "flow past a sphere: the centre", "m");
     require_positive(radius, "flow past a sphere: the radius", "m");
     require_finite(velocity, "flow past a sphere: the velocity", "m/s");
-    return std::make_shared<FlowPastSphere>(center, radius, velocity);
+    return steady_flow([center, radius, velocity](const Vec3& position) {
+        const Vec3 d = (position - center) / radius;
+        const double square = length_squared(d);
+        if (square < 1.0) return Vec3{};
+        const double half_cube = 0.5 / (square * std::sqrt(square));
+        return velocity * (1.0 + half_cube) - d * (3.0 * half_cube * dot(velocity, d) / square);
+    });
 }
 
 FlowPointer make_flow(std::function<Vec3(const Vec3&, double)> velocity, bool is_steady) {

@@ -167,25 +167,7 @@ void Particles::append(const Particle& particle) {
 }
 
 void Particles::reserve(std::size_t more) {
-    grow_capacity_by(id, more);
-    grow_capacity_by(position, more);
-    grow_capacity_by(velocity, more);
-    grow_capacity_by(spin, more);
-    grow_capacity_by(mass, more);
-    grow_capacity_by(radius, more);
-    grow_capacity_by(birth_time, more);
-    grow_capacity_by(lifetime, more);
-    grow_capacity_by(unsimulated_time, more);
-    grow_capacity_by(contacts, more);
-    grow_capacity_by(frozen, more);
-    grow_capacity_by(resting, more);
-    grow_capacity_by(held, more);
-    grow_capacity_by(absorbed, more);
-    grow_capacity_by(draws, more);
-    grow_capacity_by(support, more);
-    grow_capacity_by(cascade_left, more);
-    grow_capacity_by(pinned, more);
-    grow_capacity_by(accounted_until, more);
+    std::apply([more](auto&... list) { (grow_capacity_by(list, more), ...); }, lists());
     attributes.reserve(more);
     if (keeps_origin) grow_capacity_by(origin, more);
 }
@@ -201,9 +183,8 @@ Particle Particles::at(std::size_t i) const {
 
 void Particles::compact(const std::vector<std::uint8_t>& keep) {
     require_same_length(keep.size(), size(), "particles to be kept");
-    const auto keep_in_all = [&keep](auto&... lists) {
-        const std::array<std::function<void()>, sizeof...(lists)> each{
-            [&lists, &keep] { keep_marked(lists, keep); }...};
+    const auto keep_in_all = [&keep](auto&... list) {
+        const std::array<std::function<void()>, sizeof...(list)> each{[&list, &keep] { keep_marked(list, keep); }...};
         // This only moves memory, so threads pay off only for large arrays.
         constexpr std::size_t kMany = 16384;
         parallel_for_blocks(each.size(), keep.size() < kMany ? each.size() : 1,
@@ -211,8 +192,7 @@ void Particles::compact(const std::vector<std::uint8_t>& keep) {
                                 for (std::size_t k = begin; k < end; ++k) each.at(k)();
                             });
     };
-    keep_in_all(id, position, velocity, spin, mass, radius, birth_time, lifetime, unsimulated_time, contacts, frozen,
-                resting, held, absorbed, draws, support, cascade_left, pinned, accounted_until);
+    std::apply(keep_in_all, lists());
     attributes.compact(keep);
     if (keeps_origin) keep_marked(origin, keep);
 }

@@ -10,6 +10,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "ricochet/core/vec3.h"
@@ -165,6 +166,13 @@ public:
     void compact(const std::vector<std::uint8_t>& keep);
     /// Returns the indices of the entries in the order of their ids.
     [[nodiscard]] std::vector<std::uint32_t> order_by_id() const;
+
+private:
+    /// Returns all lists that every particle has an entry in, but not its attributes.
+    [[nodiscard]] auto lists() {
+        return std::tie(id, position, velocity, spin, mass, radius, birth_time, lifetime, unsimulated_time, contacts,
+                        frozen, resting, held, absorbed, draws, support, cascade_left, pinned, accounted_until);
+    }
 };
 
 }  // namespace ricochet

@@ -134,11 +134,11 @@ int AnalyticShape::side(const Vec3& p) const {
     return rough != 0 ? rough : shape_.side_of_start(segment<DoubleDouble>(p, p));
 }
 
-ShapePoint AnalyticShape::in_world(const LocalPoint& near, const Vec3& p) const {
-    const Vec3 normal = frame_.world_normal(near.normal);
+ShapePoint AnalyticShape::in_world(ShapePoint near, const Vec3& p) const {
+    near.normal = frame_.world_normal(near.normal);
     const bool is_near = std::fabs(near.distance) < length(near.point);
-    return {is_near ? p - near.distance * normal : frame_.world_point(near.point), normal, near.distance, near.part,
-            near.on_rim};
+    near.point = is_near ? p - near.distance * near.normal : frame_.world_point(near.point);
+    return near;
 }
 
 ShapePoint AnalyticShape::closest_point(const Vec3& p) const {
@@ -158,13 +158,13 @@ double AnalyticShape::time_over(ShapePart part, const Path& path, double slack) 
 }
 
 ShapeContacts AnalyticShape::contacts(const Path& path, double radius, const SupportingParts& supports) const {
-    ShapeContacts result;
-    const LocalContacts found = contacts_of(shape_, frame_.local_path(path), radius, supports);
-    for (const LocalContact& contact : found.all()) {
-        result.contacts[result.count++] = {contact.time, frame_.world_normal(contact.normal),
-                                           frame_.world_point(contact.point), contact.part, contact.on_rim};
+    ShapeContacts found = contacts_of(shape_, frame_.local_path(path), radius, supports);
+    for (std::size_t k = 0; k < found.count; ++k) {
+        ShapeContact& contact = found.contacts[k];
+        contact.normal = frame_.world_normal(contact.normal);
+        contact.point = frame_.world_point(contact.point);
     }
-    return result;
+    return found;
 }
 
 std::optional<ShapeContact> AnalyticShape::first_contact(const Path& path, double radius) const {

@@ -51,31 +51,6 @@ private:
     bool is_aligned_ = false;  ///< the axes are the world axes, so nothing is rotated
 };
 
-/// First contact of a moving sphere (or point, radius 0) with a shape.
-struct ShapeContact {
-    double time = 0.0;  ///< in s, along the path
-    Vec3 normal;        ///< unit vector from the surface to the centre's side
-    Vec3 point;         ///< on the surface
-    ShapePart part = ShapePart::side;
-    bool on_rim = false;
-};
-
-/// The first contact with each part of a shape.
-struct ShapeContacts {
-    std::array<ShapeContact, 3> contacts{};
-    std::size_t count = 0;
-    [[nodiscard]] std::span<const ShapeContact> all() const { return {contacts.data(), count}; }
-};
-
-/// The closest point of a shape's surface.
-struct ShapePoint {
-    Vec3 point;
-    Vec3 normal;            ///< unit vector, outward
-    double distance = 0.0;  ///< signed, in m: positive outside
-    ShapePart part = ShapePart::side;
-    bool on_rim = false;  ///< on the edge between a cap and the side
-};
-
 /// A two-sided surface around a convex body. Immutable; safe from any number of threads.
 class AnalyticShape {
 public:
@@ -136,7 +111,7 @@ public:
 private:
     AnalyticShape(const AffineMap& world_from_local, const LocalShape& shape);
 
-    [[nodiscard]] ShapePoint in_world(const LocalPoint& near, const Vec3& p) const;
+    [[nodiscard]] ShapePoint in_world(ShapePoint near, const Vec3& p) const;
     template <class Scalar>
     [[nodiscard]] LocalSegment<Scalar> segment(const Vec3& p, const Vec3& q) const;
 

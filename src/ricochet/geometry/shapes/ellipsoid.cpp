@@ -126,7 +126,7 @@ double Ellipsoid::support(const Vec3& n) const {
     return std::sqrt(axes_ == 3 ? sum + square(half_axes_[2] * n.z) : sum);
 }
 
-LocalPoint Ellipsoid::closest_point_of_round(const PreciseVec3& y) const {
+ShapePoint Ellipsoid::closest_point_of_round(const PreciseVec3& y) const {
     Vec3 radial = rounded(y);
     if (axes_ == 2) radial.z = 0.0;
     const double from_axis = length(radial);
@@ -195,7 +195,7 @@ double Ellipsoid::polished(double tau, const std::array<double, 3>& y, double va
     return tau;
 }
 
-LocalPoint Ellipsoid::closest_point(const PreciseVec3& y) const {
+ShapePoint Ellipsoid::closest_point(const PreciseVec3& y) const {
     if (is_round_) return closest_point_of_round(y);
     const std::array<double, 3> coordinates{y.x.hi, y.y.hi, y.z.hi};
     const double sigma = sigma_of(coordinates);

@@ -31,8 +31,8 @@ struct LocalPath {
 /// The smooth parts of a shape's surface. A ball has only the side.
 enum class ShapePart : std::uint8_t { side, top, bottom };
 
-/// The point of a surface closest to a given one, in the shape's frame.
-struct LocalPoint {
+/// The closest point of a shape's surface.
+struct ShapePoint {
     Vec3 point;             ///< on the surface
     Vec3 normal;            ///< unit vector, outward
     double distance = 0.0;  ///< signed, in m: positive outside
@@ -69,7 +69,7 @@ public:
     /// Method: D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid", Geometric Tools,
     /// 2013 (the equation in sigma). J. More, D. Sorensen, "Computing a Trust Region Step", SIAM J. Sci. Stat. Comput.
     /// 4, 1983 (Newton's method on 1 / norm, which converges from below without overshooting).
-    [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
+    [[nodiscard]] ShapePoint closest_point(const PreciseVec3& y) const;
     /// Returns a bound on the error of that distance, in m.
     [[nodiscard]] double distance_error(double distance, const Vec3& y) const;
 
@@ -86,7 +86,7 @@ public:
     [[nodiscard]] double support(const Vec3& n) const;
 
 private:
-    [[nodiscard]] LocalPoint closest_point_of_round(const PreciseVec3& y) const;
+    [[nodiscard]] ShapePoint closest_point_of_round(const PreciseVec3& y) const;
     [[nodiscard]] double sigma_of(const std::array<double, 3>& y) const;
     [[nodiscard]] double polished(double tau, const std::array<double, 3>& y, double value) const;
     [[nodiscard]] Polynomial value_along(const LocalPath& path, int sign, const std::array<DoubleDouble, 3>& weights,

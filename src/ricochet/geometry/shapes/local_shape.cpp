@@ -132,7 +132,7 @@ ShapePart cap_on(double up) { return up > 0.0 ? ShapePart::top : ShapePart::bott
 
 /// Returns the nearest point on a cap's rim for a point that is beyond the side and beyond the cap by the given
 /// distances.
-LocalPoint rim_point(const LocalPoint& lateral, ShapePart part, double up, double height, double half_height) {
+ShapePoint rim_point(const ShapePoint& lateral, ShapePart part, double up, double height, double half_height) {
     const double distance = std::sqrt(lateral.distance * lateral.distance + height * height);
     const Vec3 normal = (lateral.distance / distance) * lateral.normal + Vec3{0.0, 0.0, up * (height / distance)};
     return {{lateral.point.x, lateral.point.y, up * half_height}, normal, distance, part, true};
@@ -140,8 +140,8 @@ LocalPoint rim_point(const LocalPoint& lateral, ShapePart part, double up, doubl
 
 }  // namespace
 
-LocalPoint LocalShape::closest_point(const PreciseVec3& y) const {
-    LocalPoint lateral = ellipsoid_.closest_point(y);
+ShapePoint LocalShape::closest_point(const PreciseVec3& y) const {
+    ShapePoint lateral = ellipsoid_.closest_point(y);
     if (!is_capped_) return lateral;
     const double up = y.z.hi < 0.0 ? -1.0 : 1.0;
     const double height = (up * y.z + -half_height_).hi;
@@ -151,20 +151,20 @@ LocalPoint LocalShape::closest_point(const PreciseVec3& y) const {
     return rim_point(lateral, ShapePart::side, up, height, half_height_);
 }
 
-LocalPoint LocalShape::closest_point_of(ShapePart part, const PreciseVec3& y) const {
-    const LocalPoint lateral = ellipsoid_.closest_point(y);
+ShapePoint LocalShape::closest_point_of(ShapePart part, const PreciseVec3& y) const {
+    const ShapePoint lateral = ellipsoid_.closest_point(y);
     if (!is_capped_) return lateral;
     if (part == ShapePart::side) {
         const double up = y.z.hi < 0.0 ? -1.0 : 1.0;
         const double height = (up * y.z + -half_height_).hi;
         return height <= 0.0 ? lateral : rim_point(lateral, part, up, height, half_height_);
     }
-    const LocalPoint over_cap = closest_point_beyond(part, y);
+    const ShapePoint over_cap = closest_point_beyond(part, y);
     if (lateral.distance <= 0.0) return over_cap;
     return rim_point(lateral, part, up_of(part), over_cap.distance, half_height_);
 }
 
-LocalPoint LocalShape::closest_point_beyond(ShapePart part, const PreciseVec3& y) const {
+ShapePoint LocalShape::closest_point_beyond(ShapePart part, const PreciseVec3& y) const {
     if (part == ShapePart::side) return ellipsoid_.closest_point(y);
     const double up = up_of(part);
     return {{y.x.hi, y.y.hi, up * half_height_}, {0.0, 0.0, up}, (up * y.z + -half_height_).hi, part, false};
@@ -176,8 +176,8 @@ std::span<const ShapePart> LocalShape::parts() const {
 }
 
 double LocalShape::distance_of(const PreciseVec3& from, const PreciseVec3& to) const {
-    const LocalPoint at_from = closest_point(from);
-    const LocalPoint at_to = closest_point(to);
+    const ShapePoint at_from = closest_point(from);
+    const ShapePoint at_to = closest_point(to);
     double least = std::min(std::fabs(at_from.distance), std::fabs(at_to.distance));
     const Vec3 size = abs(rounded(from)) + abs(rounded(to));
     // The depth inside a convex body is concave along the segment, so its smallest value is at an end.
@@ -197,7 +197,7 @@ double LocalShape::distance_from_outside(const PreciseVec3& from, const PreciseV
     const PreciseVec3 step = to - from;
     const Vec3 direction = rounded(step);
     const auto tangent_at = [&](double t) {
-        const LocalPoint near = closest_point(on_segment(from, step, DoubleDouble(t)));
+        const ShapePoint near = closest_point(on_segment(from, step, DoubleDouble(t)));
         return Tangent{t, near.distance, dot(near.normal, direction)};
     };
     Tangent low = tangent_at(0.0);

@@ -37,11 +37,11 @@ public:
     template <class Scalar>
     [[nodiscard]] bool is_clear(const LocalSegment<Scalar>& segment) const;
 
-    [[nodiscard]] LocalPoint closest_point(const PreciseVec3& y) const;
+    [[nodiscard]] ShapePoint closest_point(const PreciseVec3& y) const;
     /// Returns the closest point of one part, with its rim.
-    [[nodiscard]] LocalPoint closest_point_of(ShapePart part, const PreciseVec3& y) const;
+    [[nodiscard]] ShapePoint closest_point_of(ShapePart part, const PreciseVec3& y) const;
     /// Returns the closest point of one part that is extended beyond its rim to an endless cylinder or a plane.
-    [[nodiscard]] LocalPoint closest_point_beyond(ShapePart part, const PreciseVec3& y) const;
+    [[nodiscard]] ShapePoint closest_point_beyond(ShapePart part, const PreciseVec3& y) const;
     /// Returns the time that a path stays over a cap, or beside it by at most `slack` (m), in s.
     [[nodiscard]] double time_over_cap(const LocalPath& path, double slack) const;
     /// Returns the side and, for a capped shape, the top and the bottom.
@@ -76,20 +76,20 @@ private:
     double half_height_;  ///< in m; 0 for balls
 };
 
-/// The first contact with a shape, in its frame.
-struct LocalContact {
-    double time = 0.0;  ///< in s
-    Vec3 normal;        ///< unit vector from the surface to the side that the path comes from
+/// First contact of a moving sphere (or point, radius 0) with a shape.
+struct ShapeContact {
+    double time = 0.0;  ///< in s, along the path
+    Vec3 normal;        ///< unit vector from the surface to the centre's side
     Vec3 point;         ///< on the surface
     ShapePart part = ShapePart::side;
     bool on_rim = false;
 };
 
 /// The first contact with each part of a shape.
-struct LocalContacts {
-    std::array<LocalContact, 3> contacts{};
+struct ShapeContacts {
+    std::array<ShapeContact, 3> contacts{};
     std::size_t count = 0;
-    [[nodiscard]] std::span<const LocalContact> all() const { return {contacts.data(), count}; }
+    [[nodiscard]] std::span<const ShapeContact> all() const { return {contacts.data(), count}; }
 };
 
 /// Parts of a shape that are excluded from contacts because they support the particle.
@@ -100,8 +100,8 @@ struct SupportingParts {
     void add(ShapePart part) { is_supporting[static_cast<std::size_t>(part)] = true; }
 };
 
-/// See AnalyticShape::contacts.
-[[nodiscard]] LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
+/// Returns the contacts of AnalyticShape::contacts() in the shape's frame.
+[[nodiscard]] ShapeContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
                                         const SupportingParts& supports);
 
 }  // namespace ricochet

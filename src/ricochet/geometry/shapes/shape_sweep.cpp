@@ -93,7 +93,7 @@ ConservativeAdvancement::ConservativeAdvancement(const LocalShape& shape, const 
 
 ConservativeAdvancement::Separation ConservativeAdvancement::separation_at(double s) const {
     const PreciseVec3 position = path_.position(s);
-    const LocalPoint near = part_ ? shape_.closest_point_beyond(*part_, position) : shape_.closest_point(position);
+    const ShapePoint near = part_ ? shape_.closest_point_beyond(*part_, position) : shape_.closest_point(position);
     return {s, side_ * near.distance - radius_, side_ * dot(near.normal, path_.velocity(s)), near.normal};
 }
 
@@ -299,22 +299,22 @@ int first_sign(const Polynomial& p) {
 
 /// Returns the direction of a path that starts on the surface: +1 out, -1 in, 0 along it.
 int heading(const LocalShape& shape, const LocalPath& path) {
-    const LocalPoint near = shape.closest_point(path.position(0.0));
+    const ShapePoint near = shape.closest_point(path.position(0.0));
     if (shape.is_capped() && std::fabs(near.normal.z) > 0.5) {
         return first_sign(height_over_cap(shape, path, near.normal.z > 0.0 ? 1.0 : -1.0, DoubleDouble(), 1.0));
     }
     return first_sign(shape.ellipsoid().value_along(path, +1));
 }
 
-LocalContact contact_with(const LocalPoint& near, double time, int side) {
+ShapeContact contact_with(const ShapePoint& near, double time, int side) {
     return {time, side < 0 ? -near.normal : near.normal, near.point, near.part, near.on_rim};
 }
 
-LocalContact contact_at(const LocalShape& shape, const LocalPath& path, double time, int side) {
+ShapeContact contact_at(const LocalShape& shape, const LocalPath& path, double time, int side) {
     return contact_with(shape.closest_point(path.position(time)), time, side);
 }
 
-LocalContact contact_with_part(const LocalShape& shape, const LocalPath& path, ShapePart part, double time) {
+ShapeContact contact_with_part(const LocalShape& shape, const LocalPath& path, ShapePart part, double time) {
     return contact_with(shape.closest_point_beyond(part, path.position(time)), time, -1);
 }
 
@@ -380,9 +380,9 @@ double LocalShape::time_over_cap(const LocalPath& path, double slack) const {
     return std::min(path.duration, first_time(down_crossings(widened.value_along(path, -1), 0.0, path.duration)));
 }
 
-LocalContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
+ShapeContacts contacts_of(const LocalShape& shape, const LocalPath& path, double radius,
                           const SupportingParts& supports) {
-    LocalContacts found;
+    ShapeContacts found;
     const int side = side_of_start(shape, path, radius);
     if (side < 0) {
         for (const ShapePart part : shape.parts()) {

@@ -17,6 +17,19 @@ constexpr std::size_t kPacket = 16;
 // Default limit of the simulation.
 constexpr int kMostBounces = 1000;
 
+/// Traces sixteen rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
+/// aligned to 64 bytes.
+void intersect16(const int* valid, RTCScene scene, embree::QueryContext& context, RTCRayHit16& ray_hits) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context.base;
+    rtcIntersect16(valid, scene, &ray_hits, &arguments);
+#else
+    rtcIntersect16(valid, scene, &context.base, &ray_hits);
+#endif
+}
+
 /// Up to sixteen rays, with a mask of the lanes in use.
 struct Packet {
     alignas(64) std::array<int, kPacket> valid{};
@@ -107,7 +120,7 @@ void NativeRays::Impl::trace_packet(std::span<const RaySegment> segments, std::s
     embree::init_context(context, nullptr);
     Packet packet;
     for (std::size_t lane = 0; lane < segments.size(); ++lane) packet.set(lane, segments[lane]);
-    embree::intersect16(packet.valid.data(), scene.get(), context, packet.rays);
+    intersect16(packet.valid.data(), scene.get(), context, packet.rays);
     std::copy_n(std::begin(packet.rays.hit.primID), hits.size(), hits.begin());
 }
 

@@ -11,6 +11,43 @@
 namespace ricochet {
 namespace {
 
+/// Traces eight rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
+/// aligned to 32 bytes. Processors with AVX trace eight rays together. Others trace them one after the other.
+void intersect8(const int* valid, RTCScene scene, embree::QueryContext& context, RTCRayHit8& ray_hits) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &context.base;
+    rtcIntersect8(valid, scene, &ray_hits, &arguments);
+#else
+    rtcIntersect8(valid, scene, &context.base, &ray_hits);
+#endif
+}
+
+/// Traces eight shadow rays at once. See occluded1() and intersect8().
+void occluded8(const int* valid, RTCScene scene, embree::QueryContext& context, RTCRay8& rays) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context.base;
+    rtcOccluded8(valid, scene, &rays, &arguments);
+#else
+    rtcOccluded8(valid, scene, &context.base, &rays);
+#endif
+}
+
+/// Traces a shadow ray. Afterwards ray.tfar is -infinity if the ray is occluded.
+void occluded1(RTCScene scene, embree::QueryContext& context, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &context.base;
+    rtcOccluded1(scene, &ray, &arguments);
+#else
+    rtcOccluded1(scene, &context.base, &ray);
+#endif
+}
+
 RTCRay embree_ray(const PreviewRay& ray, const Vec3& origin) {
     const Vec3 from = ray.origin - origin;
     RTCRay out{};
@@ -76,7 +113,7 @@ struct PacketFind {
     void meet(RTCScene scene, const MeshGroup* meshes, bool spheres) {
         embree::QueryContext context;
         embree::init_context(context, copies.data());
-        embree::intersect8(valid.data(), scene, context, query);
+        intersect8(valid.data(), scene, context, query);
         for (std::size_t lane = 0; lane < kPacketRays; ++lane) {
             if (query.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
             geometry[lane] = query.hit.geomID[lane];
@@ -290,12 +327,12 @@ bool Preview::occluded(const PreviewRay& ray) const {
     embree::init_context(context, nullptr);
     RTCRay shadow = embree_ray(ray, impl_->origin);
     for (const MeshGroup* group : {&impl_->solid, &impl_->moving_solid}) {
-        if (shadow.tfar >= 0.0F && !group->empty()) embree::occluded1(group->scene.get(), context, shadow);
+        if (shadow.tfar >= 0.0F && !group->empty()) occluded1(group->scene.get(), context, shadow);
     }
     if (shadow.tfar >= 0.0F && impl_->traces(SphereRays::met)) {
-        embree::occluded1(impl_->sphere_scene.get(), context, shadow);
+        occluded1(impl_->sphere_scene.get(), context, shadow);
     }
-    if (shadow.tfar >= 0.0F && impl_->has_moving) embree::occluded1(impl_->moving_scene.get(), context, shadow);
+    if (shadow.tfar >= 0.0F && impl_->has_moving) occluded1(impl_->moving_scene.get(), context, shadow);
     return shadow.tfar < 0.0F;
 }
 
@@ -316,7 +353,7 @@ std::array<bool, kPacketRays> Preview::occluded(std::span<const PreviewRay> rays
     const auto shoot = [&](RTCScene scene) {
         embree::QueryContext context;
         embree::init_context(context, nullptr);
-        embree::occluded8(valid.data(), scene, context, shadows);
+        occluded8(valid.data(), scene, context, shadows);
         for (std::size_t lane = 0; lane < rays.size(); ++lane) {
             if (valid[lane] == 0 || shadows.tfar[lane] >= 0.0F) continue;
             dark[lane] = true;

@@ -53,56 +53,6 @@ inline void intersect1(RTCScene scene, QueryContext& context, RTCRayHit& ray_hit
 #endif
 }
 
-/// Traces sixteen rays at once. A ray is traced if its entry of `valid` is -1 and skipped if it is 0. `valid` must be
-/// aligned to 64 bytes.
-inline void intersect16(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit16& ray_hits) {
-#if RTC_VERSION_MAJOR >= 4
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &context.base;
-    rtcIntersect16(valid, scene, &ray_hits, &arguments);
-#else
-    rtcIntersect16(valid, scene, &context.base, &ray_hits);
-#endif
-}
-
-/// Traces eight rays at once, as intersect16() does. `valid` must be aligned to 32 bytes. Processors with AVX trace
-/// eight rays together. Others trace them one after the other.
-inline void intersect8(const int* valid, RTCScene scene, QueryContext& context, RTCRayHit8& ray_hits) {
-#if RTC_VERSION_MAJOR >= 4
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &context.base;
-    rtcIntersect8(valid, scene, &ray_hits, &arguments);
-#else
-    rtcIntersect8(valid, scene, &context.base, &ray_hits);
-#endif
-}
-
-/// Traces eight shadow rays at once. See occluded1() and intersect8().
-inline void occluded8(const int* valid, RTCScene scene, QueryContext& context, RTCRay8& rays) {
-#if RTC_VERSION_MAJOR >= 4
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context.base;
-    rtcOccluded8(valid, scene, &rays, &arguments);
-#else
-    rtcOccluded8(valid, scene, &context.base, &rays);
-#endif
-}
-
-/// Traces a shadow ray. Afterwards ray.tfar is -infinity if the ray is occluded.
-inline void occluded1(RTCScene scene, QueryContext& context, RTCRay& ray) {
-#if RTC_VERSION_MAJOR >= 4
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    arguments.context = &context.base;
-    rtcOccluded1(scene, &ray, &arguments);
-#else
-    rtcOccluded1(scene, &context.base, &ray);
-#endif
-}
-
 /// Throws RunError if the device has recorded an error since the last call. A null device reports errors of devices
 /// that could not be created.
 inline void check_device(RTCDevice device, const char* doing) {

@@ -38,63 +38,14 @@ private:
     std::size_t used_ = 0;
 };
 
-// Copies the entries [begin, end) of the order by id from the particles' arrays.
-struct Gather {
-    const std::vector<std::uint32_t>& order;
-    std::size_t begin;
-    std::size_t end;
-
-    template <typename To, typename From>
-    void operator()(const std::vector<From>& from, To* to) const {
+// Copies the values of all particles in the order of their ids.
+template <typename To, typename From>
+void gather(const std::vector<From>& from, const std::vector<std::uint32_t>& order, To* to) {
+    require_same_length(from.size(), order.size(), "array of the particles");
+    parallel_for_blocks(order.size(), kFramesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) to[k] = static_cast<To>(from[order[k]]);
-    }
-};
-
-// Arrays that every frame has.
-class OwnArrays {
-public:
-    OwnArrays(VtkPolyData& frame, ArrayList& list, bool has_spheres)
-        : points_(frame.points.data()),
-          id_(list.next<std::int64_t>("id")),
-          velocity_(list.next<Vec3>("velocity")),
-          mass_(list.next<double>("mass")),
-          radius_(list.next<double>("radius")),
-          age_(list.next<double>("age")),
-          contacts_(list.next<std::uint32_t>("contacts")),
-          resting_(list.next<std::uint8_t>("resting")),
-          frozen_(list.next<std::uint8_t>("frozen")),
-          unsimulated_time_(list.next<double>("unsimulated_time")),
-          spin_(has_spheres ? list.next<Vec3>("spin") : nullptr) {}
-
-    void fill(const Particles& particles, const Gather& gather, double time) const {
-        gather(particles.position, points_);
-        gather(particles.id, id_);
-        gather(particles.velocity, velocity_);
-        gather(particles.mass, mass_);
-        gather(particles.radius, radius_);
-        gather(particles.birth_time, age_);
-        for (std::size_t k = gather.begin; k < gather.end; ++k) age_[k] = time - age_[k];
-        gather(particles.contacts, contacts_);
-        gather(particles.resting, resting_);
-        gather(particles.frozen, frozen_);
-        gather(particles.unsimulated_time, unsimulated_time_);
-        if (spin_ != nullptr) gather(particles.spin, spin_);
-    }
-
-private:
-    // Pointers in the order of the file.
-    Vec3* points_;
-    std::int64_t* id_;
-    Vec3* velocity_;
-    double* mass_;
-    double* radius_;
-    double* age_;
-    std::uint32_t* contacts_;
-    std::uint8_t* resting_;
-    std::uint8_t* frozen_;
-    double* unsimulated_time_;
-    Vec3* spin_;
-};
+    });
+}
 
 void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_t column,
                    const std::vector<std::uint32_t>& order) {
@@ -108,23 +59,6 @@ void add_attribute(ArrayList& list, const AttributeTable& attributes, std::size_
             is_vector ? void(vectors[k] = value) : void(numbers[k] = value.x);
         }
     });
-}
-
-void require_arrays(const Particles& particles, const AttributeTable& attributes) {
-    const auto require = [&](const auto& array) {
-        require_same_length(array.size(), particles.size(), "array of the particles");
-    };
-    require(particles.position);
-    require(particles.velocity);
-    require(particles.mass);
-    require(particles.radius);
-    require(particles.birth_time);
-    require(particles.contacts);
-    require(particles.resting);
-    require(particles.frozen);
-    require(particles.unsimulated_time);
-    require(particles.spin);
-    if (!attributes.empty()) require_same_length(attributes.size(), particles.size(), "attributes of the particles");
 }
 
 std::vector<std::int64_t> as_signed(const std::vector<std::uint64_t>& values) { return {values.begin(), values.end()}; }
@@ -192,7 +126,8 @@ VtkPolyData particle_frame(const Particles& particles, const AttributeTable& att
 
 void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const AttributeTable& attributes, double time,
                          bool has_spheres) {
-    require_arrays(particles, attributes);
+    require_same_length(particles.spin.size(), particles.size(), "array of the particles");
+    if (!attributes.empty()) require_same_length(attributes.size(), particles.size(), "attributes of the particles");
     const std::vector<std::uint32_t> order = particles.order_by_id();
     frame.time = time;
     frame.fields.clear();
@@ -202,10 +137,19 @@ void fill_particle_frame(VtkPolyData& frame, const Particles& particles, const A
     frame.cell_arrays.clear();
     frame.points.resize(order.size());
     ArrayList list(frame.point_arrays, order.size());
-    const OwnArrays arrays(frame, list, has_spheres);
-    parallel_for_blocks(order.size(), kFramesBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        arrays.fill(particles, {order, begin, end}, time);
-    });
+    gather(particles.position, order, frame.points.data());
+    gather(particles.id, order, list.next<std::int64_t>("id"));
+    gather(particles.velocity, order, list.next<Vec3>("velocity"));
+    gather(particles.mass, order, list.next<double>("mass"));
+    gather(particles.radius, order, list.next<double>("radius"));
+    double* const age = list.next<double>("age");
+    gather(particles.birth_time, order, age);
+    std::for_each(age, age + order.size(), [time](double& value) { value = time - value; });
+    gather(particles.contacts, order, list.next<std::uint32_t>("contacts"));
+    gather(particles.resting, order, list.next<std::uint8_t>("resting"));
+    gather(particles.frozen, order, list.next<std::uint8_t>("frozen"));
+    gather(particles.unsimulated_time, order, list.next<double>("unsimulated_time"));
+    if (has_spheres) gather(particles.spin, order, list.next<Vec3>("spin"));
     for (std::size_t k = 0; k < attributes.columns().size(); ++k) add_attribute(list, attributes, k, order);
     list.end();
 }

@@ -14,14 +14,6 @@ namespace {
 
 constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
 
-std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
-    std::vector<std::uint32_t> face_of(faces.corners.size());
-    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
-        std::fill(face_of.begin() + faces.face_offsets[f], face_of.begin() + faces.face_offsets[f + 1], f);
-    }
-    return face_of;
-}
-
 /// Parity of the faces at the edges of a shell.
 struct ShellParity {
     bool is_odd_once = false;  ///< an edge has an odd number of faces if repeated faces count once

@@ -98,12 +98,11 @@ void join_at_ends(const FaceList& faces, std::uint32_t a, std::uint32_t b, Disjo
 class ReportBuilder {
 public:
     ReportBuilder(const FaceList& faces, const EdgeTable& edges, std::size_t vertex_count)
-        : faces_(faces), shells_(faces.face_count()), fans_(faces.corners.size()), vertex_count_(vertex_count) {
-        face_of_corner_.resize(faces.corners.size());
-        for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
-            std::fill(face_of_corner_.begin() + faces.face_offsets[f],
-                      face_of_corner_.begin() + faces.face_offsets[f + 1], f);
-        }
+        : faces_(faces),
+          shells_(faces.face_count()),
+          fans_(faces.corners.size()),
+          face_of_corner_(faces_of_corners(faces)),
+          vertex_count_(vertex_count) {
         edges.for_each_edge([&](std::span<const std::uint32_t> uses) { add_edge(uses); });
     }
 
@@ -188,6 +187,14 @@ FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers)
         if (numbers != nullptr && faces.face_count() > count) numbers->push_back(t);
     }
     return faces;
+}
+
+std::vector<std::uint32_t> faces_of_corners(const FaceList& faces) {
+    std::vector<std::uint32_t> face_of(faces.corners.size());
+    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
+        std::fill(face_of.begin() + faces.face_offsets[f], face_of.begin() + faces.face_offsets[f + 1], f);
+    }
+    return face_of;
 }
 
 // The half-edge mesh is assembled from the edge table instead of by add_face. That function searches all edges of a

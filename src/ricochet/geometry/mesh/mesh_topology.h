@@ -30,6 +30,9 @@ struct FaceList {
 /// face.
 [[nodiscard]] FaceList faces_of(const TriangleMesh& mesh, std::vector<std::uint32_t>* numbers = nullptr);
 
+/// Returns the face of every corner.
+[[nodiscard]] std::vector<std::uint32_t> faces_of_corners(const FaceList& faces);
+
 /// Returns the faces with the same vertices as an earlier one, in any order of vertices. The list is in increasing
 /// order.
 [[nodiscard]] std::vector<std::uint32_t> repeated_faces(const FaceList& faces);

@@ -184,7 +184,7 @@ std::string threads_axis(std::span<const Row> rows) {
         fmt::join(counts, ", "), *counts.begin() / kMargin, *counts.rbegin() * kMargin);
 }
 
-/// Returns a plot with one curve per case, and its bare rays dashed.
+/// Returns a plot with a solid curve per case and a dashed curve of its bare rays.
 std::string threads_plot(std::span<const Row> rows) {
     std::vector<std::string> names;
     for (const Row& row : rows) {

@@ -21,7 +21,8 @@ void check_extension(const RunArguments& arguments);
 /// InputError if the run is finished, unless it is extended by at least one step.
 [[nodiscard]] std::filesystem::path resumed_file(const RunArguments& arguments, const Simulation& simulation);
 
-/// Throws InputError if the run is already beyond the requested end. A killed run can be exactly at its end.
+/// Throws InputError if the run is already beyond the requested end. A killed run may be exactly at its end, and is
+/// accepted there.
 void require_end_ahead(const RunArguments& arguments, const Simulation& simulation);
 
 /// Warns if a resumed run stops writing its contact log.

@@ -38,8 +38,8 @@ constexpr double kMouth = 0.25;
 constexpr double kCrack = 1e-3;
 
 /// Largest product of kCandidateSlack and the largest coordinate, relative to the mean edge length. Beyond it, a
-/// contact tests more triangles than it can hit. A tenth costs 1.6 times as much, a fifth 2.8 times. Local, because it
-/// decides only about a warning.
+/// contact tests more triangles than it can hit. With 0.1, a contact costs 1.6 times as much. With 0.2, it costs 2.8
+/// times as much. Local, because it decides only about a warning.
 constexpr double kMostSlack = 0.1;
 
 /// Sample of the particles of one emitter, or of the explicit particles.

@@ -70,8 +70,8 @@ void refuse_masked(const py::handle& object, const char* name, const std::string
     throw InputError(fmt::format("{}: found masked entries, expected {}; fill or remove them", name, expected));
 }
 
-/// Returns the object as a NumPy array. type: the expected type of numbers. Throws InputError if it is not an array of
-/// numbers, such as None, a dictionary or ragged lists.
+/// Returns the object as a NumPy array. type: the expected type of numbers. Throws InputError for other objects, such
+/// as None, a dictionary or ragged lists.
 py::array as_array(const py::handle& object, const char* name, const std::string& expected,
                    const char* type = "float") {
     const bool is_plain = Py_TYPE(object.ptr()) == py::detail::npy_api::get().PyArray_Type_;

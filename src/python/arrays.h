@@ -1,5 +1,6 @@
 /// \file
-/// Arrays in both directions. Input from users is checked, and messages name it. Output keeps its memory alive.
+/// Conversion of arrays between Python and C++. Input from users is checked, and messages name it. Returned arrays keep
+/// their memory alive.
 #pragma once
 
 #include <pybind11/numpy.h>

@@ -33,7 +33,7 @@ void end() {
 
 void wait_for_threads_at_exit() {
     py::module_::import("atexit").attr("register")(py::cpp_function(&end));
-    // A child process has no other threads of its parent.
+    // After a fork, the child has only the forking thread, so only its own count remains.
     py::module_::import("os").attr("register_at_fork")(py::arg("after_in_child") =
                                                            py::cpp_function([] { beside_count = own_count; }));
 }

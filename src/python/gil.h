@@ -47,7 +47,7 @@ private:
     detail::WithoutLock without_;
 };
 
-/// Scope with the lock, within Unlocked. Replaces py::gil_scoped_acquire.
+/// Scope that takes the lock again inside an Unlocked scope. Replaces py::gil_scoped_acquire.
 class Locked {
 private:
     detail::Beside beside_;

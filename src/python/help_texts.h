@@ -10,7 +10,7 @@ namespace ricochet::python {
 
 namespace py = pybind11;
 
-/// Objects of ricochet._results, with one type per class, so that signatures name them.
+/// Wrapper type for each class of ricochet._results, so that signatures show the name of the class.
 template <class Name>
 struct ResultObject : py::object {
     ResultObject() = default;

@@ -82,8 +82,8 @@ Saved saved_in(const std::string& bytes) {
     return saved;
 }
 
-/// Checks for Ctrl-C and shows progress during a run, and takes the GIL only for that time. Only the thread that has
-/// created it does so.
+/// Checks for Ctrl-C and shows progress during a run, and takes the GIL only for that time. Only the thread that
+/// created the Watch checks.
 class Watch {
 public:
     explicit Watch(const py::object& progress) : progress_(progress) {}
@@ -147,7 +147,7 @@ SimulationHandle::SimulationHandle(std::string text, std::string file, std::vect
     scene_.setup.options.verify = scene_.setup.options.verify || verifies;
     const Vec3 down = uniform_acceleration(scene_.setup);
     if (is_finite(down) && length(down) > 0.0) up_ = -normalized(down);
-    // The warning does not apply, because particles can be added later.
+    // Removes the warning that nothing will move, because particles can be added later.
     std::erase_if(scene_.warnings, [](const std::string& warning) { return warning.ends_with("nothing will move"); });
     if (!forces_.empty() && scene_.setup.options.integrator.kind == IntegratorKind::ballistic) {
         scene_.warnings.emplace_back(kBallisticWarning);
@@ -186,7 +186,8 @@ void SimulationHandle::advance(std::uint64_t count, const py::object& progress) 
             } catch (const StoppedError&) {  // the watch has the reason
             }
         };
-        // This thread would have to wait for the loops of other threads, which may be long.
+        // Longer work runs on a separate thread, because this thread must check for Ctrl-C instead of waiting in
+        // parallel loops.
         const bool is_short = count == 1 && simulation_->particles().size() <= kFewParticles;
         is_short ? advance() : run_beside(advance, kLookAround, [&] { (void)watch.goes_on(); });
     }

@@ -70,9 +70,9 @@ public:
     explicit FrameWriter(std::filesystem::path folder, FileSeries files = kParticleSeries,
                          std::vector<PvdEntry> earlier = {}, std::shared_ptr<WriterThread> thread = nullptr);
 
-    /// Returns a frame to be filled, as soon as the queue has space for it.
-    /// The frame reuses the memory, and may still contain the data, of a frame already written; otherwise it is empty.
-    /// Waiting before the frame is filled keeps at most two frames in memory. Throws like submit().
+    /// Returns a frame to be filled, as soon as the queue has space for it. The frame may reuse the memory of a written
+    /// frame and still contain its data. Otherwise it is empty. Waiting before the frame is filled keeps at most two
+    /// frames in memory. Throws like submit().
     [[nodiscard]] VtkPolyData blank_frame();
     /// Submits a frame. Rethrows the exception of an earlier write.
     void submit(std::uint64_t step, VtkPolyData frame);

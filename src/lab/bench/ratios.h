@@ -1,6 +1,6 @@
 /// \file
-/// Ratios of a run in a file, to detect later versions of the program that are slower. Ratios of two runs can be
-/// compared even if their times cannot.
+/// Stores the ratios of a run in a file, so that slower later versions of the program can be detected. Ratios of two
+/// runs can be compared even if their times cannot.
 #pragma once
 
 #include <filesystem>

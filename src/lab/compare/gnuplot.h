@@ -12,9 +12,9 @@ namespace ricochet {
 
 // The common style of the pictures that gnuplot draws for reports.
 
-/// Returns the beginning of a script: terminal, grid, borders and key. The script has to append the variable `ending`,
-/// which may be set before it, to the names of the pictures. `remark` is one line that describes the pictures and
-/// the command that draws them.
+/// Returns the beginning of a script: terminal, grid, borders and key. The caller must append the gnuplot variable
+/// `ending` to the names of the pictures. It is empty unless it is set before the script runs. `remark` is one line
+/// that describes the pictures and the command that draws them.
 [[nodiscard]] std::string gnuplot_start(std::string_view remark);
 
 /// Returns definitions of line styles 1 to `count`. Their colours are distinct for colour-blind readers, and their

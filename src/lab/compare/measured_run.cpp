@@ -67,7 +67,8 @@ Vec3 SurfaceNormals::at(const Violation& crossing) const {
     return cross(vertices[b] - vertices[a], vertices[c] - vertices[a]);
 }
 
-// Normals are transformed to the world by the transposed inverse. Its columns are the cross products of the map's own.
+// Normals are transformed to the world by the transposed inverse. Its columns are the cross products of the map's
+// columns, over the determinant.
 Vec3 SurfaceNormals::shape_normal(const Shape& shape, const Vec3& position) {
     const AffineMap& map = shape.world_from_unit;
     const Vec3 x{map.row_x.x, map.row_y.x, map.row_z.x};

@@ -69,8 +69,9 @@ struct TimedRun {
 [[nodiscard]] double ratio_of_times(const std::vector<double>& a, const std::vector<double>& b);
 
 /// Returns the exact row with the longest step whose error is no larger than the row's. The error is the root mean
-/// square of the distances at the end. If the row or exact has none, it is the median error of the first impacts.
-/// Returns nothing if there is no such step. `exact` contains the rows of the exact response by descending step.
+/// square of the distances at the end. If either row has no such distances, the median error of the first impacts is
+/// compared. Returns nothing if there is no such step. `exact` contains the rows of the exact response by descending
+/// step.
 [[nodiscard]] const ComparisonRow* equally_good(const ComparisonRow& row,
                                                 const std::vector<const ComparisonRow*>& exact);
 

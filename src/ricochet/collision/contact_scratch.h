@@ -119,7 +119,8 @@ struct ContactScratch {
         std::vector<double> tolerances;
         std::vector<double> fourth;  ///< bounds of the fourth derivative in the frames of the near bodies, in m/s^4
         std::vector<double> besides;
-        std::vector<Path> clear;  ///< start of a piece without contact, in the frames of the near bodies
+        std::vector<Path>
+            clear;  ///< paths of a trial piece in the frames of the near bodies; only the start without contact is used
         std::vector<double> cuts;
         std::vector<double> keys;
     };

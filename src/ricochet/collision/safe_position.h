@@ -14,8 +14,9 @@ namespace ricochet {
 
 /// The part of a path that certified segments could follow.
 struct CertifiedPath {
-    PathPoint reached;                 ///< the last certified position
-    std::optional<SurfaceId> blocker;  ///< surface that blocks the next, shortest segment; nothing at the target
+    PathPoint reached;  ///< the last certified position
+    std::optional<SurfaceId>
+        blocker;  ///< surface that blocks the shortest segment after `reached`; empty if the target was reached
 };
 
 /// Follows `path` from its start to `target`, its position at time `until`, in certified segments. If the chord is

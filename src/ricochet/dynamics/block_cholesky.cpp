@@ -196,7 +196,7 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
     updates_.clear();
     for (const Front& front : fronts_) {
         assemble(front, matrix);
-        if (!eliminate(contact_islands_, front.rows(), front.columns())) return false;
+        if (!eliminate(front_values_, front.rows(), front.columns())) return false;
         keep(front);
     }
     return true;
@@ -205,16 +205,16 @@ bool BlockCholesky::factorize(const BlockMatrix& matrix) {
 /// Adds the front's own part of the matrix and the updates of its children.
 void BlockCholesky::assemble(const Front& front, const BlockMatrix& matrix) {
     const std::size_t rows = front.rows();
-    contact_islands_.assign(rows * rows, 0.0);
+    front_values_.assign(rows * rows, 0.0);
     for (std::uint32_t k = 0; k < front.count; ++k) {
         const Block3& block = matrix.own[row_of_[front.begin + k]];
         for (std::size_t i = 0; i < 3; ++i) {
-            for (std::size_t j = 0; j <= i; ++j) contact_islands_[(3 * k + j) * rows + 3 * k + i] += block[i][j];
+            for (std::size_t j = 0; j <= i; ++j) front_values_[(3 * k + j) * rows + 3 * k + i] += block[i][j];
         }
     }
     for (const Entry& entry : front.entries) {
         const Block3& block = matrix.between[entry.pair];
-        double* const corner = contact_islands_.data() + 3 * entry.column * rows + 3 * entry.row;
+        double* const corner = front_values_.data() + 3 * entry.column * rows + 3 * entry.row;
         for (std::size_t i = 0; i < 3; ++i) {
             for (std::size_t j = 0; j < 3; ++j) {
                 corner[j * rows + i] += entry.is_transposed ? block[j][i] : block[i][j];
@@ -232,7 +232,7 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
     const std::size_t size = 3 * blocks;
     const double* update = updates_.data() + updates_.size() - size * size;
     for (std::size_t column = 0; column < size; ++column, update += size) {
-        double* const to = contact_islands_.data() + (3 * child.slots[column / 3] + column % 3) * rows;
+        double* const to = front_values_.data() + (3 * child.slots[column / 3] + column % 3) * rows;
         for (std::size_t k = column / 3; k < blocks; ++k) {
             for (std::size_t i = 0; i < 3; ++i) to[3 * child.slots[k] + i] += update[3 * k + i];
         }
@@ -244,9 +244,9 @@ void BlockCholesky::add_update(const Front& child, std::size_t rows) {
 void BlockCholesky::keep(const Front& front) {
     const std::size_t rows = front.rows();
     const std::size_t columns = front.columns();
-    std::copy_n(contact_islands_.begin(), rows * columns, values_.begin() + static_cast<std::ptrdiff_t>(front.values));
+    std::copy_n(front_values_.begin(), rows * columns, values_.begin() + static_cast<std::ptrdiff_t>(front.values));
     for (std::size_t j = columns; j < rows; ++j) {
-        const auto column = contact_islands_.begin() + static_cast<std::ptrdiff_t>(j * rows);
+        const auto column = front_values_.begin() + static_cast<std::ptrdiff_t>(j * rows);
         updates_.insert(updates_.end(), column + static_cast<std::ptrdiff_t>(columns),
                         column + static_cast<std::ptrdiff_t>(rows));
     }

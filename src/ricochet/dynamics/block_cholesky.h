@@ -84,7 +84,7 @@ private:
     std::vector<Front> fronts_;            // children before parents
     std::vector<double> values_;           // L: the columns of every front, one front after the other
     std::vector<double> updates_;          // stack of updates for parents not yet assembled
-    std::vector<double> contact_islands_;  // the front in elimination
+    std::vector<double> front_values_;     // the front in elimination
 };
 
 }  // namespace ricochet

@@ -50,7 +50,7 @@ struct CloudChild {
 [[nodiscard]] std::optional<CloudChild> make_cloud_child(const Emitter& emitter, const Particle& parent,
                                                          std::uint32_t ordinal, double time, const BirthTest& test);
 
-/// Returns the largest number of fragments, at least 1, of a mass, in kg, such that no fragment is below kSmallestMass.
+/// Returns the largest number of fragments (at least 1) of `mass`, in kg, that each keep at least kSmallestMass.
 [[nodiscard]] std::uint32_t most_fragments(double mass);
 
 /// Makes children that share the parent's mass and momentum,

@@ -54,7 +54,7 @@ constexpr double kPositionRounding = 0x1p-49;
 /// mean rate of the length over the step.
 class BackwardEuler {
 public:
-    /// guess: initial velocities; empty: those at the start.
+    /// guess: first iterate of the velocities. If empty, the velocities at the start of the step are used.
     BackwardEuler(const ParticleSystem& system, double h, std::span<const SupportConstraints> supports,
                   std::span<const Vec3> guess, const ImplicitOptions& options)
         : system_(system),

@@ -166,7 +166,7 @@ Flight begin_flight(const Integrator& integrator, const ForceField& forces, cons
         case IntegratorKind::velocity_verlet:
             if (!forces.is_uniform_for(state)) return verlet_flight(forces, state, duration);
             break;
-        case IntegratorKind::ballistic:  // the coupling between particles is not kept constant
+        case IntegratorKind::ballistic:  // its path would hold a coupling constant that varies
             if (state.coupling != nullptr && state.coupling->varies()) return verlet_flight(forces, state, duration);
             break;
         case IntegratorKind::midpoint:

@@ -44,7 +44,7 @@ private:
         std::vector<double> radii;
         std::vector<std::vector<double>> attributes;
     };
-    /// State of some members, gathered if they are not all members.
+    /// Positions and velocities of the members of a force. Unused if it acts on all particles.
     struct Gathered {
         std::vector<Vec3> positions;
         std::vector<Vec3> velocities;

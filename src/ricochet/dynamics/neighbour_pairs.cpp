@@ -35,7 +35,7 @@ bool comes_before(const NeighbourPair& a, const NeighbourPair& b) {
     return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// Returns the box, or one that overlaps nothing if it is empty.
+/// Returns the box. An empty box becomes the default box, which overlaps nothing.
 Box3 as_asked(const Box3& box) { return box.empty() ? Box3{} : box; }
 
 Box3 larger(const Box3& box) {

@@ -88,7 +88,7 @@ public:
     /// Returns every hit of every ray once. Triangles that share the edge or vertex at which they are hit give one hit.
     /// A path along the surface is also one hit, at its start.
     [[nodiscard]] AllMeshHits all_hits(const RayBatch& rays) const;
-    /// Returns the numbers of these hits.
+    /// Returns the number of hits of each ray.
     [[nodiscard]] std::vector<std::uint64_t> count_hits(const RayBatch& rays) const;
     /// Returns 1 for rays that hit anything. It is cheaper than first_hits().
     [[nodiscard]] std::vector<std::uint8_t> occluded(const RayBatch& rays) const;

@@ -26,9 +26,9 @@ constexpr std::array<Vec3, 3> kDirections{
 /// some 2^-50, with a margin. Local: an error bound of this arithmetic.
 constexpr double kDeterminantRounding = 0x1p-47;
 
-/// Sine and cosine of a half angle, times a length of some 1, below which rounding would lose more than some 2^-30 of
-/// the angle. This happens if the ray passes very near to a vertex of the boundary. Local: an error bound of this
-/// arithmetic.
+/// Least sum of the sine and the cosine of a half angle, both scaled by lengths of some 1. Below it, rounding could
+/// change the angle by more than some 2^-30. This happens if the ray passes very near to a vertex of the boundary.
+/// Local: an error bound of this arithmetic.
 constexpr double kSmallestSine = 0x1p-20;
 
 /// Returns all directed edges, sorted by their ends, with the smaller number in the upper half of the key. index: 1 if

@@ -1,5 +1,5 @@
 /// \file
-/// Private: results of questions before anything has been hit.
+/// Private: results of queries without any hit.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace ricochet {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns results of which none has hit.
+/// Returns `count` results without a hit.
 [[nodiscard]] inline MeshHits no_hits(std::size_t count) {
     MeshHits hits;
     hits.triangle.assign(count, kNoHit);

@@ -12,8 +12,8 @@
 namespace ricochet {
 namespace {
 
-/// Relative excess of the segment for the broad phase over the ray inside the mesh's box, so that rounding cuts nothing
-/// off. Local, because the exact test decides.
+/// Fraction by which the segment for the broad phase extends beyond the mesh's box, so that rounding cuts nothing off.
+/// Local, because the exact test decides.
 constexpr double kBeyond = 0x1p-20;
 
 /// Rounding of the segment's ends, relative to their coordinates. Local: an error bound of this arithmetic.
@@ -42,7 +42,7 @@ struct Reach {
         const Vec3 end = ray.origin + t * ray.direction;
         tube = Tube(ray.origin, end, kEndRounding * (max_abs(ray.origin) + max_abs(end)));
     }
-    /// Returns the fraction of the tube just beyond that parameter of the ray.
+    /// Returns the fraction of the tube at a parameter of the ray, rounded up.
     [[nodiscard]] double fraction(double crossing_point) const {
         return std::min(1.0, crossing_point / t * (1.0 + kFractionRounding));
     }
@@ -139,8 +139,8 @@ void write_places(const RayQuestion& question, const MeshIndex& mesh, const std:
 }  // namespace
 
 int moved_side(const Ray& ray, const Vec3& p, const Vec3& q) {
-    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the result is the sign of its
-    // change with o, which is -(q - p) x d.
+    // Sign of (p - o) x (q - o) . d with the ray's origin o and direction d. If it is 0, the result is the sign of the
+    // first component of its gradient in o, -(q - p) x d, that is not 0.
     const ExactDifference u(p, ray.origin);
     const ExactDifference v(q, ray.origin);
     const ExactDifference d(ray.direction, Vec3{});

@@ -27,16 +27,16 @@ struct RayQuestion {
 /// Hit of the surface on a ray.
 struct RayCrossing {
     DoubleDouble t;              ///< parameter of the ray
-    std::uint32_t triangle = 0;  ///< the smallest index of the triangles that are first there
+    std::uint32_t triangle = 0;  ///< smallest index of the triangles that the ray meets first there
     std::int8_t crossing = 0;    ///< see AllMeshHits
     bool is_in_plane = false;    ///< the ray lies in the planes of all triangles there
 };
 
 /// Returns the first hit.
 [[nodiscard]] std::optional<RayCrossing> first_crossing_on(const MeshIndex& mesh, const RayQuestion& question);
-/// Returns the sign of the determinant of p and q, both relative to the ray's origin, and its direction. It is +1 if
-/// the edge from p to q turns to the left about the ray. Never 0 for an edge across the ray, because the origin counts
-/// as moved by an infinitesimal amount, as for crossings.
+/// Returns the sign of the determinant of p - origin, q - origin and the ray's direction. It is +1 if the edge from p
+/// to q turns to the left about the ray. Never 0 for an edge across the ray, because the origin counts as moved by an
+/// infinitesimal amount, as for crossings.
 [[nodiscard]] int moved_side(const Ray& ray, const Vec3& p, const Vec3& q);
 /// Returns true if there is a hit.
 [[nodiscard]] bool hits_anything(const MeshIndex& mesh, const RayQuestion& question);

@@ -178,11 +178,11 @@ public:
         if (!(kinetic_ > 0.0) || late <= kEnergyNoise * potential_) return 0.0;
         const IntegratorKind kind = integrator.kind;
         const bool is_symplectic = kind == IntegratorKind::symplectic_euler || kind == IntegratorKind::velocity_verlet;
-        // Their energies oscillate within bounds, which grow as steps near the end of stability.
+        // The energy of symplectic methods oscillates within bounds that widen near the limit of stability.
         if (is_symplectic && !forces_.law.is_magnetic) {
             return late > 3.0 * std::max(early, 0.0) + kinetic_ ? late / kinetic_ : 0.0;
         }
-        // In the second half, an even growth has reached three quarters of its final value on average.
+        // For linear growth, the mean over the second half is three quarters of the final value.
         return late > 0.5 * early ? late / (0.75 * kinetic_) : 0.0;
     }
 

@@ -107,8 +107,9 @@ public:
     /// order, with one block for kParticleBlock particles of the range.
     [[nodiscard]] ActiveSet advance(const ParticleRange& range, const TimeSpan& step, std::vector<BlockRecord>& blocks);
 
-    /// Lets particles in free flight keep their state from now on, and make several steps at once when they need a
-    /// query. Must be called only if nothing reads their states in between. Has no effect if accelerations differ.
+    /// Begins deferred steps: particles in free flight keep their stored state, and make several steps at once before
+    /// their next query. Must be called only if nothing reads their states in between. Has no effect if accelerations
+    /// differ.
     void begin_deferring();
     [[nodiscard]] bool is_deferring() const { return deferred_.has_value(); }
     /// Lets all particles make their deferred steps.

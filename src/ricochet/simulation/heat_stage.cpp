@@ -14,7 +14,7 @@ double kinetic(const RecordedMotion& motion, double radius, double mass) {
     return 0.5 * mass * (dot(motion.velocity, motion.velocity) + 0.4 * radius * radius * dot(motion.spin, motion.spin));
 }
 
-/// J, that an impact takes along the normal.
+/// Returns the kinetic energy of the motion along the normal, in J, that an impact dissipates.
 double lost_along_normal(const ContactRecord& record) {
     const double before = dot(record.velocity_before - record.surface_velocity, record.normal);
     const double after = dot(record.velocity_after - record.surface_velocity, record.normal);

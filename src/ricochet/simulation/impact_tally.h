@@ -82,10 +82,11 @@ struct BodyContacts {
 /// is as soon after the impact as can be told apart, and not after the next one.
 [[nodiscard]] double soon_after_impact(double time, double next);
 
-/// Returns the end of a substep, in s, with the impacts `taken`, the last one at a time, before the next one. The
-/// substep ends soon after the last impact, by a power of kPartAfterImpact. It ends the sooner, the less energy the
-/// impacts dissipate. Until then the bodies move as if nothing had hit them, and the particles that hit them follow
-/// them or wait. begin: start of the substep, in s. shortest: least duration, in s, if much energy is dissipated.
+/// Returns the end of a substep, in s, with the impacts `taken`, the last one at a time, before the next one. The delay
+/// after the last impact is a power of kPartAfterImpact, times the time to the next impact. It ends the sooner, the
+/// less energy the impacts dissipate. Until then the bodies move as if nothing had hit them, and the particles that hit
+/// them follow them or wait. begin: start of the substep, in s. shortest: least duration, in s, if much energy is
+/// dissipated.
 [[nodiscard]] double end_after(std::span<const ImpactTally> taken, double time, double next, double begin,
                                double shortest);
 

@@ -16,8 +16,8 @@
 namespace ricochet {
 namespace {
 
-/// Wakes sleeping particles near moving colliders. Other sleeping particles stay asleep, because their supports are at
-/// rest.
+/// Wakes sleeping particles near moving colliders. This function wakes no other sleeping particle, because all supports
+/// of the others are at rest.
 class WakingModule final : public Module {
 public:
     WakingModule(const MovingColliders& moving, const ModuleParts& parts) : moving_(moving), parts_(parts) {}

@@ -5,8 +5,8 @@
 /// its overlaps never deepens, and contact is ordinary contact of a ball without overlap. Nothing pushes the sphere
 /// out. While the sphere touches no surface, its core grows with the distance to the surfaces, but never beyond the
 /// sphere. It never shrinks. A sphere that is free stays without a core. Energies belong to the sphere: its contacts
-/// act at its own surface. So a core of part c of the radius turns 1 / c times as fast, with the same speed there and
-/// the same energy.
+/// act at its own surface. A core whose radius is the fraction c of the sphere's radius spins 1 / c times as fast. The
+/// speed of its surface and its energy equal those of the sphere.
 #pragma once
 
 #include <cstddef>

@@ -255,7 +255,8 @@ bool PairPlans::do_meet(const NeighbourPair& pair) const {
     const double a = radius[first_ + pair.first];
     const double b = radius[first_ + pair.second];
     if (first_meeting({&first, 1}, {&second, 1}, a + b, 0.0)) return true;
-    // Two spheres that touch have no first meeting if forces drive them into each other. Only a plan can hold them.
+    // Two spheres that touch have no first meeting if forces drive them into each other. Only a contact island can keep
+    // them apart.
     return parts_.may_be_contact_island() &&
            has_sunk(a + b, std::min(a, b), second.path.c[0] - first.path.c[0], second.path.end - first.path.end);
 }

@@ -100,7 +100,7 @@ SupportConstraints PlannedContacts::held(const Flown& flown, const Contact& cont
         const Vec3 across = held.across(surface.normal);
         if (!(approach > 0.0) || !(length(across) > kIndependentSupport)) continue;
         const Material& material = materials_[world_.material_of(surface.surface)];
-        // The velocity that forces add in this step is no impact speed.
+        // The change of the velocity by forces in this step does not count as impact speed.
         const double arriving = std::max(0.0, std::min(approach, -dot(flown.before, surface.normal)));
         double rebound = material.restitution_at(arriving) * arriving;
         rebound = rebound < resting_speed_ ? 0.0 : material.restitution_at(approach) * approach;

@@ -186,8 +186,8 @@ void Population::bind() const {
     parts_.modules.each([](Module& module) { module.bind(); });
 }
 
-// Only the sums of penetration depths depend on the blocks of the active set, and the response `exact` has no
-// penetrations. Other responses keep the blocks of all particles.
+// Only `exact` is reordered. The other responses sum penetration depths block by block, and other blocks would change
+// the rounding of that sum.
 ActiveSet Population::advance(const ParticleRange& range, const TimeSpan& part, std::vector<BlockRecord>& blocks) {
     ActiveSet active = flights_.advance(range, part, blocks);
     if (parts_.options.response != ResponseKind::exact) return active;

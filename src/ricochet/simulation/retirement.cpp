@@ -13,7 +13,8 @@ namespace {
 /// Counts of removed particles in one block, by reason.
 class LeaverCounts {
 public:
-    /// Counts a removed particle. `lost` is the number of impulses of its weight that were too large for the totals.
+    /// Counts a removed particle. `lost` counts impulses of a sleeping particle's weight that were too large for the
+    /// totals of triangles.
     void add(RemovalReason departure, std::uint64_t lost) {
         ++counts_[static_cast<std::size_t>(departure)];
         lost_impulses_ += lost;

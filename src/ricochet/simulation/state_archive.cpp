@@ -22,8 +22,8 @@ namespace {
 /// Begins every saved state; its last digits change with the layout.
 constexpr std::uint64_t kStateFormat = 0x5249434f5354000dULL;
 
-/// Archives the statistics with their layout in memory, so that no counter can be forgotten. The gap behind its only
-/// short counter becomes zero.
+/// Archives the statistics with their layout in memory, so that no counter can be forgotten. The padding after the only
+/// 32-bit counter becomes zero.
 template <class Archive>
 void archive_statistics(Archive& a, SimulationStatistics& statistics) {
     static_assert(std::is_trivially_copyable_v<SimulationStatistics>);

@@ -120,7 +120,7 @@ void Simulation::advance(std::uint64_t count, const std::function<bool()>& go_on
                          const std::function<bool()>& goes_on_within) {
     FreeFlights& flights = impl().population.flights();
     if (count > 1 && impl().population.may_defer()) flights.begin_deferring();
-    // Ranks that share a run stop together, between steps.
+    // A step can be interrupted only if this rank runs alone. Ranks that share a run stop at the same end of a step.
     const bool may_stop = goes_on_within && impl().share.is_alone();
     if (!may_stop) impl().control.return_point().invalidate();
     try {

@@ -37,7 +37,7 @@ struct Signs {
     bool any_negative = false;
 };
 
-/// Largest degree of a factor, and largest number of values of a product.
+/// Largest degree of a factor, and largest number of Bernstein coefficients of a product.
 constexpr std::size_t kMostDegree = 3;
 constexpr std::size_t kMostValues = kMostDegree + 2;
 
@@ -81,8 +81,8 @@ double choose(std::size_t n, std::size_t k) {
     return value;
 }
 
-/// Weights of products of Bernstein coefficients. Two polynomials of degrees m and n, up to kMostDegree, give the
-/// coefficients of their product.
+/// Weights of products of Bernstein coefficients. They combine the coefficients of two polynomials of degrees m and n,
+/// at most kMostDegree, into those of the product.
 template <class Real>
 class Weights {
 public:

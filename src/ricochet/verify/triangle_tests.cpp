@@ -165,8 +165,8 @@ bool on_one_line(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 namespace {
 
-/// Tests a segment and a triangle in one plane, projected along an axis along which the triangle has an area. Two
-/// convex figures are apart if the line of a side of one figure separates them strictly.
+/// Tests a segment and a triangle in one plane. Both are projected onto the first coordinate plane in which the
+/// triangle has an area. Two convex figures are apart if the line of a side of one figure separates them strictly.
 bool meets_in_plane(const Vec3& p, const Vec3& q, const Corners& t) {
     constexpr std::array<std::array<int, 2>, 3> kViews{{{0, 1}, {1, 2}, {2, 0}}};
     for (const auto& [u, v] : kViews) {

@@ -56,7 +56,7 @@ private:
     }
 
     /// Separating axis test of a segment. The axes of the boxes need no tolerance, because they involve no rounding.
-    /// The axes across the segment have one.
+    /// The axes perpendicular to the segment and a coordinate axis use the tolerance slack_.
     class SegmentTest {
     public:
         SegmentTest(const Vec3& p, const Vec3& q, double largest) : start_(p), step_(q - p), size_(abs(step_)) {

@@ -57,7 +57,7 @@ void PixelSum::add_features(const Glance& glance) {
 // Returns the ratio of the pixel's light to its unoccluded light.
 Vec3 PixelSum::lit() const { return {part(light_.x, plain_.x), part(light_.y, plain_.y), part(light_.z, plain_.z)}; }
 
-// Returns the light of a sample if its surface were lit like the mean of the pixel.
+// Returns the light of a sample under the assumption that its surface is lit like the pixel's mean.
 Vec3 PixelSum::expected(const Sample& sample, const Vec3& lit) const {
     return tone_mapped(exposure_ * (sample.own + times(lit, sample.plain)));
 }
@@ -124,7 +124,7 @@ void PixelSum::correct(PixelLight& mean) const {
     mean.alpha = std::clamp(mean.alpha + seen_ / rays_ - seen_by_samples_ / samples_, 0.0, 1.0);
     const double bright = luminance(many / rays_);
     const double of_rest = left / samples_ - (rest / samples_) * (rest / samples_);
-    // The error of stratified rays is about their spread over their number to the power 3/4 (edges).
+    // At edges, the error of n stratified rays is about their standard deviation over n^(3/4).
     const double of_rays = std::max(0.0, square / rays_ - bright * bright) / std::pow(rays_, 1.5);
     if (samples_ > 1) mean.variance = std::max(0.0, of_rest) / (samples_ - 1) + of_rays;
 }

@@ -11,7 +11,7 @@ namespace ricochet {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kFlat = 1e-12;         // least tangent of a ray to the light, along a coordinate; avoids zero
+constexpr double kFlat = 1e-12;         // least magnitude of the slope of a ray to the light; avoids a division by zero
 constexpr double kEntries = 10.0;       // limit for the mean number of cells per sphere
 constexpr double kMostAcross = 2048.0;  // cells
 constexpr std::size_t kBlock = 4096;    // cells per unit of parallel work

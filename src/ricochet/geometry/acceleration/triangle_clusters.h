@@ -55,7 +55,7 @@ public:
     Vec3 curve;
     double margin = 0.0;
     double sagitta = 0.0;     ///< largest distance of the path from its chord, in m
-    double per_length = 0.0;  ///< in 1/m, of the chord; not finite for a point
+    double per_length = 0.0;  ///< 1 / length of the chord, in 1/m; infinite for a point
     Shear shear;              ///< along the chord
     bool is_straight = true;
 };

@@ -106,9 +106,9 @@ struct MeshEdge {
 class MeshTopology {
 public:
     explicit MeshTopology(const PolygonMesh& mesh);
-    /// Builds the structure for triangles. It can differ from the structure of the original polygons in one case. Two
-    /// polygons with two common corners that are not neighbours may be cut along the same line. This line then is an
-    /// edge of four triangles.
+    /// Builds the structure for triangles. It can differ from the structure of the original polygons in one case. If
+    /// two polygons share two corners that are not adjacent, both may be cut along the line between these corners. The
+    /// line then is an edge of four triangles.
     explicit MeshTopology(const TriangleMesh& mesh);
     ~MeshTopology();
     MeshTopology(MeshTopology&&) noexcept;

@@ -21,7 +21,7 @@ struct LocalSegment {
     VectorOf<Scalar> from;
     VectorOf<Scalar> to;
     double coordinate_error = 0.0;  ///< in m, bound on the error of every coordinate
-    double unit = 0.0;              ///< error of a term of the arithmetic, relative to the term
+    double unit = 0.0;              ///< bound on the rounding error of a term, relative to its magnitude
 };
 
 /// An ellipsoid centred at the origin, or an elliptic cylinder around z between two caps.

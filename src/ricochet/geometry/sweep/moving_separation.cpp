@@ -96,7 +96,8 @@ public:
 
 private:
     [[nodiscard]] static Polynomial<Real, 0> constant(double value) { return {{Real(value)}, {std::fabs(value)}}; }
-    /// Returns true if a squared length exceeds radius^2 times the squared length `of`.
+    /// Returns true if `squared` certainly exceeds radius^2 * `of` at all times. Both are squared lengths, as
+    /// polynomials in time.
     template <std::size_t M, std::size_t N>
     [[nodiscard]] bool is_further(const Polynomial<Real, M>& squared, const Polynomial<Real, N>& of) const {
         const Real r(radius_);

@@ -163,7 +163,8 @@ template <class Scalar, class Direction>
     return m;
 }
 
-/// Returns q - m^2, which turns the squared distance from a point into that from the line through it.
+/// Returns q - m^2: the squared distance from a line, if q is the squared distance from a point on it and m is the
+/// component along the line.
 template <class Scalar>
 [[nodiscard]] Coefficients<Scalar> line_clearance(Coefficients<Scalar> q, const std::array<Scalar, 4>& m, int degree) {
     for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {

@@ -80,7 +80,7 @@ class MeshLibrary {
 public:
     /// Returns the mesh with z up. Throws InputError with the reader's message.
     [[nodiscard]] std::shared_ptr<const TriangleMesh> load(const std::filesystem::path& path, MeshUp up);
-    /// Returns true if y is up in the file by its format. Throws InputError like load().
+    /// Returns true if the file's format has y up by default. Throws InputError like load().
     [[nodiscard]] bool is_y_up(const std::filesystem::path& path) { return entry(path).is_y_up; }
     /// Returns notes on contents that were not read, one sentence each. Throws InputError like load().
     [[nodiscard]] const std::vector<std::string>& notes(const std::filesystem::path& path) { return entry(path).notes; }

@@ -321,7 +321,7 @@ static void build_drawings(const SceneContext& context, SceneDescription& scene)
         const ObjectView view = emitter.object("drawing");
         auto drawing = view.read<ParticleDrawingDescription>();
         check_drawing(context, view, drawing);
-        // Keys of other drawings have been reported.
+        // Keys that belong to other kinds of drawing have been reported already and are ignored here.
         drawing.sprite = drawing.particles == "sprites" ? picture_file(context, view, "sprite") : "";
         drawing.mesh = drawing.particles == "meshes" ? picture_file(context, view, "mesh") : "";
         if (drawing.particles == "streaks" && !(scene.picture && scene.picture->shutter > 0.0)) {

@@ -36,7 +36,7 @@ struct QueryMargins {
 /// into the scratch memory: the hits, the surfaces that may touch the path, and the surfaces overlapped from its start.
 class NarrowPhase {
 public:
-    /// All arguments must outlive the object. The path must be finite. `held`: see ContactQuery.
+    /// All arguments must outlive the object. The path must be finite. supports: see ContactQuery.
     NarrowPhase(const SurfaceGeometry& geometry, const Path& path, const QueryMargins& margins,
                 std::span<const SurfaceId> supports, ContactScratch& scratch);
 

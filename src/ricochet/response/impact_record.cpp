@@ -1,4 +1,4 @@
-// Records of impacts for the verifier, and the part that supporting surfaces take in an impact.
+// Records of impacts for the verifier.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -9,25 +9,6 @@
 #include "ricochet/response/impact_resolver.h"
 
 namespace ricochet {
-
-/// Removes the rounding by which supporting surfaces are approached. This impulse belongs to no impact.
-void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
-    std::array<Vec3, Contact::kMostSurfaces> normals;
-    std::array<double, Contact::kMostSurfaces> missing{};
-    std::size_t count = 0;
-    const ContactSurface* support = nullptr;
-    for (const ContactSurface& surface : surfaces) {
-        const double approach = -surfaces_.separation_speed(surface);
-        if (!surface.is_support || !(approach > 0.0) || count == normals.size()) continue;
-        normals[count] = surface.normal;
-        missing[count++] = approach;
-        if (support == nullptr) support = &surface;
-    }
-    if (support == nullptr) return;
-    const Vec3 change = shift_by(std::span(normals).first(count), std::span(missing).first(count));
-    particle_.state.velocity += change;
-    ledger_.record_impulse(support->surface, change, false, Vec3{});
-}
 
 /// Returns the record of an impact as it begins. A surface from which an earlier part of the impact has led the
 /// particle away supports it no longer.

@@ -41,6 +41,25 @@ bool ImpactResolver::reflect(std::span<const ContactSurface> surfaces, bool is_f
     return true;
 }
 
+/// Removes the rounding by which supporting surfaces are approached. This impulse belongs to no impact.
+void ImpactResolver::settle_on_supports(std::span<const ContactSurface> surfaces) {
+    std::array<Vec3, Contact::kMostSurfaces> normals;
+    std::array<double, Contact::kMostSurfaces> missing{};
+    std::size_t count = 0;
+    const ContactSurface* support = nullptr;
+    for (const ContactSurface& surface : surfaces) {
+        const double approach = -surfaces_.separation_speed(surface);
+        if (!surface.is_support || !(approach > 0.0) || count == normals.size()) continue;
+        normals[count] = surface.normal;
+        missing[count++] = approach;
+        if (support == nullptr) support = &surface;
+    }
+    if (support == nullptr) return;
+    const Vec3 change = shift_by(std::span(normals).first(count), std::span(missing).first(count));
+    particle_.state.velocity += change;
+    ledger_.record_impulse(support->surface, change, false, Vec3{});
+}
+
 void ImpactResolver::land(std::span<const ContactSurface> surfaces) {
     const Vec3 before = particle_.state.velocity;
     resolve(surfaces, Rebound::none);
@@ -85,18 +104,17 @@ void ImpactResolver::resolve(std::span<const ContactSurface> surfaces, Rebound r
     });
     if (is_sequential) {
         resolve_sequentially(surfaces, rebound);
-    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_met) > 1 ||
-               !resolve_single(surfaces, *first, rebound)) {
+    } else if (std::count_if(surfaces.begin(), surfaces.end(), is_met) > 1 || !try_single(surfaces, *first, rebound)) {
         resolve_simultaneously(surfaces, rebound);
     }
 }
 
 /// Resolves a bounce off one surface. Returns false, and changes nothing, if the particle then approaches another one.
-bool ImpactResolver::resolve_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
-                                    Rebound rebound) {
+bool ImpactResolver::try_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
+                                Rebound rebound) {
     const Motion before{particle_.state.velocity, particle_.spin};
     RecordedImpact impact = impact_before({&surface, 1});
-    reflect_off(surface, rebound);
+    apply_bounce(surface, rebound);
     const double rounding = kProjectionRounding * length(before.velocity);
     const bool meets_another = std::any_of(surfaces.begin(), surfaces.end(), [&](const ContactSurface& other) {
         return surfaces_.separation_speed(other) < (other.is_support ? -rounding : 0.0);
@@ -218,7 +236,7 @@ void ImpactResolver::resolve_sequentially(std::span<const ContactSurface> surfac
             const Vec3 before = particle_.state.velocity;
             RecordedImpact impact = impact_before({&surface, 1});
             const Rebound own = surface.is_support ? Rebound::none : rebound;
-            reflect_off(surface, own);
+            apply_bounce(surface, own);
             ledger_.record_impulse(surface.surface, particle_.state.velocity - before, pass == 0);
             if (pass > 0) ledger_.mark_as_repeated();
             ledger_.log_contact(surface, before);
@@ -230,7 +248,7 @@ void ImpactResolver::resolve_sequentially(std::span<const ContactSurface> surfac
     move_out_of_corner(surfaces);
 }
 
-void ImpactResolver::reflect_off(const ContactSurface& surface, Rebound rebound) {
+void ImpactResolver::apply_bounce(const ContactSurface& surface, Rebound rebound) {
     const Material& material = surfaces_.material_of(surface.surface);
     const double approach = -surfaces_.separation_speed(surface);
     const double restitution = rebound == Rebound::none ? 0.0 : material.restitution_at(approach);
@@ -257,7 +275,7 @@ void ImpactResolver::bounce_off_body(const ContactSurface& surface, const Materi
     const Mobility mobility = rules_.bodies->mobility(body, state.time);
     const DynamicSurface dynamic{surface.normal, restitution, material.friction, surfaces_.velocity_of(surface),
                                  mobility};
-    const Motion after = ricochet::bounce({state.velocity, particle_.spin}, state, dynamic);
+    const Motion after = bounce_off_dynamic({state.velocity, particle_.spin}, state, dynamic);
     const Vec3 impulse = state.mass * (particle_.state.velocity - after.velocity);
     particle_.state.velocity = after.velocity;
     particle_.spin = after.spin;

@@ -18,6 +18,9 @@ namespace ricochet {
 
 /// Resolves impacts. It changes the particle's velocity and spin, and records the impulses. Impacts are resolved in the
 /// world; lasting contact uses the same records in any reference frame.
+///
+/// reflect() calls resolve(). On one surface, try_single() applies the bounce, and takes it back if the particle then
+/// approaches another surface. All surfaces are then resolved together.
 class ImpactResolver {
 public:
     /// All must outlive it.
@@ -57,8 +60,8 @@ private:
     using Foremost = std::array<ContactSurface, ImpactResult::kMostSurfaces>;
 
     void resolve(std::span<const ContactSurface> surfaces, Rebound rebound);
-    [[nodiscard]] bool resolve_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
-                                      Rebound rebound);
+    [[nodiscard]] bool try_single(std::span<const ContactSurface> surfaces, const ContactSurface& surface,
+                                  Rebound rebound);
     void resolve_simultaneously(std::span<const ContactSurface> surfaces, Rebound rebound);
     void apply(const ImpactResult& result, std::span<const ContactSurface> met, std::span<const bool> is_met,
                double scale, int pass);
@@ -69,7 +72,7 @@ private:
                                                            Foremost& chosen) const;
     [[nodiscard]] ImpactSurface in_problem(const ContactSurface& surface, Rebound rebound) const;
 
-    void reflect_off(const ContactSurface& surface, Rebound rebound);
+    void apply_bounce(const ContactSurface& surface, Rebound rebound);
     void bounce_off_body(const ContactSurface& surface, const Material& material, double restitution);
     [[nodiscard]] Motion random_reflection(Motion motion, const ContactSurface& surface, const Material& material,
                                            double restitution);

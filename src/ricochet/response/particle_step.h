@@ -74,8 +74,9 @@ private:
 
 /// One particle within a step. Its state is given in the reference frame: the world, or the frame of a body that it
 /// touches. The stored position is in the world. Stages read and change it:
-/// follow_path.h (fly, and find contacts), certified_motion.h (certify segments, and stop), carried_particle.h (wait
+/// path_motion.h (fly, and find contacts), certified_motion.h (certify segments, and stop), carried_particle.h (wait
 /// among moving colliders), impact_resolver.h (impacts) and contact_phase.h (contact).
+/// All of them refer to the one MovingParticle that the caller of the response stores after the move.
 class ParticleStep {
 public:
     /// rules, particle and scratch must outlive it.

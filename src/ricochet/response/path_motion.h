@@ -16,7 +16,8 @@
 namespace ricochet {
 
 /// Follows a flight to its end or to the contact that is returned. With a look-ahead (null: none) the outcome says how
-/// long the particle remains free. candidates: see ContactQuery.
+/// long the particle remains free. Afterwards the particle has its velocity of arrival, before the impact. candidates:
+/// see ContactQuery.
 std::optional<Contact> follow_flight(ParticleStep& step, const Flight& flight, const Integrator& integrator,
                                      const LookAhead* look_ahead, const ContactCandidates& candidates);
 

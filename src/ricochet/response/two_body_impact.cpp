@@ -135,7 +135,7 @@ private:
 
 }  // namespace
 
-Motion bounce(const Motion& before, const ForceInput& state, const DynamicSurface& surface) {
+Motion bounce_off_dynamic(const Motion& before, const ForceInput& state, const DynamicSurface& surface) {
     const Impact impact(before, state, surface);
     if (!(impact.approach() > 0.0)) return before;
     const Vec3 change = impact.impulse() / state.mass;

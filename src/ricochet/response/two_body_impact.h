@@ -26,6 +26,6 @@ struct DynamicSurface {
 /// Applications", 1985, 5.8.
 /// The sum of both kinetic energies never grows. Source of the impulse: J. K. Hahn, "Realistic animation of rigid
 /// bodies", SIGGRAPH 1988.
-[[nodiscard]] Motion bounce(const Motion& before, const ForceInput& state, const DynamicSurface& surface);
+[[nodiscard]] Motion bounce_off_dynamic(const Motion& before, const ForceInput& state, const DynamicSurface& surface);
 
 }  // namespace ricochet

@@ -210,7 +210,7 @@ private:
     void prefetch(std::span<const std::uint32_t> active, std::size_t k) const;
 
     MoverParts parts_;
-    const Response& response_;
+    const Response& response_;            // by make_response(); `exact` without a flow moves by ParticleMover::run()
     std::vector<std::uint32_t> bounces_;  // of each particle since begin_step(); newer particles have no entry
 };
 

@@ -104,7 +104,7 @@ TEST(CollisionWorld, NamesEverySurfaceOfMixedPlanesAndMeshes) {
     std::uint32_t triangle = 0;
     for (std::uint32_t collider = 0; collider < counts.size(); ++collider) {
         EXPECT_EQ(world.surface_count_of(collider), counts[collider]);
-        EXPECT_EQ(world.first_surface_of(collider), surface);
+        EXPECT_EQ(world.range(collider).first_surface, surface);
         for (std::uint32_t k = 0; k < counts[collider]; ++k, ++surface) {
             EXPECT_EQ(world.name_of(surface).collider, collider);
             EXPECT_EQ(world.name_of(surface).triangle, k);

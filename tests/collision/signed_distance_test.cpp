@@ -322,7 +322,7 @@ TEST(SignedDistance, MatchesTheFormulasOfPlanesBallsAndCylinders) {
     EXPECT_NEAR(beside->distance, 1.0, 1e-15);
     EXPECT_EQ(distance.closest(2, {10.5, 0, 0}, 1.5)->side, -1);
     EXPECT_NEAR(distance.closest(2, {10.5, 0, 2.75}, 1.5)->distance, 0.25, 1e-15);  // the cap is nearer
-    EXPECT_EQ(beside->surface, world.first_surface_of(2));
+    EXPECT_EQ(beside->surface, world.range(2).first_surface);
 }
 
 TEST(SignedDistance, ListsNothingBeyondTheGivenDistance) {
@@ -402,7 +402,7 @@ TEST(SignedDistance, LeavesOutTrianglesWithoutArea) {
     const auto world = world_of(mesh_collider(lines), mesh_collider(merged(lines, box_mesh({0, 0, 0}, {1, 1, 1}))));
     const SignedDistance distance(world);
     EXPECT_FALSE(distance.closest(0, {0.5, 0, 0}, HUGE_VAL));
-    EXPECT_FALSE(distance.segment_intersects(0, {0.5, 0, -1}, {0.5, 0, 1}));
+    EXPECT_EQ(distance.count_met(0, {0.5, 0, -1}, {0.5, 0, 1}), 0U);
     const auto found = all_near(distance, {1.75, 0, 0}, HUGE_VAL);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].collider, 1U);
@@ -424,13 +424,13 @@ TEST(SignedDistance, SegmentsIntersectACollidersSurfacesExactly) {
         for (std::uint32_t c = 0; c < world.colliders().size(); ++c) {
             bool expected = false;
             for (SurfaceId s = 0; s < world.surface_count_of(c) && !expected; ++s) {
-                const SurfaceId surface = world.first_surface_of(c) + s;
+                const SurfaceId surface = world.range(c).first_surface + s;
                 const auto& corners = world.name_of(surface);
                 const bool is_flat_line = c == 1 && world.is_degenerate(corners.triangle);  // the first mesh
                 expected = !is_flat_line && world.segment_intersects(surface, p, q);
             }
-            ASSERT_EQ(distance.segment_intersects(c, p, q), expected) << i << ", collider " << c;
-            ASSERT_EQ(reference.segment_intersects(c, p, q), expected) << i << ", collider " << c;
+            ASSERT_EQ(distance.count_met(c, p, q) > 0, expected) << i << ", collider " << c;
+            ASSERT_EQ(reference.count_met(c, p, q) > 0, expected) << i << ", collider " << c;
             intersected += expected ? 1 : 0;
         }
     }

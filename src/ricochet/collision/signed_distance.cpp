@@ -34,28 +34,20 @@ std::optional<SurfacePoint> if_within(const SurfacePoint& found, double within) 
 }  // namespace
 
 SignedDistance::SignedDistance(const CollisionWorld& world) : world_(world) {
-    std::uint32_t planes = 0;
-    std::uint32_t shapes = 0;
     for (std::uint32_t collider = 0; collider < world.colliders().size(); ++collider) {
-        const ColliderShape& shape = world.colliders()[collider].shape;
-        if (!world.owns(world.first_surface_of(collider))) {
-            parts_.push_back({Kind::elsewhere, 0});
-        } else if (std::holds_alternative<PlaneShape>(shape)) {
-            parts_.push_back({Kind::plane, planes++});
-        } else if (std::holds_alternative<BallShape>(shape) || std::holds_alternative<CylinderShape>(shape)) {
-            parts_.push_back({Kind::shape, shapes++});
-        } else {
-            add_mesh(collider);
-        }
+        const CollisionWorld::Range& range = world.range(collider);
+        if (range.kind != Kind::mesh) continue;
+        const auto count = static_cast<std::uint32_t>(world.surface_count_of(collider));
+        meshes_.push_back({collider, range.first_triangle, range.first_triangle + count,
+                           Pseudonormals(world.vertices(), world.triangles().subspan(range.first_triangle, count))});
     }
 }
 
-void SignedDistance::add_mesh(std::uint32_t collider) {
-    const std::uint32_t first = meshes_.empty() ? 0 : meshes_.back().end_triangle;
-    const std::size_t count = world_.surface_count_of(collider);
-    parts_.push_back({Kind::mesh, static_cast<std::uint32_t>(meshes_.size())});
-    meshes_.push_back({collider, first, first + static_cast<std::uint32_t>(count),
-                       Pseudonormals(world_.vertices(), world_.triangles().subspan(first, count))});
+/// Returns the index of a collider in meshes_.
+std::uint32_t SignedDistance::mesh_of(std::uint32_t collider) const {
+    const auto at = std::lower_bound(meshes_.begin(), meshes_.end(), collider,
+                                     [](const Mesh& mesh, std::uint32_t c) { return mesh.collider < c; });
+    return static_cast<std::uint32_t>(at - meshes_.begin());
 }
 
 std::uint32_t SignedDistance::mesh_of_triangle(std::uint32_t triangle) const {
@@ -205,11 +197,11 @@ std::optional<SurfacePoint> SignedDistance::nearest_of_mesh(const Candidate& can
 }
 
 std::optional<SurfacePoint> SignedDistance::closest(std::uint32_t collider, const Vec3& p, double within) const {
-    const Part& part = parts_[collider];
-    if (part.kind == Kind::elsewhere) return std::nullopt;
-    if (part.kind == Kind::plane) return nearest_of_plane(part.index, p, within);
-    if (part.kind == Kind::shape) return nearest_of_shape(part.index, p, within);
-    const std::optional<Candidate> candidate = nearest_triangle(part.index, p, within);
+    const CollisionWorld::Range& range = world_.range(collider);
+    if (range.kind == Kind::elsewhere) return std::nullopt;
+    if (range.kind == Kind::plane) return nearest_of_plane(range.index, p, within);
+    if (range.kind == Kind::shape) return nearest_of_shape(range.index, p, within);
+    const std::optional<Candidate> candidate = nearest_triangle(mesh_of(collider), p, within);
     return candidate ? nearest_of_mesh(*candidate, p, within) : std::nullopt;
 }
 
@@ -217,71 +209,45 @@ void SignedDistance::near(const Vec3& p, double within, std::vector<SurfacePoint
     thread_local std::vector<Candidate> candidates;
     visit_near(p, within, NearSearch(*this, p, within, candidates));
     auto candidate = candidates.begin();
-    for (const Part& part : parts_) {
+    for (std::uint32_t collider = 0; collider < world_.colliders().size(); ++collider) {
+        const CollisionWorld::Range& range = world_.range(collider);
         std::optional<SurfacePoint> found;
-        if (part.kind == Kind::plane) {
-            found = nearest_of_plane(part.index, p, within);
-        } else if (part.kind == Kind::shape) {
-            found = nearest_of_shape(part.index, p, within);
-        } else if (candidate != candidates.end() && candidate->mesh == part.index) {
+        if (range.kind == Kind::plane) {
+            found = nearest_of_plane(range.index, p, within);
+        } else if (range.kind == Kind::shape) {
+            found = nearest_of_shape(range.index, p, within);
+        } else if (candidate != candidates.end() && meshes_[candidate->mesh].collider == collider) {
             found = nearest_of_mesh(*candidate++, p, within);
         }
         if (found) out.push_back(*found);
     }
 }
 
-bool SignedDistance::segment_intersects(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
-    bool intersects = false;
-    visit_intersected(collider, p, q, [&](SurfaceId) {
-        intersects = true;
-        return false;
-    });
-    return intersects;
-}
-
 std::size_t SignedDistance::count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const {
-    if (parts_[collider].kind == Kind::shape) {
-        if (!segment_intersects(collider, p, q)) return 0;
-        const auto before = nearest_of_shape(parts_[collider].index, p, std::numeric_limits<double>::infinity());
-        const auto after = nearest_of_shape(parts_[collider].index, q, std::numeric_limits<double>::infinity());
-        return before && after && before->side == after->side ? 2 : 1;
+    const CollisionWorld::Range& range = world_.range(collider);
+    if (range.kind != Kind::mesh) {
+        if (!world_.segment_intersects(range.first_surface, p, q)) return 0;
+        if (range.kind == Kind::plane) return 1;
+        const AnalyticShape& shape = world_.shapes()[range.index].shape;
+        return shape.side(p) == shape.side(q) ? 2 : 1;
     }
-    std::vector<SurfaceId> list;  // the hierarchy may propose a triangle twice
-    visit_intersected(collider, p, q, [&](SurfaceId surface) {
-        if (std::find(list.begin(), list.end(), surface) == list.end()) list.push_back(surface);
-        return true;
-    });
-    return list.size();
-}
-
-/// Calls found(surface) for the surfaces of the collider that [p, q] intersects, until it returns false.
-template <class Found>
-void SignedDistance::visit_intersected(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const {
-    const Part& part = parts_[collider];
-    const SurfaceId first = world_.first_surface_of(collider);
-    if (part.kind != Kind::mesh) {
-        if (world_.segment_intersects(first, p, q)) found(first);
-        return;
-    }
-    const Mesh& mesh = meshes_[part.index];
-    bool goes_on = true;
+    const Mesh& mesh = meshes_[mesh_of(collider)];
+    std::vector<std::uint32_t> met;  // the hierarchy may propose a triangle twice
     const auto visit = [&](std::uint32_t triangle) {
-        if (!goes_on || triangle < mesh.first_triangle || triangle >= mesh.end_triangle) return goes_on ? 1.0 : 0.0;
-        const SurfaceId surface = first + (triangle - mesh.first_triangle);
-        if (!world_.is_degenerate(triangle) && world_.segment_intersects(surface, p, q)) goes_on = found(surface);
-        return goes_on ? 1.0 : 0.0;
+        if (triangle < mesh.first_triangle || triangle >= mesh.end_triangle || world_.is_degenerate(triangle))
+            return 1.0;
+        const SurfaceId surface = range.first_surface + (triangle - mesh.first_triangle);
+        if (std::find(met.begin(), met.end(), triangle) == met.end() && world_.segment_intersects(surface, p, q)) {
+            met.push_back(triangle);
+        }
+        return 1.0;
     };
     if (world_.culls()) {
         world_.bvh_for(0.0).query_segment(p, q, visit);
     } else {
-        for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle && goes_on; ++t) (void)visit(t);
+        for (std::uint32_t t = mesh.first_triangle; t < mesh.end_triangle; ++t) (void)visit(t);
     }
-}
-
-std::size_t SignedDistance::memory_bytes() const {
-    std::size_t bytes = parts_.capacity() * sizeof(Part) + meshes_.capacity() * sizeof(Mesh);
-    for (const Mesh& mesh : meshes_) bytes += mesh.normals.memory_bytes();
-    return bytes;
+    return met.size();
 }
 
 }  // namespace ricochet

@@ -46,26 +46,14 @@ public:
     /// colliders. Allocates memory only when `out` grows, and once per thread.
     void near(const Vec3& p, double within, std::vector<SurfacePoint>& out) const;
 
-    /// Returns true if the closed segment [p, q] intersects a surface of the collider. The decision is exact for planes
-    /// and meshes. For shapes with a formula it errs towards true, by some 2^-90. Both ends must be finite.
-    [[nodiscard]] bool segment_intersects(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
-
-    /// Returns the number of the collider's surfaces that the closed segment [p, q] intersects. A segment through an
-    /// edge intersects both its triangles. For shapes with a formula it is 1 if the ends are on different sides, and 2
-    /// if the segment goes in and out.
+    /// Returns the number of the collider's surfaces that the closed segment [p, q] intersects. Both ends must be
+    /// finite. A segment through an edge intersects both its triangles. For shapes with a formula it is 1 if the ends
+    /// are on different sides, and 2 if the segment goes in and out. Whether it is 0 is exact for planes and meshes.
+    /// For shapes it errs towards an intersection, by some 2^-90.
     [[nodiscard]] std::size_t count_met(std::uint32_t collider, const Vec3& p, const Vec3& q) const;
 
-    /// Returns the memory of the object, in bytes, without the world.
-    [[nodiscard]] std::size_t memory_bytes() const;
-
 private:
-    enum class Kind : std::uint8_t { plane, shape, mesh, elsewhere };
-
-    /// Location of a collider's data: an index into the world's planes or shapes, or into meshes_.
-    struct Part {
-        Kind kind;
-        std::uint32_t index;
-    };
+    using Kind = CollisionWorld::Kind;
 
     /// The triangles of a collider: [first_triangle, end_triangle) of the world's triangles. The pseudonormals are
     /// indexed from the first.
@@ -85,9 +73,7 @@ private:
 
     class NearSearch;
 
-    void add_mesh(std::uint32_t collider);
-    template <class Found>
-    void visit_intersected(std::uint32_t collider, const Vec3& p, const Vec3& q, Found&& found) const;
+    [[nodiscard]] std::uint32_t mesh_of(std::uint32_t collider) const;
     [[nodiscard]] std::uint32_t mesh_of_triangle(std::uint32_t triangle) const;
     template <class Visit>
     void visit_near(const Vec3& p, double within, Visit&& visit) const;
@@ -100,7 +86,6 @@ private:
                                                               double within) const;
 
     const CollisionWorld& world_;
-    std::vector<Part> parts_;   ///< one per collider
     std::vector<Mesh> meshes_;  ///< in ascending order of the colliders
 };
 
